@@ -47,7 +47,9 @@ class Practice:
     def prospects(self, at: Positions) -> tuple[Floats, Floats]:
         """Values of positions for this player by the rule of thumb, and chances of their four widest pots."""
         rule = SURE if self.sure else RULE_OF_THUMB
-        return prospects_of(at, self._spread, rule, threads=self.exact.threads)
+        return prospects_of(
+            at, self._spread, rule, threads=self.exact.threads, rails=self.options.rules.rails
+        )
 
 
 def practice_of(noise: NoiseLike, options: Any = None, source: Any = None) -> Practice:

@@ -38,7 +38,7 @@ def played_on(practice: Practice, left: Positions, visits: Ints, seed: int) -> F
 def _choose(practice: Practice, at: Positions) -> Floats:
     """The strokes that the fast player plays in n positions: (n, 5)."""
     n = len(at)
-    rows, places = np.nonzero(action_masks(at)[:, PICKS])
+    rows, places = np.nonzero(action_masks(at, cue=practice.options.cue)[:, PICKS])
     choices = PICKS[places]
     strokes, worth = np.zeros((n, len(PICKS), 5)), np.full((n, len(PICKS)), -1.0)
     strokes[rows, places] = practice.chosen(at, rows, choices)

@@ -145,7 +145,7 @@ def _over_rails(ax, ay, side, top, q, x, y, rails, R):
         sin_phi = -rails[m + EDGE_SIDE] * (ay if ends else ax)
         D = rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * (y if ends else x)
         # the cue points away from it, or ends before it
-        if sin_phi <= 0.0 or D > LENGTH * sin_phi + BUTT + R:
+        if sin_phi <= 0.0 or LENGTH * sin_phi + BUTT + R < D:
             continue
         at = x - ax * D / sin_phi if ends else y - ay * D / sin_phi
         # right = (ay, -ax)
@@ -153,9 +153,9 @@ def _over_rails(ax, ay, side, top, q, x, y, rails, R):
         if not rails[m + EDGE_LOW] <= at <= rails[m + EDGE_HIGH]:
             D += rails[m + EDGE_BEHIND]
         if D > 0.0:
-            if ends and D < across_y:
+            if ends and across_y > D:
                 across_y, c_y = D, c
-            elif not ends and D < across_x:
+            elif not ends and across_x > D:
                 across_x, c_x = D, c
     se, ce = 0.0, 1.0
     if across_x < inf:

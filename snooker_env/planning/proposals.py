@@ -5,12 +5,12 @@ strokes for each position that it has any for.
 * ``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth.
   The strokes at a pot are consecutive points of one scrambled Sobol sequence over the logarithm of the speed,
   the height of the tip and its side; half of them have no side.
-* ``at_balls``: in the directions in which a ball on is met first (``tasks.windows``), evenly. Every other
+* ``at_balls``: to the places where a ball on is met first (``tasks.windows``), evenly. Every other
   stroke is hard, since a ball then goes in by chance more often.
 * ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the
   models of the engine."""
 
-from math import erf, exp, hypot, log, pi, sqrt
+from math import atan2, erf, exp, hypot, log, pi, sqrt
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -21,15 +21,16 @@ from ..game.balls import VALUES, balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
+from ..physics.cue import squirt
 from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
-from ..tasks.lines import EASY, new_work
+from ..tasks.lines import EASY, aim_at_met, new_work
 from ..tasks.pot_aim import solved_aim
 from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .positions import Positions
-from .prospects import FAR, FOLLOWS
+from .prospects import FAR, FOLLOWS, raised_spread
 from .sobol import sobol
 from .strokes import AIM, COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
 
@@ -130,7 +131,9 @@ def _propose(balls, seeds, which, spread, law, strokes, chances):
         total = 0.0
         for j in range(many):
             worth = VALUES[int(lines[j, POT_BALL])] + FOLLOWS
-            weights[j] = pot_chance(p, lines[j], spread, FAR) ** POWER * worth + 1e-12
+            aim = atan2(lines[j, GHOST_Y] - p[0, 1], lines[j, GHOST_X] - p[0, 0])
+            wide = raised_spread(spread, 0.0, 0.0, aim, p, here, rails)
+            weights[j] = pot_chance(p, lines[j], wide, FAR) ** POWER * worth + 1e-12
             total += weights[j]
         j, reached = 0, weights[0] / total
         for i in range(m):
@@ -143,7 +146,10 @@ def _propose(balls, seeds, which, spread, law, strokes, chances):
                     reached += weights[j] / total
                 _spread_stroke(i, seed, strokes[k, i])
             _aim(strokes[k, i], p, here, lines[j], its, work)
-            chances[k, i] = pot_chance(p, lines[j], spread, LOST)
+            side, top = strokes[k, i, SIDE], strokes[k, i, TOP]
+            aim = strokes[k, i, AIM] - squirt(side, its.end_mass_ratio)
+            wide = raised_spread(spread, side, top, aim, p, here, rails)
+            chances[k, i] = pot_chance(p, lines[j], wide, LOST)
 
 
 @kernel
@@ -156,11 +162,12 @@ def _plain_stroke(i, seed, hard, stroke):
 
 
 @entry(what="the contacts of positions", seconds=2)
-def _contacts(balls, seeds, strokes, chances):
+def _contacts(balls, seeds, law, strokes, chances):
     """Fill strokes (n, m, 5) and chances (n, m) with strokes at the balls on that are seen."""
-    (positions, on_table, game), windows = balls, np.empty((MOST_EDGES, 3))
+    (positions, on_table, game), windows, work = balls, np.empty((MOST_EDGES, 3)), new_work()
     for k in range(len(strokes)):
-        p, here, seed = positions[k], on_table[k], seeds[k]
+        p, here, seed, own = positions[k], on_table[k], seeds[k], row_of(k, law[0])
+        its = CueLaw(law[0][own], law[1][own], 0, 0, law[4], law[5])
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
         chances[k, :] = 0.0
         many, total = open_windows(p, here, on, touching_balls(p, here), windows), 0.0
@@ -176,7 +183,9 @@ def _contacts(balls, seeds, strokes, chances):
             while w < many - 1 and along > windows[w, HIGH] - windows[w, LOW]:
                 along -= windows[w, HIGH] - windows[w, LOW]
                 w += 1
-            strokes[k, i, AIM] = turned(windows[w, LOW] + along)
+            played = strokes[k, i, SPEED], strokes[k, i, SIDE], strokes[k, i, TOP], 0.0
+            aim = aim_at_met(windows[w, LOW] + along, played, p, here, its, work)
+            strokes[k, i, AIM] = turned(aim)
             chances[k, i] = 1.0
 
 
@@ -341,7 +350,7 @@ def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposal
     [[1.0, 1.0, 1.0, 1.0]]
     """
     made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
-    _contacts(_balls(at), np.asarray(seeds, np.int64), *made)
+    _contacts(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
     return made
 
 

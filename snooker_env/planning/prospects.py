@@ -2,18 +2,20 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from math import erf, exp, radians, sqrt
+from math import atan2, erf, exp, radians, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import entry
+from .._jit import entry, kernel
+from .._types import Floats
 from ..game.balls import N_BALLS, VALUES, BallOn, balls_on_kernel, bits
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
+from ..physics.cue_room import NO_RAILS, STEEPEST, least_elevation
 from ..physics.parameters import PhysicsLike
 from ..tasks.discrete_actions import POTS
-from ..tasks.noise import Noise
+from ..tasks.noise import TWICE, Noise
 from .positions import Positions
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
@@ -29,8 +31,18 @@ SURE = (1e4, 1e-3, 0.0, 0.0)
 """Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left."""
 
 
+@kernel
+def raised_spread(spread, side, top, aim, positions, on_table, rails):
+    """``spread`` of a stroke whose cue, pointing in the direction ``aim`` [rad], must be raised: errors grow with the
+    elevation (``tasks.noise``)."""
+    if rails.shape[0] == 0:
+        return spread
+    least = least_elevation((side, top, aim, 0.0), positions, on_table, rails, BALL_RADIUS)
+    return spread * (1.0 + min(least, STEEPEST) / TWICE)  # a tip goes up before a cue does further
+
+
 @entry(what="the value of positions", seconds=1)
-def _prospects(positions, on_table, ball_on, spread, constants, values, chances):
+def _prospects(positions, on_table, ball_on, spread, constants, rails, values, chances):
     """Fill ``values`` (n,) and ``chances`` (n, most) of ``prospects_of``."""
     lines = np.empty((16, POT_COLUMNS))
     follows, second, third, far = constants
@@ -51,7 +63,9 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
             path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
             tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
             run = sqrt((tx - p[ball, 0]) ** 2 + (ty - p[ball, 1]) ** 2)
-            chance = erf(lines[j, TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
+            aim = atan2(gy - p[0, 1], gx - p[0, 0])
+            its = raised_spread(spread, 0.0, 0.0, aim, p, on_table[k], rails)
+            chance = erf(lines[j, TOLERANCE] / (its * sqrt(2.0))) * exp(-far * (path + run))
             if j < chances.shape[1]:
                 chances[k, j] = chance
             rest = max(0.0, left - VALUES[ball])
@@ -107,6 +121,7 @@ def prospects_of(
     constants: tuple[float, float, float, float] = RULE_OF_THUMB,
     most: int = POTS,
     threads: int = 1,
+    rails: Floats = NO_RAILS,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Estimate the value of positions and the chances of their pots by a rule of thumb.
 
@@ -123,6 +138,9 @@ def prospects_of(
         ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
     most, threads : int, optional
         Number of chances for each position; default 4. Largest number of threads; default 1.
+    rails : numpy.ndarray, optional
+        Those that a real cue passes over, ``Planner.rules.rails``: the errors of a plain stroke at the pot then grow
+        with the elevation that it needs. Default: a free cue.
 
     Returns
     -------
@@ -139,9 +157,10 @@ def prospects_of(
     """
     at, n = at.as_visits(), len(at)
     values, chances, balls = np.empty(n), np.empty((n, most)), (at.positions, at.on_table, at.ball_on.copy())
+    over = np.array(rails)  # kernels are compiled for arrays that can be written
 
     def fill(rows: slice) -> None:
-        _prospects(*(part[rows] for part in balls), spread, constants, values[rows], chances[rows])
+        _prospects(*(part[rows] for part in balls), spread, constants, over, values[rows], chances[rows])
 
     in_parts(n, threads, fill)
     return values, chances

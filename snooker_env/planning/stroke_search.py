@@ -157,7 +157,8 @@ class StrokeSearch:
     def _by_rule(self, at: Positions) -> Floats:
         """Values of positions by the rule of thumb [points]: float64 (n,)."""
         constants = SURE if self.noise.silent else RULE_OF_THUMB
-        return prospects_of(at, self.spread, constants, threads=self.planner.threads)[0]
+        rails, threads = self.dynamics.rails, self.planner.threads
+        return prospects_of(at, self.spread, constants, threads=threads, rails=rails)[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> Ranked:
         """Try strokes in n positions and return them ``Ranked``: each row's first one is to be played.

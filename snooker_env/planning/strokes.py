@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from .._check import array, integer, number, refuse, refuse_what
 from .._jit import entry
-from .._types import Fidelity, Floats, Integers, Ints, Scalars, Vector, Vectors
+from .._types import CueKind, Fidelity, Floats, Integers, Ints, Scalars, Vector, Vectors
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
-from ..physics import cue
 from ..physics.conditions import END_MASS_RATIO, pack_into
+from ..physics.cue import MAX_ELEVATION as STEEPEST_CUE
 from ..physics.cue import squirt
 from ..physics.cue_room import NO_RAILS
 from ..physics.impact.contact import parse_fidelity
@@ -217,13 +217,16 @@ def packed_under(conditions: Floats, rules: Rules) -> tuple[Floats, Floats, Floa
     return options, noise, rows_under(conditions, rules.physics)
 
 
-def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
+def action_masks(positions: PositionsLike, *, cue: CueKind = "free") -> NDArray[np.bool_]:
     """Return which choices of ``action="discrete"`` are available in each position.
 
     Parameters
     ----------
     positions : PositionsLike
         The m positions: anything that ``Positions.of`` accepts.
+    cue : str, optional
+        "free" (default) or "real", as of ``Options``: on the table "match", choices whose cue had to be steeper than
+        45 degrees are not available, as long as others are.
 
     Returns
     -------
@@ -236,9 +239,19 @@ def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
     >>> int(action_masks(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))).sum())
     270
     """
-    at = Positions.of(positions).as_visits()
+    return available(Positions.of(positions), _rails_of(cue))
+
+
+def _rails_of(cue: CueKind) -> Floats:
+    """Those of the table "match"; ValueError for an unknown cue."""
+    return NO_RAILS if cue == "free" else Options(cue=cue).rules.rails
+
+
+def available(positions: Positions, rails: Floats) -> NDArray[np.bool_]:
+    """``action_masks`` with the rails that the cue passes over, ``Rules.rails``."""
+    at, options = positions.as_visits(), np.concatenate([STROKES_ONLY, rails])
     out = np.empty((len(at), SIZE), np.bool_)
-    masks(np.arange(len(at)), at.positions, at.on_table, at.game, STROKES_ONLY, out)
+    masks(np.arange(len(at)), at.positions, at.on_table, at.game, options, out)
     return out
 
 
@@ -337,6 +350,7 @@ def as_actions(
     *,
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
+    cue: CueKind = "free",
 ) -> NDArray[np.float32]:
     """Convert choices of ``action="discrete"`` to those of ``aim="absolute"``, up to float32's rounding.
 
@@ -350,6 +364,8 @@ def as_actions(
         Physical constants with which the aims are solved; default None: the preset "paper".
     fidelity : str, optional
         "fast", "standard" (default), "reference" or "euler:N": how impacts are solved.
+    cue : str, optional
+        "free" (default) or "real", as of ``Options``: the cue with which the aims are solved, on the table "match".
 
     Returns
     -------
@@ -362,7 +378,7 @@ def as_actions(
     >>> as_actions(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), [0], [67]).shape
     (1, 4)
     """
-    options: Any = {"physics": Physics.of(physics), "fidelity": fidelity, "action": "discrete"}
+    options: Any = {"physics": Physics.of(physics), "fidelity": fidelity, "action": "discrete", "cue": cue}
     at = Positions.of(positions).as_visits()
     which = rows_of(at, rows)
     picks = _integers("choices", choices, len(which), 0, SIZE - 1)
@@ -392,6 +408,7 @@ def pot_aim(
     ghosts: Vectors | None = None,
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
+    cue: CueKind = "free",
 ) -> NDArray[np.float64]:
     """Solve the direction of the cue ball that sends a ball to a point, with throw, swerve and curve.
 
@@ -412,7 +429,7 @@ def pot_aim(
         speeds [m/s] of strokes in the middle of the ball.
     ghosts : array_like, optional
         float (n, 2). Ghost-ball centres [m]; default: 2 R behind the ball as seen from the target.
-    physics, fidelity : optional
+    physics, fidelity, cue : optional
         As for ``as_actions``.
 
     Returns
@@ -427,7 +444,7 @@ def pot_aim(
     >>> float(pot_aim(position, [0], [1], [(0.8, 0.8)], 2.3)[0].round(3))
     0.785
     """
-    dynamics = Dynamics(Physics.of(physics), parse_fidelity(fidelity))
+    dynamics = Dynamics(Physics.of(physics), parse_fidelity(fidelity), _rails_of(cue))
     at = Positions.of(positions).known_to(_ABSOLUTE_RULES)
     return solved_aims(at, rows, balls, targets, strokes, ghosts, dynamics)
 
@@ -454,7 +471,7 @@ def solved_aims(
         played[:] = array("strokes", strokes, (n, COLUMNS))
     else:
         played[:, SPEED] = array("strokes", strokes, (n,) if np.ndim(strokes) else ())
-    most = (np.inf, offset, offset, np.inf, cue.MAX_ELEVATION)
+    most = (np.inf, offset, offset, np.inf, STEEPEST_CUE)
     _check_columns(played, (0.0, -offset, -offset, -np.inf, 0.0), most)
     _pot_aim(at.positions, at.on_table, which, ids, to, behind, played, law_of(dynamics, at), aims)
     return aims

@@ -6,8 +6,9 @@ import numpy as np
 
 from .._check import refuse_what
 from .._types import Floats, Ints
-from ..planning import Planner, Positions, action_masks, pots
+from ..planning import Planner, Positions, pots
 from ..planning.positions import seeds_of
+from ..planning.strokes import available
 from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.ghost_ball import geometric_strokes
 from ..tasks.options import Options
@@ -34,7 +35,9 @@ class ChoicePlayer(BoundPlayer):
     _planner: Any = None
 
     def _bind(self, options: Options) -> None:
-        same: Any = {name: getattr(options, name) for name in ("physics", "table", "fidelity", "conditions")}
+        same: Any = {
+            name: getattr(options, name) for name in ("physics", "table", "fidelity", "conditions", "cue")
+        }
         self._planner = Planner(Options(action="discrete", **same), threads=1)
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
@@ -92,7 +95,7 @@ class Random(ChoicePlayer):
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
         """A random number for each choice."""
-        masks = action_masks(at)
+        masks = available(at, self.options.rules.rails)
         order = np.empty(masks.shape)
         for row, seed in zip(order, seeds.tolist(), strict=True):
             row[:] = np.random.default_rng(seed).random(len(row))

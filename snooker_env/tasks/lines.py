@@ -153,16 +153,23 @@ def line_of(positions, on_table, on, rows):
     return rows[0, LINE_AIM]
 
 
+@kernel
+def aim_at_met(aim, stroke, positions, on_table, law, work):
+    """Direction [rad] in which the stroke (speed, side, top, elevation) leaves, so that it comes to the ball that lies
+    in the direction ``aim``, its cue raised as it must be."""
+    if law.rails.shape[0] == 0 or stroke[1] == 0.0:
+        return aim
+    x, y = positions[0, 0], positions[0, 1]
+    ball = met(positions, on_table, x, y, cos(aim), sin(aim), 1e9)
+    if ball == 0:
+        return aim
+    far = max(BALL_RADIUS, hypot(positions[ball, 0] - x, positions[ball, 1] - y) - 2.0 * BALL_RADIUS)
+    return swerved_aim(aim, far, stroke, positions, on_table, law, work)
+
+
 @kernel(uses=(escape_aim,))
 def aim_along(line, stroke, positions, on_table, on, law, work):
     """Direction [rad] of the stroke (speed, side, top, elevation) along a row of ``find_lines``."""
     if line[LINE_SPEED] == 0.0:
-        aim, x, y = line[LINE_AIM], positions[0, 0], positions[0, 1]
-        if law.rails.shape[0] == 0:
-            return aim
-        ball = met(positions, on_table, x, y, cos(aim), sin(aim), 1e9)
-        if ball == 0:
-            return aim
-        far = max(BALL_RADIUS, hypot(positions[ball, 0] - x, positions[ball, 1] - y) - 2.0 * BALL_RADIUS)
-        return swerved_aim(aim, far, stroke, positions, on_table, law, work)
+        return aim_at_met(line[LINE_AIM], stroke, positions, on_table, law, work)
     return escape_aim(line[LINE_AIM], stroke, positions, on_table, on, law, work)

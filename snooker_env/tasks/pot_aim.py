@@ -117,13 +117,12 @@ def _sent(aim, far, stroke, positions, on_table, law, work):
 
 
 @kernel
-def swerved_aim(line, far, stroke, positions, on_table, law, work):
-    """Direction [rad] in which a stroke (speed, side, top, elevation) leaves, so that its swerve under a raised
-    cue brings it to the place that is ``far`` along the direction ``line``. A free cue's is the line itself."""
+def _turned_back(line, far, stroke, positions, on_table, law, work, rounds):
+    """``swerved_aim`` after so many corrections."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return line
     aim, last_aim, last, slope = line, line, 0.0, 1.0
-    for k in range(_ROUNDS):
+    for k in range(rounds):
         off = _sent(aim, far, stroke, positions, on_table, law, work) - line
         off -= 2.0 * pi * round(off / (2.0 * pi))
         if k and aim != last_aim:  # the elevation turns with the aim, if little
@@ -133,6 +132,13 @@ def swerved_aim(line, far, stroke, positions, on_table, law, work):
         if abs(off) < _NEARLY:
             break
     return aim
+
+
+@kernel
+def swerved_aim(line, far, stroke, positions, on_table, law, work):
+    """Direction [rad] in which a stroke (speed, side, top, elevation) leaves, so that its swerve under a raised
+    cue brings it to the place that is ``far`` along the direction ``line``. A free cue's is the line itself."""
+    return _turned_back(line, far, stroke, positions, on_table, law, work, _ROUNDS)
 
 
 @kernel(seconds=5, uses=(collide_balls,))
@@ -148,7 +154,7 @@ def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
     cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)
     slope = -far / (2.0 * law.phys[0] * max(cut, 0.05))
     # a raised cue with side bends the path: by more than a thin cut or a soft stroke would show
-    begin = swerved_aim(line, max(far, law.phys[P_R]), stroke, positions, on_table, law, work)
+    begin = _turned_back(line, max(far, law.phys[P_R]), stroke, positions, on_table, law, work, 1)
     aim, best, least = begin, begin, 9.0
     last_aim, last = begin, 9.0
     for _ in range(_TRIALS):

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from ..._types import Floats
+from ...physics.cue_room import NO_RAILS
 from ...tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from ...tasks.discrete_actions import SIZE as CHOICES
 from ..positions import Positions
 from ..proposals import Proposals, strokes_at
 from ..sobol import sobol_points
-from ..strokes import action_masks
+from ..strokes import available
 from .pot_view import with_pots
 
 TEMPERATURE = 4.0
@@ -29,14 +31,15 @@ class PolicyProposals:
     def __init__(self, policy: Any):
         self.policy = policy
 
-    def scores(self, at: Positions) -> Any:
-        """Scores of all choices in n ``Positions``: float32 (n, CHOICES), and which are available."""
-        masks = action_masks(at)
+    def scores(self, at: Positions, rails: Floats = NO_RAILS) -> Any:
+        """Scores of all choices in n ``Positions``: float32 (n, CHOICES), and which are available to a cue that
+        passes over these ``rails``."""
+        masks = available(at, rails)
         return self.policy.scores(with_pots(at.observations()), masks), masks
 
     def __call__(self, search: Any, at: Positions, m: int, seeds: Any) -> Proposals:
         """m strokes for each position, as ``StrokeSearch`` wants them."""
-        scores, masks = self.scores(at)
+        scores, masks = self.scores(at, search.dynamics.rails)
         likely = np.where(masks, np.exp((scores - scores.max(axis=1, keepdims=True)) / TEMPERATURE), 0.0)
         sums = np.cumsum(likely, axis=1)
         points = np.stack([sobol_points(m, 4, seed ^ 0xBEEF) for seed in seeds.tolist()])
