@@ -25,10 +25,10 @@ from math import asin, atan2, cos, hypot, pi, radians, sin, sqrt
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import entry, kernel
 from .._types import Floats
 from .columns import NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
-from .cue import MAX_ELEVATION
+from .cue import MAX_ELEVATION, squirt
 
 TIP, BUTT, LENGTH = 4.75e-3, 14e-3, 1.45
 """Radii of the cue at its ends, and its length [m]."""
@@ -44,6 +44,8 @@ EDGE = 6
 line runs through a pocket [m]."""
 FREE, RAISED, MOVED, UNPLAYABLE = 0, 1, 2, 4
 """What a stroke's room does to it: nothing; the cue is raised; the tip is moved up; nobody can play it."""
+OVER_NOTHING, OVER_RAIL = -1, 0
+"""What sets the least elevation: nothing, or a rail; else the id of a ball, which is never ball 0."""
 
 _ABOVE = 1e-9
 """The edge of a rail that a vertical cue still touches stands so far in the cue, or further [m]."""
@@ -141,23 +143,51 @@ def _edge(rails, m, x, y, back_x, back_y):
 
 @kernel
 def _over_rails(aim, side, top, x, y, rails, R):
-    """The least elevation [rad] over the rails."""
+    """The least elevation [rad] over the rails, and how far behind the cue ball, along the cue, the edge is that
+    sets it [m]."""
     back_x, back_y = -cos(aim), -sin(aim)
-    least, last_axis, last_side = 0.0, -1.0, 0.0
+    least, behind, last_axis, last_side = 0.0, 0.0, -1.0, 0.0
     nearest, sin_phi, c = 0.0, 0.0, 0.0
     for k in range(rails.shape[0] // EDGE):
         m = EDGE * k
         if rails[m + EDGE_AXIS] != last_axis or rails[m + EDGE_SIDE] != last_side:
             if nearest > 0.0:
-                least = max(least, _over_rail(nearest, sin_phi, c, side, top, R))
+                el = _over_rail(nearest, sin_phi, c, side, top, R)
+                least, behind = (el, nearest / sin_phi) if el > least else (least, behind)
             last_axis, last_side, nearest = rails[m + EDGE_AXIS], rails[m + EDGE_SIDE], 0.0
         D, phi, turn = _edge(rails, m, x, y, back_x, back_y)
         # of the noses of one side the cue crosses one, or all of them behind a pocket
         if D > 0.0 and (nearest == 0.0 or nearest > D):
             nearest, sin_phi, c = D, phi, turn
     if nearest > 0.0:
-        least = max(least, _over_rail(nearest, sin_phi, c, side, top, R))
-    return least
+        el = _over_rail(nearest, sin_phi, c, side, top, R)
+        least, behind = (el, nearest / sin_phi) if el > least else (least, behind)
+    return least, behind
+
+
+@kernel
+def _least_over(stroke, positions, on_table, rails, R):
+    """``least_elevation``, what sets it (``OVER_NOTHING``, ``OVER_RAIL`` or a ball), and how far that is behind the
+    cue ball, along the cue [m]."""
+    side, top, aim, elevation = stroke
+    ax, ay, x, y = cos(aim), sin(aim), positions[0, 0], positions[0, 1]
+    least, over, behind = elevation, OVER_NOTHING, 0.0
+    el, edge = _over_rails(aim, side, top, x, y, rails, R)
+    if el > least:
+        least, over, behind = el, OVER_RAIL, edge
+    for _ in range(_PASSES):  # what is raised over one ball may meet another
+        before = least
+        for i in range(1, positions.shape[0]):
+            if on_table[i]:
+                dx, dy = positions[i, 0] - x, positions[i, 1] - y
+                b, right = -(dx * ax + dy * ay), dx * ay - dy * ax
+                if 0.0 < b < LENGTH + 2.0 * R and abs(right) < 2.0 * (R + BUTT):
+                    el = _over_ball(b, right, side, top, least, R)
+                    if el > least:
+                        least, over, behind = el, i, b
+        if least == before:
+            break
+    return least, over, behind
 
 
 @kernel
@@ -167,20 +197,7 @@ def least_elevation(stroke, positions, on_table, rails, R):
     ``stroke``: (side, top, aim, elevation), aim the direction of the cue [rad]; ``rails``: rows of ``EDGE``
     numbers, one after the other, those of one side together. pi/2: it cannot be played.
     """
-    side, top, aim, elevation = stroke
-    ax, ay, x, y = cos(aim), sin(aim), positions[0, 0], positions[0, 1]
-    least = max(elevation, _over_rails(aim, side, top, x, y, rails, R))
-    for _ in range(_PASSES):  # what is raised over one ball may meet another
-        before = least
-        for i in range(1, positions.shape[0]):
-            if on_table[i]:
-                dx, dy = positions[i, 0] - x, positions[i, 1] - y
-                b, right = -(dx * ax + dy * ay), dx * ay - dy * ax
-                if 0.0 < b < LENGTH + 2.0 * R and abs(right) < 2.0 * (R + BUTT):
-                    least = _over_ball(b, right, side, top, least, R)
-        if least == before:
-            break
-    return least
+    return _least_over(stroke, positions, on_table, rails, R)[0]
 
 
 @kernel
@@ -232,6 +249,23 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
     if least > elevation:
         elevation, done = min(least, max(elevation, MAX_ELEVATION)), done | RAISED
     return (speed, side, top, aim, elevation), done
+
+
+@entry
+def in_room_over(stroke, positions, on_table, rails, R, max_offset, end_mass_ratio):
+    """``in_room`` of a stroke whose aim is where the ball leaves the tip, not the cue's; and what the cue passes
+    over, as of ``_least_over``: what raised it, or moved its tip."""
+    speed, side, top, aim, elevation = stroke
+    stroke = (speed, side, top, aim - squirt(side, end_mass_ratio), elevation)
+    played, done = in_room(stroke, positions, on_table, rails, R, max_offset)
+    over, behind = OVER_NOTHING, 0.0
+    if done & MOVED:  # what the tip that was meant cannot reach over
+        _, side, top, aim, elevation = stroke
+        _, over, behind = _least_over((side, top, aim, elevation), positions, on_table, rails, R)
+    elif done & RAISED:
+        _, side, top, aim, _ = played
+        _, over, behind = _least_over((side, top, aim, stroke[4]), positions, on_table, rails, R)
+    return played, done, over, behind
 
 
 @kernel

@@ -16,6 +16,7 @@ from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from ..tasks.noise import LEVELS
+from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import Service
 from .session import Act, Session
@@ -37,6 +38,7 @@ def scene(service: Service) -> dict[str, Any]:
         "agents": service.seats.agents,
         "players": service.seats.names,
         "noise": list(LEVELS),
+        "cues": list(CUES),
     }
 
 
@@ -80,6 +82,7 @@ def report(service: Service) -> dict[str, Any]:
         "labels": list(seats.labels),
         "noise": list(session.noise),
         "practice": session.practice,
+        "cue": session.cue,
         "balls_on": [NAMES[i] for i in ids_of(on)],
         "snookered": hidden,
         "miss_called": frame.miss_called,
