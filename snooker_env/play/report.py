@@ -11,6 +11,7 @@ from ..game.balls import CUE, NAMES, YELLOW, ids_of
 from ..game.frame import Frame
 from ..game.snookered import is_snookered
 from ..geometry import POCKET_AIMS
+from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
 from ..planning.strokes import FARTHEST
 from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
@@ -33,6 +34,7 @@ def scene(service: Service) -> dict[str, Any]:
         "scene": scene_data(rules.table),
         "R": rules.physics.R,
         "spin_decel": rules.physics.spin_decel,
+        "cue": {"tip": TIP, "butt": BUTT, "length": LENGTH, "rail": RAIL},
         "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
         "pockets": [{"name": name, "x": x, "y": y} for name, (x, y) in pockets],
         "agents": service.seats.agents,
