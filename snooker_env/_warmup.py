@@ -2,6 +2,8 @@
 
 from typing import Any, ClassVar
 
+import numpy as np
+
 from ._jit import ENTRIES
 from ._notices import warming_up
 from .impacts import collide_balls, collide_cushion, strike
@@ -43,6 +45,7 @@ def warmup() -> None:
     >>> import snooker_env as sn
     >>> sn.warmup()  # doctest: +SKIP
     """
+    from .advice.room import room_for
     from .envs.snooker import SnookerEnv
     from .game.apply_ruling import settle_table
     from .game.balls import REDS_MASK
@@ -67,6 +70,7 @@ def warmup() -> None:
     from .planning import pots as direct_pots
     from .players import player
     from .tasks.box_actions import Actions, line
+    from .tasks.options import Options
 
     with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
         simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
@@ -125,6 +129,7 @@ def warmup() -> None:
         planner.play(at, [0], [0])
         planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
         obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
+        room_for(np.zeros(5), at, Options(cue="real").rules)
         prospects_of(at, 1e-3)
         both = Positions.of(match)
         player("ghost_ball").at({"task": "frame"}).play(both, [0])

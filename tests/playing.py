@@ -16,6 +16,8 @@ STRAIGHT = atan2(0.369, 0.274)
 COLOURS = {"blue": [0.3, -0.5], "pink": [0.6, -0.5], "black": [-0.6, -0.9]}
 COVERED = {"cue": [0.0, -0.5], "reds": [RED], **COLOURS, "on": "any_colour"}
 """Along +x the blue lies before the pink; the black is in sight."""
+FROZEN = {"cue": [0.889 - 0.02625, 0.6], "reds": [[0.0, 0.6]], "black": [0.0, 1.4605]}
+"""The cue ball on the right cushion, and a red square across."""
 
 
 class Asked:

@@ -12,6 +12,7 @@ and left middle. Left and right are as seen from the baulk end: right is the yel
 
 from .ask import advise, stroke_of
 from .destinations import Destinations, destinations
+from .room import Room
 from .strokes import Advice, CueStroke, Suggestion
 from .words import POCKET_WORDS
 
@@ -20,6 +21,7 @@ __all__ = [
     "Advice",
     "CueStroke",
     "Destinations",
+    "Room",
     "Suggestion",
     "advise",
     "destinations",

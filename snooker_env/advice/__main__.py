@@ -4,10 +4,12 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from ..planning import Position
 from ..players import players
 from ..tasks.noise import LEVELS
+from ..tasks.options import CUES
 from .ask import AGENT, advise
 
 
@@ -28,12 +30,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser.add_argument(
             f"--{name}", type=type(default), default=default, help=f"{words} (default: {default})"
         )
+    cue = "whether rails and balls are in the way of the cue (default: free)"
+    parser.add_argument("--cue", choices=CUES, default="free", help=cue)
     parser.add_argument("--json", action="store_true", help="print all figures as JSON")
     parser.add_argument("--trust", action="store_true", help="let code in a model's file run")
     args = parser.parse_args(argv)
     try:
         names = ("agent", "noise", "n", "samples", "visits", "seed", "trust")
-        advice = advise(Position.load(args.position), **{name: getattr(args, name) for name in names})
+        how: dict[str, Any] = {name: getattr(args, name) for name in names}
+        advice = advise(Position.load(args.position), options={"cue": args.cue}, **how)
     except (ValueError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

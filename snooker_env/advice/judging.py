@@ -11,6 +11,7 @@ from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..planning import Positions, Stops, clear_paths
 from .practice import JUDGING, Practice, keys, played_from
+from .room import Room, room_for
 from .strokes import CueStroke, Suggestion
 from .visits import played_on
 from .words import RAISED, contact_words, cushion_words, figures_words, stroke_words, what_words
@@ -52,6 +53,8 @@ class Tried(NamedTuple):
     pocket: int
     first: int
     words: str  # what it does and how it is struck, in words
+    alike: str  # the same without what the room does: strokes with equal ones are one stroke to a player
+    room: Room
 
 
 def tried(practice: Practice, at: Positions, ranked: Rankings) -> list[Tried]:
@@ -76,8 +79,10 @@ def _joined(positions: list[Positions]) -> Positions:
 
 def _trial(
     practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool
-) -> tuple[str, int, int, int, str]:
-    """Kind, ball, pocket, first ball and words of stroke k; ``hidden``: no straight path to a ball on."""
+) -> tuple[str, int, int, int, str, str, Room]:
+    """Kind, ball, pocket, first ball, words, words without room, and room of stroke k; ``hidden``: no straight path
+    to a ball on."""
+    room = room_for(stroke.numbers(), starts[k : k + 1], practice.options.rules)
     first, pocket, how = int(trial.first[k]), -1, ""
     ball, (x, y) = first, starts.positions[k, CUE].tolist()
     dx, dy = (starts.positions[k, max(0, first)] - (x, y)).tolist()
@@ -88,18 +93,14 @@ def _trial(
     elif trial.penalty[k]:
         kind = "in-off" if trial.potted[k, CUE] >= 0 else "foul"
     elif hidden:
-        kind, how = "escape", cushion_words(x, y, stroke.aim) if stroke.elevation < RAISED else ""
+        kind, how = "escape", cushion_words(x, y, stroke.aim) if room.elevation < RAISED else ""
     else:
         kind, how = "contact", contact_words(dx, dy, stroke.aim)
     distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
-    what = what_words(kind, ball, pocket, first, how)
-    return (
-        kind,
-        ball,
-        pocket,
-        first,
-        f"{what}, {stroke_words(stroke, distance, practice.options.rules.physics)}",
-    )
+    what, physics = what_words(kind, ball, pocket, first, how), practice.options.rules.physics
+    played = replace(stroke, side=room.side, top=room.top)  # its spin is that of the tip that is reached
+    words = f"{what}, {stroke_words(played, distance, physics, room)}"
+    return kind, ball, pocket, first, words, f"{what}, {stroke_words(played, distance, physics)}", room
 
 
 def distinct(strokes: list[Tried]) -> list[Tried]:
@@ -107,7 +108,7 @@ def distinct(strokes: list[Tried]) -> list[Tried]:
     first = {}
     for one in strokes:
         speed = f"{one.stroke.speed:.1f} m/s" if one.kind == "pot" else ""
-        first.setdefault(one.words.replace(speed, ""), one)
+        first.setdefault(one.alike.replace(speed, ""), one)
     return list(first.values())
 
 
@@ -148,7 +149,7 @@ def judged(
         out.append(
             Suggestion(
                 **vars(one.stroke),
-                **{name: getattr(one, name) for name in ("kind", "ball", "pocket", "first", "score")},
+                **{name: getattr(one, name) for name in ("room", "kind", "ball", "pocket", "first", "score")},
                 chance=chance,
                 chance_interval=(chance, chance) if practice.sure else wilson(int(made.sum()), tries),
                 points=points,

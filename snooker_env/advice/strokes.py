@@ -15,6 +15,7 @@ from ..planning import Position, Positions
 from ..planning.strokes import FARTHEST, encoded
 from ..players import Strokes
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
+from .room import Room
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,6 +132,8 @@ class Suggestion(CueStroke):
     ----------
     speed, aim, side, top, elevation, place
         As in ``CueStroke``.
+    room : Room
+        How the cue finds room for it: ``cue="real"`` may raise it and move its tip.
     kind : {"pot", "contact", "escape", "in-off", "foul"}
         What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores
         nothing; what it is worth as a safety is not judged. "escape": the same where no straight path leads
@@ -173,6 +176,7 @@ class Suggestion(CueStroke):
     black, top left, ... m/s, ..., chance 100 %, 7 points expected
     """
 
+    room: Room
     kind: str
     ball: int
     pocket: int
@@ -200,7 +204,8 @@ class Suggestion(CueStroke):
 
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types; pairs as lists."""
-        return {name: list(x) if isinstance(x, tuple) else x for name, x in asdict(self).items()}
+        kept = {name: list(x) if isinstance(x, tuple) else x for name, x in asdict(self).items()}
+        return kept | {"room": self.room.to_dict()}
 
     def __str__(self) -> str:
         return self.words

@@ -6,6 +6,7 @@ from math import copysign, cos, degrees, sin, sqrt
 from ..game.balls import NAMES
 from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from ..physics.parameters import Physics
+from .room import Room
 from .strokes import CueStroke
 
 POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")
@@ -69,10 +70,14 @@ def place_words(x: float, y: float) -> str:
     return f"from {' and '.join(parts)} the brown spot" if parts else "from the brown spot"
 
 
-def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics) -> str:
-    """Speed, spin, elevation and place in words."""
+def stroke_words(
+    stroke: CueStroke, distance: float | None, physics: Physics, room: Room | None = None
+) -> str:
+    """Speed, spin, elevation and place in words; ``room``: what is done to the stroke, which is said if it matters."""
     words = f"{stroke.speed:.1f} m/s, {spin_words(stroke, distance, physics)}"
-    if stroke.elevation >= RAISED:
+    if room is not None and (room.moved or (room.raised and room.elevation >= RAISED)):
+        words += f", {room.words}"
+    elif stroke.elevation >= RAISED:
         words += f", cue raised {degrees(stroke.elevation):.0f} degrees"
     return words if stroke.place is None else f"{words}, {place_words(*stroke.place)}"
 

@@ -25,10 +25,10 @@ from math import atan2, cos, hypot, inf, radians, sin, sqrt
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import entry, kernel
 from .._types import Floats
 from .columns import NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
-from .cue import MAX_ELEVATION
+from .cue import MAX_ELEVATION, squirt
 
 TIP, BUTT, LENGTH = 4.75e-3, 14e-3, 1.45
 """Radii of the cue at its ends, and its length [m]."""
@@ -44,6 +44,8 @@ EDGE = 6
 line runs through a pocket [m]."""
 FREE, RAISED, MOVED, UNPLAYABLE = 0, 1, 2, 4
 """What a stroke's room does to it: nothing; the cue is raised; the tip is moved up; nobody can play it."""
+OVER_NOTHING, OVER_RAIL = -1, 0
+"""What sets the least elevation: nothing, or a rail; else the id of a ball, which is never ball 0."""
 
 _ABOVE = 1e-9
 """The edge of a rail that a vertical cue still touches stands so far in the cue, or further [m]."""
@@ -137,7 +139,8 @@ def _over_ball(b, beside, top, q, se, ce, R):
 
 @kernel
 def _over_rails(ax, ay, side, top, q, x, y, rails, R):
-    """Sine and cosine of the least elevation over the rails."""
+    """Sine and cosine of the least elevation over the rails, and how far behind the cue ball, along the cue, the edge
+    is that sets it [m]."""
     # the cue crosses one end rail and one side rail at most, the nearest edge of each
     across_x, across_y, c_x, c_y = inf, inf, 0.0, 0.0
     for m in range(0, rails.shape[0], EDGE):
@@ -157,24 +160,27 @@ def _over_rails(ax, ay, side, top, q, x, y, rails, R):
                 across_y, c_y = D, c
             elif not ends and across_x > D:
                 across_x, c_x = D, c
-    se, ce = 0.0, 1.0
+    se, ce, behind = 0.0, 1.0, 0.0
     if across_x < inf:
         se, ce = _over_rail(across_x, abs(ax), c_x, side, top, q, R)
+        behind = across_x / abs(ax)
     if across_y < inf:
         other, its = _over_rail(across_y, abs(ay), c_y, side, top, q, R)
         if other > se:
-            se, ce = other, its
-    return se, ce
+            se, ce, behind = other, its, across_y / abs(ay)
+    return se, ce, behind
 
 
 @kernel
-def _least(side, top, ax, ay, elevation, positions, on_table, rails, R):
-    """``least_elevation`` of a cue that points along (ax, ay)."""
+def _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R):
+    """``least_elevation`` of a cue that points along (ax, ay), what sets it (``OVER_NOTHING``, ``OVER_RAIL`` or a
+    ball), and how far that is behind the cue ball, along the cue [m]."""
     x, y, q = positions[0, 0], positions[0, 1], sqrt(max(1.0 - side * side - top * top, 0.0))
     own, its = (sin(elevation), cos(elevation)) if elevation != 0.0 else (0.0, 1.0)
-    se, ce = _over_rails(ax, ay, side, top, q, x, y, rails, R)
+    se, ce, behind = _over_rails(ax, ay, side, top, q, x, y, rails, R)
+    over = OVER_RAIL
     if own >= se:
-        se, ce = own, its
+        se, ce, over, behind = own, its, OVER_NOTHING, 0.0
     for _ in range(_PASSES):  # what is raised over one ball may meet another
         before = se
         for i in range(1, positions.shape[0]):
@@ -183,10 +189,19 @@ def _least(side, top, ax, ay, elevation, positions, on_table, rails, R):
             if on_table[i] and 0.0 < b < LENGTH + 2.0 * R:
                 beside = dx * ay - dy * ax - R * side
                 if abs(beside) < R + TIP + 2.0 * TAPER * (b + R):  # wider than ever the cue is there
+                    lower = se
                     se, ce = _over_ball(b, beside, top, q, se, ce, R)
+                    if se > lower:
+                        over, behind = i, b
         if se == before:
             break
-    return elevation if se <= own else atan2(se, ce)
+    return (elevation if se <= own else atan2(se, ce)), over, behind
+
+
+@kernel
+def _least(side, top, ax, ay, elevation, positions, on_table, rails, R):
+    """``least_elevation`` of a cue that points along (ax, ay)."""
+    return _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R)[0]
 
 
 @kernel
@@ -250,6 +265,21 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
     if least > elevation:
         elevation, done = min(least, max(elevation, MAX_ELEVATION)), done | RAISED
     return (speed, side, top, aim, elevation), done
+
+
+@entry
+def in_room_over(stroke, positions, on_table, rails, R, max_offset, end_mass_ratio):
+    """``in_room`` of a stroke whose aim is where the ball leaves the tip, not the cue's; and what the cue passes
+    over, as of ``_least_over``: what raised it, or moved its tip."""
+    speed, side, top, aim, elevation = stroke
+    stroke = (speed, side, top, aim - squirt(side, end_mass_ratio), elevation)
+    played, done = in_room(stroke, positions, on_table, rails, R, max_offset)
+    over, behind, ax, ay = OVER_NOTHING, 0.0, cos(stroke[3]), sin(stroke[3])
+    if done & MOVED:  # what the tip that was meant cannot reach over
+        _, over, behind = _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R)
+    elif done & RAISED:
+        _, over, behind = _least_over(played[1], played[2], ax, ay, elevation, positions, on_table, rails, R)
+    return played, done, over, behind
 
 
 @kernel

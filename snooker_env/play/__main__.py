@@ -9,6 +9,7 @@ from typing import Any
 
 from .._check import refuse_what
 from ..tasks.noise import LEVELS
+from ..tasks.options import CUES
 
 MOST_FILE = 1_000_000  # largest size of a position's file [bytes]
 
@@ -29,6 +30,12 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--noise", choices=list(LEVELS), default="professional", help=noise)
     add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
     add("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
+    add(
+        "--cue",
+        choices=CUES,
+        default="real",
+        help="whether rails and balls are in its way (default: %(default)s)",
+    )
     add("--seed", type=int, help="seed of all random numbers (default: a new one each time)")
     return parser.parse_args(argv)
 
@@ -43,7 +50,7 @@ def service_of(args: argparse.Namespace) -> Any:
     from .session import Session
 
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
-    session = Session(layout=args.layout, seed=seed)
+    session = Session(layout=args.layout, seed=seed, cue=args.cue)
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
     players = [player(name, trust=args.trust) for name in args.agent]
     agents = dict(zip(shown, players, strict=True))

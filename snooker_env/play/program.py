@@ -124,12 +124,13 @@ class ProgramPlayer(BoundPlayer):
             for kept, layout in zip(table.saved, at.saved or (), strict=False):
                 kept[0] = layout[k]
             state = table.get_state(0)
-            game = {"practice": False, "noise": [self._noise] * 2, "state": {n: state[n] for n in STATE}}
+            game = {"practice": False, "noise": [self._noise] * 2, "cue": self.options.cue}
+            game["state"] = {n: state[n] for n in STATE}
             session.load({"format": "snooker-game", "version": 1, **game})
         else:
             position = at[k]
             session.set_up(position, scores=(position.points, 0), striker=0, free_ball=False)
-            session.noise[:] = [self._noise] * 2
+            session.noise[:], session.cue = [self._noise] * 2, self.options.cue
         self._service.revision += 1
 
     def _asked(self, seed: int) -> dict[str, Any]:

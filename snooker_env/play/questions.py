@@ -10,7 +10,7 @@ from ..advice import CueStroke, Suggestion, advise, destinations
 from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
 from ..geometry import POCKET_AIMS, POCKETS
 from ..physics.engine import EventKind
-from ..planning import pot_aim
+from ..planning import Planner
 from ..render.scene import ball_paths
 from ..replays.encode import packed
 from ..shot import Shot
@@ -68,7 +68,8 @@ def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
         raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
     target = POCKET_AIMS[[pocket], :2]
     numbers = [[stroke.speed, stroke.side, stroke.top, 0.0, stroke.elevation]]
-    return float(pot_aim(session.planned(), [0], [ball], target, numbers)[0])
+    planner = Planner({"cue": session.cue})
+    return float(planner.pot_aim(session.planned(), [0], [ball], target, numbers)[0])
 
 
 def exact(session: Session, stroke: CueStroke) -> Shot:
@@ -98,7 +99,8 @@ def scatter(
 ) -> dict[str, Any]:
     """Where cue ball and object ball stop under execution errors, and the paths without them."""
     shot = exact(session, stroke)
-    stops = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
+    how: Any = {"noise": noise, "samples": samples, "seed": seed, "options": {"cue": session.cue}}
+    stops = destinations(session.planned(), stroke, **how)
     figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
     return paths(shot) | figures | {"cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4")}
 
@@ -108,7 +110,7 @@ def suggestions(
 ) -> dict[str, Any]:
     """Strokes of the agent in words and data, with paths without errors; whose they are, and their order."""
     choice("agent", agent, seats.agents)
-    how: Any = {"noise": noise, "n": n, "samples": samples, "seed": seed}
+    how: Any = {"noise": noise, "n": n, "samples": samples, "seed": seed, "options": {"cue": session.cue}}
     advice, out = advise(session.planned(), agent=seats.players[agent], **how), []
     for one in advice:
         twin = session.twin()

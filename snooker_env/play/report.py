@@ -11,11 +11,13 @@ from ..game.balls import CUE, NAMES, YELLOW, ids_of
 from ..game.frame import Frame
 from ..game.snookered import is_snookered
 from ..geometry import POCKET_AIMS
+from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
 from ..planning.strokes import FARTHEST
 from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from ..tasks.noise import LEVELS
+from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import Service
 from .session import Act, Session
@@ -32,11 +34,13 @@ def scene(service: Service) -> dict[str, Any]:
         "scene": scene_data(rules.table),
         "R": rules.physics.R,
         "spin_decel": rules.physics.spin_decel,
+        "cue": {"tip": TIP, "butt": BUTT, "length": LENGTH, "rail": RAIL},
         "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
         "pockets": [{"name": name, "x": x, "y": y} for name, (x, y) in pockets],
         "agents": service.seats.agents,
         "players": service.seats.names,
         "noise": list(LEVELS),
+        "cues": list(CUES),
     }
 
 
@@ -80,6 +84,7 @@ def report(service: Service) -> dict[str, Any]:
         "labels": list(seats.labels),
         "noise": list(session.noise),
         "practice": session.practice,
+        "cue": session.cue,
         "balls_on": [NAMES[i] for i in ids_of(on)],
         "snookered": hidden,
         "miss_called": frame.miss_called,

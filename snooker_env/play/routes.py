@@ -16,6 +16,7 @@ from ..game.ruling import AUTO
 from ..planning.position import Position
 from ..replays import Replay
 from ..tasks.noise import LEVELS
+from ..tasks.options import CUES
 from ..tasks.states import MOST
 from . import questions
 from .questions import colour_named, place_asked, stroke_in
@@ -149,7 +150,7 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
-    noise, practice = fields.get("noise"), fields.get("practice")
+    noise, practice, cue = fields.get("noise"), fields.get("practice"), fields.get("cue")
     if noise is not None:
         if not isinstance(noise, list) or len(noise) != 2:
             raise refuse("noise", noise, "must be two names")
@@ -157,12 +158,15 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
             choice(f"noise[{k}]", name, LEVELS)
     if practice is not None:
         truth("practice", practice)
+    if cue is not None:
+        choice("cue", cue, CUES)
     with service.acting(any_turn=True) as session:
         if "players" in fields:
             service.seats.sit(fields["players"])
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
+        session.cue = session.cue if cue is None else cue
 
 
 def _concede(service: Service, fields: dict[str, Any]) -> None:
@@ -193,6 +197,15 @@ def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
         errors = _errors(fields, 500, session)
         return questions.scatter(session, stroke_asked(session, fields), **errors)
+
+
+def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    revision = _revision(fields)
+    with service.reading() as session:  # at once: it does not wait for questions that take long
+        if revision not in (None, service.revision):
+            raise StaleError
+        twin = session.twin()
+    return twin.room(stroke_asked(twin, fields)).to_dict()
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
@@ -229,11 +242,12 @@ POST: dict[str, Route] = {
     "place": Route(_place, ("place",)),
     "advise": Route(_advise, ("agent", "n", *ERRORS)),
     "destinations": Route(_destinations, (*STROKE, *ERRORS)),
+    "room": Route(_room, (*STROKE, "revision")),
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
     "undo": Route(partial(_moved, move=Session.undo)),
     "redo": Route(partial(_moved, move=Session.redo)),
     "new": Route(_new, ("layout", "seed", "breaker")),
-    "players": Route(_players, ("players", "noise", "practice")),
+    "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede),
     "save": Route(_save),

@@ -25,7 +25,7 @@ from ..web import WEB, table_js
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
-PARTS = ("play", "play_aim", "play_ask", "play_first", "play_setup", "play_parts")
+PARTS = ("play", "play_aim", "play_ask", "play_first", "play_setup", "play_room", "play_parts")
 SCRIPTS = ("table.js", *(f"{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""

@@ -11,8 +11,9 @@ from typing import Any, cast
 import numpy as np
 
 from .._check import choice, integer, refuse, refuse_what, truth
-from .._types import NoiseName
-from ..advice import CueStroke
+from .._types import CueKind, NoiseName
+from ..advice import CueStroke, Room
+from ..advice.room import room_for
 from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
 from ..game.frame import Frame, write_frame
 from ..game.frame_columns import STROKES
@@ -24,7 +25,7 @@ from ..players import Strokes
 from ..simulation import SimulationError
 from ..tasks.frame import Frames, Seat
 from ..tasks.noise import LEVELS
-from ..tasks.options import Options
+from ..tasks.options import CUES, Options
 from ..tasks.played import Played
 from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
@@ -45,19 +46,20 @@ class Act:
     player: int | None = None  # who did it
     played: Played | None = None  # for a stroke: as it was struck, simulated and judged
     detail: str = ""  # for a choice: the decision; for a stroke: the colour that was nominated
+    room: Room | None = None  # for a stroke: how the cue found room for it
 
 
 class Session:
-    """A frame to play, set up, undo, save and load; ``seed``: of all random numbers."""
+    """A frame to play, set up, undo, save and load; ``seed``: of all random numbers; ``cue``: "real" or "free"."""
 
     noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
     acts: list[Act]
     at: int  # number of acts that count; the following ones were undone
 
-    def __init__(self, *, layout: str = "break_off", seed: int = 0):
+    def __init__(self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real"):
         box: Any = {"placement": True, "decision": True, "elevation": True, "max_strokes": None}
-        self._options = Options(task="frame", miss="clear_path", layout=layout, **box)
+        self._options = Options(task="frame", miss="clear_path", layout=layout, cue=cue, **box)
         self.noise, self.practice = ["none", "none"], False
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
@@ -70,6 +72,20 @@ class Session:
     def frame(self) -> Frame:
         """The current frame."""
         return self.tables.frame(0)
+
+    @property
+    def cue(self) -> CueKind:
+        """Whether rails and balls are in the way of the cue: "real" or "free"."""
+        return self._options.cue
+
+    @cue.setter
+    def cue(self, kind: CueKind) -> None:
+        self._options, self._with = self._options.but(cue=kind), {}
+        self.tables.rules = self._options.rules
+
+    def room(self, stroke: CueStroke) -> Room:
+        """How the cue finds room for a stroke as the table lies; nothing is played."""
+        return room_for(stroke.numbers(), self.planned(), self._options.rules)
 
     @property
     def state(self) -> dict[str, Any]:
@@ -159,7 +175,7 @@ class Session:
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
         tables.nominated[0] = nominated
-        self._played = None
+        self._played, room = None, self.room(stroke)
         try:
             crew = Crew(self._buffers, (), self._watch)
             tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
@@ -171,7 +187,7 @@ class Session:
         if self.practice:
             self._hand_back()
         words = NAMES[nominated] if nominated > CUE else ""
-        return self._did(Act("stroke", self.state, striker, self._played, words))
+        return self._did(Act("stroke", self.state, striker, self._played, words, room))
 
     def _watch(self, k, buffers, j, agents):
         self._played = self.tables.played(k, buffers, j)
@@ -248,15 +264,16 @@ class Session:
 
     def save(self) -> dict[str, Any]:
         """The current game as JSON types."""
-        game = {"practice": self.practice, "noise": list(self.noise), "state": self.state}
+        game = {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
         return {"format": "snooker-game", "version": 1, **game}
 
     def load(self, saved: Any) -> None:
         """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
-        fields = ("format", "version", "practice", "noise", "state")
+        fields = ("format", "version", "practice", "noise", "cue", "state")
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
             allowed = 'must be a saved game, with "format": "snooker-game"'
             raise refuse_what("saved", "something else", allowed)
+        saved = {"cue": "free"} | saved  # games were saved without it while every cue was free
         if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
             what = f"version {saved.get('version')!r} with {sorted(saved)}"
             raise refuse_what("saved", what, f"must be version 1 with {list(fields)}")
@@ -264,12 +281,12 @@ class Session:
         if not isinstance(noise, list) or len(noise) != 2:
             raise refuse("saved.noise", noise, "must be two names")
         levels: Any = [choice(f"saved.noise[{k}]", name, LEVELS) for k, name in enumerate(noise)]
-        practice = truth("saved.practice", saved["practice"])
+        practice, cue = truth("saved.practice", saved["practice"]), choice("saved.cue", saved["cue"], CUES)
         state = saved["state"]
         if not isinstance(state, dict) or set(state) != set(STATE):
             raise refuse_what("saved.state", "something else", f"must be a dict with {list(STATE)}")
         self.tables.set_state(0, self._checked(state))
-        self.practice = practice
+        self.practice, self.cue = practice, cast(CueKind, cue)
         self.noise[:] = levels
         self.acts, self.at = [Act("load", self.state)], 1
 

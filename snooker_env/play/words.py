@@ -130,7 +130,9 @@ def last_words(act: Act, labels: tuple[str, str]) -> str:
     who = "" if act.player is None else labels[act.player]
     if act.played is not None:
         nominated = f" ({act.detail} nominated)" if act.detail else ""
-        return f"{who}{nominated}: {sentence(act.played, labels)}"
+        said = f"{who}{nominated}: {sentence(act.played, labels)}"
+        room = act.room.words if act.room is not None else ""
+        return f"{said} {room[:1].upper()}{room[1:]}." if room else said
     return {
         "choice": f"{who}: {act.detail.replace('_', ' ')}.",
         "concede": f"{who} concede{'' if who == 'You' else 's'} the frame.",

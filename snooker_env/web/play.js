@@ -13,9 +13,11 @@ import { Aim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
 import { firstAim } from "./play_first.js";
 import { ask, by, confirmed, fill, keep, Latest, make } from "./play_parts.js";
+import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 
 const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
+const CUES = { real: "real: over rails and balls", free: "free: nothing in its way" };
 const CHOICES = { play: "Play the table as it lies", play_again: "Let the offender play again", replace: "Replace the balls: play again from before" };
 
 class Page {
@@ -33,8 +35,9 @@ class Page {
     for (const [name, rgb] of Object.entries(this.scene.palette)) document.documentElement.style.setProperty(`--${name}`, `rgb(${rgb})`);
     this.view = new TableView(by("table"), this.scene);
     this.placing = new Latest("place", ({ state }, event) => { Object.assign(this, { chosen: state.revision, dragged: event }); this.take(state); }, error => this.trouble(error));
-    this.aim = new Aim(this, event => { this.advisor.changed(event); this.redraw(); }, (x, y, event) => this.placing.ask({ place: [x, y] }, event));
+    this.aim = new Aim(this, event => { this.advisor.changed(event); this.room.changed(); this.redraw(); }, (x, y, event) => this.placing.ask({ place: [x, y] }, event));
     this.advisor = new Advisor(this);
+    this.room = new Room(this);
     this.setup = new SetUp(this);
     new ResizeObserver(() => { this.view.resize(); this.redraw(); }).observe(by("stage"));
     this.wire();
@@ -69,6 +72,8 @@ class Page {
       by(`noise-${k}`).onchange = () => this.seats();
     }
     by("practice").onchange = () => this.seats();
+    fill(by("cue"), this.cues, undefined, kind => CUES[kind]);
+    by("cue").onchange = () => this.seats();
     by("help-open").onclick = () => this.help();
     for (const one of document.querySelectorAll("#panel details")) one.ontoggle = () => one.open && one.scrollIntoView({ block: "nearest" });
     document.addEventListener("keydown", event => this.key(event));
@@ -193,6 +198,7 @@ class Page {
       else if (this.chosen === state.revision) this.advisor.changed(this.dragged);
       this.lay = moved;
       this.settled = state.revision;
+      this.room.changed();
     }
   }
 
@@ -294,7 +300,7 @@ class Page {
     if (changed >= 0) by(`noise-${changed}`).value = by(`who-${changed}`).value === "person" ? "none" : "professional";
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
     this.held = false;
-    this.try(() => ask("players", { players, noise, practice: by("practice").checked }));
+    this.try(() => ask("players", { players, noise, practice: by("practice").checked, cue: by("cue").value }));
   }
 
   mode(kind) {
@@ -339,6 +345,7 @@ class Page {
       by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
     }
     by("practice").checked = state.practice;
+    by("cue").value = state.cue;
     this.show();
   }
 

@@ -52,6 +52,9 @@ export class Aim {
     this.changed(event);
   }
 
+  /** The elevation at which the stroke is played: its own, or what the cue needs over what is in its way [rad]. */
+  get elevation() { return Math.max(this.wish.elevation, this.app.room?.found?.elevation ?? 0); }
+
   /** Turn the aim by degrees, anticlockwise for positive ones. */
   turn(degrees, event) { this.set({ aim: this.wish.aim + degrees * DEGREE }, event); }
 
@@ -99,7 +102,8 @@ export class Aim {
     by("speed").value = wish.speed;
     by("speed-out").textContent = `${wish.speed.toFixed(2)} m/s`;
     by("elevation").value = wish.elevation / DEGREE;
-    by("elevation-out").textContent = `${(wish.elevation / DEGREE).toFixed(1)}°`;
+    const raised = this.elevation / DEGREE, own = `${(wish.elevation / DEGREE).toFixed(1)}°`;
+    by("elevation-out").textContent = this.elevation > wish.elevation ? `${own}, raised to ${raised.toFixed(1)}°` : own;
     by("aim-out").textContent = `${around.toFixed(2)}°`;
     const words = [];
     if (wish.top) words.push(`${wish.top > 0 ? "top" : "screw"} ${Math.abs(wish.top).toFixed(2)}`);
@@ -108,7 +112,7 @@ export class Aim {
     this.drawDial();
   }
 
-  /** The cue ball as the player sees it; the dashed circle is the miscue limit. */
+  /** The cue ball as the player sees it; the dashed circle is the miscue limit. A tip that the raised cue cannot reach is a ring, and the one that it reaches a disc. */
   drawDial() {
     const dial = by("dial"), ratio = Math.min(window.devicePixelRatio || 1, 3), size = Math.round((dial.clientWidth || 112) * ratio);
     if (dial.width !== size) dial.width = dial.height = size;
@@ -125,7 +129,11 @@ export class Aim {
     pen.setLineDash([3 * ratio, 3 * ratio]); pen.strokeStyle = "#0006";
     pen.beginPath(); pen.arc(c, c, app.limits.offset * R, 0, 2 * Math.PI); pen.stroke();
     pen.setLineDash([]);
-    const x = c + wish.side * R, y = c - wish.top * R;
+    const room = app.room?.found, { side, top } = room?.moved ? room : wish, x = c + side * R, y = c - top * R;
+    if (room?.moved) {
+      pen.strokeStyle = "#c42030"; pen.lineWidth = 2 * ratio;
+      pen.beginPath(); pen.arc(c + wish.side * R, c - wish.top * R, 0.13 * R, 0, 2 * Math.PI); pen.stroke();
+    }
     disc(x, y, 0.15 * R, "#2c5f93"); disc(x, y, 0.06 * R, "#9cc4ea");
   }
 
@@ -141,7 +149,7 @@ export class Aim {
     }
     return {
       lines, rings: [{ x: met.x, y: met.y, ball: met.ball >= 0 ? 0 : undefined, alpha: 0.35 }],
-      cue: { x: balls.x[0], y: balls.y[0], aim: wish.aim, pull: 0.02 + 0.012 * wish.speed, elevation: wish.elevation },
+      cue: { x: balls.x[0], y: balls.y[0], aim: wish.aim, pull: 0.02 + 0.012 * wish.speed, elevation: this.elevation },
     };
   }
 }

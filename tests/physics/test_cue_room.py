@@ -7,7 +7,17 @@ import snooker_env as sn
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics import cue_room
 from snooker_env.physics.cue import MAX_ELEVATION
-from snooker_env.physics.cue_room import FREE, MOVED, NO_RAILS, RAISED, STEEPEST, UNPLAYABLE, rails_of
+from snooker_env.physics.cue_room import (
+    FREE,
+    MOVED,
+    NO_RAILS,
+    OVER_NOTHING,
+    OVER_RAIL,
+    RAISED,
+    STEEPEST,
+    UNPLAYABLE,
+    rails_of,
+)
 from tests.kernels import from_python
 from tests.oracles import cue_clearance
 
@@ -144,3 +154,36 @@ def test_a_ball_that_nobody_can_play_is_played_with_a_cue_that_nearly_stands():
     free = (2.0, 0.1, -0.4, 0.3, 0.0)
     assert in_room(free, [(0.0, 0.0), *behind], np.array(NO_RAILS)) == (free, FREE)
     assert done & RAISED
+
+
+def test_what_the_cue_passes_over_is_what_lets_it_down_when_it_is_gone():
+    rng, seen = np.random.default_rng(11), {OVER_NOTHING: 0, OVER_RAIL: 0, 1: 0, MOVED: 0}
+    for _ in range(1500):
+        positions = rng.uniform((-0.86, -1.75), (0.86, 1.75), (8, 2))
+        positions[1:5] = positions[0] + rng.uniform(0.06, 0.4, (4, 1)) * rng.normal(size=(4, 2))
+        on = np.ones(8, bool)
+        (side, top), aim, elevation = tip_of(rng), rng.uniform(-np.pi, np.pi), rng.choice([0.0, 0.2])
+        meant = (2.0, side, top, aim, elevation)
+        played, done, over, behind = cue_room.in_room_over(meant, positions, on, RAILS, R, 0.5, 0.0)
+        straight = aim - float(np.arctan(2.5 * side * np.sqrt(1 - side**2) / (1 + 2.5 * (1 - side**2))))
+        tip = (side, top, straight, elevation)
+        wanted, flags = in_room((2.0, side, top, straight, elevation), positions)
+        assert (played, done) == (pytest.approx(wanted, abs=1e-12), flags)
+        where = tip, positions
+
+        def lie(on, rails=RAILS, where=where):
+            return _LEAST(*where, on, rails, R)
+
+        assert (over == OVER_NOTHING) == (lie(on) == elevation)
+        if over == OVER_RAIL:
+            assert lie(on, NONE) < lie(on) and 0.0 < behind < cue_room.LENGTH + 2.0 * R
+        elif over > 0:
+            without = on.copy()
+            without[over] = False
+            assert lie(without) < lie(on)
+            assert behind == pytest.approx(
+                -(positions[over] - positions[0]) @ [np.cos(straight), np.sin(straight)]
+            )
+        seen[min(over, 1)] += 1
+        seen[MOVED] += bool(done & MOVED)
+    assert min(seen.values()) > 50, seen

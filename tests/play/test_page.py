@@ -1,10 +1,11 @@
 """Does the page play? In a real headless Chromium, by mouse, keys and touch."""
 
 import time
+from math import pi
 
 import pytest
 
-from tests.playing import COVERED, EASY, STRAIGHT, Line
+from tests.playing import COVERED, EASY, FROZEN, STRAIGHT, Line
 from tests.web.chromium import Watched, chromium  # noqa: F401
 
 AWAY = 2.0
@@ -13,7 +14,7 @@ VISIT = {**EASY, "reds": [[0.6, 1.4], [-0.6, 1.35], [0.7, 0.9]], "blue": [0.0, 0
 """Here ghost_ball makes a visit of two reds with the black."""
 
 
-PERSONS = {"players": ["person", "person"], "noise": ["none", "none"], "practice": False}
+PERSONS = {"players": ["person", "person"], "noise": ["none", "none"], "practice": False, "cue": "real"}
 SETTLED = "page.settled === page.state.revision"
 
 
@@ -475,3 +476,65 @@ def test_one_press_is_one_stroke(shown):
     shown.page.evaluate(f"() => {{ const argument = true; for (let k = 0; k < 3; k++) {press}; }}")
     time.sleep(0.5)
     assert shown("page.state.strokes") == before + 1 == shown.line("api/state")[1]["strokes"]
+
+
+ROOM = "page.room.found && !page.room.wait.busy && page.room.found"
+
+
+def test_the_page_says_and_draws_how_the_cue_finds_room_before_the_stroke(shown):
+    """A ball frozen to the cushion: raised over the rail, its tip moved, and free if the players choose so."""
+    shown.set_up(FROZEN)
+    along = "page.aim.set({aim: argument, speed: 2, side: 0, top: 0, elevation: 0})"
+    shown(along, 0.5 * pi)  # along the cushion nothing is in the way
+    shown.until(f"{ROOM} && !page.room.found.raised")
+    assert shown.page.inner_text("#room") == "" and not shown.page.is_visible("#side")
+    level = shown("page.aim.overlay().cue.elevation")
+    shown.drag((0.3, 0.6), (0.1, 0.6))
+    shown.until(f"{ROOM} && page.room.found.raised")
+    said = shown.page.inner_text("#room")
+    assert said.startswith("Cue raised to 3") and said.endswith("degrees over the rail.")
+    assert shown("page.aim.overlay().cue.elevation") > 0.5 > level
+    assert "raised to 3" in shown.page.inner_text("#elevation-out") and shown("page.aim.wish.elevation") == 0
+    assert shown.page.is_visible("#side") and shown.page.locator("#side .wood").count() == 1
+    # the rail and the cue meet in the drawing: no point of the cue's lower edge is in the wood
+    tip, butt = shown("[3, 2].map(k => document.querySelector('#side .cue').points[k]).map(p => [p.x, -p.y])")
+    edge = -shown("page.room.found.behind")
+    height = tip[1] + (butt[1] - tip[1]) * (edge - tip[0]) / (butt[0] - tip[0])
+    assert height == pytest.approx(0.038, abs=2e-4)
+    before = shown("document.querySelector('#dial').toDataURL()")
+    shown("page.aim.set({top: -0.4})")
+    shown.until(f"{ROOM} && page.room.found.moved")
+    assert "tip moved up to" in shown.page.inner_text("#room")
+    assert shown("page.aim.wish.top") == -0.4
+    low, mid = shown("document.querySelector('#dial').toDataURL()"), shown("page.room.found.top")
+    assert -0.4 < mid < 0 and low != before
+    shown.page.click("#play")
+    shown.played(1)
+    assert "Cue raised to 45 degrees over the rail, tip moved up" in shown.page.inner_text("#last")
+
+
+def test_a_ball_behind_is_drawn_and_a_free_cue_passes_through_it(shown):
+    shown.set_up({"cue": [0.0, 0.0], "reds": [[-0.5, 0.0]], "blue": [0.06, 0.0], "black": [0.0, 1.4605]})
+    shown("page.aim.set({aim: Math.PI, speed: 2, side: 0, top: 0, elevation: 0})")
+    shown.until(f"{ROOM} && page.room.found.over === 'blue'")
+    assert "over the blue" in shown.page.inner_text("#room")
+    assert shown.page.locator("#side .ball").count() == 1 and shown.page.locator("#side .wood").count() == 0
+    shown.page.click("summary")
+    shown.page.select_option("#cue", "free")
+    shown.until("page.state.cue === 'free' && page.room.found && !page.room.found.raised")
+    assert shown.page.inner_text("#room") == "" and not shown.page.is_visible("#side")
+    assert shown("page.aim.overlay().cue.elevation") == 0 and shown("page.aim.wish.aim") == pytest.approx(
+        3.14159265
+    )
+    shown.page.select_option("#cue", "real")
+    shown.until("page.state.cue === 'real' && page.room.found && page.room.found.raised")
+
+
+def test_the_latest_answer_about_the_room_wins(shown):
+    shown.set_up(FROZEN)
+    shown("[3, 2.6, 2.2, 3.6, 4.6, 1.5].map(aim => page.aim.set({aim, top: 0, elevation: 0}))")
+    shown.until(f"{ROOM} && !page.room.found.raised")
+    shown("[1.5, 2.2, 3.6, 3.14159265].map(aim => page.aim.set({aim, top: 0, elevation: 0}))")
+    shown.until(f"{ROOM} && page.room.found.raised")
+    square = shown("page.room.found.elevation")
+    assert 0.5 < square < 0.63

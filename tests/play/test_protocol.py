@@ -4,6 +4,7 @@ import base64
 import json
 import re
 import time
+from math import pi
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from snooker_env.play import routes
 from snooker_env.play.words import lines_of, where
 from snooker_env.players import Strokes
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
-from tests.playing import COVERED, EASY, STRAIGHT
+from tests.playing import COVERED, EASY, FROZEN, STRAIGHT
 from tests.processes import ROOT
 
 
@@ -393,3 +394,37 @@ def test_every_route_and_part_of_a_state_is_documented(game):
                 assert f"`{field}`" in part or of_stroke, (name, field)
     page = (ROOT / "docs/play/protocol.md").read_text(encoding="utf-8")
     assert not [name for name in game.get("state") if f"`{name}`" not in page]
+
+
+def test_the_room_of_a_stroke_is_said_before_it(game):
+    state = game("position", position=FROZEN)
+    assert state["cue"] == "real" and game.get("scene")["cues"] == ["free", "real"]
+    before = game.session.state
+    room = game("room", speed=2.0, aim=pi, top=-0.4, revision=state["revision"])
+    assert room["over"] == "rail" and room["moved"] and room["raised"] and room["top"] > -0.4
+    assert room["elevation"] == pytest.approx(pi / 4) and room["words"].startswith(
+        "cue raised to 45 degrees over"
+    )
+    assert game("room", speed=2.0, aim=pi, top=-0.4, revision=state["revision"] + 5) == {"stale": True}
+    assert game("room", speed=2.0, aim=-pi / 2)["elevation"] < 0.1
+    assert game.session.state == before
+    struck = game("stroke", speed=2.0, aim=pi, top=-0.4)
+    assert struck["stroke"]["cue"]["elevation"] == pytest.approx(room["elevation"])
+    assert (
+        room["words"][1:] in struck["state"]["last"]
+        and room["words"][1:] in struck["stroke"]["tables"][1]["last"]
+    )
+
+
+def test_a_free_cue_is_a_choice_of_the_players(game):
+    game("position", position=FROZEN)
+    stops = [game("destinations", speed=2.0, aim=pi, top=-0.4, noise="none")["cue"]]
+    assert game("players", cue="free")["cue"] == "free"
+    assert game("room", speed=2.0, aim=pi, top=-0.4)["words"] == ""
+    stops.append(game("destinations", speed=2.0, aim=pi, top=-0.4, noise="none")["cue"])
+    assert stops[0] != stops[1]
+    with pytest.raises(ValueError, match="cue"):
+        game("players", cue="short")
+    game("players", cue="real")
+    advice = game("advise", agent="search_2000", n=3, samples=10)["suggestions"]
+    assert any("over the rail" in one["words"] and one["room"]["over"] == "rail" for one in advice)

@@ -13,8 +13,9 @@ from snooker_env.game.frame_columns import STROKES
 from snooker_env.game.ruling import AUTO, Foul
 from snooker_env.planning import Position
 from snooker_env.play.session import STATE, Session
+from snooker_env.play.words import last_words
 from snooker_env.tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
-from tests.playing import COVERED, EASY
+from tests.playing import COVERED, EASY, FROZEN
 
 ALONG_X = CueStroke(speed=0.6, aim=0.0)
 AT_NOTHING = CueStroke(speed=0.2, aim=0.5 * pi)
@@ -32,7 +33,7 @@ def test_strokes_are_those_of_the_match_environment():
     from snooker_env.envs.match import MatchEnv
 
     kind = {"task": "frame", "placement": True, "decision": True, "elevation": True, "max_strokes": None}
-    env = MatchEnv(**kind, miss="clear_path", noise="club")
+    env = MatchEnv(**kind, miss="clear_path", noise="club", cue="real")
     env.reset(seed=3)
     session = Session(seed=3)
     session.noise[:] = ["club", "club"]
@@ -201,3 +202,32 @@ def test_a_position_that_cannot_be_is_refused_by_its_field():
             session.set_up(position, scores=(0, 0), striker=0, free_ball=free)
     session.set_up(Position(**COVERED), scores=(0, 0), striker=0, free_ball=False, check=True)
     assert session.state == before
+
+
+def test_the_cue_is_real_and_what_it_did_is_said():
+    session = standing(FROZEN)
+    assert session.cue == "real"
+    act = session.play(CueStroke(speed=1.0, aim=pi, top=-0.4))
+    assert act.room is not None and act.room.moved and act.played is not None
+    assert act.played.cue["top"] == pytest.approx(act.room.top, abs=1e-6)
+    words = last_words(act, ("You", "A"))
+    assert " Cue raised to 45 degrees over the rail, tip moved up to " in words and words.endswith(" middle.")
+    free = standing(FROZEN)
+    free.cue = "free"
+    act = free.play(CueStroke(speed=1.0, aim=pi, top=-0.4))
+    assert act.played is not None and act.played.cue["elevation"] == 0.0
+    assert last_words(act, ("You", "A")).endswith(("potted.", "potted, 1.", "first.", "struck."))
+
+
+def test_a_saved_game_keeps_its_cue_and_an_old_one_is_played_with_a_free_one():
+    session = standing(FROZEN)
+    saved = session.save()
+    assert saved["cue"] == "real"
+    session.cue = "free"
+    session.load(saved)
+    assert session.cue == "real" and session.options_with("club").cue == "real"
+    del saved["cue"]
+    session.load(saved)
+    assert session.cue == "free" and session.twin().room(ALONG_X).words == ""
+    with pytest.raises(ValueError, match=r"saved\.cue"):
+        session.load(saved | {"cue": "long"})

@@ -1,0 +1,93 @@
+"""Has the cue room for a stroke, and what is in its way? ``Room``: how a stroke is played over rails and balls."""
+
+from dataclasses import asdict, dataclass
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from .._types import Floats
+from ..game.balls import NAMES
+from ..physics.conditions import END_MASS_RATIO
+from ..physics.cue_room import MOVED, OVER_NOTHING, OVER_RAIL, RAISED, UNPLAYABLE, in_room_over
+from ..planning import Positions
+from ..tasks.options import Rules
+
+RAIL = "rail"
+"""What is in the way if no ball is."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Room:
+    """How the cue finds room for a stroke, execution errors apart. A free cue always has room.
+
+    Attributes
+    ----------
+    elevation : float
+        Elevation at which the stroke is played [rad]: its own, or the least one.
+    side, top : float
+        Tip offsets over R at which it is played.
+    raised, moved, unplayable : bool
+        Whether the cue is raised; whether its tip is moved, because a cue of 45 degrees does not reach the one that
+        was meant; whether even this does not help, so that nobody can play the stroke.
+    over : str or None
+        What is in the way: "rail", or the name of a ball; None if nothing is.
+    behind : float
+        How far behind the cue ball's centre that is, along the cue [m]: a rail's edge, a ball's centre; 0 if nothing.
+    """
+
+    elevation: float
+    side: float
+    top: float
+    raised: bool
+    moved: bool
+    unplayable: bool
+    over: str | None
+    behind: float
+
+    @property
+    def words(self) -> str:
+        """What is done to the stroke, in words; "" for nothing, and for less than half a degree.
+
+        >>> way = {"raised": True, "moved": False, "unplayable": False, "over": "rail", "behind": 0.03}
+        >>> Room(elevation=0.21, side=0.0, top=0.0, **way).words
+        'cue raised to 12 degrees over the rail'
+        """
+        over = "" if self.over is None else f" over the {self.over}"
+        if self.unplayable:
+            return f"no room for the cue{over}: raised to {degrees(self.elevation):.0f} degrees, nobody plays that"
+        parts = []
+        if self.raised and degrees(self.elevation) >= 0.5:
+            parts.append(f"cue raised to {degrees(self.elevation):.0f} degrees{over}")
+        if self.moved:
+            tip = f"{abs(self.top):.2f} {'above' if self.top >= 0.0 else 'below'} the middle"
+            aside = f", {abs(self.side):.2f} {'right' if self.side > 0 else 'left'}" if self.side else ""
+            parts.append(f"tip moved up to {tip}{aside}{'' if parts else over}")
+        return ", ".join(parts)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fields and the words as JSON types."""
+        return asdict(self) | {"words": self.words}
+
+
+def room_for(stroke: Floats, at: Positions, rules: Rules) -> Room:
+    """The room for a stroke in the one position ``at``: float64 (5,) as of ``CueStroke.numbers``."""
+    physics, tables = rules.physics, at.conditions if rules.drawn else None
+    ratio = physics.end_mass_ratio if tables is None else float(tables[0, END_MASS_RATIO])
+    # kernels are compiled for arrays that can be written
+    places, present, rails = at.positions[0].copy(), at.on_table[0].copy(), np.array(rules.rails)
+    numbers = physics.R, physics.max_offset, ratio
+    played, done, over, behind = in_room_over(
+        tuple(stroke.tolist()), places, present, rails, *map(float, numbers)
+    )
+    _, side, top, _, elevation = played
+    return Room(
+        elevation=elevation,
+        side=side,
+        top=top,
+        raised=bool(done & RAISED),
+        moved=bool(done & MOVED),
+        unplayable=bool(done & UNPLAYABLE),
+        over=None if over == OVER_NOTHING else RAIL if over == OVER_RAIL else NAMES[over],
+        behind=behind,
+    )

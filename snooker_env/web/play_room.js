@@ -1,0 +1,71 @@
+/**
+ * Has the cue room for the stroke? What the server says of it as the aim moves, in words and from the side.
+ *
+ * `found`: the answer of `api/room` for the last stroke that was asked about, or null. The latest answer wins; until it comes the one before stays.
+ */
+
+import { by, Latest } from "./play_parts.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const HALF_DEGREE = Math.PI / 360;
+const ASPECT = 3, LEAST = 0.2, PAST = 0.07;  // of the view from the side: width over height, how wide it is at least and past what is in the way [m]
+
+export class Room {
+  /** app: as for `Aim`, and `aim`, `cue` (the cue's and the rails' sizes [m]), `R`, `redraw()`. */
+  constructor(app) {
+    this.app = app;
+    this.found = null;
+    this.wait = new Latest("room", (found, revision) => this.take(found, revision), error => this.take(null, app.state.revision, error));
+  }
+
+  /** The stroke or the table has changed. */
+  changed() {
+    const { app } = this;
+    if (!app.aiming) { this.wait.drop(); this.found = null; this.show(); return; }
+    const { speed, side, top, aim, elevation } = app.aim.wish, { revision } = app.state;
+    this.wait.ask({ speed, side, top, aim, elevation, revision }, revision);
+  }
+
+  take(found, revision, error) {
+    const { app } = this;
+    if (found?.stale || revision !== app.state.revision || !app.aiming) return;
+    this.found = found;
+    this.show(error);
+    app.redraw();
+  }
+
+  show(error) {
+    const { found } = this;
+    by("room").textContent = error ? error.message : found?.words ? `${found.words[0].toUpperCase()}${found.words.slice(1)}.` : "";
+    by("room").className = found?.unplayable ? "trouble" : "";
+    by("side").toggleAttribute("hidden", !found || found.elevation < HALF_DEGREE);
+    if (found) this.draw();
+    this.app.aim.show();
+  }
+
+  /** The cue ball on the right, the cue, and what it passes over, from the side; a ball beside the cue's line is drawn in it. */
+  draw() {
+    const { found: { elevation, side, top, over, behind }, app: { R, cue, scene, names } } = this, wide = Math.max(LEAST, behind + PAST), high = wide / ASPECT, edge = 1.5 * R;
+    const c = Math.cos(elevation), s = Math.sin(elevation), q = Math.sqrt(Math.max(0, 1 - side * side - top * top));
+    const [px, py] = [R * (top * s - q * c), R * (1 + top * c + q * s)];  // the middle of the tip
+    const at = (far, up) => `${px - far * c + up * s},${-(py + far * s + up * c)}`;
+    const part = (name, kind, values) => {
+      const made = document.createElementNS(SVG, kind);
+      for (const [key, value] of Object.entries({ class: name, ...values })) made.setAttribute(key, value);
+      return made;
+    };
+    const parts = [part("cloth", "rect", { x: -wide, y: 0, width: wide + edge, height: high })];
+    if (over === "rail") parts.push(part("wood", "rect", { x: -behind - wide, y: -cue.rail, width: wide, height: cue.rail + high }));
+    else if (over) {
+      const ball = part("ball", "circle", { cx: -behind, cy: -R, r: R });
+      ball.setAttribute("fill", `rgb(${scene.balls[names.indexOf(over)].rgb})`);
+      parts.push(ball);
+    }
+    parts.push(part("cue-ball", "circle", { cx: 0, cy: -R, r: R }));
+    parts.push(part("cue", "polygon", { points: [at(0, cue.tip), at(cue.length, cue.butt), at(cue.length, -cue.butt), at(0, -cue.tip)].join(" ") }));
+    parts.push(part("tip", "polygon", { points: [at(-cue.tip, cue.tip), at(cue.tip, cue.tip), at(cue.tip, -cue.tip), at(-cue.tip, -cue.tip)].join(" ") }));
+    by("side").setAttribute("viewBox", `${-wide} ${0.1 * high - high} ${wide + edge} ${high}`);
+    by("side").setAttribute("aria-label", `The cue from the side, ${Math.round(elevation * 180 / Math.PI)} degrees${over ? ` over the ${over}` : ""}`);
+    by("side").replaceChildren(...parts);
+  }
+}

@@ -1,0 +1,126 @@
+"""Does advice say how the cue finds room, and what is in its way?"""
+
+import json
+from dataclasses import replace
+from math import degrees, pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.advice import CueStroke, Room, advise, judging
+from snooker_env.advice.__main__ import main
+from snooker_env.advice.practice import practice_of
+from snooker_env.advice.room import room_for
+from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.geometry import HALF_WIDTH
+from snooker_env.planning import Positions
+
+FROZEN = sn.Position(cue=(HALF_WIDTH - R, 0.6), reds=[(0.0, 0.6), (-0.4, 1.2)], black=(0.0, 1.4605))
+"""On the right cushion; the first red lies square across the table."""
+BEHIND = sn.Position(cue=(0.0, 0.0), reds=[(-0.5, 0.0)], black=(0.0, 1.4605), blue=(2.2 * R, 0.0))
+"""The blue is behind the cue ball when it is played to the red."""
+ACROSS = CueStroke(speed=2.0, aim=pi)
+REAL = sn.Options(cue="real").rules
+
+
+def room(position, rules=REAL, **change: Any):
+    return room_for(replace(ACROSS, **change).numbers(), Positions.of(position), rules)
+
+
+def test_what_is_in_the_way_is_named():
+    rail, ball, open_ = room(FROZEN), room(BEHIND), room(sn.Position(cue=(-0.65, 0.0), black=(0.0, 1.4605)))
+    assert (rail.over, rail.raised, rail.moved, rail.unplayable) == ("rail", True, False, False)
+    assert rail.behind == pytest.approx(R) and 30 < degrees(rail.elevation) < 36
+    assert rail.words == f"cue raised to {degrees(rail.elevation):.0f} degrees over the rail"
+    assert ball.over == "blue" and ball.behind == pytest.approx(2.2 * R) and "over the blue" in ball.words
+    assert (open_.over, open_.raised, open_.words) == (None, False, "")
+    assert room(FROZEN, sn.Options().rules) == replace(
+        rail, elevation=0.0, raised=False, over=None, behind=0.0
+    )
+
+
+def test_a_tip_that_the_cue_does_not_reach_is_moved_and_a_stroke_without_room_is_said():
+    screw = room(FROZEN, top=-0.4)
+    assert (
+        screw.moved and screw.raised and not screw.unplayable and -0.4 < screw.top < 0.0 and screw.side == 0.0
+    )
+    assert degrees(screw.elevation) == pytest.approx(45.0, abs=1e-6)
+    assert (
+        f"tip moved up to {-screw.top:.2f} below the middle" in screw.words and "over the rail" in screw.words
+    )
+    jaws = Positions.of(FROZEN)
+    jaws.positions[0, 0] = 0.885, 1.7712  # the rail of the right cushion runs on behind the pocket
+    none = room_for(replace(ACROSS, aim=1.583).numbers(), jaws, REAL)
+    assert none.unplayable and degrees(none.elevation) > 80
+    assert none.words == "no room for the cue over the rail: raised to 86 degrees, nobody plays that"
+
+
+def test_the_room_said_is_the_room_played():
+    """Of the environment, for strokes with side too, whose cue points aside."""
+    rng, env = (
+        np.random.default_rng(0),
+        sn.SnookerEnv(cue="real", elevation=True, aim="absolute", noise="none"),
+    )
+    env.keep_history, seen = True, 0
+    for _ in range(40):
+        numbers = {
+            "side": rng.uniform(-0.35, 0.35),
+            "top": rng.uniform(-0.35, 0.35),
+            "aim": rng.uniform(-pi, pi),
+        }
+        stroke = CueStroke(speed=1.0, **numbers)
+        env.reset(seed=1, options={"position": FROZEN})
+        env.step(stroke.action(elevation=True))
+        cue, said = env.history[-1].cue, room(FROZEN, **numbers)
+        assert (said.elevation, said.side, said.top) == pytest.approx(
+            (cue["elevation"], cue["side"], cue["top"]), abs=1e-5
+        )
+        assert env.history[-1].room == tuple(n for n in ("raised", "moved", "unplayable") if getattr(said, n))
+        seen += said.raised
+    assert seen > 10
+
+
+def test_suggestions_say_their_room():
+    real = advise(FROZEN, n=3, samples=20, visits=2, options={"cue": "real"})
+    assert any(one.room.raised and one.room.words in one.words for one in real)
+    for one in real:
+        assert one.room == room(FROZEN, **one.stroke.to_dict())
+        assert json.loads(json.dumps(one.to_dict()))["room"]["words"] == one.room.words
+    free = advise(FROZEN, n=3, samples=20, visits=2)
+    assert not any(one.room.raised or "over the rail" in one.words for one in free)
+
+
+def test_strokes_that_differ_in_their_room_alone_are_one():
+    practice, at = practice_of("none", {"cue": "real"}), Positions.of(FROZEN)
+    strokes: judging.Rankings = [(replace(ACROSS, aim=pi + turn), None) for turn in (0.0, 0.01, 0.02, 0.15)]
+    some = judging.tried(practice, at, strokes)
+    alike = [one for one in some if one.kind == some[0].kind and one.alike == some[0].alike]
+    turned = [replace(one, speed=2.0) for one, _ in strokes]
+    assert len({room(FROZEN, aim=one.aim).elevation for one in turned}) == 4
+    other = some[0]._replace(words=some[0].words.replace("degrees", "degree"))
+    assert len(judging.distinct([some[0], other])) == 1 and alike
+    screws = judging.tried(practice, at, [(replace(ACROSS, top=top), None) for top in (-0.5, -0.45)])
+    assert len(judging.distinct(screws)) == 1  # both are played with the one tip that the cue reaches
+    raised = judging.tried(practice, at, [(replace(ACROSS, elevation=e), None) for e in (0.0, 0.0, 0.4)])
+    assert len(judging.distinct(raised)) == 2  # a cue raised on purpose is another stroke
+
+
+def test_the_command_knows_the_cue(tmp_path, capsys):
+    FROZEN.save(tmp_path / "p.json")
+    ask = ["--position", str(tmp_path / "p.json"), "--n", "2", "--samples", "10", "--visits", "1"]
+    assert main([*ask, "--cue", "real"]) == 0
+    assert "over the rail" in capsys.readouterr().out
+    assert main(ask) == 0
+    assert "over the rail" not in capsys.readouterr().out
+
+
+def test_words_of_a_room():
+    nothing = {"raised": False, "moved": False, "unplayable": False, "over": None, "behind": 0.0}
+    assert Room(elevation=0.3, side=0.0, top=0.0, **nothing).words == ""
+    hardly = nothing | {"raised": True, "over": "rail"}
+    assert Room(elevation=0.008, side=0.0, top=0.0, **hardly).words == ""
+    moved = nothing | {"moved": True, "over": "red 3"}
+    said = Room(elevation=0.5, side=-0.1, top=0.2, **moved).words
+    assert said == "tip moved up to 0.20 above the middle, 0.10 left over the red 3"
