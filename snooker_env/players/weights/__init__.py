@@ -18,6 +18,8 @@ from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
 from ...tasks.noise import LEVELS, Noise
 
 FOLDER = Path(__file__).parent
+WORTH = "worth.npz"
+"""The file of the ``tactician``'s worth of positions of frames (``python -m agents.learn_worth``)."""
 VALUE_LAYERS = 3  # layers of each network of a value
 
 
@@ -44,6 +46,13 @@ def learned_at(level: str) -> Learned:
         raise refuse("level", level, f"must be one of {', '.join(levels())}")
     with np.load(path, allow_pickle=False) as arrays:
         return learned_of({name: arrays[name] for name in arrays.files})
+
+
+@cache
+def worth_layers() -> list[tuple[Singles, Singles]]:
+    """The layers of the package's ``LearnedWorth``, for all levels."""
+    with np.load(FOLDER / WORTH, allow_pickle=False) as arrays:
+        return [(arrays[f"worth/{k}/weight"], arrays[f"worth/{k}/bias"]) for k in range(VALUE_LAYERS)]
 
 
 def levels() -> list[str]:
