@@ -25,9 +25,11 @@ from .safeties import safeties
 from .sobol import DIMENSIONS, normal_points
 from .stroke_search import PRIOR, Propose, in_turn
 from .strokes import COLUMNS, Dynamics
-from .worth import Worth, follows, lead_of, passed
+from .worth import Chance, Worth, follows, lead_of, left_of, passed
 
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
+TIE = 2e-4
+"""What a point counts beside the chance to win, so that a frame that is won or lost is still played well."""
 AVERAGE = 120  # average shots of a decision in frames with the numbers of ``Plan`` below
 
 
@@ -52,11 +54,13 @@ PLANS = Plan(36, 0, 0, ((6, 2), (3, 5))), Plan(28, 132, 28, ((18, 3), (6, 7)))
 class Tried(NamedTuple):
     """The strokes that ``FrameSearch.rank`` tried in one position: most samples first, then best first.
 
-    ``strokes`` (m, 5) in SI; ``scores`` (m,), expected points of the striker less the other's from here on, or the
-    chance to win; ``samples`` (m,), noise samples that each met; ``kinds`` (m,): 0 a pot, 1 a safety, 2 an escape."""
+    ``strokes`` (m, 5) in SI; ``chances`` (m,), the chance to win, without a law for it 0; ``points`` (m,), expected
+    points of the striker less the other's from here on; ``samples`` (m,), noise samples that each met; ``kinds``
+    (m,): 0 a pot, 1 a safety, 2 an escape. What is best is told by the chance, and hardly by the points."""
 
     strokes: Floats
-    scores: Floats
+    chances: Floats
+    points: Floats
     samples: Ints
     kinds: Ints
 
@@ -74,6 +78,8 @@ class FrameSearch:
         Average number of simulated shots of a decision over whole frames, at least 30; default 120.
     propose : callable
         A generator of pots, see ``StrokeSearch``.
+    chance : Chance, optional
+        The chance to win of an expected lead. Default None: points alone count.
     noise, threads : optional
         As for ``Planner``.
     """
@@ -85,6 +91,7 @@ class FrameSearch:
         propose: Propose,
         budget: int = AVERAGE,
         *,
+        chance: Chance | None = None,
         noise: NoiseLike | None = None,
         threads: int | None = None,
     ):
@@ -97,7 +104,7 @@ class FrameSearch:
         self._trials = FrameTrials(replace(rules, noise=self.noise), Threads(self.threads))
         self.spread: float = spread_of(self.noise, rules.physics)
         self.dynamics = Dynamics.of(rules)
-        self.worth, self.propose = worth, propose
+        self.worth, self.propose, self.chance = worth, propose, chance
         self.plans = tuple(plan.scaled(budget / AVERAGE) for plan in PLANS)
         self.shots = 0
 
@@ -125,9 +132,20 @@ class FrameSearch:
         return self._trials.play(at, rows, strokes, errors)
 
     def gains(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Floats:
-        """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m,)."""
-        after = self.outcomes(at, rows, strokes, errors)
-        return follows(self.worth, after, lead_of(at)[rows], self.rules.rule_set.code)
+        """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m, 2), the chance to
+        win and the points."""
+        after, before = self.outcomes(at, rows, strokes, errors), lead_of(at)[rows]
+        points = follows(self.worth, after, before, self.rules.rule_set.code)
+        return self._both(before + points, left_of(after), points)
+
+    def _both(self, lead: Floats, left: Floats, points: Floats) -> Floats:
+        """The chances to win of expected leads, and points: (m, 2)."""
+        chance = np.zeros(len(points)) if self.chance is None else self.chance(lead, left)
+        return np.column_stack([chance, points])
+
+    def _score(self, both: Floats) -> Floats:
+        """What strokes are compared by, of (..., 2)."""
+        return both[..., 1] if self.chance is None else both[..., 0] + TIE * both[..., 1]
 
     def _proposed(self, at: Positions, seeds: Ints, plan: Plan) -> tuple[Floats, Floats, Ints]:
         """Strokes (n, m, 5), chances and kinds (n, m)."""
@@ -146,34 +164,34 @@ class FrameSearch:
     def _rank(self, at: Positions, seeds: Ints, plan: Plan) -> list[Tried]:
         n, every = len(at), np.arange(len(at))[:, None]
         strokes, chances, kinds = self._proposed(at, seeds, plan)
-        some = chances > 0.0
-        scores = np.full(chances.shape, -np.inf)
-        rows = np.broadcast_to(every, chances.shape)[some]
-        scores[some] = self.gains(at, rows, strokes[some], np.zeros((len(rows), COLUMNS)))
-        tries, rounds = np.zeros(chances.shape, np.int64), () if self.noise.silent else plan.rounds
-        if rounds:
-            doubtful = some & (chances < 1.0)
-            missed = -self.worth(passed(at))
-            scores = np.where(doubtful, chances * scores + (1.0 - chances) * missed[:, None], scores)
-        sums = PRIOR * scores
+        some, m = chances > 0.0, chances.shape[1]
+        both, tries = np.full((n, m, 2), -np.inf), np.zeros((n, m), np.int64)
+        rounds = () if self.noise.silent else plan.rounds
+        j, c = np.nonzero(some)
+        looks = self.gains(at, j, strokes[j, c], np.zeros((len(j), COLUMNS)))
+        if rounds:  # a pot that is missed leaves the balls about as they lie
+            points = -self.worth(passed(at)).astype(np.float64)
+            missed, made = self._both(lead_of(at) + points, left_of(at), points)[j], chances[j, c, None]
+            looks = made * looks + (1.0 - made) * missed
+        both[j, c] = looks
+        sums, scores = PRIOR * both, self._score(both)
         order = np.argsort(-scores, axis=1, kind="stable")
         if plan.safeties:  # a look without error flatters: the best of each kind are sampled
-            order = in_turn(order, np.where(some, kinds, len(kinds)))
+            order = in_turn(order, np.where(some, kinds, len(PLANS[0])))
         samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in seeds.tolist()])
         done = 0
         for many, each in rounds:
             best = order[:, :many]
-            fair = some[every, best]
-            j, c = np.nonzero(fair)
-            rows = np.repeat(j, each)
+            j, c = np.nonzero(some[every, best])
+            c = best[j, c]
             errors = samples[:, done : done + each][j].reshape(-1, DIMENSIONS)
-            met = self.gains(at, rows, np.repeat(strokes[j, best[j, c]], each, 0), errors)
-            sums[j, best[j, c]] += met.reshape(-1, each).sum(axis=1)
-            tries[j, best[j, c]] += each
+            met = self.gains(at, np.repeat(j, each), np.repeat(strokes[j, c], each, 0), errors)
+            sums[j, c] += met.reshape(-1, each, 2).sum(axis=1)
+            tries[j, c] += each
             done += each
-            scores[every, best] = sums[every, best] / (PRIOR + tries[every, best])
+            both[j, c] = sums[j, c] / (PRIOR + tries[j, c])[:, None]
+            scores[j, c] = self._score(both[j, c])
             again = np.argsort(-scores[every, best], axis=1, kind="stable")
             order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
-        parts = [part[every, order] for part in (strokes, scores, tries, kinds)]
-        counts = some.sum(axis=1)
-        return [Tried(*(part[k, : counts[k]] for part in parts)) for k in range(n)]
+        parts = [part[every, order] for part in (strokes, both[..., 0], both[..., 1], tries, kinds)]
+        return [Tried(*(part[k, :count] for part in parts)) for k, count in enumerate(some.sum(axis=1).tolist())]

@@ -8,7 +8,7 @@ begins at a re-spotted black.
 """
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .._jit import entry
 from .._types import Floats, Ints
 from ..game import frame_columns as columns
-from ..game.balls import CUE, N_BALLS
+from ..game.balls import CUE, N_BALLS, available
 from ..game.sides import swapped
 from ..geometry import BAULK_Y, D_RADIUS
 from ..tasks.stroke import place
@@ -25,7 +25,11 @@ from .positions import Positions
 
 Worth: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 PLACES = np.array(
-    [(x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y, row in ((0.0, 7), (0.6, 4)) for x in np.linspace(-0.95, 0.95, row) * np.sqrt(1.0 - y * y)]
+    [
+        (x * D_RADIUS, BAULK_Y - y * D_RADIUS)
+        for y, many in ((0.0, 7), (0.6, 4))
+        for x in np.linspace(-0.95, 0.95, many) * np.sqrt(1.0 - y * y)
+    ]
 )
 """Where in the D a cue ball in hand is tried: (11, 2) [m]."""
 
@@ -46,6 +50,14 @@ def _allowed(game, rules, out):
         out[k, columns.PLAY] = out[k, columns.PLAY_AGAIN] = True
         out[k, columns.REPLACE] = columns.may_replace(game[k], rules)
         out[k, columns.PLACE_ANYWHERE] = columns.may_place_anywhere(game[k], rules)
+
+
+@entry
+def _left(game, out):
+    for k in range(len(game)):
+        row = game[k]
+        over = row[columns.OVER] != 0
+        out[k] = 0.0 if over else available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
 
 
 @entry
@@ -90,6 +102,25 @@ def follows(worth: Worth, after: Positions, before: Floats, rules: int = 0) -> F
     if len(rows):
         gains[rows] += np.where(mine[rows], 1.0, -1.0) * decide(worth, turned(after[rows]), rules)[1]
     return gains
+
+
+class Chance(NamedTuple):
+    """The chance to win a frame, of the lead that is expected at its end: a logistic law, as wide as the luck that
+    is still to come: ``near`` + ``far`` sqrt(points on the table) [points]."""
+
+    near: float
+    far: float
+
+    def __call__(self, lead: Floats, left: Floats) -> Floats:
+        """The chance (n,) of who is expected to end with ``lead`` (n,) when ``left`` (n,) are on the table."""
+        return 1.0 / (1.0 + np.exp(-np.clip(lead / (self.near + self.far * np.sqrt(left)), -50.0, 50.0)))
+
+
+def left_of(at: Positions) -> Floats:
+    """Points that are still on the table: float64 (n,); 0 where the frame is over."""
+    left = np.empty(len(at))
+    _left(at.game, left)
+    return left
 
 
 def lead_of(at: Positions) -> Floats:

@@ -2,7 +2,7 @@
 players, and all decisions of a frame by that worth: what to do after a foul, where the cue ball in hand goes, who
 begins at a re-spotted black."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,43 +12,56 @@ from ..planning import Positions, processors, spread_of
 from ..planning.frame_search import AVERAGE, FrameSearch, Tried
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
-from ..planning.worth import best_places, chosen, decide
+from ..planning.worth import Chance, Worth, best_places, chosen, decide
 from ..tasks.declarations import OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options
 from .player import BoundPlayer, Ranked, Strokes, placed
 from .search import LEAST, MOST, RANKED, SearchPlayer
-from .weights import learned_at, level_for, worth_layers
+from .weights import learned_at, learned_worth, level_for
 
 _IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
+
+
+class Decided(NamedTuple):
+    """What the ``tactician`` does in n positions.
+
+    ``strokes``: n ``Strokes``; ``tried``: of each position what its search tried, None where it plays no stroke;
+    ``start``: the positions that the strokes are played from, after decisions, with placed cue balls."""
+
+    strokes: Strokes
+    tried: list[Tried | None]
+    start: Positions
 
 
 class Tactician(BoundPlayer):
     """The best stroke of a ``FrameSearch``, in visits of the planner; ``worth``: by default the package's."""
 
-    def __init__(self, budget: int = AVERAGE, worth: Any = None):
+    def __init__(self, budget: int = AVERAGE, worth: Worth | None = None, chance: Chance | None = None):
         self.name = "tactician" if budget == AVERAGE else f"tactician_{budget}"
-        self.budget, self._given = integer("budget", budget, LEAST, MOST), worth
+        self.budget, self._given = integer("budget", budget, LEAST, MOST), (worth, chance)
         self._visits, self.search = SearchPlayer("planner", budget), None
 
     def _bind(self, options: Options) -> None:
         self._visits = self._visits.at(options)
         noise, physics = options.rules.noise, options.rules.physics
-        worth = self._given
+        worth, chance = self._given
         if worth is None:
-            worth = LearnedWorth(worth_layers(), spread_of(noise, physics), processors())
-        self.search = FrameSearch(options, worth, PolicyProposals(learned_at(level_for(noise)).policy), self.budget)
+            layers, chance = learned_worth()
+            worth = LearnedWorth(layers, spread_of(noise, physics), processors())
+        pots = PolicyProposals(learned_at(level_for(noise)).policy)
+        self.search = FrameSearch(options, worth, pots, self.budget, chance=chance)
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
         at = Positions.of(positions)
-        return self._decided(at, np.asarray(seeds))[0] if at.of_frames else self._visits.play(at, seeds)
+        return self.decided(at, np.asarray(seeds)).strokes if at.of_frames else self._visits.play(at, seeds)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with the points that each is worth."""
         at = Positions.of(positions)
         if not at.of_frames:
             return self._visits.rank(at, seeds)
-        strokes, tried = self._decided(at, np.asarray(seeds))
+        strokes, tried, _ = self.decided(at, np.asarray(seeds))
         ranked = []
         for k, one in enumerate(tried):
             if one is None:
@@ -56,11 +69,11 @@ class Tactician(BoundPlayer):
                 continue
             m = min(RANKED, int((one.samples > 0).sum()) or len(one.samples))
             same = [np.repeat(part[k : k + 1], m, 0) for part in strokes.parts[1:]]
-            ranked.append(Ranked(Strokes(one.strokes[:m], *same), one.scores[:m]))
+            ranked.append(Ranked(Strokes(one.strokes[:m], *same), one.chances[:m]))
         return ranked
 
-    def _decided(self, at: Positions, seeds: Any) -> tuple[Strokes, list[Tried | None]]:
-        """What it does in positions of frames, and what it tried in those in which it strikes."""
+    def decided(self, at: Positions, seeds: Any) -> Decided:
+        """What it does in positions of frames, what it tried in those in which it strikes, and from where."""
         search: Any = self.search
         assert search is not None, self.options  # it must be bound
         worth = search.worth
@@ -91,4 +104,4 @@ class Tactician(BoundPlayer):
         for k, one in zip(rows.tolist(), search.rank(at[rows], seeds[rows]), strict=True):
             if len(one.strokes):
                 tried[k], values[k] = one, one.strokes[0]
-        return Strokes(values, places, decision=decisions, declare=declare), tried
+        return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)

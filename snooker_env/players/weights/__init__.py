@@ -15,6 +15,7 @@ import numpy as np
 from ..._check import refuse
 from ..._types import Singles
 from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
+from ...planning.worth import Chance
 from ...tasks.noise import LEVELS, Noise
 
 FOLDER = Path(__file__).parent
@@ -49,10 +50,11 @@ def learned_at(level: str) -> Learned:
 
 
 @cache
-def worth_layers() -> list[tuple[Singles, Singles]]:
-    """The layers of the package's ``LearnedWorth``, for all levels."""
-    with np.load(FOLDER / WORTH, allow_pickle=False) as arrays:
-        return [(arrays[f"worth/{k}/weight"], arrays[f"worth/{k}/bias"]) for k in range(VALUE_LAYERS)]
+def learned_worth(path: Path = FOLDER / WORTH) -> tuple[list[tuple[Singles, Singles]], Chance]:
+    """The layers of a ``LearnedWorth``, for all levels, and the chance to win; by default the package's."""
+    with np.load(path, allow_pickle=False) as arrays:
+        layers = [(arrays[f"worth/{k}/weight"], arrays[f"worth/{k}/bias"]) for k in range(VALUE_LAYERS)]
+        return layers, Chance(*arrays["chance"].tolist())
 
 
 def levels() -> list[str]:
