@@ -59,7 +59,7 @@ def frames(shared, args, threads):
     that, -1 the other, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won"
     (m,): the striker's lead, the points on the table, whether the striker won; "frame" and "striker" (m,)."""
     noise = noise_of(args["scale"])
-    options = Options(task="frame", **FRAMES, **shared["options"], noise=noise)
+    options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
     rules, many = options.rules, args["many"]
     spread = spread_of(noise, rules.physics)
     layers = shared["layers"]

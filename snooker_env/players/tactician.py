@@ -12,13 +12,15 @@ from ..planning import Positions, processors, spread_of
 from ..planning.frame_search import AVERAGE, FrameSearch, Tried
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
-from ..planning.worth import Chance, Worth, best_places, chosen, decide
-from ..tasks.declarations import OTHER_BEGINS, SAYS_NOTHING
+from ..planning.worth import Chance, Worth, best_places, chosen, decide, lead_of, left_of
+from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options
 from .player import BoundPlayer, Ranked, Strokes, placed
 from .search import LEAST, MOST, RANKED, SearchPlayer
 from .weights import learned_at, learned_worth, level_for
 
+LOST = 0.01
+"""The chance to win below which it concedes a frame in which it needs snookers, where it may."""
 _IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
 
 
@@ -36,8 +38,10 @@ class Decided(NamedTuple):
 class Tactician(BoundPlayer):
     """The best stroke of a ``FrameSearch``, in visits of the planner; ``worth``: by default the package's."""
 
+    kind = "tactician"
+
     def __init__(self, budget: int = AVERAGE, worth: Worth | None = None, chance: Chance | None = None):
-        self.name = "tactician" if budget == AVERAGE else f"tactician_{budget}"
+        self.name = self.kind if budget == AVERAGE else f"{self.kind}_{budget}"
         self.budget, self._given = integer("budget", budget, LEAST, MOST), (worth, chance)
         self._visits, self.search = SearchPlayer("planner", budget), None
 
@@ -104,4 +108,8 @@ class Tactician(BoundPlayer):
         for k, one in zip(rows.tolist(), search.rank(at[rows], seeds[rows]), strict=True):
             if len(one.strokes):
                 tried[k], values[k] = one, one.strokes[0]
+        if self.options.concede and search.chance is not None:
+            some = np.flatnonzero([one is not None and one.chances[0] < LOST for one in tried])
+            behind = lead_of(at[some]) < -left_of(at[some])  # it needs snookers
+            declare[some[behind]] = CONCEDES
         return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)
