@@ -23,6 +23,7 @@ with needs("agents.calibrate"):
     from commands.provenance import provenance
     from commands.tables import TextTable, show
     from snooker_env.checks import integer, number, refuse
+    from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY
     from snooker_env.players.weights import learned_worth
 
     from ..cluster.ray_cluster import add_ray, checked_ray, place
@@ -89,6 +90,44 @@ def frames_played(rows):
     return frames
 
 
+TACTICS = {
+    "easy": "visits ended by a stroke: the other has a pot with a chance over 0.9, %",
+    "easy_no_pot": "the same where no direct pot was on, %",
+    "break_off": "points that the other makes next after a break-off",
+    "escapes": "fouls of snookered strikers, %",
+}
+
+
+def tactics_of(parts):
+    """Mean, standard error and number of each of ``TACTICS``, of the rows of all parts of a scale."""
+    found = {name: [] for name in TACTICS}
+    for rows in parts:
+        after, likely, hidden = rows["next"], rows["seen"][:, LIKELY], rows["seen"][:, HIDDEN] > 0.5
+        fouls = rows["swing"] < 0
+        ends = (after >= 0) & (rows["same"] < 0) & ~fouls
+        easy = likely[after] > 0.9
+        found["easy"].append(easy[ends])
+        found["easy_no_pot"].append(easy[ends & (likely < 0.01)])
+        found["escapes"].append(fouls[hidden])
+        first = np.unique(rows["frame"], return_index=True)[1]
+        found["break_off"].append([_next_visit(rows, k) for k in first.tolist()])
+    out = {}
+    for name, values in found.items():
+        every = np.concatenate(values).astype(float) * (1.0 if name == "break_off" else 100.0)
+        many = len(every)
+        out[name] = [float(every.mean()), float(every.std() / np.sqrt(many)), many] if many > 1 else None
+    return out
+
+
+def _next_visit(rows, k):
+    """Points of the visit that begins after stroke k, if it is the other player's."""
+    at, points, other = rows["next"][k], 0.0, 1 - rows["striker"][k]
+    while at >= 0 and rows["striker"][at] == other and rows["swing"][at] > 0:
+        points += rows["swing"][at]
+        at = rows["next"][at]
+    return points
+
+
 def figures_of(frames):
     """Mean and standard error of each of ``FIGURES``."""
     breaks = [np.array(one["breaks"]) for one in frames]
@@ -120,7 +159,7 @@ def figures_of(frames):
 
 
 def self_played(where, scales, frames, budget):
-    """The frames of two copies of the ``tactician`` under each scale: a list for each."""
+    """What two copies of the ``tactician`` play under each scale: a list of the rows of its parts for each."""
     layers, chance = learned_worth()
     shared = {"options": FRAME | {"says": ["decision", "concede"]}, "layers": layers, "chance": chance}
     shared |= {"budget": budget, "explore": 0.0}
@@ -129,7 +168,14 @@ def self_played(where, scales, frames, budget):
         parts += [{"scale": scale, "seed": FIRST_SEED + k, "many": min(TABLES, frames - k)} for k in starts]
     made = where.map("agents.learning.frame_self_play:frames", shared, parts)
     n = len(starts)
-    return [[one for rows in made[n * i : n * (i + 1)] for one in frames_played(rows)] for i in range(len(scales))]
+    return [made[n * i : n * (i + 1)] for i in range(len(scales))]
+
+
+def _table(title, words, columns):
+    """Figures as a table: a row for each of ``words``, a column for each of ``columns``."""
+    cell = lambda one: f"{one[0]:.2f} ± {one[1]:.2f}" if one else "-"  # noqa: E731
+    rows = [[text, *(cell(one[name]) for one in columns.values())] for name, text in words.items()]
+    return TextTable(title, ["", *columns], rows, 1, 1)
 
 
 @command("agents.calibrate")
@@ -155,13 +201,13 @@ def main(argv=None):
     snooker_env.warmup()
     with place(args.ray) as where:
         played = self_played(where, args.scales, args.frames, args.budget)
+    names = [f"scale {scale:g}" for scale in args.scales]
     columns = {"professionals": figures_of(real)}
-    columns |= {f"scale {s:g}": figures_of(one) for s, one in zip(args.scales, played, strict=True)}
-    rows = [
-        [words, *(f"{one[name][0]:.2f} ± {one[name][1]:.2f}" if one[name] else "-" for one in columns.values())]
-        for name, words in FIGURES.items()
-    ]
-    show([TextTable(f"{len(real)} frames of professionals, {args.frames} played of each scale", ["", *columns], rows, 1, 1)])
+    for name, parts in zip(names, played, strict=True):
+        columns[name] = figures_of([one for rows in parts for one in frames_played(rows)])
+    tactics = dict(zip(names, map(tactics_of, played), strict=True))
+    title = f"{len(real)} frames of professionals, {args.frames} played of each scale"
+    show([_table(title, FIGURES, columns), _table("Tactics", TACTICS, tactics)])
     if args.json:
-        write_json(args.json, {"figures": columns, "frames": args.frames, **provenance()})
+        write_json(args.json, {"figures": columns, "tactics": tactics, "frames": args.frames, **provenance()})
     return 0

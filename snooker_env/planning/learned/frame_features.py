@@ -13,12 +13,17 @@ from ...geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ...tasks.windows import HIGH, LOW, MOST_EDGES, half_width, open_part, open_windows
 from ..positions import Positions
 from ..prospects import in_parts
+from .value_features import SHARED as SHARED_OF_VISITS
 from .value_features import SIZE as VISIT_SIZE
 from .value_features import value_features
 
 NEAREST = 3  # reds that are described one by one
 RED_ENTRIES, SHARED = 5, 18
 SIZE = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + SHARED
+LIKELY = VISIT_SIZE - SHARED_OF_VISITS + 10
+"""The entry that holds the chance of the likeliest direct pot."""
+HIDDEN = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + 6
+"""The entry that is 1 where no ball on can be struck along a straight line: the striker is snookered."""
 _SPREAD = log(5e-4)
 """Logarithm of an error of direction between a professional's and a club player's [rad]."""
 
