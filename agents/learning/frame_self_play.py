@@ -9,9 +9,7 @@ import numpy as np
 from snooker_env import Options
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.sides import strikers_own
-from snooker_env.planning import Positions, prospects_of, spread_of
-from snooker_env.planning.learned.frame_features import frame_features
-from snooker_env.planning.learned.learned_worth import LearnedWorth
+from snooker_env.planning import Positions
 from snooker_env.planning.worth import lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
 from snooker_env.players.tactician import Tactician
@@ -33,25 +31,10 @@ def noise_of(scale: float) -> Noise:
     return Noise(aim_deg=one.aim_deg * scale, speed_rel=slower, **tip)
 
 
-def worths_of(layers, seen):
-    """The worths of features (n, SIZE) by layers, at the errors that the features tell."""
-    return LearnedWorth(layers, 1.0).of(seen)
-
-
-class RuleWorth:
-    """A worth from which learning starts: the rule of thumb of a visit, as if the other never came to the table."""
-
-    def __init__(self, spread):
-        self._spread = spread
-
-    def __call__(self, at):
-        return prospects_of(at, self._spread)[0]
-
-
 def frames(shared, args, threads):
     """The task: play frames against oneself, and say what each position was worth.
 
-    ``shared``: "options" of the frames, "layers" of the worth (None: the rule), "chance" (None or its numbers),
+    ``shared``: "options" of the frames, "layers" of the worth (None: the value of the visit alone), "chance" (None or its numbers),
     "budget", "explore" (share of strokes that are not the best). ``args``: "scale" of the errors, "seed" of the first
     table, "many" frames. Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue
     ball where it was played from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search,
@@ -61,10 +44,9 @@ def frames(shared, args, threads):
     noise = noise_of(args["scale"])
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
     rules, many = options.rules, args["many"]
-    spread = spread_of(noise, rules.physics)
-    layers = shared["layers"]
-    worth = RuleWorth(spread) if layers is None else LearnedWorth(layers, spread, threads or 1)
-    player = Tactician(shared["budget"], worth, shared["chance"]).at(options)
+    known = options.but(conditions="fixed")  # a player does not know the constants of a table
+    player = Tactician(shared["budget"], (shared["layers"], shared["chance"])).at(known)
+    worth = player.search.worth
     rng, seed = np.random.default_rng([args["seed"], 7]), args["seed"]
     tables, crew = Frames(rules, many, seats=[Seat.of(rules)] * 2), Threads(threads or 1)
     for k in range(many):
@@ -84,8 +66,8 @@ def frames(shared, args, threads):
                 met = max(1, int((tried[k].samples > 0).sum()))
                 strokes.values[k] = tried[k].strokes[rng.integers(met)]
             rows.append({
-                "seen": frame_features(start[here], spread, threads or 1),
-                "hand": frame_features(at[here], spread, threads or 1),
+                "seen": worth.seen(start[here]),
+                "hand": worth.seen(at[here]),
                 "worth": judged[:, 1].reshape(-1, FRESH).mean(axis=1),
                 "explored": explored,
                 "lead": lead_of(start)[here],

@@ -7,8 +7,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from snooker_env.planning.learned.frame_features import SIZE
-from snooker_env.planning.learned.learned_worth import POINTS
+from snooker_env.planning.learned.learned_worth import POINTS, SIZE
 from snooker_env.planning.worth import Chance
 
 WIDTHS = (96, 48)
@@ -30,12 +29,14 @@ def targets(rows):
 
 
 class WorthNetwork(nn.Sequential):
-    """Features (n, SIZE) -> worth (n, 1), in units of ``POINTS``."""
+    """What is seen (n, SIZE) -> worth beside the value of the visit (n, 1), in units of ``POINTS``."""
 
     def __init__(self):
         sizes = (SIZE, *WIDTHS, 1)
         parts = [nn.Linear(a, b) for a, b in pairwise(sizes)]
         super().__init__(*[part for one in parts for part in (one, nn.ReLU())][:-1])
+        with torch.no_grad():  # at first the value is all
+            parts[-1].weight.mul_(0.1)
 
     def layers(self):
         """Weight (out, in) and bias (out,) of each layer: float32 arrays."""
@@ -53,7 +54,7 @@ def fitted(seen, wanted, weights, seed, passes, layers=None, tick=None):
             for one, (weight, bias) in zip(linear, layers, strict=True):
                 one.weight.copy_(torch.from_numpy(weight))
                 one.bias.copy_(torch.from_numpy(bias))
-    x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS).astype(np.float32))
+    x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS - seen[:, -1]).astype(np.float32))
     w = torch.from_numpy(weights.astype(np.float32))
     steps = passes * (len(x) // BATCH)
     optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=1e-4)

@@ -23,9 +23,10 @@ with needs("agents.learn_worth"):
     from agents.cluster.ray_cluster import add_ray, checked_ray, place
     from commands.files import writable, write_atomic
     from snooker_env.checks import integer
+    from snooker_env.planning.learned.dense_layers import Layers
+    from snooker_env.planning.learned.learned_worth import worth_of
     from snooker_env.players.weights import FOLDER, WORTH, learned_worth
 
-    from .frame_self_play import worths_of
     from .frame_worth import calibration, fitted, fitted_chance, targets
 
 SCALES = 0.4, 3.5
@@ -36,7 +37,7 @@ TABLES = 16
 """Frames that one part plays side by side."""
 EXPLORE = 0.08
 """Share of strokes that are not the best ones found, so that positions after worse ones are seen, too."""
-KEEP, PASSES = 3, 30
+KEEP, PASSES = 3, 15
 """Rounds whose positions a network is fitted to, and passes over them."""
 HELD = 8
 """One frame in so many is kept from the fit, to say how good it is."""
@@ -74,7 +75,7 @@ def learned(rounds, seed, layers):
     seen = np.concatenate([both["seen"][used], both["hand"][in_hand]]).astype(np.float32)
     wanted = np.concatenate([both["target"][used], both["target"][in_hand]])
     layers = fitted(seen, wanted, np.ones(len(wanted)), seed, PASSES, layers)
-    said = worths_of(layers, both["seen"].astype(np.float32))
+    said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
     lead = both["lead"] + said
     chance = fitted_chance(lead[used], both["left"][used], both["won"][used])
     held = both["held"]

@@ -30,6 +30,7 @@ from .worth import Chance, Worth, follows, lead_of, left_of, passed
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
 TIE = 2e-4
 """What a point counts beside the chance to win, so that a frame that is won or lost is still played well."""
+LEAST = 30  # budget of a decision
 AVERAGE = 120  # average shots of a decision in frames with the numbers of ``Plan`` below
 
 
@@ -42,9 +43,9 @@ class Plan(NamedTuple):
     rounds: tuple[tuple[int, int], ...]
 
     def scaled(self, share: float) -> "Plan":
-        """The same with ``share`` times as many shots."""
-        looks = [max(4, round(many * share)) if many else 0 for many in self[:3]]
-        return Plan(*looks, tuple((many, max(1, round(each * share))) for many, each in self.rounds))
+        """The same with about ``share`` times as many shots."""
+        looks, root = [max(4, round(many * share)) if many else 0 for many in self[:3]], share**0.5
+        return Plan(*looks, tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in self.rounds))
 
 
 PLANS = Plan(36, 0, 0, ((6, 2), (3, 5))), Plan(28, 132, 28, ((18, 3), (6, 7)))
@@ -75,7 +76,7 @@ class FrameSearch:
     worth : callable
         See ``worth``.
     budget : int, optional
-        Average number of simulated shots of a decision over whole frames, at least 30; default 120.
+        Average number of simulated shots of a decision over whole frames, at least ``LEAST``; default 120.
     propose : callable
         A generator of pots, see ``StrokeSearch``.
     chance : Chance, optional
@@ -96,7 +97,7 @@ class FrameSearch:
         threads: int | None = None,
     ):
         options = options_in(env_or_options)
-        self.budget: int = integer("budget", budget, 30, 10**7)
+        self.budget: int = integer("budget", budget, LEAST, 10**7)
         rules = options.rules
         self.noise: Noise = rules.noise if noise is None else Noise.of(noise)
         self.rules = rules
@@ -177,7 +178,8 @@ class FrameSearch:
         sums, scores = PRIOR * both, self._score(both)
         order = np.argsort(-scores, axis=1, kind="stable")
         if plan.safeties:  # a look without error flatters: the best of each kind are sampled
-            order = in_turn(order, np.where(some, kinds, len(PLANS[0])))
+            order = in_turn(order, kinds)
+            order = np.take_along_axis(order, np.argsort(~some[every, order], axis=1, kind="stable"), 1)
         samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in seeds.tolist()])
         done = 0
         for many, each in rounds:

@@ -9,14 +9,15 @@ import numpy as np
 from .._check import integer
 from ..game import frame_columns as columns
 from ..planning import Positions, processors, spread_of
-from ..planning.frame_search import AVERAGE, FrameSearch, Tried
+from ..planning.frame_search import AVERAGE, LEAST, FrameSearch, Tried
+from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
-from ..planning.worth import Chance, Worth, best_places, chosen, decide, lead_of, left_of
+from ..planning.worth import best_places, chosen, decide, lead_of, left_of
 from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options
 from .player import BoundPlayer, Ranked, Strokes, placed
-from .search import LEAST, MOST, RANKED, SearchPlayer
+from .search import MOST, RANKED, SearchPlayer
 from .weights import learned_at, learned_worth, level_for
 
 LOST = 0.01
@@ -36,24 +37,24 @@ class Decided(NamedTuple):
 
 
 class Tactician(BoundPlayer):
-    """The best stroke of a ``FrameSearch``, in visits of the planner; ``worth``: by default the package's."""
+    """The best stroke of a ``FrameSearch``, in visits of the planner; ``learned``: the layers of a ``LearnedWorth``
+    and a ``Chance``, each may be None; by default the package's."""
 
     kind = "tactician"
 
-    def __init__(self, budget: int = AVERAGE, worth: Worth | None = None, chance: Chance | None = None):
+    def __init__(self, budget: int = AVERAGE, learned: Any = None):
         self.name = self.kind if budget == AVERAGE else f"{self.kind}_{budget}"
-        self.budget, self._given = integer("budget", budget, LEAST, MOST), (worth, chance)
+        self.budget, self._given = integer("budget", budget, LEAST, MOST), learned
         self._visits, self.search = SearchPlayer("planner", budget), None
 
     def _bind(self, options: Options) -> None:
         self._visits = self._visits.at(options)
         noise, physics = options.rules.noise, options.rules.physics
-        worth, chance = self._given
-        if worth is None:
-            layers, chance = learned_worth()
-            worth = LearnedWorth(layers, spread_of(noise, physics), processors())
-        pots = PolicyProposals(learned_at(level_for(noise)).policy)
-        self.search = FrameSearch(options, worth, pots, self.budget, chance=chance)
+        layers, chance = learned_worth() if self._given is None else self._given
+        learned = learned_at(level_for(noise))
+        value = LearnedValue(learned.value, spread_of(noise, physics), processors())
+        worth = LearnedWorth(value, layers)
+        self.search = FrameSearch(options, worth, PolicyProposals(learned.policy), self.budget, chance=chance)
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
