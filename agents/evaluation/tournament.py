@@ -61,6 +61,7 @@ def parser():
     what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
     p.add_argument("--physics", default="paper", help=what)
     p.add_argument("--miss", default="off", help="rule for a foul and a miss [off]")
+    p.add_argument("--cue", default="free", help="the option cue of frames: free or real [free]")
     p.add_argument("--rules", default="snooker", help="the option game of frames: which rules [snooker]")
     what = "strokes after which a frame is stopped, half a win for each [1000]"
     p.add_argument("--max-strokes", type=int, default=1000, help=what)
@@ -110,6 +111,7 @@ def checked(args):
         raise refuse("match", args.match, "must be odd: the best of so many frames")
     game = {"noise": args.noise, "physics": args.physics, "miss": args.miss, "max_strokes": args.max_strokes}
     game |= {} if args.rules == "snooker" else {"game": args.rules}
+    game |= {} if args.cue == "free" else {"cue": args.cue}
     for entrant in entrants:
         meeting: dict[str, Any] = {**game, "physics": physics_option(args.physics)}
         entrant.player(0).at(Options(task="frame", **FRAMES, **meeting))  # makes sure that they can meet

@@ -294,11 +294,11 @@ def strokes_at(
 
 def _proposed(at, strokes, seeds, which, spread, dynamics):
     chances = np.empty(strokes.shape[:2])
-    _propose(_balls(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics, at), strokes, chances)
+    _propose(visits_of(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics, at), strokes, chances)
     return Proposals(strokes, chances)
 
 
-def _balls(at):
+def visits_of(at):
     """The arrays of visits that the kernels read."""
     at = at.as_visits()
     return at.positions, at.on_table, at.game
@@ -350,7 +350,7 @@ def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposal
     [[1.0, 1.0, 1.0, 1.0]]
     """
     made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
-    _contacts(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
+    _contacts(visits_of(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
     return made
 
 
@@ -375,5 +375,5 @@ def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Pro
     [[1.0, 1.0, 1.0, 1.0]]
     """
     made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
-    _escapes(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
+    _escapes(visits_of(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
     return made

@@ -29,7 +29,7 @@ from ..tasks.noise import N_KICK, Noise, drawn_errors, kick_of, with_errors
 from ..tasks.options import Options, Rules
 from ..tasks.pot_aim import solved_aim
 from ..tasks.stroke import ShotBuffers, row_of
-from ..tasks.tables import STROKES_ONLY, StepOutput
+from ..tasks.tables import STROKES_ONLY, StepOutput, Tables
 from ..tasks.visit import Visits
 from .positions import Positions, PositionsLike, rows_of
 
@@ -66,12 +66,25 @@ def _off_the_tip(strokes, every):
         strokes[j, AIM] += squirt(strokes[j, SIDE], every[row_of(j, every), A_END_MASS])
 
 
-class TrialVisits(Visits):
-    """Visits of one stroke, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of actions. Their
-    tables' constants are those of the positions, if these have any."""
+class Struck(Tables):
+    """Tables whose strokes (n, 5) meet the given ``errors`` (n, 5); without them these are actions."""
 
     errors: Floats | None = None
     kick: float = 0.0  # the probability of a kick in strokes with ``errors``
+
+    def address(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> None:
+        if self.errors is None:
+            super().address(which, actions, buffers)
+            return
+        (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
+        if self.kick:
+            silent = Noise(kick=self.kick).pack(1.0)
+        _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
+
+
+class TrialVisits(Struck, Visits):
+    """Visits of one stroke, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of actions. Their
+    tables' constants are those of the positions, if these have any."""
 
     def __init__(self, rules: Rules, n: int):
         super().__init__(replace(rules, drawn=False, observed=False), n)
@@ -82,15 +95,6 @@ class TrialVisits(Visits):
         if after.conditions is not None:
             self.packed = packed_under(after.conditions, self.rules)
         self.positions, self.on_table, self.game = after.positions, after.on_table, after.game
-
-    def address(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> None:
-        if self.errors is None:
-            super().address(which, actions, buffers)
-            return
-        (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
-        if self.kick:
-            silent = Noise(kick=self.kick).pack(1.0)
-        _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
 
 
 def decoded(

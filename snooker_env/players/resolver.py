@@ -13,17 +13,18 @@ from .._check import refuse, refuse_what, truth
 from .choices import GhostBall, Random
 from .player import Player
 from .search import BUDGET, LEAST, MOST, SearchPlayer
+from .tactician import Tactician
 
 GROUP = "snooker_env.players"
 """Entry points for players of other packages: NAME = MODULE:MAKER, called without arguments."""
 READERS = "snooker_env.models"
 """Entry points that read models: MODULE:READER, called with a path; None if the file is not theirs."""
-BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner")  # the players in the package
+BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician")  # the players in the package
 RENAMED = {"lookahead": "search"}  # names of players of version 0.3 that are still understood
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
 PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
 """How names of programs begin, and their player, which is loaded as an entry point is."""
-_SEARCHING = re.compile(r"(best_pot|search|lookahead|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?")
+_SEARCHING = re.compile(r"(best_pot|search|lookahead|tactician|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?")
 
 
 def players() -> list[str]:
@@ -116,6 +117,8 @@ def _built_in(name: str) -> Player | None:
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
     if budget and not LEAST <= int(budget) <= MOST:
         raise refuse("player", name, f"must end in a number of simulated shots from {LEAST} to {MOST:,}")
+    if kind == Tactician.kind:
+        return Tactician(int(budget) if budget else BUDGET)
     learned = None if model is None else _learned(model)
     return SearchPlayer(kind, int(budget) if budget else BUDGET, learned)
 

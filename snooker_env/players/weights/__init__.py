@@ -15,9 +15,12 @@ import numpy as np
 from ..._check import refuse
 from ..._types import Singles
 from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
+from ...planning.worth import Chance
 from ...tasks.noise import LEVELS, Noise
 
 FOLDER = Path(__file__).parent
+WORTH = "worth.npz"
+"""The file of the ``tactician``'s worth of positions of frames (``python -m agents.learn_worth``)."""
 VALUE_LAYERS = 3  # layers of each network of a value
 
 
@@ -44,6 +47,14 @@ def learned_at(level: str) -> Learned:
         raise refuse("level", level, f"must be one of {', '.join(levels())}")
     with np.load(path, allow_pickle=False) as arrays:
         return learned_of({name: arrays[name] for name in arrays.files})
+
+
+@cache
+def learned_worth(path: Path = FOLDER / WORTH) -> tuple[list[tuple[Singles, Singles]], Chance]:
+    """The layers of a ``LearnedWorth``, for all levels, and the chance to win; by default the package's."""
+    with np.load(path, allow_pickle=False) as arrays:
+        layers = [(arrays[f"worth/{k}/weight"], arrays[f"worth/{k}/bias"]) for k in range(VALUE_LAYERS)]
+        return layers, Chance(*arrays["chance"].tolist())
 
 
 def levels() -> list[str]:

@@ -1,0 +1,105 @@
+"""How is a round of frames played against oneself, here or by many workers? Each part plays some frames, both sides
+with the worth that has been learned so far, under errors of its own.
+
+A stroke is judged by *search*, not by luck: before it is played its best stroke meets fresh noise samples, and their
+mean is what the position is worth. A frame's outcome alone varies by 60 points and would drown it."""
+
+import numpy as np
+
+from snooker_env import Options
+from snooker_env.game import frame_columns as columns
+from snooker_env.game.sides import strikers_own
+from snooker_env.planning import Positions
+from snooker_env.planning.worth import lead_of, left_of
+from snooker_env.players import FRAMES, decision_seeds
+from snooker_env.players.tactician import Tactician
+from snooker_env.tasks import LEVELS, Noise
+from snooker_env.tasks.carry_out import carry_out
+from snooker_env.tasks.frame import Frames, Seat
+from snooker_env.tasks.threads import Threads
+
+FRESH = 8
+"""Noise samples that judge the best stroke of a position."""
+
+
+def noise_of(scale: float) -> Noise:
+    """The errors of a professional, times ``scale``; those of the speed grow with its power 0.7, as from a
+    professional to a club player."""
+    one = LEVELS["professional"]
+    slower = one.speed_rel * scale**0.7
+    tip = {"offset_mm": one.offset_mm * scale, "elevation_deg": one.elevation_deg * scale}
+    return Noise(aim_deg=one.aim_deg * scale, speed_rel=slower, **tip)
+
+
+def frames(shared, args, threads):
+    """The task: play frames against oneself, and say what each position was worth.
+
+    ``shared``: "options" of the frames, "layers" of the worth (None: the value of the visit alone), "chance" (None or its numbers),
+    "budget", "explore" (share of strokes that are not the best). ``args``: "scale" of the errors, "seed" of the first
+    table, "many" frames. Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue
+    ball where it was played from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search,
+    "swing" (m,) points of the striker less the other's until the next stroke, "same" (m,): 1 if the striker plays
+    that, -1 the other, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won"
+    (m,): the striker's lead, the points on the table, whether the striker won; "frame" and "striker" (m,)."""
+    noise = noise_of(args["scale"])
+    options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
+    rules, many = options.rules, args["many"]
+    known = options.but(conditions="fixed")  # a player does not know the constants of a table
+    player = Tactician(shared["budget"], (shared["layers"], shared["chance"])).at(known)
+    worth = player.search.worth
+    rng, seed = np.random.default_rng([args["seed"], 7]), args["seed"]
+    tables, crew = Frames(rules, many, seats=[Seat.of(rules)] * 2), Threads(threads or 1)
+    for k in range(many):
+        tables.seed(k, np.random.default_rng(seed + k))
+    tables.deal(np.arange(many), drawn=True, breakers=np.arange(many) % 2)
+    out, rows, step, held, last = tables.output(), [], 0, 0, np.full(many, -1)
+    while len(going := np.flatnonzero(~tables.ended())):
+        at = _seen_by_strikers(tables, going)
+        strokes, tried, start = player.decided(at, decision_seeds(seed, going, step))
+        here = np.flatnonzero([one is not None for one in tried])
+        if len(here):
+            which, best = going[here], strokes.values[here]
+            again, errors = np.repeat(here, FRESH), rng.standard_normal((FRESH * len(here), 5))
+            judged = player.search.gains(start, again, np.repeat(best, FRESH, 0), errors)
+            explored = rng.random(len(here)) < shared["explore"]
+            for k in here[explored].tolist():
+                met = max(1, int((tried[k].samples > 0).sum()))
+                strokes.values[k] = tried[k].strokes[rng.integers(met)]
+            rows.append({
+                "seen": worth.seen(start[here]),
+                "hand": worth.seen(at[here]),
+                "worth": judged[:, 1].reshape(-1, FRESH).mean(axis=1),
+                "explored": explored,
+                "lead": lead_of(start)[here],
+                "left": left_of(start)[here],
+                "frame": which,
+                "striker": tables.game[which, columns.STRIKER],
+                "led": tables.lead()[which],
+                "before": last[which],
+            })
+            last[which] = held + np.arange(len(here))
+            held += len(here)
+        parts = tuple(np.zeros((many, *part.shape[1:]), part.dtype) for part in strokes.parts)
+        for whole, part in zip(parts, strokes.parts, strict=True):
+            whole[going] = part
+        tables.turn(lambda which, b, parts=parts: carry_out(tables, which, parts, b, 0), out, crew, going)
+        step += 1
+    return _followed({name: np.concatenate([one[name] for one in rows]) for name in rows[0]}, tables)
+
+
+def _seen_by_strikers(tables, which):
+    """The positions of the tables ``which`` as their strikers see them."""
+    saved = columns.Layouts(tables.saved.positions[which], tables.saved.on_table[which])
+    return Positions(tables.positions[which], tables.on_table[which], strikers_own(tables.game[which]), saved)
+
+
+def _followed(rows, tables):
+    """The rows, with what followed each stroke."""
+    frame, striker, before = rows["frame"], rows["striker"], rows.pop("before")
+    after = np.full(len(frame), -1)
+    after[before[before >= 0]] = np.flatnonzero(before >= 0)
+    led = rows.pop("led")
+    later = np.where(after >= 0, led[after], tables.lead()[frame])
+    rows["swing"] = np.where(striker == 0, 1.0, -1.0) * (later - led)
+    rows["same"] = np.where(after < 0, 0, np.where(striker[after] == striker, 1, -1))
+    return rows | {"next": after, "won": tables.game[frame, columns.WINNER] == striker}

@@ -1,0 +1,97 @@
+"""How is the worth of a position of a frame learned? Rounds of self-play, each judged by search; a network is fitted
+to what the last rounds said, and the next round searches with it."""
+
+from itertools import pairwise
+
+import numpy as np
+import torch
+from torch import nn
+
+from snooker_env.planning.learned.learned_worth import POINTS, SIZE
+from snooker_env.planning.worth import Chance
+
+WIDTHS = (96, 48)
+BATCH, RATE = 512, 2e-3
+TRACE = 0.6
+"""Share of what really followed in a target, beside what the search says of the next position."""
+
+
+def targets(rows):
+    """What each position of a round was worth: float64 (m,). Mostly by the search of it, in part by what the stroke
+    brought and the target of the next one, the farther the less; none of it after a stroke that was explored."""
+    worth, after = rows["worth"], rows["next"]
+    target = worth.copy()
+    for k in np.arange(len(worth))[::-1]:  # rows are in the order of play: the next one comes later
+        if not rows["explored"][k]:
+            follows = rows["same"][k] * target[after[k]] if after[k] >= 0 else 0.0
+            target[k] = (1.0 - TRACE) * worth[k] + TRACE * (rows["swing"][k] + follows)
+    return target
+
+
+class WorthNetwork(nn.Sequential):
+    """What is seen (n, SIZE) -> worth beside the value of the visit (n, 1), in units of ``POINTS``."""
+
+    def __init__(self):
+        sizes = (SIZE, *WIDTHS, 1)
+        parts = [nn.Linear(a, b) for a, b in pairwise(sizes)]
+        super().__init__(*[part for one in parts for part in (one, nn.ReLU())][:-1])
+        with torch.no_grad():  # at first the value is all
+            parts[-1].weight.mul_(0.1)
+
+    def layers(self):
+        """Weight (out, in) and bias (out,) of each layer: float32 arrays."""
+        linear = [one for one in self if isinstance(one, nn.Linear)]
+        return [(one.weight.detach().numpy().copy(), one.bias.detach().numpy().copy()) for one in linear]
+
+
+def fitted(seen, wanted, weights, seed, passes, layers=None, tick=None):
+    """The layers of a network fitted to ``wanted`` (n,) points at ``seen`` (n, SIZE), from ``layers`` on."""
+    torch.manual_seed(seed)
+    network, rng = WorthNetwork(), np.random.default_rng(seed)
+    if layers is not None:
+        linear = [one for one in network if isinstance(one, nn.Linear)]
+        with torch.no_grad():
+            for one, (weight, bias) in zip(linear, layers, strict=True):
+                one.weight.copy_(torch.from_numpy(weight))
+                one.bias.copy_(torch.from_numpy(bias))
+    x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS - seen[:, -1]).astype(np.float32))
+    w = torch.from_numpy(weights.astype(np.float32))
+    steps = passes * (len(x) // BATCH)
+    optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=1e-4)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=max(2, steps), pct_start=0.1)
+    for _ in range(passes):
+        order = torch.from_numpy(rng.permutation(len(x)))
+        for k in range(0, BATCH * (len(x) // BATCH), BATCH):
+            rows = order[k : k + BATCH]
+            loss = (w[rows] * (network(x[rows])[:, 0] - y[rows]) ** 2).mean()
+            optimiser.zero_grad()
+            loss.backward()
+            optimiser.step()
+            schedule.step()
+        if tick:
+            tick()
+    return network.layers()
+
+
+def fitted_chance(lead, left, won):
+    """The ``Chance`` that is likeliest, of expected final leads, points on the table and who won: (n,) each."""
+    lead, left, won = (torch.from_numpy(np.asarray(one, np.float64)) for one in (lead, left, won))
+    raw = torch.tensor([1.0, 1.0], dtype=torch.float64, requires_grad=True)
+    optimiser = torch.optim.LBFGS([raw], max_iter=200, line_search_fn="strong_wolfe")
+
+    def loss():
+        optimiser.zero_grad()
+        near, far = nn.functional.softplus(raw)
+        value = nn.functional.binary_cross_entropy_with_logits(lead / (near + far * left.sqrt()), won)
+        value.backward()
+        return value
+
+    optimiser.step(loss)
+    return Chance(*nn.functional.softplus(raw).tolist())
+
+
+def calibration(chance, won, groups=10):
+    """Mean chance and share won (groups, 2) of positions sorted by the chance, and the mean absolute difference."""
+    parts = np.array_split(np.argsort(chance, kind="stable"), groups)
+    table = np.array([[chance[rows].mean(), won[rows].mean()] for rows in parts])
+    return table, float(np.abs(table[:, 0] - table[:, 1]).mean())

@@ -1,0 +1,149 @@
+"""Learn what positions of frames are worth, by self-play: the worth of the ``tactician``.
+
+    python -m agents.learn_worth --out runs/worth [--rounds 6] [--ray local]
+
+Each round plays frames against oneself, under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with
+what the rounds before have learned; each stroke is judged by search (``frame_self_play``). A network is then fitted to
+the last rounds, and with it the chance to win. After each round OUT holds its data and its weights: the same command
+goes on from there. The last round's weights are written to OUT/worth.npz, and with --export into the package.
+"""
+
+import io
+import sys
+import time
+from pathlib import Path
+
+from commands.lifecycle import command, needs, parser_of
+
+with needs("agents.learn_worth"):
+    import numpy as np
+
+    import snooker_env
+    from agents.cluster.keep import packed
+    from agents.cluster.ray_cluster import add_ray, checked_ray, place
+    from commands.files import writable, write_atomic
+    from snooker_env.checks import integer
+    from snooker_env.planning.learned.dense_layers import Layers
+    from snooker_env.planning.learned.learned_worth import worth_of
+    from snooker_env.players.weights import FOLDER, WORTH, learned_worth
+
+    from .frame_worth import calibration, fitted, fitted_chance, targets
+
+SCALES = 0.4, 3.5
+"""Errors of the frames played, times those of a professional, evenly spread in the logarithm."""
+FRAME = {"cue": "real", "miss": "clear_path", "max_strokes": 200}
+"""Options of the frames."""
+TABLES = 16
+"""Frames that one part plays side by side."""
+EXPLORE = 0.08
+"""Share of strokes that are not the best ones found, so that positions after worse ones are seen, too."""
+KEEP, PASSES = 3, 15
+"""Rounds whose positions a network is fitted to, and passes over them."""
+HELD = 8
+"""One frame in so many is kept from the fit, to say how good it is."""
+
+
+def drawn_parts(seed, k, parts):
+    """The arguments of the parts of round k."""
+    rng = np.random.default_rng([seed, k])
+    shares = (np.arange(parts) + rng.random(parts)) / parts
+    scales = SCALES[0] * (SCALES[1] / SCALES[0]) ** shares
+    first = 1_000_000 * (seed + 1) + 100_000 * k
+    return [{"scale": float(s), "seed": first + TABLES * i, "many": TABLES} for i, s in enumerate(scales)]
+
+
+def played(where, shared, many):
+    """One round: the rows of all parts, with targets; "held" (m,) says which are kept from the fit."""
+    parts = where.map("agents.learning.frame_self_play:frames", shared, many)
+    for j, part in enumerate(parts):
+        part["target"] = targets(part)
+        part["held"] = (part["frame"] + j) % HELD == 0
+        part["scale"] = np.full(len(part["target"]), many[j]["scale"])
+        part["unit"] = part.pop("frame") + TABLES * j
+    kept = ("seen", "hand", "target", "worth", "held", "scale", "unit", "lead", "left", "won", "swing", "same", "striker")
+    rows = {name: np.concatenate([part[name] for part in parts]) for name in kept}
+    for name in ("seen", "hand"):
+        rows[name] = rows[name].astype(np.float16)
+    return rows
+
+
+def learned(rounds, seed, layers):
+    """Layers and chance fitted to the rows of some rounds, and figures of the frames kept from the fit."""
+    both = {name: np.concatenate([one[name] for one in rounds]) for name in rounds[0]}
+    used = ~both["held"]
+    in_hand = used & (both["seen"] != both["hand"]).any(axis=1)
+    seen = np.concatenate([both["seen"][used], both["hand"][in_hand]]).astype(np.float32)
+    wanted = np.concatenate([both["target"][used], both["target"][in_hand]])
+    layers = fitted(seen, wanted, np.ones(len(wanted)), seed, PASSES, layers)
+    said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
+    lead = both["lead"] + said
+    chance = fitted_chance(lead[used], both["left"][used], both["won"][used])
+    held = both["held"]
+    wins = chance(lead[held], both["left"][held])
+    figures = {
+        "positions": len(wanted),
+        "rmse": float(np.sqrt(np.mean((said - both["target"])[held] ** 2))),
+        "correlation": float(np.corrcoef(said[held], both["target"][held])[0, 1]),
+        "chance_error": calibration(wins, both["won"][held])[1],
+    }
+    return layers, chance, figures
+
+
+def arrays_of(layers, chance):
+    """The arrays of a file that ``weights.learned_worth`` reads."""
+    made = {f"worth/{k}/weight": weight for k, (weight, _) in enumerate(layers)}
+    made |= {f"worth/{k}/bias": bias for k, (_, bias) in enumerate(layers)}
+    return made | {"chance": np.array(chance)}
+
+
+def _kept_round(file):
+    with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
+        return {name: arrays[name] for name in arrays.files}
+
+
+@command("agents.learn_worth")
+def main(argv=None):
+    """Play, fit, write. Exit code 0."""
+    p = parser_of("python -m agents.learn_worth", __doc__)
+    p.add_argument("--out", type=Path, required=True, help="folder of rounds and weights")
+    p.add_argument("--rounds", type=int, default=6, help="[6]")
+    p.add_argument("--frames", type=int, default=384, help=f"frames of a round, a multiple of {TABLES} [384]")
+    p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
+    p.add_argument("--seed", type=int, default=0, help="[0]")
+    p.add_argument("--export", action="store_true", help="write the weights into the package, too")
+    add_ray(p)
+    args = p.parse_args(sys.argv[1:] if argv is None else argv)
+    try:
+        integer("rounds", args.rounds, 1, 100)
+        integer("frames", args.frames, TABLES, 100_000)
+        integer("seed", args.seed, 0, 1000)
+        checked_ray(args.ray)
+        writable("out", args.out / "worth.npz")
+    except ValueError as error:
+        p.error(str(error))
+    snooker_env.warmup()
+    layers, chance, rounds = None, None, []
+    with place(args.ray) as where:
+        for k in range(args.rounds):
+            rows_file, weights_file, began = args.out / f"round-{k}.npz", args.out / f"worth-{k}.npz", time.time()
+            shared = {"options": FRAME, "layers": layers, "chance": chance, "budget": args.budget, "explore": EXPLORE}
+            if rows_file.is_file():
+                rows = _kept_round(rows_file)
+            else:
+                rows = played(where, shared, drawn_parts(args.seed, k, args.frames // TABLES))
+                write_atomic(rows_file, packed(rows))
+            rounds = [*rounds, rows][-KEEP:]
+            if weights_file.is_file():
+                layers, chance = learned_worth(weights_file)
+                continue
+            layers, chance, figures = learned(rounds, args.seed + k, layers)
+            write_atomic(weights_file, packed(arrays_of(layers, chance)))
+            frames = len(np.unique(rows["unit"]))
+            told = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())
+            spent = f"{time.time() - began:.0f} s, {len(rows['target']) / frames:.0f} strokes a frame"
+            print(f"round {k}: {told}  chance {chance.near:.3g} {chance.far:.3g}  {spent}", flush=True)
+    content = packed(arrays_of(layers, chance))
+    write_atomic(args.out / "worth.npz", content)
+    if args.export:
+        write_atomic(FOLDER / WORTH, content)
+    return 0

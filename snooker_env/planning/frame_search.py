@@ -1,0 +1,199 @@
+"""Which stroke of a frame is best? The search of ``stroke_search`` for both players: pots, safeties and escapes are
+judged alike, by the points they bring and the worth of what they leave to who plays next (``worth``).
+
+The budget goes where the decision is hard. Where a pot is likely (``EASY``), few pots are looked at; elsewhere more
+pots, several times as many safeties, and escapes where hardly anything is seen. Good safeties are rare: most are only
+looked at, once and without error; the best of each kind then meet noise samples (sequential halving)."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._check import integer
+from .._types import Bools, Environment, Floats, Integers, Ints
+from ..tasks.noise import Noise, NoiseLike
+from ..tasks.options import Options
+from ..tasks.threads import Threads, processors
+from .frame_trials import FrameTrials
+from .planner import options_in
+from .positions import Positions, PositionsLike, check_played, seeds_of
+from .proposals import Proposals, over_cushions
+from .prospects import spread_of
+from .safeties import safeties
+from .sobol import DIMENSIONS, normal_points
+from .stroke_search import PRIOR, Propose, in_turn
+from .strokes import COLUMNS, Dynamics
+from .worth import Chance, Worth, follows, lead_of, left_of, passed
+
+EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
+TIE = 2e-4
+"""What a point counts beside the chance to win, so that a frame that is won or lost is still played well."""
+LEAST = 30  # budget of a decision
+AVERAGE = 120  # average shots of a decision in frames with the numbers of ``Plan`` below
+
+
+class Plan(NamedTuple):
+    """Looks at strokes of each kind, and (strokes, further samples) of each round."""
+
+    pots: int
+    safeties: int
+    escapes: int
+    rounds: tuple[tuple[int, int], ...]
+
+    def scaled(self, share: float) -> "Plan":
+        """The same with about ``share`` times as many shots."""
+        looks, root = [max(4, round(many * share)) if many else 0 for many in self[:3]], share**0.5
+        return Plan(*looks, tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in self.rounds))
+
+
+PLANS = Plan(36, 0, 0, ((6, 2), (3, 5))), Plan(28, 132, 28, ((18, 3), (6, 7)))
+"""Where the decision is easy, and where it is hard."""
+
+
+class Tried(NamedTuple):
+    """The strokes that ``FrameSearch.rank`` tried in one position: most samples first, then best first.
+
+    ``strokes`` (m, 5) in SI; ``chances`` (m,), the chance to win, without a law for it 0; ``points`` (m,), expected
+    points of the striker less the other's from here on; ``samples`` (m,), noise samples that each met; ``kinds``
+    (m,): 0 a pot, 1 a safety, 2 an escape. What is best is told by the chance, and hardly by the points."""
+
+    strokes: Floats
+    chances: Floats
+    points: Floats
+    samples: Ints
+    kinds: Ints
+
+
+class FrameSearch:
+    """Searches for the best stroke of a frame.
+
+    Parameters
+    ----------
+    env_or_options : Env, VectorEnv, AECEnv, Options or dict
+        The frame: physics, table, fidelity, cue, miss rule and execution noise count.
+    worth : callable
+        See ``worth``.
+    budget : int, optional
+        Average number of simulated shots of a decision over whole frames, at least ``LEAST``; default 120.
+    propose : callable
+        A generator of pots, see ``StrokeSearch``.
+    chance : Chance, optional
+        The chance to win of an expected lead. Default None: points alone count.
+    noise, threads : optional
+        As for ``Planner``.
+    """
+
+    def __init__(
+        self,
+        env_or_options: Environment | Options | dict[str, Any],
+        worth: Worth,
+        propose: Propose,
+        budget: int = AVERAGE,
+        *,
+        chance: Chance | None = None,
+        noise: NoiseLike | None = None,
+        threads: int | None = None,
+    ):
+        options = options_in(env_or_options)
+        self.budget: int = integer("budget", budget, LEAST, 10**7)
+        rules = options.rules
+        self.noise: Noise = rules.noise if noise is None else Noise.of(noise)
+        self.rules = rules
+        self.threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
+        self._trials = FrameTrials(replace(rules, noise=self.noise), Threads(self.threads))
+        self.spread: float = spread_of(self.noise, rules.physics)
+        self.dynamics = Dynamics.of(rules)
+        self.worth, self.propose, self.chance = worth, propose, chance
+        self.plans = tuple(plan.scaled(budget / AVERAGE) for plan in PLANS)
+        self.shots = 0
+
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Tried]:
+        """Try strokes in n positions of frames whose strikers have a stroke to play, and a decision after a foul
+        behind them. A cue ball in hand is played from where it lies."""
+        at = Positions.of(positions).known_to(self.rules)
+        n, keys = len(at), seeds_of(seeds, len(at))
+        check_played(at.as_visits(), np.arange(n), self.rules.table, self.rules.physics.R)
+        tried: list[Tried] = [None] * n  # type: ignore[list-item]
+        if not n:
+            return tried
+        easy, hard = self.plans
+        pots = self.propose(self, at.as_visits(), hard.pots, keys)
+        likely = pots.chances.max(axis=1) >= EASY
+        for plan, which in ((easy, np.flatnonzero(likely)), (hard, np.flatnonzero(~likely))):
+            if len(which):
+                for k, one in zip(which.tolist(), self._rank(at[which], keys[which], plan), strict=True):
+                    tried[k] = one
+        return tried
+
+    def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Positions:
+        """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5), see ``FrameTrials.play``."""
+        self.shots += len(rows)
+        return self._trials.play(at, rows, strokes, errors)
+
+    def gains(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Floats:
+        """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m, 2), the chance to
+        win and the points."""
+        after, before = self.outcomes(at, rows, strokes, errors), lead_of(at)[rows]
+        points = follows(self.worth, after, before, self.rules.rule_set.code)
+        return self._both(before + points, left_of(after), points)
+
+    def _both(self, lead: Floats, left: Floats, points: Floats) -> Floats:
+        """The chances to win of expected leads, and points: (m, 2)."""
+        chance = np.zeros(len(points)) if self.chance is None else self.chance(lead, left)
+        return np.column_stack([chance, points])
+
+    def _score(self, both: Floats) -> Floats:
+        """What strokes are compared by, of (..., 2)."""
+        return both[..., 1] if self.chance is None else both[..., 0] + TIE * both[..., 1]
+
+    def _proposed(self, at: Positions, seeds: Ints, plan: Plan) -> tuple[Floats, Floats, Ints]:
+        """Strokes (n, m, 5), chances and kinds (n, m)."""
+        visits, made = at.as_visits(), []
+        kinds: Sequence[tuple[Propose, int]] = (
+            (self.propose, plan.pots), (safeties, plan.safeties), (over_cushions, plan.escapes)
+        )
+        for kind, (generate, many) in enumerate(kinds):
+            if many:
+                made.append((*Proposals(*generate(self, visits, many, seeds)), kind))
+        strokes = np.concatenate([one[0] for one in made], axis=1)
+        chances = np.concatenate([one[1] for one in made], axis=1)
+        which = np.concatenate([np.full(one[1].shape, one[2]) for one in made], axis=1)
+        return strokes, chances, which
+
+    def _rank(self, at: Positions, seeds: Ints, plan: Plan) -> list[Tried]:
+        n, every = len(at), np.arange(len(at))[:, None]
+        strokes, chances, kinds = self._proposed(at, seeds, plan)
+        some, m = chances > 0.0, chances.shape[1]
+        both, tries = np.full((n, m, 2), -np.inf), np.zeros((n, m), np.int64)
+        rounds = () if self.noise.silent else plan.rounds
+        j, c = np.nonzero(some)
+        looks = self.gains(at, j, strokes[j, c], np.zeros((len(j), COLUMNS)))
+        if rounds:  # a pot that is missed leaves the balls about as they lie
+            points = -self.worth(passed(at)).astype(np.float64)
+            missed, made = self._both(lead_of(at) + points, left_of(at), points)[j], chances[j, c, None]
+            looks = made * looks + (1.0 - made) * missed
+        both[j, c] = looks
+        sums, scores = PRIOR * both, self._score(both)
+        order = np.argsort(-scores, axis=1, kind="stable")
+        if plan.safeties:  # a look without error flatters: the best of each kind are sampled
+            order = in_turn(order, kinds)
+            order = np.take_along_axis(order, np.argsort(~some[every, order], axis=1, kind="stable"), 1)
+        samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in seeds.tolist()])
+        done = 0
+        for many, each in rounds:
+            best = order[:, :many]
+            j, c = np.nonzero(some[every, best])
+            c = best[j, c]
+            errors = samples[:, done : done + each][j].reshape(-1, DIMENSIONS)
+            met = self.gains(at, np.repeat(j, each), np.repeat(strokes[j, c], each, 0), errors)
+            sums[j, c] += met.reshape(-1, each, 2).sum(axis=1)
+            tries[j, c] += each
+            done += each
+            both[j, c] = sums[j, c] / (PRIOR + tries[j, c])[:, None]
+            scores[j, c] = self._score(both[j, c])
+            again = np.argsort(-scores[every, best], axis=1, kind="stable")
+            order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
+        parts = [part[every, order] for part in (strokes, both[..., 0], both[..., 1], tries, kinds)]
+        return [Tried(*(part[k, :count] for part in parts)) for k, count in enumerate(some.sum(axis=1).tolist())]

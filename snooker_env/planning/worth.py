@@ -1,0 +1,154 @@
+"""What is a position of a frame worth to who comes to it, and what follows from that?
+
+A *worth* is a callable: n ``Positions`` of frames, each with a stroke to play and seen by its striker, to the
+points that the striker is expected to score from now on, less those of the other: float (n,). One worth serves
+both players: **after each stroke either I go on, and the next position's worth is mine, or the other comes, and
+it is theirs**. All decisions of a frame compare it: what to do after a foul, where to place the cue ball, who
+begins at a re-spotted black.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._jit import entry
+from .._types import Floats, Ints
+from ..game import frame_columns as columns
+from ..game.balls import CUE, N_BALLS, available
+from ..game.sides import swapped
+from ..geometry import BAULK_Y, D_RADIUS
+from ..tasks.stroke import place
+from .frame_trials import turned
+from .positions import Positions
+
+Worth: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
+PLACES = np.array(
+    [
+        (x * D_RADIUS, BAULK_Y - y * D_RADIUS)
+        for y, many in ((0.0, 7), (0.6, 4))
+        for x in np.linspace(-0.95, 0.95, many) * np.sqrt(1.0 - y * y)
+    ]
+)
+"""Where in the D a cue ball in hand is tried: (11, 2) [m]."""
+
+
+@entry
+def _choose(game, positions, on_table, saved_positions, saved_on_table, what):
+    for k in range(len(game)):
+        columns.choose(game[k], what)
+        if what == columns.REPLACE:
+            for i in range(N_BALLS):
+                positions[k, i, 0], positions[k, i, 1] = saved_positions[k, i, 0], saved_positions[k, i, 1]
+                on_table[k, i] = saved_on_table[k, i]
+
+
+@entry
+def _allowed(game, rules, out):
+    for k in range(len(game)):
+        out[k, columns.PLAY] = out[k, columns.PLAY_AGAIN] = True
+        out[k, columns.REPLACE] = columns.may_replace(game[k], rules)
+        out[k, columns.PLACE_ANYWHERE] = columns.may_place_anywhere(game[k], rules)
+
+
+@entry
+def _left(game, out):
+    for k in range(len(game)):
+        row = game[k]
+        over = row[columns.OVER] != 0
+        out[k] = 0.0 if over else available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
+
+
+@entry
+def _place(positions, on_table, places):
+    for k in range(len(positions)):
+        place(positions[k], on_table[k], places[k, 0], places[k, 1], False)
+
+
+def chosen(at: Positions, what: int) -> Positions:
+    """Positions after the strikers' decision ``what`` after a foul, as who then plays sees them: a copy."""
+    after = at.copy()
+    saved = after.saved if after.saved is not None else columns.Layouts(after.positions, after.on_table)
+    _choose(after.game, after.positions, after.on_table, *saved, what)
+    return turned(after)
+
+
+def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
+    """The best decision after a foul for n strikers who have that choice, and its worth to them: (n,), (n,)."""
+    allowed, values = np.zeros((len(at), 4), np.bool_), np.full((len(at), 4), -np.inf)
+    _allowed(at.game, rules, allowed)
+    for what in range(4):
+        rows = np.flatnonzero(allowed[:, what])
+        if len(rows):
+            after = chosen(at[rows], what)
+            mine = what in (columns.PLAY, columns.PLACE_ANYWHERE)
+            values[rows, what] = worth(after) if mine else -worth(after)
+    best = values.argmax(axis=1)
+    return best, values[np.arange(len(at)), best]
+
+
+def follows(worth: Worth, after: Positions, before: Floats, rules: int = 0) -> Floats:
+    """What strokes were worth to those who played them, who are player 0 in ``after``: the points since the leads
+    ``before`` (n,), and the worth of what they leave, of which the other may be the next to play: (n,)."""
+    game = after.game
+    gains = lead_of(after) - before
+    mine = game[:, columns.STRIKER] == 0
+    playing, choosing = game[:, columns.PHASE] == columns.STROKE, game[:, columns.PHASE] == columns.CHOICE
+    rows = np.flatnonzero(playing)
+    if len(rows):
+        gains[rows] += np.where(mine[rows], 1.0, -1.0) * worth(turned(after[rows]))
+    rows = np.flatnonzero(choosing)
+    if len(rows):
+        gains[rows] += np.where(mine[rows], 1.0, -1.0) * decide(worth, turned(after[rows]), rules)[1]
+    return gains
+
+
+class Chance(NamedTuple):
+    """The chance to win a frame, of the lead that is expected at its end: a logistic law, as wide as the luck that
+    is still to come: ``near`` + ``far`` sqrt(points on the table) [points]."""
+
+    near: float
+    far: float
+
+    def __call__(self, lead: Floats, left: Floats) -> Floats:
+        """The chance (n,) of who is expected to end with ``lead`` (n,) when ``left`` (n,) are on the table."""
+        return 1.0 / (1.0 + np.exp(-np.clip(lead / (self.near + self.far * np.sqrt(left)), -50.0, 50.0)))
+
+
+def left_of(at: Positions) -> Floats:
+    """Points that are still on the table: float64 (n,); 0 where the frame is over."""
+    left = np.empty(len(at))
+    _left(at.game, left)
+    return left
+
+
+def lead_of(at: Positions) -> Floats:
+    """Points of player 0 less those of player 1: float64 (n,)."""
+    return (at.game[:, columns.SCORE_0] - at.game[:, columns.SCORE_1]).astype(np.float64)
+
+
+def passed(at: Positions) -> Positions:
+    """The same balls as the other player would meet them after a miss: a copy."""
+    left = at.copy()
+    game = left.game
+    reds = left.on_table[:, 1:16].any(axis=1)
+    game[:, columns.BALL_ON] = np.where(reds, 1, 2 + left.on_table[:, 16:].argmax(axis=1))
+    game[:] = swapped(game)
+    game[:, columns.STRIKER] = 0
+    for column in (columns.POINTS, columns.FREE_BALL, columns.IN_HAND, columns.ANYWHERE):
+        game[:, column] = 0
+    return left
+
+
+def best_places(worth: Worth, at: Positions) -> tuple[Positions, Floats]:
+    """Positions with cue balls in hand put where in the D that is worth most: a copy, and the worths (n,)."""
+    n, m = len(at), len(PLACES)
+    tried = at[np.repeat(np.arange(n), m)]
+    _place(tried.positions, tried.on_table, np.tile(PLACES, (n, 1)))
+    tried.game[:, columns.IN_HAND] = 0
+    values = worth(tried).reshape(n, m)
+    best = values.argmax(axis=1)
+    placed = at.copy()
+    placed.positions[:, CUE] = tried.positions.reshape(n, m, N_BALLS, 2)[np.arange(n), best, CUE]
+    return placed, values[np.arange(n), best]

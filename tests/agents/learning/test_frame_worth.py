@@ -1,0 +1,86 @@
+"""Is the worth of frames learned from what its targets say, and does an interrupted training go on?"""
+
+import numpy as np
+import pytest
+
+from agents.learn_worth import main
+from agents.learning import learn_worth
+from agents.learning.frame_self_play import frames, noise_of
+from agents.learning.frame_worth import TRACE, calibration, fitted, fitted_chance, targets
+from snooker_env.planning.learned.dense_layers import Layers
+from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
+from snooker_env.tasks import LEVELS
+
+SHARED = {"options": {"cue": "real", "miss": "clear_path", "max_strokes": 8}, "layers": None, "chance": None}
+SHARED |= {"budget": 30, "explore": 0.2}
+
+
+def test_the_errors_of_scale_one_are_a_professionals():
+    assert noise_of(1.0) == LEVELS["professional"]
+    assert noise_of(2.0).aim_deg == 2.0 * noise_of(1.0).aim_deg
+
+
+def test_a_target_is_the_search_and_what_followed():
+    rows = {
+        "worth": np.array([10.0, 6.0, -4.0]),
+        "next": np.array([1, 2, -1]),
+        "same": np.array([1, -1, 0]),
+        "swing": np.array([1.0, 0.0, -4.0]),
+        "explored": np.array([False, False, False]),
+    }
+    last = (1 - TRACE) * -4.0 + TRACE * -4.0
+    middle = (1 - TRACE) * 6.0 + TRACE * (0.0 - last)
+    first = (1 - TRACE) * 10.0 + TRACE * (1.0 + middle)
+    assert targets(rows) == pytest.approx([first, middle, last])
+    rows["explored"] = np.array([False, True, False])
+    assert targets(rows)[1] == 6.0
+
+
+def test_rows_of_a_frame_follow_each_other():
+    rows = frames(SHARED, {"scale": 2.0, "seed": 3, "many": 4}, 1)
+    n = len(rows["worth"])
+    assert rows["seen"].shape == rows["hand"].shape == (n, SIZE) and n > 20
+    after, linked = rows["next"], rows["next"] >= 0
+    assert (after[linked] > np.flatnonzero(linked)).all() and len(set(after[linked].tolist())) == linked.sum()
+    assert (rows["frame"][after[linked]] == rows["frame"][linked]).all()
+    same = rows["striker"][after[linked]] == rows["striker"][linked]
+    assert np.array_equal(rows["same"][linked], np.where(same, 1, -1))
+    sign = np.where(same, 1.0, -1.0)  # the lead goes on from stroke to stroke
+    assert np.allclose(rows["lead"][linked] + rows["swing"][linked], sign * rows["lead"][after[linked]])
+    again = frames(SHARED, {"scale": 2.0, "seed": 3, "many": 4}, 1)
+    assert all(np.array_equal(rows[name], again[name]) for name in rows)
+
+
+def test_a_network_learns_what_it_is_told_beside_the_value():
+    rng = np.random.default_rng(0)
+    seen = rng.standard_normal((4000, SIZE)).astype(np.float32)
+    wanted = POINTS * (seen[:, -1] + 0.3 * seen[:, 3] - 0.2)
+    layers = fitted(seen, wanted, np.ones(4000), 0, 30)
+    said = worth_of(Layers(layers, "relu"), seen)
+    assert np.sqrt(np.mean((said - wanted) ** 2)) < 0.25 * np.std(wanted - POINTS * seen[:, -1])
+
+
+def test_the_chance_to_win_is_that_of_the_frames():
+    rng, n = np.random.default_rng(1), 40_000
+    lead, left = rng.normal(0.0, 40.0, n), rng.uniform(1.0, 147.0, n)
+    won = rng.random(n) < 1.0 / (1.0 + np.exp(-lead / (1.0 + 2.5 * np.sqrt(left))))
+    chance = fitted_chance(lead, left, won)
+    assert chance.far == pytest.approx(2.5, rel=0.1)
+    table, error = calibration(chance(lead, left), won)
+    assert error < 0.01 and len(table) == 10
+    assert calibration(np.full(n, 0.9), won)[1] > 0.2
+
+
+def test_an_interrupted_training_goes_on_to_the_same_weights(tmp_path, monkeypatch):
+    monkeypatch.setattr(learn_worth, "FRAME", SHARED["options"])
+    monkeypatch.setattr(learn_worth, "PASSES", 2)
+    line = ["--rounds", "2", "--frames", "16", "--budget", "30", "--out"]
+    assert main([*line, str(tmp_path / "whole")]) == 0
+    assert main(["--rounds", "1", *line[2:], str(tmp_path / "parts")]) == 0
+    (tmp_path / "parts" / "worth-0.npz").unlink()  # cut off between the round and its fit
+    assert main([*line, str(tmp_path / "parts")]) == 0
+    for name in ("worth.npz", "round-1.npz"):
+        with np.load(tmp_path / "whole" / name) as one, np.load(tmp_path / "parts" / name) as other:
+            assert all(np.array_equal(one[key], other[key]) for key in one.files)
+    with pytest.raises(SystemExit):
+        main(["--rounds", "0", "--out", str(tmp_path)])

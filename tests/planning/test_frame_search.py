@@ -1,0 +1,164 @@
+"""Does the search of frames play safe where that is best, within its budget, the same for one position or many?"""
+
+import numpy as np
+import pytest
+
+from snooker_env.game import frame_columns as columns
+from snooker_env.planning import Position, Positions, at_pots, prospects_of, spread_of
+from snooker_env.planning.frame_search import AVERAGE, PLANS, FrameSearch
+from snooker_env.planning.safeties import safeties
+from snooker_env.planning.worth import (
+    Chance,
+    best_places,
+    chosen,
+    decide,
+    follows,
+    lead_of,
+    left_of,
+    passed,
+)
+from snooker_env.tasks import LEVELS
+from tests.planning.test_frame_trials import GAME, frames_in_play, positions_of
+
+OPTIONS = GAME | {"noise": "club", "cue": "real"}
+SPREAD = spread_of(LEVELS["club"])
+
+
+def by_rule(at):
+    """A worth: the rule of thumb of the visit."""
+    return prospects_of(at, SPREAD)[0]
+
+
+def frame_of(position, scores=(0, 0)):
+    """A position of a frame, from one of a visit."""
+    at = Positions.of(position)
+    game = np.zeros((len(at), columns.COLUMNS), np.int64)
+    game[:, : columns.VISIT_COLUMNS] = at.game
+    masks = (at.on_table[:, 1:] << np.arange(1, 22)).sum(axis=1)
+    game[:, columns.ON_TABLE] = game[:, columns.RACK] = masks
+    game[:, columns.WINNER] = -1
+    game[:, columns.SCORE_0], game[:, columns.SCORE_1] = scores
+    return Positions(at.positions, at.on_table, game)
+
+
+def search(**more):
+    return FrameSearch(OPTIONS, by_rule, at_pots, **{"threads": 1} | more)
+
+
+def test_a_pot_that_is_easy_is_played_and_hard_positions_get_more_shots():
+    easy = frame_of(Position(cue=(0.0, 1.0), reds=[(0.3, 1.4)], black=(0.0, 1.4605), on="red"))
+    one = search()
+    (tried,) = one.rank(easy, [3])
+    assert tried.kinds[0] == 0 and one.shots <= sum(PLANS[0][:3]) + sum(a * b for a, b in PLANS[0].rounds)
+    hard = positions_of(frames_in_play(6, OPTIONS, strokes=0))  # before the break-off
+    two = search()
+    for tried in two.rank(hard, np.arange(6)):
+        assert tried.kinds[0] == 1 and (np.diff(tried.samples) <= 0).all()
+    assert 1.5 * AVERAGE < two.shots / 6 <= sum(PLANS[1][:3]) + sum(a * b for a, b in PLANS[1].rounds)
+
+
+def test_many_positions_are_judged_as_each_alone():
+    at = positions_of(frames_in_play(12, OPTIONS, strokes=5, seed=11))
+    at = at[np.flatnonzero(~at.over)]
+    keys = np.arange(len(at)) + 70
+    together = search().rank(at, keys)
+    for k in range(len(at)):
+        (alone,) = search().rank(at[[k]], keys[[k]])
+        for one, other in zip(together[k], alone, strict=True):
+            assert np.array_equal(one, other)
+
+
+def test_the_score_is_what_the_stroke_brings_and_leaves():
+    """Without errors, the best stroke's points are those of the trial it was: recomputed one by one."""
+    at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
+    at = at[np.flatnonzero(~at.over)]
+    one = search(noise="none")
+    for k, tried in enumerate(one.rank(at, np.arange(len(at)))):
+        after = one.outcomes(at, np.full(3, k), tried.strokes[:3], np.zeros((3, 5)))
+        for j in range(3):
+            row = after.game[j]
+            points = float(lead_of(after[[j]])[0] - lead_of(at[[k]])[0])
+            if not row[columns.OVER]:
+                mine = row[columns.STRIKER] == 0
+                from snooker_env.planning.frame_trials import turned
+
+                left = turned(after[[j]])
+                worth = decide(by_rule, left)[1][0] if row[columns.PHASE] == columns.CHOICE else by_rule(left)[0]
+                points += worth if mine else -worth
+            assert tried.points[j] == pytest.approx(points, abs=1e-9)
+
+
+def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
+    chance = Chance(1.0, 2.0)
+    leads = np.array([-60.0, -5.0, 0.0, 5.0, 60.0])
+    few, many = chance(leads, np.full(5, 7.0)), chance(leads, np.full(5, 140.0))
+    assert many[2] == 0.5 and (np.diff(few) > 0).all() and few[3] > many[3] and few[0] < many[0]
+    assert np.allclose(few + few[::-1], 1.0)
+    at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
+    at = at[np.flatnonzero(~at.over)]
+    both = search(chance=chance).gains(at, np.arange(len(at)), np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5)))
+    assert ((both[:, 0] > 0.0) & (both[:, 0] < 1.0)).all()
+
+
+def test_safeties_meet_a_ball_on_first_and_many_of_them_thinly():
+    at = positions_of(frames_in_play(10, OPTIONS, strokes=6, seed=31))
+    at = at[np.flatnonzero(~at.over)]
+    made = safeties(search(), at.as_visits(), 64, np.arange(len(at)))
+    assert (made.strokes[..., 0] >= 0.44).all() and (made.strokes[..., 0] <= 6.01).all()
+    assert (np.hypot(made.strokes[..., 1], made.strokes[..., 2]) <= 0.5).all()
+    one, met, tried = search(noise="none"), 0, 0
+    for k in np.flatnonzero(made.chances.any(axis=1)):
+        after = one.outcomes(at, np.full(64, k), made.strokes[k], np.zeros((64, 5)))
+        met += (after.game[:, columns.SCORE_1] == at.game[k, columns.SCORE_1]).sum()
+        tried += 64
+    assert met > 0.7 * tried  # swerve, balls in the way of the ball's curve and in-offs are fouls
+
+
+def test_after_a_foul_all_choices_are_compared():
+    tables = frames_in_play(60, OPTIONS, strokes=0, seed=41)
+    from tests.planning.test_frame_trials import play, random_strokes
+    from snooker_env.tasks.threads import Threads
+
+    play(tables, random_strokes(60, np.random.default_rng(2)), Threads(1))
+    at = positions_of(tables)
+    at = at[np.flatnonzero(at.choice & at.miss_called)]
+    assert len(at) > 10
+    best, values = decide(by_rule, at)
+    for k in range(len(at)):
+        one = at[[k]]
+        options = {
+            columns.PLAY: by_rule(chosen(one, columns.PLAY))[0],
+            columns.PLAY_AGAIN: -by_rule(chosen(one, columns.PLAY_AGAIN))[0],
+            columns.REPLACE: -by_rule(chosen(one, columns.REPLACE))[0],
+        }
+        assert values[k] == pytest.approx(max(options.values())) and options[int(best[k])] == pytest.approx(values[k])
+    replaced = chosen(at, columns.REPLACE)
+    assert np.array_equal(replaced.positions, at.saved.positions)
+    assert np.array_equal(lead_of(replaced), -lead_of(at))
+
+
+def test_a_miss_leaves_the_other_the_same_balls():
+    at = frame_of(Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], blue=(0.3, -0.3), black=(0.0, 1.4605), on="any_colour"), (20, 5))
+    left = passed(at)
+    assert left.ball_on.tolist() == [1] and left.scores.tolist() == [[5, 20]]
+    assert np.array_equal(left.positions, at.positions) and at.ball_on.tolist() != [1]
+    assert left_of(at).tolist() == [7 + 8 + 5 + 7]
+
+
+def test_a_cue_ball_in_hand_goes_where_it_is_worth_most():
+    at = frame_of(Position(cue=(0.1, -1.1), reds=[(0.5, 0.5)], on="red", in_hand=True))
+    placed, worth = best_places(lambda some: some.positions[:, 0, 0], at)
+    assert placed.positions[0, 0, 0] > 0.25 and worth[0] == placed.positions[0, 0, 0]
+    placed, _ = best_places(lambda some: -some.positions[:, 0, 0], at)
+    assert placed.positions[0, 0, 0] < -0.25
+
+
+def test_who_comes_next_decides_the_sign():
+    at = positions_of(frames_in_play(30, OPTIONS, strokes=3, seed=51))
+    at = at[np.flatnonzero(~at.over & ~at.choice)]
+    before = lead_of(at)
+    mine = follows(lambda some: np.full(len(some), 7.0), at, before)
+    assert mine.tolist() == [7.0] * len(at)
+    theirs = at.copy()
+    theirs.game[:, columns.STRIKER] = 1
+    assert follows(lambda some: np.full(len(some), 7.0), theirs, before).tolist() == [-7.0] * len(at)

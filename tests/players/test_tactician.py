@@ -1,0 +1,84 @@
+"""Does the tactician play whole frames, decide what can be decided, and depend on nothing but position and seed?"""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game import frame_columns as columns
+from snooker_env.planning import Position, Positions
+from snooker_env.players.weights import learned_worth
+from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
+from tests.planning.test_frame_search import frame_of
+from tests.planning.test_frame_trials import GAME, frames_in_play, positions_of
+
+OPTIONS = GAME | {"noise": "club", "cue": "real", "decision": True}
+
+
+def test_it_is_a_player_of_the_package_and_takes_a_budget():
+    assert "tactician" in sn.players()
+    assert sn.player("tactician").name == "tactician" and sn.player("tactician_500").budget == 500
+    with pytest.raises(ValueError, match="budget"):
+        sn.player("tactician_10")
+    with pytest.raises(ValueError, match="must not name a model"):
+        sn.player("tactician@mine")
+
+
+def test_one_position_is_played_as_among_many():
+    at = positions_of(frames_in_play(10, OPTIONS, strokes=6, seed=61))
+    at = at[np.flatnonzero(~at.over)]
+    player, seeds = sn.player("tactician_30").at(OPTIONS), np.arange(len(at)) + 5
+    together = player.play(at, seeds)
+    for k in range(len(at)):
+        for one, other in zip(together[[k]].parts, player.play(at[[k]], seeds[[k]]).parts, strict=True):
+            assert np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
+
+
+def test_it_plays_what_it_ranks_first():
+    at = positions_of(frames_in_play(6, OPTIONS, strokes=4, seed=71))
+    at = at[np.flatnonzero(~at.over)]
+    player = sn.player("tactician_30").at(OPTIONS)
+    strokes, ranked = player.play(at, np.arange(len(at))), player.rank(at, np.arange(len(at)))
+    for k, one in enumerate(ranked):
+        assert np.array_equal(one.strokes.values[0], strokes.values[k])
+        if one.scores is not None:
+            assert len(one.scores) == len(one.strokes) and ((one.scores >= 0) & (one.scores <= 1)).all()
+
+
+def test_visits_are_played_as_the_planner_plays_them():
+    position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    mine = sn.player("tactician_30").at({"noise": "club"}).play(position, [7])
+    assert np.array_equal(mine.values, sn.player("planner_30").at({"noise": "club"}).play(position, [7]).values)
+
+
+def test_it_finishes_a_frame_against_a_player():
+    env = sn.SnookerVectorEnv(2, task="frame", opponent="tactician_30", noise="club", miss="clear_path", cue="real")
+    env.reset(seed=0)
+    for _ in range(3):
+        _, _, _, _, infos = env.step(np.random.default_rng(0).uniform(-1, 1, env.action_space.shape).astype(np.float32))
+    assert infos["opponent_strokes"].sum() > 0
+
+
+def test_the_lot_is_decided_by_the_worth_of_the_black():
+    far = frame_of(Position(cue=(0.1, -1.1), black=(0.0, 1.4605), on="black", in_hand=True))
+    far.game[:, columns.PHASE], far.game[:, columns.RESPOTTED_BLACK] = columns.LOT, 1
+    said = sn.player("tactician_30").at(OPTIONS).play(far, [3]).declare.tolist()
+    assert said[0] in (SAYS_NOTHING, OTHER_BEGINS)
+    worth = sn.player("tactician_30").at(OPTIONS).search.worth(far)
+    assert (said[0] == OTHER_BEGINS) == bool(worth[0] < 0.0)
+
+
+def test_a_lost_frame_is_conceded_only_where_it_may_be():
+    lost = frame_of(Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(0, 90))
+    alive = frame_of(Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(80, 90))
+    for says, at, wanted in ((True, lost, CONCEDES), (False, lost, SAYS_NOTHING), (True, alive, SAYS_NOTHING)):
+        player = sn.player("tactician_30").at(OPTIONS | {"concede": says})
+        assert player.play(at, [1]).declare.tolist() == [wanted]
+
+
+def test_weights_are_of_the_network_that_reads_them():
+    layers, chance = learned_worth()
+    from snooker_env.planning.learned.learned_worth import SIZE
+
+    assert layers[0][0].shape[1] == SIZE and layers[-1][0].shape[0] == 1
+    assert chance.near >= 0.0 and chance.far > 0.0
+    assert Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3))).of_frames is False
