@@ -11,8 +11,7 @@ from ..game.balls import balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
 from ..tasks.ghost_ball import break_off
 from ..tasks.arrays import CueLaw
-from ..tasks.lines import new_work, racked
-from ..tasks.pot_aim import aim_at_met
+from ..tasks.lines import aim_at_met, new_work, racked
 from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .positions import Positions
