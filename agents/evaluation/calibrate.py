@@ -146,7 +146,11 @@ def figures_of(frames):
     out = {}
     for name, values in every.items():
         values = values[np.isfinite(values)]
-        out[name] = [float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))] if len(values) > 1 else None
+        out[name] = (
+            [float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))]
+            if len(values) > 1
+            else None
+        )
     ratios = {
         "break": np.array([one.sum() for one in breaks]),
         "breaks_50": np.array([100.0 * (one >= 50).sum() for one in breaks]),

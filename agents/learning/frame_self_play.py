@@ -65,18 +65,20 @@ def frames(shared, args, threads):
             for k in here[explored].tolist():
                 met = max(1, int((tried[k].samples > 0).sum()))
                 strokes.values[k] = tried[k].strokes[rng.integers(met)]
-            rows.append({
-                "seen": worth.seen(start[here]),
-                "hand": worth.seen(at[here]),
-                "worth": judged[:, 1].reshape(-1, FRESH).mean(axis=1),
-                "explored": explored,
-                "lead": lead_of(start)[here],
-                "left": left_of(start)[here],
-                "frame": which,
-                "striker": tables.game[which, columns.STRIKER],
-                "led": tables.lead()[which],
-                "before": last[which],
-            })
+            rows.append(
+                {
+                    "seen": worth.seen(start[here]),
+                    "hand": worth.seen(at[here]),
+                    "worth": judged[:, 1].reshape(-1, FRESH).mean(axis=1),
+                    "explored": explored,
+                    "lead": lead_of(start)[here],
+                    "left": left_of(start)[here],
+                    "frame": which,
+                    "striker": tables.game[which, columns.STRIKER],
+                    "led": tables.lead()[which],
+                    "before": last[which],
+                }
+            )
             last[which] = held + np.arange(len(here))
             held += len(here)
         parts = tuple(np.zeros((many, *part.shape[1:]), part.dtype) for part in strokes.parts)

@@ -60,7 +60,21 @@ def played(where, shared, many):
         part["held"] = (part["frame"] + j) % HELD == 0
         part["scale"] = np.full(len(part["target"]), many[j]["scale"])
         part["unit"] = part.pop("frame") + TABLES * j
-    kept = ("seen", "hand", "target", "worth", "held", "scale", "unit", "lead", "left", "won", "swing", "same", "striker")
+    kept = (
+        "seen",
+        "hand",
+        "target",
+        "worth",
+        "held",
+        "scale",
+        "unit",
+        "lead",
+        "left",
+        "won",
+        "swing",
+        "same",
+        "striker",
+    )
     rows = {name: np.concatenate([part[name] for part in parts]) for name in kept}
     for name in ("seen", "hand"):
         rows[name] = rows[name].astype(np.float16)
@@ -125,8 +139,18 @@ def main(argv=None):
     layers, chance, rounds = None, None, []
     with place(args.ray) as where:
         for k in range(args.rounds):
-            rows_file, weights_file, began = args.out / f"round-{k}.npz", args.out / f"worth-{k}.npz", time.time()
-            shared = {"options": FRAME, "layers": layers, "chance": chance, "budget": args.budget, "explore": EXPLORE}
+            rows_file, weights_file, began = (
+                args.out / f"round-{k}.npz",
+                args.out / f"worth-{k}.npz",
+                time.time(),
+            )
+            shared = {
+                "options": FRAME,
+                "layers": layers,
+                "chance": chance,
+                "budget": args.budget,
+                "explore": EXPLORE,
+            }
             if rows_file.is_file():
                 rows = _kept_round(rows_file)
             else:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._check import integer
-from .._types import Bools, Environment, Floats, Integers, Ints
+from .._types import Environment, Floats, Integers, Ints
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options
 from ..tasks.threads import Threads, processors
@@ -45,7 +45,10 @@ class Plan(NamedTuple):
     def scaled(self, share: float) -> "Plan":
         """The same with about ``share`` times as many shots."""
         looks, root = [max(4, round(many * share)) if many else 0 for many in self[:3]], share**0.5
-        return Plan(*looks, tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in self.rounds))
+        return Plan(
+            *looks,
+            tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in self.rounds),
+        )
 
 
 PLANS = Plan(36, 0, 0, ((6, 2), (3, 5))), Plan(28, 132, 28, ((18, 3), (6, 7)))
@@ -152,7 +155,9 @@ class FrameSearch:
         """Strokes (n, m, 5), chances and kinds (n, m)."""
         visits, made = at.as_visits(), []
         kinds: Sequence[tuple[Propose, int]] = (
-            (self.propose, plan.pots), (safeties, plan.safeties), (over_cushions, plan.escapes)
+            (self.propose, plan.pots),
+            (safeties, plan.safeties),
+            (over_cushions, plan.escapes),
         )
         for kind, (generate, many) in enumerate(kinds):
             if many:
@@ -196,4 +201,6 @@ class FrameSearch:
             again = np.argsort(-scores[every, best], axis=1, kind="stable")
             order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
         parts = [part[every, order] for part in (strokes, both[..., 0], both[..., 1], tries, kinds)]
-        return [Tried(*(part[k, :count] for part in parts)) for k, count in enumerate(some.sum(axis=1).tolist())]
+        return [
+            Tried(*(part[k, :count] for part in parts)) for k, count in enumerate(some.sum(axis=1).tolist())
+        ]

@@ -294,7 +294,9 @@ def strokes_at(
 
 def _proposed(at, strokes, seeds, which, spread, dynamics):
     chances = np.empty(strokes.shape[:2])
-    _propose(visits_of(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics, at), strokes, chances)
+    _propose(
+        visits_of(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics, at), strokes, chances
+    )
     return Proposals(strokes, chances)
 
 

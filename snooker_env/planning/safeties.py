@@ -9,8 +9,8 @@ from .._jit import entry
 from .._types import Integers
 from ..game.balls import balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
-from ..tasks.ghost_ball import break_off
 from ..tasks.arrays import CueLaw
+from ..tasks.ghost_ball import break_off
 from ..tasks.lines import aim_at_met, new_work, racked
 from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
@@ -64,7 +64,9 @@ def _safeties(balls, seeds, law, strokes, chances):
             chances[k, i] = 1.0
         end_red = racked(p, here)
         if end_red:  # the one stroke that is known to be good
-            strokes[k, 0, SPEED], strokes[k, 0, SIDE], strokes[k, 0, TOP], strokes[k, 0, AIM] = break_off(p, end_red)
+            strokes[k, 0, SPEED], strokes[k, 0, SIDE], strokes[k, 0, TOP], strokes[k, 0, AIM] = break_off(
+                p, end_red
+            )
 
 
 def safeties(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:

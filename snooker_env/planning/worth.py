@@ -57,7 +57,9 @@ def _left(game, out):
     for k in range(len(game)):
         row = game[k]
         over = row[columns.OVER] != 0
-        out[k] = 0.0 if over else available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
+        out[k] = (
+            0.0 if over else available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
+        )
 
 
 @entry

@@ -19,12 +19,21 @@ GROUP = "snooker_env.players"
 """Entry points for players of other packages: NAME = MODULE:MAKER, called without arguments."""
 READERS = "snooker_env.models"
 """Entry points that read models: MODULE:READER, called with a path; None if the file is not theirs."""
-BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician")  # the players in the package
+BUILT_IN = (
+    "random",
+    "ghost_ball",
+    "best_pot",
+    "search",
+    "planner",
+    "tactician",
+)  # the players in the package
 RENAMED = {"lookahead": "search"}  # names of players of version 0.3 that are still understood
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
 PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
 """How names of programs begin, and their player, which is loaded as an entry point is."""
-_SEARCHING = re.compile(r"(best_pot|search|lookahead|tactician|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?")
+_SEARCHING = re.compile(
+    r"(best_pot|search|lookahead|tactician|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?"
+)
 
 
 def players() -> list[str]:

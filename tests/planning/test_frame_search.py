@@ -83,7 +83,9 @@ def test_the_score_is_what_the_stroke_brings_and_leaves():
                 from snooker_env.planning.frame_trials import turned
 
                 left = turned(after[[j]])
-                worth = decide(by_rule, left)[1][0] if row[columns.PHASE] == columns.CHOICE else by_rule(left)[0]
+                worth = (
+                    decide(by_rule, left)[1][0] if row[columns.PHASE] == columns.CHOICE else by_rule(left)[0]
+                )
                 points += worth if mine else -worth
             assert tried.points[j] == pytest.approx(points, abs=1e-9)
 
@@ -96,7 +98,9 @@ def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
     assert np.allclose(few + few[::-1], 1.0)
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
-    both = search(chance=chance).gains(at, np.arange(len(at)), np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5)))
+    both = search(chance=chance).gains(
+        at, np.arange(len(at)), np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5))
+    )
     assert ((both[:, 0] > 0.0) & (both[:, 0] < 1.0)).all()
 
 
@@ -116,8 +120,8 @@ def test_safeties_meet_a_ball_on_first_and_many_of_them_thinly():
 
 def test_after_a_foul_all_choices_are_compared():
     tables = frames_in_play(60, OPTIONS, strokes=0, seed=41)
-    from tests.planning.test_frame_trials import play, random_strokes
     from snooker_env.tasks.threads import Threads
+    from tests.planning.test_frame_trials import play, random_strokes
 
     play(tables, random_strokes(60, np.random.default_rng(2)), Threads(1))
     at = positions_of(tables)
@@ -131,14 +135,19 @@ def test_after_a_foul_all_choices_are_compared():
             columns.PLAY_AGAIN: -by_rule(chosen(one, columns.PLAY_AGAIN))[0],
             columns.REPLACE: -by_rule(chosen(one, columns.REPLACE))[0],
         }
-        assert values[k] == pytest.approx(max(options.values())) and options[int(best[k])] == pytest.approx(values[k])
+        assert values[k] == pytest.approx(max(options.values())) and options[int(best[k])] == pytest.approx(
+            values[k]
+        )
     replaced = chosen(at, columns.REPLACE)
     assert np.array_equal(replaced.positions, at.saved.positions)
     assert np.array_equal(lead_of(replaced), -lead_of(at))
 
 
 def test_a_miss_leaves_the_other_the_same_balls():
-    at = frame_of(Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], blue=(0.3, -0.3), black=(0.0, 1.4605), on="any_colour"), (20, 5))
+    at = frame_of(
+        Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], blue=(0.3, -0.3), black=(0.0, 1.4605), on="any_colour"),
+        (20, 5),
+    )
     left = passed(at)
     assert left.ball_on.tolist() == [1] and left.scores.tolist() == [[5, 20]]
     assert np.array_equal(left.positions, at.positions) and at.ball_on.tolist() != [1]

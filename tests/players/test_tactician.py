@@ -47,14 +47,20 @@ def test_it_plays_what_it_ranks_first():
 def test_visits_are_played_as_the_planner_plays_them():
     position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     mine = sn.player("tactician_30").at({"noise": "club"}).play(position, [7])
-    assert np.array_equal(mine.values, sn.player("planner_30").at({"noise": "club"}).play(position, [7]).values)
+    assert np.array_equal(
+        mine.values, sn.player("planner_30").at({"noise": "club"}).play(position, [7]).values
+    )
 
 
 def test_it_finishes_a_frame_against_a_player():
-    env = sn.SnookerVectorEnv(2, task="frame", opponent="tactician_30", noise="club", miss="clear_path", cue="real")
+    env = sn.SnookerVectorEnv(
+        2, task="frame", opponent="tactician_30", noise="club", miss="clear_path", cue="real"
+    )
     env.reset(seed=0)
     for _ in range(3):
-        _, _, _, _, infos = env.step(np.random.default_rng(0).uniform(-1, 1, env.action_space.shape).astype(np.float32))
+        _, _, _, _, infos = env.step(
+            np.random.default_rng(0).uniform(-1, 1, env.action_space.shape).astype(np.float32)
+        )
     assert infos["opponent_strokes"].sum() > 0
 
 
@@ -69,8 +75,14 @@ def test_the_lot_is_decided_by_the_worth_of_the_black():
 
 def test_a_lost_frame_is_conceded_only_where_it_may_be():
     lost = frame_of(Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(0, 90))
-    alive = frame_of(Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(80, 90))
-    for says, at, wanted in ((True, lost, CONCEDES), (False, lost, SAYS_NOTHING), (True, alive, SAYS_NOTHING)):
+    alive = frame_of(
+        Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(80, 90)
+    )
+    for says, at, wanted in (
+        (True, lost, CONCEDES),
+        (False, lost, SAYS_NOTHING),
+        (True, alive, SAYS_NOTHING),
+    ):
         player = sn.player("tactician_30").at(OPTIONS | {"concede": says})
         assert player.play(at, [1]).declare.tolist() == [wanted]
 

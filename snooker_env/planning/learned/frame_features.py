@@ -94,7 +94,9 @@ def _features(positions, on_table, game, spread, out):
         row[o + 12], row[o + 13] = min(low, 1.0), closest / 4.0
         row[o + 14] = min(HALF_WIDTH - side * cx, 0.1) * 10.0
         row[o + 15] = min(HALF_LENGTH - abs(cy), 0.1) * 10.0
-        left = available(mask, game_row[columns.BALL_ON], game_row[columns.FREE_BALL] if game_row.shape[0] > 5 else 0)
+        left = available(
+            mask, game_row[columns.BALL_ON], game_row[columns.FREE_BALL] if game_row.shape[0] > 5 else 0
+        )
         row[o + 16] = sqrt(max(0.0, left)) / 12.0
         row[o + 17] = log(spread) - _SPREAD
 

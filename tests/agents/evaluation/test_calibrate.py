@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from agents.evaluation.calibrate import figures_of, frames_of, frames_played, main, tactics_of
 from agents.evaluation import calibrate
+from agents.evaluation.calibrate import figures_of, frames_of, frames_played, main, tactics_of
 from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, SIZE
 
 TEXT = """# frames
@@ -26,7 +26,9 @@ def test_a_file_of_frames_is_read():
     assert np.isnan(frames[2]["strokes"])
     figures = figures_of(frames)
     assert figures["visits"][0] == pytest.approx(7 / 3) and figures["break"][0] == pytest.approx(229 / 7)
-    assert figures["frames_50"][0] == pytest.approx(200 / 3) and figures["breaks_100"][0] == pytest.approx(100 / 7)
+    assert figures["frames_50"][0] == pytest.approx(200 / 3) and figures["breaks_100"][0] == pytest.approx(
+        100 / 7
+    )
     assert figures["winner"][0] == pytest.approx((89 + 120 + 13) / 3)
     with pytest.raises(ValueError, match="must hold lines"):
         frames_of("1 2 3")
@@ -39,11 +41,19 @@ def rows_of(strokes):
     seen[:, LIKELY], seen[:, HIDDEN] = likely, hidden
     after = np.append(np.arange(1, n), -1)
     same = np.append(np.where(striker[1:] == striker[:-1], 1, -1), 0)
-    return {"frame": np.zeros(n, int), "striker": striker, "swing": swing.astype(float), "seen": seen, "next": after, "same": same}
+    return {
+        "frame": np.zeros(n, int),
+        "striker": striker,
+        "swing": swing.astype(float),
+        "seen": seen,
+        "next": after,
+        "same": same,
+    }
 
 
 def test_breaks_of_frames_played_are_counted():
-    rows = rows_of([(0, 0, 0, 0), (1, 1, 0.95, 0), (1, 7, 0.9, 0), (1, 0, 0.3, 0), (0, -4, 0, 1), (1, 5, 0.99, 0), (1, 0, 0.2, 0), (0, 2, 0.5, 0)])
+    first = [(0, 0, 0, 0), (1, 1, 0.95, 0), (1, 7, 0.9, 0), (1, 0, 0.3, 0)]
+    rows = rows_of([*first, (0, -4, 0, 1), (1, 5, 0.99, 0), (1, 0, 0.2, 0), (0, 2, 0.5, 0)])
     (frame,) = frames_played(rows)
     assert frame["breaks"] == [8.0, 5.0, 2.0] and frame["fouls"] == 1 and frame["strokes"] == 8
     assert frame["points"].tolist() == [2.0, 17.0]
