@@ -115,7 +115,7 @@ def tactics_of(parts):
     for name, values in found.items():
         every = np.concatenate(values).astype(float) * (1.0 if name == "break_off" else 100.0)
         many = len(every)
-        out[name] = [float(every.mean()), float(every.std() / np.sqrt(many)), many] if many > 1 else None
+        out[name] = [float(every.mean()), float(every.std() / np.sqrt(many)), many] if many else None
     return out
 
 
