@@ -310,7 +310,8 @@ def test_planning_and_players_of_choices_have_the_masks_of_the_task():
     wrong: Any = "Real"
     with pytest.raises(ValueError, match=r"^cue = "):
         action_masks(at, cue=wrong)
-    scores = sn.player("random").at({"cue": "real"}).scores(at, np.array([1, 2]))
+    player: Any = sn.player("random").at({"cue": "real"})
+    scores = player.scores(at, np.array([1, 2]))
     assert np.array_equal(np.isfinite(scores), real)
     choices = np.array([choice_of(0, 5, 2, 3)])
     level, aimed = (as_actions(at, [0], choices, cue=cue) for cue in ("free", "real"))
