@@ -87,30 +87,23 @@ def chosen(index, positions, on_table, on, law, work):
 
 @kernel
 def _crowded(positions, on_table, rails):
-    """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``."""
+    """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``; a free cue never."""
+    x, y, near = positions[0, 0], positions[0, 1], False
     for m in range(0, rails.shape[0], EDGE):
-        if (
-            rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * positions[0, int(rails[m + EDGE_AXIS])]
-            < _NEAR_RAIL
-        ):
+        across = x if rails[m + EDGE_AXIS] == 0.0 else y
+        if rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * across < _NEAR_RAIL:
             return True
-    near = False
-    for i in range(1, N_BALLS):
-        dx, dy = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
+    for i in range(1, N_BALLS if rails.shape[0] else 1):
+        dx, dy = positions[i, 0] - x, positions[i, 1] - y
         near = near or (on_table[i] and dx * dx + dy * dy < _NEAR_BALL * _NEAR_BALL)
     return near
 
 
 @kernel
-def _without_room(positions, on_table, on, options, rows, many, out):
-    """Of the ``many`` lines, clear the choices in ``out`` (SIZE,) whose cue must be steeper than ``STEEPEST``, unless
-    none were left. ``rows``: work space."""
-    rails, x, y = options[declarations.A_RAILS :], positions[0, 0], positions[0, 1]
-    if not _crowded(positions, on_table, rails):
-        return
-    pots, left = find_pots(positions, on_table, on, BALL_RADIUS, rows[:POTS]), 0
-    if pots == 0:
-        find_lines(positions, on_table, on, rows)
+def _without_room(positions, on_table, options, rows, pots, many, out):
+    """Of the ``many`` lines in ``rows``, of which ``pots`` are pots (all or none), clear the choices in ``out`` (SIZE,)
+    whose cue must be steeper than ``STEEPEST``, unless none were left."""
+    rails, x, y, left = options[declarations.A_RAILS :], positions[0, 0], positions[0, 1], 0
     for line in range(many):
         aim = atan2(rows[line, GHOST_Y] - y, rows[line, GHOST_X] - x) if pots else rows[line, LINE_AIM]
         for s in range(len(SIDES)):
@@ -139,12 +132,18 @@ def masks(which, positions, on_table, game, options, out):
             if parts > 1:
                 on = declarations.playable(row, mask, declarations.nominated_ball(n, row))
                 available = declarations.may_nominate(n, row)
-            many = count_lines(positions[k], on_table[k], on, rows) if available and on_table[k, 0] else 1
+            p, here, many, pots = positions[k], on_table[k], 1, 0
+            chooses = available and here[0]
+            crowded = chooses and _crowded(p, here, options[declarations.A_RAILS :])
+            if crowded:  # the lines themselves are asked for
+                pots = find_pots(p, here, on, BALL_RADIUS, rows[:POTS])
+                many = pots if pots else find_lines(p, here, on, rows)
+            elif chooses:
+                many = count_lines(p, here, on, rows)
             for c in range(SIZE):
                 out[j, n * SIZE + c] = available and c < STROKES * many
-            if available and on_table[k, 0] and options.shape[0] > declarations.A_RAILS:
-                here = out[j, n * SIZE : (n + 1) * SIZE]
-                _without_room(positions[k], on_table[k], on, options, rows, many, here)
+            if crowded:
+                _without_room(p, here, options, rows, pots, many, out[j, n * SIZE : (n + 1) * SIZE])
         at = parts * SIZE
         for what, column in (
             (declarations.CONCEDES, declarations.A_CONCEDE),

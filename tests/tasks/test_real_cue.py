@@ -10,7 +10,17 @@ from snooker_env.game import pots
 from snooker_env.game.balls import mask_of
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue_room import NO_RAILS, STEEPEST, least_elevation
-from snooker_env.planning import Planner, Positions, StrokeSearch, at_pots
+from snooker_env.planning import (
+    RULE_OF_THUMB,
+    Planner,
+    Positions,
+    StrokeSearch,
+    action_masks,
+    as_actions,
+    at_balls,
+    at_pots,
+    prospects_of,
+)
 from snooker_env.tasks import choice_of
 from snooker_env.tasks.declarations import A_RAILS
 from snooker_env.tasks.discrete_actions import _NEAR_BALL, _NEAR_RAIL, SIDES, SPEEDS, STROKES, TOPS
@@ -287,6 +297,60 @@ def test_only_what_is_near_makes_a_cue_too_steep():
             ]
             worst.append(max(found))
         assert worst[0] < np.radians(42.0) and worst[1] > STEEPEST
+
+
+def test_planning_and_players_of_choices_have_the_masks_of_the_task():
+    states = [posed({0: (FROZEN, 0.9), 1: (0.0, 1.2)}), posed({0: (0.3, 0.0), 1: (0.0, 1.2)})]
+    at = Positions.of([env.get_state() for env in states])
+    wanted = np.stack(
+        [posed({0: lie, 1: (0.0, 1.2)}, action="discrete").action_masks() for lie in at.positions[:, 0]]
+    )
+    free, real = action_masks(at), action_masks(at, cue="real")
+    assert np.array_equal(real, wanted) and (free[0] != real[0]).any() and np.array_equal(free[1], real[1])
+    wrong: Any = "Real"
+    with pytest.raises(ValueError, match=r"^cue = "):
+        action_masks(at, cue=wrong)
+    player: Any = sn.player("random").at({"cue": "real"})
+    scores = player.scores(at, np.array([1, 2]))
+    assert np.array_equal(np.isfinite(scores), real)
+    choices = np.array([choice_of(0, 5, 2, 3)])
+    level, aimed = (as_actions(at, [0], choices, cue=cue) for cue in ("free", "real"))
+    strokes = Planner({"action": "discrete", "cue": "real"}).strokes_of(at, [0], choices)[0]
+    assert aimed[0, 3] == pytest.approx(strokes[0, 3] / np.pi, abs=1e-6) and abs(level - aimed).max() > 1e-4
+
+
+def test_strokes_at_balls_are_turned_by_the_swerve():
+    """From near a cushion the red is met first as by a free cue; aims of a free cue miss it or meet it elsewhere."""
+    places, shares = at_the_cushion(12, 0.02, 9), {}
+    for planned in ("free", "real"):
+        search, fair = StrokeSearch({"cue": planned}), []
+        real = Planner({"cue": "real"}, threads=1)
+        for k, (lie, red) in enumerate(places):
+            at = Positions.of(posed({0: lie, 1: red}).get_state())
+            strokes = at_balls(search, at, 60, np.array([k])).strokes[0]
+            spun = strokes[(np.abs(strokes[:, 1]) > 0.1) & (strokes[:, 0] > 1.5)]
+            fair.extend(real.stops(at, np.zeros(len(spun), int), strokes=spun).first == 1)
+        shares[planned] = np.mean(fair)
+    assert shares["real"] > 0.97 and shares["free"] < 0.9
+
+
+def test_chances_of_pots_fall_where_the_cue_must_be_raised():
+    cushion, spread = at_the_cushion(1, 0.0, 7)[0], 1e-3
+    at, rails = (
+        Positions.of(posed({0: cushion[0], 1: cushion[1]}).get_state()),
+        sn.Options(cue="real").rules.rails,
+    )
+    level, raised = (prospects_of(at, spread, RULE_OF_THUMB, rails=r) for r in (NO_RAILS, rails))
+    wider = prospects_of(at, spread * (1.0 + np.radians(33.3) / TWICE), RULE_OF_THUMB)
+    assert (
+        raised[1][0, 0] == pytest.approx(wider[1][0, 0], rel=0.05) and raised[1][0, 0] < 0.7 * level[1][0, 0]
+    )
+    assert raised[0][0] < level[0][0]
+    proposed = [
+        at_pots(StrokeSearch({"cue": cue, "noise": {"aim_deg": 0.05}}), at, 30, np.array([3])).chances[0]
+        for cue in ("free", "real")
+    ]
+    assert (proposed[1] < proposed[0]).all() and np.ptp(proposed[1]) > 10.0 * np.ptp(proposed[0])
 
 
 def test_masks_never_leave_nothing():
