@@ -13,7 +13,7 @@ from .lookahead_features import ForesightView
 VIEWS = ("pots", "foresight")
 
 
-OBSERVED_SIZE = observation_space("flat", conditions=True).shape[0]
+OBSERVED_SIZE = spaces.flatdim(observation_space("flat", conditions=True))
 """Numbers in a flat observation with the constants of the table."""
 
 

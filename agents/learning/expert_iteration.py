@@ -10,6 +10,7 @@ PPO then improves the policy further, with the value as reward-to-go: ``judge_re
 
 import time
 import uuid
+from typing import Any
 
 import numpy as np
 
@@ -37,6 +38,8 @@ POOL = 4096
 """Positions in which visits begin, of all layouts."""
 HAND, EVEN = 6_144, 30_720
 """Positions judged by the rule of thumb, and with even proposals; at most an eighth and a fifth of all."""
+_ALL = ("positions", "on_table", "game", "conditions")
+"""What positions of visits hold; constants of their tables only if these are drawn."""
 
 
 class Starts:
@@ -56,11 +59,9 @@ class Starts:
         which = rng.choice(len(STARTS), n, p=[share for _, share in STARTS])
         rows = (rng.random(n) * [len(self._pools[k]) for k in which]).astype(np.int64)
         parts = [self._pools[k][row : row + 1] for k, row in zip(which.tolist(), rows.tolist(), strict=True)]
-        joined = [
-            None if column[0] is None else np.concatenate(column)
-            for column in zip(*map(positions_given, parts), strict=True)
-        ]
-        return Positions(*joined)
+        names = ("positions", "on_table", "game") if parts[0].conditions is None else _ALL
+        joined: Any = {name: np.concatenate([getattr(one, name) for one in parts]) for name in names}
+        return Positions(**joined)
 
 
 class ExpertIteration:
@@ -160,9 +161,9 @@ class ExpertIteration:
         ended = np.flatnonzero(~follows)
         if len(ended):
             fresh = self._starts.draw(len(ended), rng)
-            for mine, its in zip(positions_given(self._at), positions_given(fresh), strict=True):
-                if mine is not None:
-                    mine[ended] = its
+            for name in _ALL:
+                if getattr(fresh, name) is not None:
+                    getattr(self._at, name)[ended] = getattr(fresh, name)
         self._at.game[:, 2] = 0  # points of the visit so far: no break may exceed what a table allows
 
 

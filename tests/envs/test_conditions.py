@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import re
 
 import gymnasium
 import numpy as np
@@ -14,6 +15,7 @@ from snooker_env.physics import conditions
 from snooker_env.physics.conditions import NAMES, RANGES
 from snooker_env.planning import Planner, Positions
 from tests.envs.test_vector import check_equal
+from tests.processes import ROOT
 from tests.tables import begun
 
 DRAWN = {"conditions": "drawn"}
@@ -49,6 +51,13 @@ def test_a_draw_is_uniform_within_the_ranges_and_by_the_seed():
     assert again == many[0] != many[1] and again.e_c_knee == 2.02 and not again.tables
     with pytest.raises(ValueError, match=r"^rng = 3: must be"):
         sn.Physics.drawn(3)
+
+
+def test_the_ranges_and_their_order_are_those_of_the_page():
+    """The order is that of observations: a model that was trained with another would read wrong constants."""
+    page = (ROOT / "docs" / "environment" / "conditions.md").read_text(encoding="utf-8")
+    row = re.compile(r"^\| `(\w+)`[^|]*\| ([\d.]+) \| ([\d.]+) \|", re.M)
+    assert [(name, (float(a), float(b))) for name, a, b in row.findall(page)] == list(RANGES.items())
 
 
 def test_rows_are_the_packed_constants_of_the_physics():
