@@ -8,7 +8,7 @@ from contact the object ball's direction errs by 0.33 deg, so much that whatever
 below a tenth of it. The nap has a command of its own: ``python -m benchmarks.nap``.
 """
 
-from math import asin, cos, degrees, log, pi, radians, sin, sqrt
+from math import asin, cos, degrees, log, log1p, pi, radians, sin, sqrt
 
 import snooker_env as sn
 
@@ -22,6 +22,8 @@ LENGTH = 2 * (1.7845 - R)
 AIR, VISCOSITY, DRAG = 1.2, 1.5e-5, 0.45
 """Density [kg/m^3], kinematic viscosity [m^2/s]; drag coefficient of a sphere at Reynolds numbers of 1e3 to
 1e5: 0.4 to 0.5."""
+SEEN = 0.01
+"""A shift that is seen in play [m]; a professional's scatter of a ball that rolls a metre is 35 mm."""
 CAROM = 0.0151
 """Growth of the rolling resistance measured on heated carom cloth [1/m] (docs/physics/limits.md)."""
 BOUNCE = 0.5
@@ -50,12 +52,30 @@ def air():
         row = f"{v:14g}{2 * R * v / VISCOSITY:10.0f}{ratio:25.3f}{100 * shorter(ratio):23.1f} %"
         print(f"{row}{100 * shorter(carom):25.1f} %")
     stun = 5.0
+    slow = sn.Physics.preset("match").mu_r * G
+    found["matters from"] = {
+        "air": from_where(per_metre, slow),
+        "roll_drag": from_where(CAROM, slow),
+    }
+    print(f"A ball that rolls to rest on the cloth of match stops {1e3 * SEEN:g} mm shorter", end=" ")
+    air_alone, carom = found["matters from"].values()
+    print(f"from {air_alone:.2f} m/s by the air alone, from {carom:.2f} m/s with roll_drag {CAROM}")
     of_friction = per_metre * stun * stun / (PAPER.mu_s * G)
     slides = stun * stun * (1 - 25 / 49) / (2 * PAPER.mu_s * G)
     found["sliding"] = {"drag over friction": of_friction, "of the speed": per_metre * slides}
     print(f"Sliding at {stun:g} m/s: drag is {100 * of_friction:.1f} % of the friction;", end=" ")
     print(f"a stun shot at that speed would lose {100 * per_metre * slides:.1f} % of it until it rolls")
     return found
+
+
+def from_where(drag, slows):
+    """The speed [m/s] from which a drag [1/m] beside ``slows`` [m/s^2] shortens the way to rest by ``SEEN``."""
+    low, high = 0.0, 10.0
+    for _ in range(60):
+        v = 0.5 * (low + high)
+        shorter = v * v / (2 * slows) - log1p(drag * v * v / slows) / (2 * drag)
+        low, high = (v, high) if shorter < SEEN else (low, v)
+    return high
 
 
 def level():

@@ -5,7 +5,7 @@ Between cushions the closed forms of docs/physics/model.md. At a cushion the out
 depends on e and on the spin alone: it is read off a table that the package's own impact fills.
 """
 
-from math import exp, log1p, sqrt
+from math import expm1, log1p, sqrt
 
 import numba
 import numpy as np
@@ -66,10 +66,8 @@ def leg(v, spin, left, mu_r, drag):
     stops = log1p(drag * v * v / a) / (2.0 * drag) if drag > 0 else v * v / (2.0 * a)
     if stops <= left:
         return rest + stops, 0.0, 0.0
-    if drag > 0:
-        v = sqrt((v * v + a / drag) * exp(-2.0 * drag * left) - a / drag)
-    else:
-        v = sqrt(v * v - 2.0 * a * left)
+    fading = -expm1(-2.0 * drag * left) / (2.0 * drag) if drag > 0 else left
+    v = sqrt(v * v - 2.0 * (a + drag * v * v) * fading)
     return rest + left, v, v
 
 

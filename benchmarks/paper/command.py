@@ -233,7 +233,7 @@ def print_cushion(c):
         numbers = f"{a['mean']:11.3f}{a['rms']:7.3f}{b['mean']:14.3f}{b['rms']:7.3f}{m['largest']:17.3f}{m['ratio_at_largest']:20.3f}"
         print(f"  {name:18s}{numbers}")
     print(
-        f"  measured at the fastest, {c['incident'][-1]:.2f} m/s: {c['ratio_at_largest']:.3f}. match was fitted to these data,"
+        f"  measured at the fastest, {c['incident'][-1]:.2f} m/s: {c['ratio_at_largest']:.3f}. match was fitted to these and other data,"
     )
     print(
         "  paper's 0.98 by its authors below 1.5 m/s; restitution alone leaves out friction at nose and cloth."

@@ -170,7 +170,7 @@ CUSHIONS = {
     "paper": lambda v0: rebound("paper", v0),
     "match": lambda v0: rebound("match", v0),
 }
-"""v0 -> rebound speed [m/s]. "match" was fitted to these very data (``benchmarks.fit_cushion``), "paper" to
+"""v0 -> rebound speed [m/s]. "match" was fitted to these data and others (``benchmarks.fit_cushion``), "paper" to
 those below 1.5 m/s."""
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 import snooker_env as sn
 
-from .windows import LonePocket, Paths, windows
+from .windows import FAR, LonePocket, Paths, windows
 
 INCH = 0.0254
 PHYSICS = {"R": 1.125 * INCH, "sin_theta": 0.27}
@@ -173,9 +173,9 @@ def pocket(kind):
         jaws.append((*centre, _FLAT, *-into, sqrt(_FLAT**2 - _FACING**2 / 4) / _FLAT))
     if kind == "corner":
         level = pool.p / 2 / sqrt(2) * INCH
-        noses = [(0, 1, level, -100.0, -level), (1, 1, level, -100.0, -level)]  # without other ends
+        noses = [(0, 1, level, -FAR, -level), (1, 1, level, -FAR, -level)]  # without other ends
     else:
-        noses = [(0, 1, 0.0, -100.0, -half), (0, 1, 0.0, half, 100.0)]
+        noses = [(0, 1, 0.0, -FAR, -half), (0, 1, 0.0, half, FAR)]
     hole = (pool.R_h + pool.b) * INCH * u
     table = sn.Table(f"pool {kind}", np.array(noses), np.array(jaws), np.array([(*hole, pool.R_h * INCH)]))
     return LonePocket(table, (0.0, 0.0), axis)

@@ -28,6 +28,8 @@ SCAN = 151
 """... in so many steps, here of 1 mm."""
 HALVINGS = 18
 """Halvings of a step: 4e-9 m."""
+FAR = 1000.0
+"""Where the noses of a pocket alone end [m]; a ball rolls 360 m at 9 m/s."""
 AT_POCKET = 0.25
 """Noses that end and jaws whose centre is nearer than this to a pocket [m] are its own."""
 NEAR = 0.05
@@ -76,7 +78,7 @@ def endless(noses, x, y):
             np.where(noses[:, 0] == 0, level, noses[:, end]) - x,
             np.where(noses[:, 0] == 0, noses[:, end], level) - y,
         )
-        out[far < AT_POCKET, other] = 100.0 if other == 4 else -100.0
+        out[far < AT_POCKET, other] = FAR if other == 4 else -FAR
         kept |= far < AT_POCKET
     return out[kept]
 

@@ -17,7 +17,7 @@ SHORT = {
     "benchmarks.rack": "--shots 2 --orders 2 --racks 2 --out {tmp}",
     "benchmarks.stability": "--fuzz 2000 --out {tmp}",
     "benchmarks.speed": "--shots 20 --repeats 1 --parts impacts shots growth --largest-batch 64 --out {tmp}",
-    "benchmarks.fit_cushion": "",
+    "benchmarks.fit_cushion": "--steps 200",
     "benchmarks.nap": "",
     "benchmarks.make_opened": "--tables 2 --out {tmp}",
     "benchmarks.execution": "--strokes 40 --visits 4 --levels professional robot",

@@ -295,9 +295,9 @@ def _fates(states, jaws, fall, back, m, dt, most):
     return out
 
 
-def pocket(table, index: int):
+def pocket(table, index: int, nearer: float = 0.0):
     """One pocket of a ``Table``: its jaws (2, 7) as ``step`` reads them, its fall (3,), and its back (3,) as
-    ``_fate`` reads it."""
+    ``_fate`` reads it, which keeps a ball ``nearer`` [m] to the table than the fall's far end."""
     fall = np.array(table.falls[index])
     near = [jaw for jaw in table.jaws if math.hypot(jaw[0] - fall[0], jaw[1] - fall[1]) < 0.2]
     jaws = []
@@ -308,7 +308,7 @@ def pocket(table, index: int):
         jaws.append([x, y, radius + PROUD, *ends[0], *ends[1]])
     outward = -np.sum(jaws, axis=0)[3:5]  # against the normals of the rails
     outward /= np.linalg.norm(outward)
-    return np.array(jaws), fall, np.array([*outward, outward @ fall[:2] + fall[2] - R])
+    return np.array(jaws), fall, np.array([*outward, outward @ fall[:2] + fall[2] - R - nearer])
 
 
 def at_rest(positions, velocities, spins, m: Model, n_jaws: int):
@@ -326,14 +326,22 @@ def default_step(m: Model) -> float:
 
 
 def fates(
-    positions, velocities, spins, table, index: int, m: Model, dt: float | None = None, most: float = 4.0
+    positions,
+    velocities,
+    spins,
+    table,
+    index: int,
+    m: Model,
+    dt: float | None = None,
+    most: float = 4.0,
+    nearer: float = 0.0,
 ):
     """What becomes of balls that start on the bed: an array of POTTED, BACK, UNDECIDED (b,).
 
     positions, velocities (b, 2) [m, m/s]; spins (b, 3); table: a ``Table``; index: the pocket; dt [s]: step;
-    most [s]: give up after it.
+    most [s]: give up after it; nearer [m]: see ``pocket``.
     """
-    jaws, fall, back = pocket(table, index)
+    jaws, fall, back = pocket(table, index, nearer)
     return _fates(
         at_rest(positions, velocities, spins, m, len(jaws)), jaws, fall, back, m, dt or default_step(m), most
     )

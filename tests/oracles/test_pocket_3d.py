@@ -187,8 +187,8 @@ def alone(index):
     return sn.Table("one pocket", np.array(rails), np.array(jaws), MATCH.falls[index : index + 1])
 
 
-def by_oracle(positions, v, w, index):
-    found = fates(positions, v, w, MATCH, index, stiff(np.hypot(*v[0])))
+def by_oracle(positions, v, w, index, nearer=0.0):
+    found = fates(positions, v, w, MATCH, index, stiff(np.hypot(*v[0])), nearer=nearer)
     assert not (found == UNDECIDED).any()
     return found
 
@@ -247,3 +247,17 @@ def test_the_engines_windows_are_those_of_the_oracle(index, angle, rolls):
                 assert (engine[a] - engine[b]) * (oracle[a] - oracle[b]) > 0.0, (
                     f"{speeds[b]} to {speeds[a]} m/s"
                 )
+
+
+def test_a_middle_pocket_s_window_hangs_on_what_stands_behind_its_jaws():
+    """As docs/physics/limits.md says: 12 mm between 10 mm nearer and 10 mm farther; most of it straight on."""
+    wide = {
+        angle: [
+            window(lambda *ball, by=nearer: by_oracle(*ball, nearer=by), MIDDLE, angle, 6.0, True)
+            for nearer in (0.01, -0.01)
+        ]
+        for angle in (0, 30, 45)
+    }
+    assert wide[0] == pytest.approx((0.0682, 0.0563), abs=3e-4)
+    assert wide[30][0] - wide[30][1] == pytest.approx(0.0037, abs=3e-4)
+    assert abs(wide[45][0] - wide[45][1]) < 1e-3
