@@ -12,9 +12,9 @@ the speed of the throw and roll_drag, the growth of the rolling resistance. e_c 
 (their fit below 1.5 m/s): left free it runs into its bound at 1. Printed: the least squares, with roll_drag 0
 and free; intervals by Metropolis steps in all five; each measurement beside the model; lengths of strokes.
 
-Alciatore's lengths of pool strokes (TP B.6) are printed, not fitted: they are a calculation, which a rolling
-resistance of 0.010 and one restitution for all speeds give back to 0.0001 lengths. So they say nothing about
-how either depends on speed.
+Alciatore's lengths of pool strokes (TP B.6, "accounting for rail rebound and drag losses") are printed, not
+fitted: they are a calculation by all signs, the shortest is a rolling resistance of 0.010 to 0.001 lengths, and
+say nothing new about how either depends on speed.
 """
 
 import csv
