@@ -98,7 +98,9 @@ def test_strokes_that_differ_in_their_room_alone_are_one():
     some = judging.tried(practice, at, strokes)
     assert len({one.words for one in some}) == len({one.room.words for one in some}) == 3
     assert judging.distinct(some) == some[:1]
-    screws = judging.tried(practice, at, [(replace(ACROSS, top=top), None) for top in (-0.5, -0.45)])
+    screws = judging.tried(
+        practice, at, [(replace(ACROSS, speed=5.0, top=top), None) for top in (-0.5, -0.25)]
+    )
     assert len(judging.distinct(screws)) == 1  # both are played with the one tip that the cue reaches
     raised = judging.tried(
         practice, at, [(replace(ACROSS, aim=0.5 * pi, elevation=e), None) for e in (0.0, 0.4)]
