@@ -1,12 +1,14 @@
-"""How does an agent play a visit? Printed stroke by stroke, and written as a replay or a film.
+"""How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
 
     python -m agents.watch --agent ppo_foresight --out break.html
     python -m agents.watch --agent search_2000 --at-least 50 --out break.mp4
+    python -m agents.watch --frame --out frame.html
 
 The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the
 replay is written to a temporary file and opened in the browser. Visits are played on held-out tables, the
 seeds one after the other; --at-least takes the first of --tries visits with so many points. The same seed
-gives the same visit as ``agents.evaluate`` plays on that table.
+gives the same visit as ``agents.evaluate`` plays on that table. With --frame: a whole frame, against --opponent, with a
+real cue and the miss rule "clear_path"; --agent is then ``tactician`` unless it is named.
 """
 
 import argparse
@@ -25,7 +27,7 @@ with needs("agents.watch"):
     from snooker_env.benchmark import HELD_OUT_SEED
     from snooker_env.checks import choice, integer, number, refuse
     from snooker_env.planning import Positions
-    from snooker_env.players import VISITS, decision_seeds
+    from snooker_env.players import FRAMES, VISITS, decision_seeds
 
     from .entrants import Entrant
 
@@ -33,9 +35,14 @@ FILMS = (".mp4", ".gif")
 SUFFIXES = (".html", ".json", *FILMS)
 
 
-def visit(player, seed, **options):
-    """A ``SnookerEnv`` after a whole visit, with its history; the visit of ``play_visits`` for that seed."""
-    env = sn.SnookerEnv(**VISITS, **options)
+TACTICIAN = "tactician"  # who plays a frame unless someone is named
+FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}
+"""Options of a frame that is watched."""
+
+
+def episode(player, seed, **options):
+    """A ``SnookerEnv`` after a whole visit or frame, with its history; a visit is that of ``play_visits``."""
+    env = sn.SnookerEnv(**{**VISITS, **options})
     bound, decision = player.at(env), 0
     env.keep_history = True
     env.reset(seed=seed)
@@ -60,7 +67,9 @@ def parser():
     p = argparse.ArgumentParser(prog="python -m agents.watch", description=str(__doc__).split("\n\n")[0])
     add = p.add_argument
     what = "a player's name, a pre-trained model, a model's .zip or run folder"
-    add("--agent", default="ppo_foresight", help=what)
+    add("--agent", help=f"{what} [ppo_foresight; with --frame {TACTICIAN}]")
+    add("--frame", action="store_true", help="play a whole frame against --opponent")
+    add("--opponent", help="its player [the agent itself]")
     what = "break.html, .json, .mp4 or .gif; left out: opened in the browser"
     add("--out", type=Path, help=what)
     add("--layout", default="held_out", help="of the tables, as for Snooker-v0")
@@ -96,13 +105,19 @@ def _film(args):
 
 
 def sought(args):
-    """The environment after the visit that is wanted, and its seed. SystemExit if there is none."""
-    entrant = Entrant.of(args.agent, trust=args.trust)
+    """The environment after the visit or frame that is wanted, its seed and its players. SystemExit if there is none."""
+    name = args.agent or (TACTICIAN if args.frame else "ppo_foresight")
+    entrant = Entrant.of(name, trust=args.trust)
+    if args.frame:
+        other = args.opponent or name
+        options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": other, "trust": args.trust}
+        env = episode(entrant.player(0), args.seed, **options)
+        return env, args.seed, [entrant.label, other]
     longest = -1
     for seed in range(args.seed, args.seed + args.tries):
-        env = visit(entrant.player(0), seed, layout=args.layout, noise=args.noise)
+        env = episode(entrant.player(0), seed, layout=args.layout, noise=args.noise)
         if env.points >= args.at_least:
-            return env, seed, entrant.label
+            return env, seed, [entrant.label]
         longest = max(longest, env.points)
     why = f"no visit of {args.at_least} points in {args.tries} tries; the longest had {longest}"
     raise SystemExit(f"agents.watch: {why}")
@@ -115,17 +130,25 @@ def main(argv=None):
     args = p.parse_args(argv)
     try:
         film = _film(args)
+        if args.opponent and not args.frame:
+            raise refuse("opponent", args.opponent, "must be left out without --frame: nobody plays against a visit")
+        if args.frame and args.at_least:
+            raise refuse("at_least", args.at_least, "must be left out with --frame")
         integer("seed", args.seed, 0, 2**63)
         integer("tries", args.tries, 1, 10**9)
         writable("out", args.out)
-        env, seed, label = sought(args)
+        env, seed, players = sought(args)
     except ValueError as error:
         p.error(str(error))
-    title = f"{label}: {env.points} points, {args.noise}'s errors, table {seed}"
-    replay = sn.replay(env, title=title, players=[label])
+    if args.frame:
+        scores = env.unwrapped.tables.frame(0).scores
+        made, where = f"{players[0]} {scores[0]} - {scores[1]} {players[1]}", f"frame {seed}, noise {args.noise}"
+    else:
+        made = f"{players[0]}: {env.points} points"
+        where = f"table {seed}, layout {args.layout}, noise {args.noise}"
+    replay = sn.replay(env, title=f"{made}, {args.noise}'s errors, {where.split(',')[0]}", players=players)
     print(*described(replay), sep="\n")
-    where = f"table {seed}, layout {args.layout}, noise {args.noise}"
-    print(f"{label}: {env.points} points in {len(replay)} strokes ({where})")
+    print(f"{made} in {len(replay)} strokes ({where})")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
     replay.save(file, **film)
     print(f"written: {file}", flush=True)

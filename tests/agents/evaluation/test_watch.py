@@ -14,7 +14,7 @@ SHORT = ["--agent", "ghost_ball", "--noise", "club"]
 
 @pytest.mark.parametrize("name", ["ghost_ball", "geometric", "ppo_mask"])
 def test_the_visit_is_the_one_that_the_protocol_plays(name):
-    env = watch.visit(player(name), HELD_OUT_SEED + 3, layout="held_out", noise="professional")
+    env = watch.episode(player(name), HELD_OUT_SEED + 3, layout="held_out", noise="professional")
     strokes = play_visits(player(name), 1, first_seed=HELD_OUT_SEED + 3, threads=1)
     assert [p.points for p in env.history] == strokes.points.tolist()
     cue = np.array([p.positions[0] for p in env.history if p.on_table[0]])
@@ -55,14 +55,26 @@ def test_the_first_visit_that_is_long_enough_is_taken(capsys):
     env, seed, _ = watch.sought(args)
     assert env.points >= 1
     for earlier in range(HELD_OUT_SEED, seed):
-        assert watch.visit(player("ghost_ball"), earlier, layout="held_out", noise="club").points < 1
+        assert watch.episode(player("ghost_ball"), earlier, layout="held_out", noise="club").points < 1
     with pytest.raises(SystemExit, match="no visit of 140 points in 3 tries"):
         watch.main([*SHORT, "--at-least", "140", "--tries", "3"])
+
+
+def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
+    out = tmp_path / "frame.json"
+    assert watch.main(["--frame", *SHORT, "--opponent", "random", "--out", str(out)]) == 0
+    data, said = json.loads(out.read_text()), capsys.readouterr().out
+    assert data["players"] == ["ghost_ball", "random"] and {stroke["player"] for stroke in data["strokes"]} == {0, 1}
+    first, other = data["strokes"][-1]["scores"]
+    assert f"ghost_ball {first} - {other} random in {len(data['strokes'])} strokes" in said
 
 
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
+        ("--opponent random", "without --frame"),
+        ("--frame --at-least 5", "with --frame"),
+        ("--frame --opponent nobody", "opponent"),
         ("--agent nobody", "agent"),
         ("--out a.exe", "must be one of '.html'"),
         ("--out a.html --speed 2", "a film"),
