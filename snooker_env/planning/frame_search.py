@@ -13,13 +13,14 @@ import numpy as np
 
 from .._check import integer
 from .._types import Environment, Floats, Integers, Ints
+from ..game import frame_columns as columns
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options
 from ..tasks.threads import Threads, processors
 from .frame_trials import FrameTrials
 from .planner import options_in
 from .positions import Positions, PositionsLike, check_played, seeds_of
-from .proposals import Proposals, over_cushions
+from .proposals import Proposals, at_balls, over_cushions
 from .prospects import spread_of
 from .safeties import safeties
 from .sobol import DIMENSIONS, normal_points
@@ -39,19 +40,20 @@ class Plan(NamedTuple):
 
     pots: int
     safeties: int
+    contacts: int
     escapes: int
     rounds: tuple[tuple[int, int], ...]
 
     def scaled(self, share: float) -> "Plan":
         """The same with about ``share`` times as many shots."""
-        looks, root = [max(4, round(many * share)) if many else 0 for many in self[:3]], share**0.5
+        looks, root = [max(4, round(many * share)) if many else 0 for many in self[:4]], share**0.5
         return Plan(
             *looks,
             tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in self.rounds),
         )
 
 
-PLANS = Plan(36, 0, 0, ((6, 2), (3, 5))), Plan(28, 132, 28, ((18, 3), (6, 7)))
+PLANS = Plan(40, 0, 0, 0, ((6, 2), (3, 6))), Plan(28, 136, 24, 28, ((20, 3), (6, 8)))
 """Where the decision is easy, and where it is hard."""
 
 
@@ -60,7 +62,7 @@ class Tried(NamedTuple):
 
     ``strokes`` (m, 5) in SI; ``chances`` (m,), the chance to win, without a law for it 0; ``points`` (m,), expected
     points of the striker less the other's from here on; ``samples`` (m,), noise samples that each met; ``kinds``
-    (m,): 0 a pot, 1 a safety, 2 an escape. What is best is told by the chance, and hardly by the points."""
+    (m,): 0 a pot, 1 a safety, 2 a contact, 3 an escape. What is best is told by the chance, and hardly by the points."""
 
     strokes: Floats
     chances: Floats
@@ -135,11 +137,14 @@ class FrameSearch:
         self.shots += len(rows)
         return self._trials.play(at, rows, strokes, errors)
 
-    def gains(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Floats:
+    def gains(
+        self, at: Positions, rows: Ints, strokes: Floats, errors: Floats, again: Floats | None = None
+    ) -> Floats:
         """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m, 2), the chance to
-        win and the points."""
+        win and the points. ``again`` (n,): what the positions are worth at most, see ``follows``."""
         after, before = self.outcomes(at, rows, strokes, errors), lead_of(at)[rows]
-        points = follows(self.worth, after, before, self.rules.rule_set.code)
+        least = None if again is None else again[rows]
+        points = follows(self.worth, after, before, self.rules.rule_set.code, least)
         return self._both(before + points, left_of(after), points)
 
     def _both(self, lead: Floats, left: Floats, points: Floats) -> Floats:
@@ -157,6 +162,7 @@ class FrameSearch:
         kinds: Sequence[tuple[Propose, int]] = (
             (self.propose, plan.pots),
             (safeties, plan.safeties),
+            (at_balls, plan.contacts),
             (over_cushions, plan.escapes),
         )
         for kind, (generate, many) in enumerate(kinds):
@@ -174,11 +180,20 @@ class FrameSearch:
         both, tries = np.full((n, m, 2), -np.inf), np.zeros((n, m), np.int64)
         rounds = () if self.noise.silent else plan.rounds
         j, c = np.nonzero(some)
-        looks = self.gains(at, j, strokes[j, c], np.zeros((len(j), COLUMNS)))
+        after, before = self.outcomes(at, j, strokes[j, c], np.zeros((len(j), COLUMNS))), lead_of(at)
+        points = follows(self.worth, after, before[j], self.rules.rule_set.code)
+        looks = self._both(before[j] + points, left_of(after), points)
         if rounds:  # a pot that is missed leaves the balls about as they lie
             points = -self.worth(passed(at)).astype(np.float64)
-            missed, made = self._both(lead_of(at) + points, left_of(at), points)[j], chances[j, c, None]
+            missed, made = self._both(before + points, left_of(at), points)[j], chances[j, c, None]
             looks = made * looks + (1.0 - made) * missed
+        # a called miss may be played again: it is worth less than the best of the others, by its penalty
+        called, most = after.game[:, columns.MISS_CALLED] != 0, np.full(n, -np.inf)
+        np.maximum.at(most, j[~called], looks[~called, 1])
+        most[np.isinf(most)] = np.inf  # nothing else was found
+        worse = np.flatnonzero(called)
+        points = np.minimum(looks[worse, 1], lead_of(after)[worse] - before[j[worse]] + most[j[worse]])
+        looks[worse] = self._both(before[j[worse]] + points, left_of(after)[worse], points)
         both[j, c] = looks
         sums, scores = PRIOR * both, self._score(both)
         order = np.argsort(-scores, axis=1, kind="stable")
@@ -192,7 +207,7 @@ class FrameSearch:
             j, c = np.nonzero(some[every, best])
             c = best[j, c]
             errors = samples[:, done : done + each][j].reshape(-1, DIMENSIONS)
-            met = self.gains(at, np.repeat(j, each), np.repeat(strokes[j, c], each, 0), errors)
+            met = self.gains(at, np.repeat(j, each), np.repeat(strokes[j, c], each, 0), errors, most)
             sums[j, c] += met.reshape(-1, each, 2).sum(axis=1)
             tries[j, c] += each
             done += each

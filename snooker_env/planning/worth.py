@@ -90,9 +90,14 @@ def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
     return best, values[np.arange(len(at)), best]
 
 
-def follows(worth: Worth, after: Positions, before: Floats, rules: int = 0) -> Floats:
+def follows(
+    worth: Worth, after: Positions, before: Floats, rules: int = 0, again: Floats | None = None
+) -> Floats:
     """What strokes were worth to those who played them, who are player 0 in ``after``: the points since the leads
-    ``before`` (n,), and the worth of what they leave, of which the other may be the next to play: (n,)."""
+    ``before`` (n,), and the worth of what they leave, of which the other may be the next to play: (n,).
+
+    ``again`` (n,): what the positions that the strokes were played from are worth at most. After a called miss the
+    other may have the balls replaced, so that no such foul is worth more than that, less its penalty."""
     game = after.game
     gains = lead_of(after) - before
     mine = game[:, columns.STRIKER] == 0
@@ -102,7 +107,11 @@ def follows(worth: Worth, after: Positions, before: Floats, rules: int = 0) -> F
         gains[rows] += np.where(mine[rows], 1.0, -1.0) * worth(turned(after[rows]))
     rows = np.flatnonzero(choosing)
     if len(rows):
-        gains[rows] += np.where(mine[rows], 1.0, -1.0) * decide(worth, turned(after[rows]), rules)[1]
+        left = np.where(mine[rows], 1.0, -1.0) * decide(worth, turned(after[rows]), rules)[1]
+        if again is not None:
+            called = game[rows, columns.MISS_CALLED] != 0
+            left = np.where(called, np.minimum(left, again[rows]), left)
+        gains[rows] += left
     return gains
 
 
