@@ -42,7 +42,9 @@ class TableReader(BaseFeaturesExtractor):
 
     def __init__(self, observation_space, width=32):
         super().__init__(observation_space, CONTEXT + POTS * POT + 1)
-        constants = observation_space.shape[0] - SHOWN
+        constants = max(
+            0, observation_space.shape[0] - SHOWN
+        )  # readers of frames see other numbers, and no constants
         self.ball = mlp(5 + 2, width, BALL)
         self.pot = mlp(POT_ENTRIES, 2 * width, POT)
         self.context = mlp(3 * BALL + POT + _STATE + 3 + constants, CONTEXT, CONTEXT)

@@ -34,6 +34,13 @@ class Room:
         What is in the way: "rail", or the name of a ball; None if nothing is.
     behind : float
         How far behind the cue ball's centre that is, along the cue [m]: a rail's edge, a ball's centre; 0 if nothing.
+
+    Examples
+    --------
+    >>> from snooker_env.advice import Room
+    >>> way = {"raised": True, "moved": False, "unplayable": False, "over": "rail", "behind": 0.03}
+    >>> Room(elevation=0.21, side=0.0, top=0.0, **way).words
+    'cue raised to 12 degrees over the rail'
     """
 
     elevation: float
@@ -47,12 +54,7 @@ class Room:
 
     @property
     def words(self) -> str:
-        """What is done to the stroke, in words; "" for nothing, and for less than half a degree.
-
-        >>> way = {"raised": True, "moved": False, "unplayable": False, "over": "rail", "behind": 0.03}
-        >>> Room(elevation=0.21, side=0.0, top=0.0, **way).words
-        'cue raised to 12 degrees over the rail'
-        """
+        """What is done to the stroke, in words; "" for nothing, and for less than half a degree."""
         over = "" if self.over is None else f" over the {self.over}"
         if self.unplayable:
             return f"no room for the cue{over}: raised to {degrees(self.elevation):.0f} degrees, nobody plays that"

@@ -84,7 +84,8 @@ def safeties(search: Search, at: Positions, m: int, seeds: Integers) -> Proposal
 
     Examples
     --------
-    >>> from snooker_env.planning import Position, Positions, StrokeSearch, safeties
+    >>> from snooker_env.planning import Position, Positions, StrokeSearch
+    >>> from snooker_env.planning.safeties import safeties
     >>> at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0)))
     >>> safeties(StrokeSearch({}), at, 4, [7]).chances.tolist()
     [[1.0, 1.0, 1.0, 1.0]]

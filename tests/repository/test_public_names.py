@@ -59,6 +59,12 @@ TRAINED_FOR = (
     "snooker_env.players",
     "snooker_env.planning.learned",
     "snooker_env.planning.sobol: EVEN_SAMPLES",
+    "snooker_env.planning.worth",
+    "snooker_env.game.sides: strikers_own",
+    "snooker_env.game: frame_columns",
+    "snooker_env.tasks.carry_out",
+    "snooker_env.tasks.frame",
+    "snooker_env.tasks.threads",
     "snooker_env.tasks.noise: errors_of",
 )
 

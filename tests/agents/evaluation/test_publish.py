@@ -11,7 +11,6 @@ import cloudpickle
 import numpy as np
 import pytest
 import torch
-from gymnasium import spaces
 
 from agents.evaluation import publish
 from agents.evaluation.entrants import Entrant
@@ -202,7 +201,7 @@ def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
             with pytest.raises(ValueError, match=said.format("agent")):
                 load_player(run)
     with monkeypatch.context() as patch:
-        patch.setattr("agents.features.views.PotsView.space", spaces.Box(-1.0, 1.0, (7,), np.float32))
+        patch.setattr("agents.features.views.SHOWN", 7)
         with pytest.raises(ValueError, match=said.format("start")):
             load_trained(run / "model.zip", "start")
     monkeypatch.setattr("agents.learning.model_files.Recipe.of", lambda name, **more: {}[name])

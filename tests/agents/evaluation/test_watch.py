@@ -64,7 +64,9 @@ def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
     out = tmp_path / "frame.json"
     assert watch.main(["--frame", *SHORT, "--opponent", "random", "--out", str(out)]) == 0
     data, said = json.loads(out.read_text()), capsys.readouterr().out
-    assert data["players"] == ["ghost_ball", "random"] and {stroke["player"] for stroke in data["strokes"]} == {0, 1}
+    assert data["players"] == ["ghost_ball", "random"] and {
+        stroke["player"] for stroke in data["strokes"]
+    } == {0, 1}
     first, other = data["strokes"][-1]["scores"]
     assert f"ghost_ball {first} - {other} random in {len(data['strokes'])} strokes" in said
 
