@@ -23,6 +23,7 @@ with needs("agents.calibrate"):
     from commands.provenance import provenance
     from commands.tables import TextTable, show
     from snooker_env.checks import integer, number, refuse
+    from snooker_env.planning.frame_search import LEAST
     from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY
     from snooker_env.players.weights import learned_worth
 
@@ -50,12 +51,12 @@ def frames_of(text):
     for line in text.splitlines():
         if not line or line.startswith("#"):
             continue
-        if line.startswith("M "):
+        if re.fullmatch(r"M( \d+(\.\d+)?){2}\s*", line):
             times = [float(part) for part in line.split()[1:]]
             shot = float(np.mean(times)) if all(times) else 0.0
             continue
         parts = line.split("/")
-        if len(parts) != 3 or not re.fullmatch(r"\d+:\d\d", parts[2].strip()):
+        if not re.fullmatch(r"[F\d ]*/[F\d ]*/\d+:\d\d\s*", line):
             raise refuse("file", line, "must hold lines VISITS/VISITS/MINUTES:SECONDS")
         breaks, fouls, points = [], 0, np.zeros(2)
         for side, visits in enumerate(parts[:2]):
@@ -69,6 +70,8 @@ def frames_of(text):
         minutes, seconds = map(int, parts[2].split(":"))
         strokes = (60 * minutes + seconds) / shot if shot else np.nan
         frames.append({"breaks": breaks, "fouls": fouls, "points": points, "strokes": strokes})
+    if len(frames) < 2 or not any(one["breaks"] for one in frames):
+        raise refuse("file", f"{len(frames)} frames", "must hold two frames and a scoring visit at least")
     return frames
 
 
@@ -195,6 +198,7 @@ def main(argv=None):
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
         integer("frames", args.frames, 2, 10**6)
+        integer("budget", args.budget, LEAST, 10**6)
         for scale in args.scales:
             number("scales", scale, 0.01, 10.0)
         checked_ray(args.ray)

@@ -40,7 +40,7 @@ def frames(shared, args, threads):
     ball where it was played from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search,
     "swing" (m,) points of the striker less the other's until the next stroke, "same" (m,): 1 if the striker plays
     that, -1 the other, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won"
-    (m,): the striker's lead, the points on the table, whether the striker won; "frame" and "striker" (m,)."""
+    (m,): the striker's lead, the points on the table, whether the striker won, "decided": whether anybody did; "frame" and "striker" (m,)."""
     noise = noise_of(args["scale"])
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
     rules, many = options.rules, args["many"]
@@ -104,4 +104,5 @@ def _followed(rows, tables):
     later = np.where(after >= 0, led[after], tables.lead()[frame])
     rows["swing"] = np.where(striker == 0, 1.0, -1.0) * (later - led)
     rows["same"] = np.where(after < 0, 0, np.where(striker[after] == striker, 1, -1))
-    return rows | {"next": after, "won": tables.game[frame, columns.WINNER] == striker}
+    winner = tables.game[frame, columns.WINNER]
+    return rows | {"next": after, "won": winner == striker, "decided": winner >= 0}

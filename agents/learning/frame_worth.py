@@ -56,13 +56,14 @@ def fitted(seen, wanted, weights, seed, passes, layers=None, tick=None):
                 one.bias.copy_(torch.from_numpy(bias))
     x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS - seen[:, -1]).astype(np.float32))
     w = torch.from_numpy(weights.astype(np.float32))
-    steps = passes * (len(x) // BATCH)
+    batch = min(BATCH, len(x))
+    steps = passes * (len(x) // batch)
     optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=1e-4)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=max(2, steps), pct_start=0.1)
     for _ in range(passes):
         order = torch.from_numpy(rng.permutation(len(x)))
-        for k in range(0, BATCH * (len(x) // BATCH), BATCH):
-            rows = order[k : k + BATCH]
+        for k in range(0, batch * (len(x) // batch), batch):
+            rows = order[k : k + batch]
             loss = (w[rows] * (network(x[rows])[:, 0] - y[rows]) ** 2).mean()
             optimiser.zero_grad()
             loss.backward()

@@ -22,7 +22,8 @@ with needs("agents.learn_worth"):
     from agents.cluster.keep import packed
     from agents.cluster.ray_cluster import add_ray, checked_ray, place
     from commands.files import writable, write_atomic
-    from snooker_env.checks import integer
+    from snooker_env.checks import integer, refuse
+    from snooker_env.planning.frame_search import LEAST
     from snooker_env.planning.learned.dense_layers import Layers
     from snooker_env.planning.learned.learned_worth import worth_of
     from snooker_env.players.weights import FOLDER, WORTH, learned_worth
@@ -48,7 +49,7 @@ def drawn_parts(seed, k, parts):
     rng = np.random.default_rng([seed, k])
     shares = (np.arange(parts) + rng.random(parts)) / parts
     scales = SCALES[0] * (SCALES[1] / SCALES[0]) ** shares
-    first = 1_000_000 * (seed + 1) + 100_000 * k
+    first = 10_000_000 * (seed + 1) + 100_000 * k
     return [{"scale": float(s), "seed": first + TABLES * i, "many": TABLES} for i, s in enumerate(scales)]
 
 
@@ -71,6 +72,7 @@ def played(where, shared, many):
         "lead",
         "left",
         "won",
+        "decided",
         "swing",
         "same",
         "striker",
@@ -91,14 +93,15 @@ def learned(rounds, seed, layers):
     layers = fitted(seen, wanted, np.ones(len(wanted)), seed, PASSES, layers)
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
     lead = both["lead"] + said
-    chance = fitted_chance(lead[used], both["left"][used], both["won"][used])
-    held = both["held"]
-    wins = chance(lead[held], both["left"][held])
+    ended, held = both["decided"], both["held"]  # a frame that was stopped was won by nobody
+    chance = fitted_chance(*(part[used & ended] for part in (lead, both["left"], both["won"])))
+    wins, won = chance(lead, both["left"])[held & ended], both["won"][held & ended]
     figures = {
         "positions": len(wanted),
         "rmse": float(np.sqrt(np.mean((said - both["target"])[held] ** 2))),
         "correlation": float(np.corrcoef(said[held], both["target"][held])[0, 1]),
-        "chance_error": calibration(wins, both["won"][held])[1],
+        "chance_error": calibration(wins, won)[1],
+        "stopped": float(1.0 - ended.mean()),
     }
     return layers, chance, figures
 
@@ -128,15 +131,18 @@ def main(argv=None):
     add_ray(p)
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
-        integer("rounds", args.rounds, 1, 100)
+        integer("rounds", args.rounds, 1, 90)
         integer("frames", args.frames, TABLES, 100_000)
-        integer("seed", args.seed, 0, 1000)
+        integer("seed", args.seed, 0, 80)  # more would meet the tables of agents.calibrate
+        integer("budget", args.budget, LEAST, 10**6)
+        if args.frames % TABLES:
+            raise refuse("frames", args.frames, f"must be a multiple of {TABLES}")
         checked_ray(args.ray)
         writable("out", args.out / "worth.npz")
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
-    layers, chance, rounds = None, None, []
+    layers, chance, rounds, asked = None, None, [], [args.frames, args.budget, args.seed]
     with place(args.ray) as where:
         for k in range(args.rounds):
             rows_file, weights_file, began = (
@@ -153,9 +159,12 @@ def main(argv=None):
             }
             if rows_file.is_file():
                 rows = _kept_round(rows_file)
+                if rows.pop("asked").tolist() != asked:
+                    wanted = "must hold rounds of the same --frames, --budget and --seed"
+                    p.error(str(refuse("out", str(args.out), wanted)))
             else:
                 rows = played(where, shared, drawn_parts(args.seed, k, args.frames // TABLES))
-                write_atomic(rows_file, packed(rows))
+                write_atomic(rows_file, packed(rows | {"asked": np.array(asked)}))
             rounds = [*rounds, rows][-KEEP:]
             if weights_file.is_file():
                 layers, chance = learned_worth(weights_file)

@@ -106,13 +106,17 @@ class FrameSearch:
         rules = options.rules
         self.noise: Noise = rules.noise if noise is None else Noise.of(noise)
         self.rules = rules
-        self.threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
+        self.threads: int = (
+            min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
+        )
         self._trials = FrameTrials(replace(rules, noise=self.noise), Threads(self.threads))
         self.spread: float = spread_of(self.noise, rules.physics)
-        self.dynamics = Dynamics.of(rules)
-        self.worth, self.propose, self.chance = worth, propose, chance
-        self.plans = tuple(plan.scaled(budget / AVERAGE) for plan in PLANS)
-        self.shots = 0
+        self.dynamics: Dynamics = Dynamics.of(rules)
+        self.worth: Worth = worth
+        self.propose: Propose = propose
+        self.chance: Chance | None = chance
+        self.plans: tuple[Plan, ...] = tuple(plan.scaled(budget / AVERAGE) for plan in PLANS)
+        self.shots: int = 0
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Tried]:
         """Try strokes in n positions of frames whose strikers have a stroke to play, and a decision after a foul
@@ -145,11 +149,14 @@ class FrameSearch:
         after, before = self.outcomes(at, rows, strokes, errors), lead_of(at)[rows]
         least = None if again is None else again[rows]
         points = follows(self.worth, after, before, self.rules.rule_set.code, least)
-        return self._both(before + points, left_of(after), points)
+        return self._both(before, points, after)
 
-    def _both(self, lead: Floats, left: Floats, points: Floats) -> Floats:
-        """The chances to win of expected leads, and points: (m, 2)."""
-        chance = np.zeros(len(points)) if self.chance is None else self.chance(lead, left)
+    def _both(self, before: Floats, points: Floats, after: Positions) -> Floats:
+        """Chances to win and points, (m, 2), of strokes that bring and leave ``points`` more than the leads ``before``."""
+        chance = np.zeros(len(points))
+        if self.chance is not None:
+            over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
+            chance = np.where(over, won, self.chance(before + points, left_of(after)))
         return np.column_stack([chance, points])
 
     def _score(self, both: Floats) -> Floats:
@@ -182,10 +189,11 @@ class FrameSearch:
         j, c = np.nonzero(some)
         after, before = self.outcomes(at, j, strokes[j, c], np.zeros((len(j), COLUMNS))), lead_of(at)
         points = follows(self.worth, after, before[j], self.rules.rule_set.code)
-        looks = self._both(before[j] + points, left_of(after), points)
+        looks = self._both(before[j], points, after)
         if rounds:  # a pot that is missed leaves the balls about as they lie
-            points = -self.worth(passed(at)).astype(np.float64)
-            missed, made = self._both(before + points, left_of(at), points)[j], chances[j, c, None]
+            left = passed(at)
+            points = -self.worth(left).astype(np.float64)
+            missed, made = self._both(before, points, left)[j], chances[j, c, None]
             looks = made * looks + (1.0 - made) * missed
         # a called miss may be played again: it is worth less than the best of the others, by its penalty
         called, most = after.game[:, columns.MISS_CALLED] != 0, np.full(n, -np.inf)
@@ -193,7 +201,7 @@ class FrameSearch:
         most[np.isinf(most)] = np.inf  # nothing else was found
         worse = np.flatnonzero(called)
         points = np.minimum(looks[worse, 1], lead_of(after)[worse] - before[j[worse]] + most[j[worse]])
-        looks[worse] = self._both(before[j[worse]] + points, left_of(after)[worse], points)
+        looks[worse] = self._both(before[j[worse]], points, after[worse])
         both[j, c] = looks
         sums, scores = PRIOR * both, self._score(both)
         order = np.argsort(-scores, axis=1, kind="stable")

@@ -33,7 +33,6 @@ class FrameTrials(Struck, Frames):
         A cue ball in hand is played from where it lies. Decisions after a foul must have been made: rows in that
         phase are played as the table lies."""
         trial, after = copy(self), at[rows]  # a copy: several threads may play at once
-        after.game[:, columns.IN_HAND] = after.game[:, columns.ANYWHERE] = 0
         trial.lay(after, errors)
 
         def play(which: Ints, buffers: ShotBuffers) -> None:

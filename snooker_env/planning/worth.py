@@ -48,7 +48,7 @@ def _choose(game, positions, on_table, saved_positions, saved_on_table, what):
 def _allowed(game, rules, out):
     for k in range(len(game)):
         out[k, columns.PLAY] = out[k, columns.PLAY_AGAIN] = True
-        out[k, columns.REPLACE] = columns.may_replace(game[k], rules)
+        out[k, columns.REPLACE] = columns.may_replace(game[k], rules) and game[k, columns.SAVED_LAYOUT]
         out[k, columns.PLACE_ANYWHERE] = columns.may_place_anywhere(game[k], rules)
 
 
@@ -56,10 +56,7 @@ def _allowed(game, rules, out):
 def _left(game, out):
     for k in range(len(game)):
         row = game[k]
-        over = row[columns.OVER] != 0
-        out[k] = (
-            0.0 if over else available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
-        )
+        out[k] = available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
 
 
 @entry
@@ -80,6 +77,8 @@ def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
     """The best decision after a foul for n strikers who have that choice, and its worth to them: (n,), (n,)."""
     allowed, values = np.zeros((len(at), 4), np.bool_), np.full((len(at), 4), -np.inf)
     _allowed(at.game, rules, allowed)
+    if at.saved is None:
+        allowed[:, columns.REPLACE] = False
     for what in range(4):
         rows = np.flatnonzero(allowed[:, what])
         if len(rows):
@@ -101,6 +100,8 @@ def follows(
     game = after.game
     gains = lead_of(after) - before
     mine = game[:, columns.STRIKER] == 0
+    lost = (game[:, columns.OVER] != 0) & (game[:, columns.WINNER] == 1)
+    gains -= np.where(lost, left_of(after), 0.0)  # by a third miss, with balls on the table
     playing, choosing = game[:, columns.PHASE] == columns.STROKE, game[:, columns.PHASE] == columns.CHOICE
     rows = np.flatnonzero(playing)
     if len(rows):
@@ -128,7 +129,7 @@ class Chance(NamedTuple):
 
 
 def left_of(at: Positions) -> Floats:
-    """Points that are still on the table: float64 (n,); 0 where the frame is over."""
+    """Points that are still on the table: float64 (n,); none after the last black."""
     left = np.empty(len(at))
     _left(at.game, left)
     return left

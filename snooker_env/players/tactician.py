@@ -16,6 +16,7 @@ from ..planning.learned.policy_proposals import PolicyProposals
 from ..planning.worth import best_places, chosen, decide, lead_of, left_of
 from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options
+from .choices import GhostBall
 from .player import BoundPlayer, Ranked, Strokes, placed
 from .search import MOST, RANKED, SearchPlayer
 from .weights import learned_at, learned_worth, level_for
@@ -43,12 +44,13 @@ class Tactician(BoundPlayer):
     kind = "tactician"
 
     def __init__(self, budget: int = AVERAGE, learned: Any = None):
-        self.name = self.kind if budget == AVERAGE else f"{self.kind}_{budget}"
-        self.budget, self._given = integer("budget", budget, LEAST, MOST), learned
+        self.name: str = self.kind if budget == AVERAGE else f"{self.kind}_{budget}"
+        self.budget: int = integer("budget", budget, LEAST, MOST)
+        self._given = learned
         self._visits, self.search = SearchPlayer("planner", budget), None
 
     def _bind(self, options: Options) -> None:
-        self._visits = self._visits.at(options)
+        self._visits, self._plain = self._visits.at(options), GhostBall().at(options)
         noise, physics = options.rules.noise, options.rules.physics
         layers, chance = learned_worth() if self._given is None else self._given
         learned = learned_at(level_for(noise))
@@ -89,7 +91,7 @@ class Tactician(BoundPlayer):
         rows = np.flatnonzero(at.lot)
         if len(rows):
             at.game[rows, columns.PHASE] = columns.STROKE
-            other = rows[worth(at[rows]) < 0.0]
+            other = rows[worth(at[rows]) < 0.0] if self.options.lot else rows[:0]
             declare[other], plays[other] = OTHER_BEGINS, False
         rows = np.flatnonzero(at.choice)
         if len(rows):
@@ -98,7 +100,9 @@ class Tactician(BoundPlayer):
                 some = rows[decisions[rows] == what]
                 at.game[some] = chosen(at[some], what).game
             plays[rows] = np.isin(decisions[rows], (columns.PLAY, columns.PLACE_ANYWHERE))
-        hand, usual = plays & at.in_hand, (at.on_table[:, 1:16].sum(axis=1) == 15) | at.anywhere
+        game = at.game
+        racks = (game[:, columns.STROKES] == 0) & (game[:, columns.RACK] == game[:, columns.ON_TABLE])
+        hand, usual = plays & at.in_hand, racks | at.anywhere
         for rows in np.flatnonzero(hand & usual), np.flatnonzero(hand & ~usual):
             if len(rows):  # at the break-off, and where it may stand anywhere, as other players do
                 some = placed(at[rows], seeds[rows]) if usual[rows[0]] else best_places(worth, at[rows])
@@ -109,6 +113,9 @@ class Tactician(BoundPlayer):
         for k, one in zip(rows.tolist(), search.rank(at[rows], seeds[rows]), strict=True):
             if len(one.strokes):
                 tried[k], values[k] = one, one.strokes[0]
+        rows = rows[[tried[k] is None for k in rows.tolist()]]
+        if len(rows):  # nothing was found: any stroke at a ball on
+            values[rows] = self._plain.play(at[rows].as_visits(), seeds[rows]).values
         if self.options.concede and search.chance is not None:
             some = np.flatnonzero([one is not None and one.chances[0] < LOST for one in tried])
             behind = lead_of(at[some]) < -left_of(at[some])  # it needs snookers

@@ -73,10 +73,8 @@ def test_a_trial_leads_to_what_the_frame_itself_would(miss, cue):
     # seen by the striker, who was player 0 in the trial
     real = turned_to(tables.game, striker)
     real[:, [columns.STROKES, columns.STEPS]] = after.game[:, [columns.STROKES, columns.STEPS]]
-    some = [c for c in range(columns.COLUMNS) if c not in (columns.SAVED_IN_HAND,)]
-    assert np.array_equal(after.game[going][:, some], real[going][:, some])
+    assert np.array_equal(after.game[going], real[going])
     assert (after.game[:, columns.SCORE_1] > before.game[:, columns.SCORE_1]).any(), "no foul among them"
-    assert (after.game[:, columns.STRIKER] == 0).any() or True
 
 
 def turned_to(game, striker):

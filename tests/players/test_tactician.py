@@ -64,12 +64,28 @@ def test_it_finishes_a_frame_against_a_player():
     assert infos["opponent_strokes"].sum() > 0
 
 
+def test_a_third_miss_loses_the_frame_whatever_the_lead():
+    position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], black=(0.0, 1.4605), on="red")
+    ahead = frame_of(position, scores=(60, 5))
+    ahead.game[:, columns.WARNED], ahead.game[:, columns.FAILURES] = 1, 2
+    search = sn.player("tactician_30").at(OPTIONS | {"noise": "none"}).search
+    away = np.array([[2.0, 0.0, 0.0, -2.4, 0.0]])
+    (chance, points), *_ = search.gains(ahead, np.array([0]), away, np.zeros((1, 5))).tolist()
+    assert chance == 0.0 and points == -4.0 - 15.0
+    ahead.game[:, columns.WARNED] = 0
+    (chance, _), *_ = search.gains(ahead, np.array([0]), away, np.zeros((1, 5))).tolist()
+    assert chance > 0.5
+
+
 def test_the_lot_is_decided_by_the_worth_of_the_black():
     far = frame_of(Position(cue=(0.1, -1.1), black=(0.0, 1.4605), on="black", in_hand=True))
     far.game[:, columns.PHASE], far.game[:, columns.RESPOTTED_BLACK] = columns.LOT, 1
-    said = sn.player("tactician_30").at(OPTIONS).play(far, [3]).declare.tolist()
-    assert said[0] in (SAYS_NOTHING, OTHER_BEGINS)
-    worth = sn.player("tactician_30").at(OPTIONS).search.worth(far)
+    silent = sn.player("tactician_30").at(OPTIONS).play(far, [3])
+    assert silent.declare.tolist() == [SAYS_NOTHING]
+    silent.actions(sn.Options(**OPTIONS), far)  # an environment without lots reads it
+    told = OPTIONS | {"lot": True}
+    said = sn.player("tactician_30").at(told).play(far, [3]).declare.tolist()
+    worth = sn.player("tactician_30").at(told).search.worth(far)
     assert (said[0] == OTHER_BEGINS) == bool(worth[0] < 0.0)
 
 

@@ -59,6 +59,7 @@ TRAINED_FOR = (
     "snooker_env.players",
     "snooker_env.planning.learned",
     "snooker_env.planning.sobol: EVEN_SAMPLES",
+    "snooker_env.planning.frame_search: LEAST",
     "snooker_env.planning.worth",
     "snooker_env.game.sides: strikers_own",
     "snooker_env.game: frame_columns",

@@ -27,7 +27,8 @@ class LearnedWorth:
     ``value``: of the visit; ``layers``: weight (out, in) and bias (out,) of each, or None: the value alone."""
 
     def __init__(self, value: LearnedValue, layers: Sequence[tuple[NDArray, NDArray]] | None):
-        self.value, self._layers = value, None if layers is None else Layers(layers, "relu")
+        self.value: LearnedValue = value
+        self._layers = None if layers is None else Layers(layers, "relu")
 
     def __call__(self, at: Positions) -> NDArray[np.float32]:
         seen = self.seen(at)

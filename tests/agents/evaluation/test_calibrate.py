@@ -30,8 +30,11 @@ def test_a_file_of_frames_is_read():
         100 / 7
     )
     assert figures["winner"][0] == pytest.approx((89 + 120 + 13) / 3)
-    with pytest.raises(ValueError, match="must hold lines"):
-        frames_of("1 2 3")
+    for wrong in ("1 2 3", "a b/3/1:00", "M x"):
+        with pytest.raises(ValueError, match="must hold lines"):
+            frames_of(wrong)
+    with pytest.raises(ValueError, match="two frames"):
+        frames_of("# none")
 
 
 def rows_of(strokes):

@@ -82,5 +82,13 @@ def test_an_interrupted_training_goes_on_to_the_same_weights(tmp_path, monkeypat
     for name in ("worth.npz", "round-1.npz"):
         with np.load(tmp_path / "whole" / name) as one, np.load(tmp_path / "parts" / name) as other:
             assert all(np.array_equal(one[key], other[key]) for key in one.files)
+    with (
+        np.load(tmp_path / "whole" / "worth-0.npz") as one,
+        np.load(tmp_path / "whole" / "worth.npz") as other,
+    ):
+        assert not np.array_equal(one["worth/0/weight"], other["worth/0/weight"])
+    for wrong in (["--rounds", "0"], ["--frames", "20"], ["--budget", "5"]):
+        with pytest.raises(SystemExit):
+            main([*wrong, "--out", str(tmp_path)])
     with pytest.raises(SystemExit):
-        main(["--rounds", "0", "--out", str(tmp_path)])
+        main([*line[:4], "--budget", "40", "--out", str(tmp_path / "whole")])
