@@ -39,8 +39,9 @@ def frames(shared, args, threads):
     table, "many" frames. Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue
     ball where it was played from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search,
     "swing" (m,) points of the striker less the other's until the next stroke, "same" (m,): 1 if the striker plays
-    that, -1 the other, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won"
-    (m,): the striker's lead, the points on the table, whether the striker won, "decided": whether anybody did; "frame" and "striker" (m,)."""
+    that, -1 the other, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead",
+    "left", "won" (m,): the striker's lead, the points on the table, whether the striker won; "decided": whether anybody
+    did; "frame" and "striker" (m,)."""
     noise = noise_of(args["scale"])
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
     rules, many = options.rules, args["many"]
