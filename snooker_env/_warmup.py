@@ -68,7 +68,7 @@ def warmup() -> None:
         prospects_of,
     )
     from .planning import pots as direct_pots
-    from .planning.worth import decide
+    from .planning.worth import best_places, decide
     from .players import player
     from .tasks.box_actions import Actions, line
     from .tasks.options import Options
@@ -139,6 +139,7 @@ def warmup() -> None:
             player(name).at({"noise": "club"}).play(at, [0])
         player("tactician_30").at({"task": "frame", "noise": "club", "miss": "clear_path"}).play(both, [0])
         decide(lambda some: np.zeros(len(some)), both)
+        best_places(lambda some: np.zeros(len(some)), both)
         search = StrokeSearch({"noise": "club"}, budget=30)
         search.rank(at, seeds=[0])
         search.planner.play(at, [0], strokes=[[1.0, 0.0, 0.0, 0.0, 0.0]], keys=[0])

@@ -143,7 +143,7 @@ def main(argv=None):
     except ValueError as error:
         p.error(str(error))
     if args.frame:
-        scores = env.unwrapped.tables.frame(0).scores
+        scores = env.tables.standing(0)["scores"]
         made, where = (
             f"{players[0]} {scores[0]} - {scores[1]} {players[1]}",
             f"frame {seed}, noise {args.noise}",

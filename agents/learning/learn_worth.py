@@ -92,7 +92,7 @@ def learned(rounds, seed, layers):
     wanted = np.concatenate([both["target"][used], both["target"][in_hand]])
     layers = fitted(seen, wanted, np.ones(len(wanted)), seed, PASSES, layers)
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
-    lead = both["lead"] + said
+    lead = both["lead"] + said.astype(np.float64)
     ended, held = both["decided"], both["held"]  # a frame that was stopped was won by nobody
     chance = fitted_chance(*(part[used & ended] for part in (lead, both["left"], both["won"])))
     wins, won = chance(lead, both["left"])[held & ended], both["won"][held & ended]

@@ -48,7 +48,7 @@ class Plan(NamedTuple):
         """The same with about ``share`` times as many shots."""
         looks, root = [max(4, round(many * share)) if many else 0 for many in self[:4]], share**0.5
         return Plan(
-            *looks,
+            *(looks[0], looks[1], looks[2], looks[3]),
             tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in self.rounds),
         )
 
@@ -128,7 +128,8 @@ class FrameSearch:
         if not n:
             return tried
         easy, hard = self.plans
-        pots = self.propose(self, at.as_visits(), hard.pots, keys)
+        asking: Any = self
+        pots = self.propose(asking, at.as_visits(), hard.pots, keys)
         likely = pots.chances.max(axis=1) >= EASY
         for plan, which in ((easy, np.flatnonzero(likely)), (hard, np.flatnonzero(~likely))):
             if len(which):
@@ -165,6 +166,7 @@ class FrameSearch:
 
     def _proposed(self, at: Positions, seeds: Ints, plan: Plan) -> tuple[Floats, Floats, Ints]:
         """Strokes (n, m, 5), chances and kinds (n, m)."""
+        asking: Any = self
         visits, made = at.as_visits(), []
         kinds: Sequence[tuple[Propose, int]] = (
             (self.propose, plan.pots),
@@ -174,7 +176,7 @@ class FrameSearch:
         )
         for kind, (generate, many) in enumerate(kinds):
             if many:
-                made.append((*Proposals(*generate(self, visits, many, seeds)), kind))
+                made.append((*Proposals(*generate(asking, visits, many, seeds)), kind))
         strokes = np.concatenate([one[0] for one in made], axis=1)
         chances = np.concatenate([one[1] for one in made], axis=1)
         which = np.concatenate([np.full(one[1].shape, one[2]) for one in made], axis=1)
@@ -223,7 +225,7 @@ class FrameSearch:
             scores[j, c] = self._score(both[j, c])
             again = np.argsort(-scores[every, best], axis=1, kind="stable")
             order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
-        parts = [part[every, order] for part in (strokes, both[..., 0], both[..., 1], tries, kinds)]
+        parts: Any = [part[every, order] for part in (strokes, both[..., 0], both[..., 1], tries, kinds)]
         return [
             Tried(*(part[k, :count] for part in parts)) for k, count in enumerate(some.sum(axis=1).tolist())
         ]

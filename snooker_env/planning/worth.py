@@ -159,7 +159,7 @@ def best_places(worth: Worth, at: Positions) -> tuple[Positions, Floats]:
     tried = at[np.repeat(np.arange(n), m)]
     _place(tried.positions, tried.on_table, np.tile(PLACES, (n, 1)))
     tried.game[:, columns.IN_HAND] = 0
-    values = worth(tried).reshape(n, m)
+    values = np.asarray(worth(tried), np.float64).reshape(n, m)
     best = values.argmax(axis=1)
     placed = at.copy()
     placed.positions[:, CUE] = tried.positions.reshape(n, m, N_BALLS, 2)[np.arange(n), best, CUE]

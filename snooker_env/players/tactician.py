@@ -91,7 +91,7 @@ class Tactician(BoundPlayer):
         rows = np.flatnonzero(at.lot)
         if len(rows):
             at.game[rows, columns.PHASE] = columns.STROKE
-            other = rows[worth(at[rows]) < 0.0] if self.options.lot else rows[:0]
+            other = rows[worth(at[rows]) < 0.0] if "lot" in self.options.says else rows[:0]
             declare[other], plays[other] = OTHER_BEGINS, False
         rows = np.flatnonzero(at.choice)
         if len(rows):
@@ -116,7 +116,7 @@ class Tactician(BoundPlayer):
         rows = rows[[tried[k] is None for k in rows.tolist()]]
         if len(rows):  # nothing was found: any stroke at a ball on
             values[rows] = self._plain.play(at[rows].as_visits(), seeds[rows]).values
-        if self.options.concede and search.chance is not None:
+        if "concede" in self.options.says and search.chance is not None:
             some = np.flatnonzero([one is not None and one.chances[0] < LOST for one in tried])
             behind = lead_of(at[some]) < -left_of(at[some])  # it needs snookers
             declare[some[behind]] = CONCEDES

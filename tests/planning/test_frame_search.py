@@ -53,7 +53,7 @@ def test_a_pot_that_is_easy_is_played_and_hard_positions_get_more_shots():
     hard = positions_of(frames_in_play(6, OPTIONS, strokes=0))  # before the break-off
     two = search()
     for tried in two.rank(hard, np.arange(6)):
-        assert tried.kinds[0] == 1 and (np.diff(tried.samples) <= 0).all()
+        assert tried.kinds[0] in (1, 2) and (np.diff(tried.samples) <= 0).all()
     assert 1.5 * AVERAGE < two.shots / 6 <= sum(PLANS[1][:3]) + sum(a * b for a, b in PLANS[1].rounds)
 
 

@@ -24,6 +24,8 @@ LIKELY = VISIT_SIZE - SHARED_OF_VISITS + 10
 """The entry that holds the chance of the likeliest direct pot."""
 HIDDEN = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + 6
 """The entry that is 1 where no ball on can be struck along a straight line: the striker is snookered."""
+NARROWEST, WIDEST = 2.4e-4, 2.2e-3
+"""Errors of direction beyond which the size of the errors is shown as these [rad]: none was learned from."""
 _SPREAD = log(5e-4)
 """Logarithm of an error of direction between a professional's and a club player's [rad]."""
 
@@ -98,7 +100,7 @@ def _features(positions, on_table, game, spread, out):
             mask, game_row[columns.BALL_ON], game_row[columns.FREE_BALL] if game_row.shape[0] > 5 else 0
         )
         row[o + 16] = sqrt(max(0.0, left)) / 12.0
-        row[o + 17] = log(spread) - _SPREAD
+        row[o + 17] = log(min(max(spread, NARROWEST), WIDEST)) - _SPREAD
 
 
 def frame_features(at: Positions, spread: float, threads: int = 1) -> np.ndarray:

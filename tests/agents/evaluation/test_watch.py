@@ -67,7 +67,7 @@ def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
     assert data["players"] == ["ghost_ball", "random"] and {
         stroke["player"] for stroke in data["strokes"]
     } == {0, 1}
-    first, other = data["strokes"][-1]["scores"]
+    first, other = data["strokes"][-1]["score"]
     assert f"ghost_ball {first} - {other} random in {len(data['strokes'])} strokes" in said
 
 
