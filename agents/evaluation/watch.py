@@ -131,9 +131,8 @@ def main(argv=None):
     try:
         film = _film(args)
         if args.opponent and not args.frame:
-            raise refuse(
-                "opponent", args.opponent, "must be left out without --frame: nobody plays against a visit"
-            )
+            allowed = "must be left out without --frame: nobody plays against a visit"
+            raise refuse("opponent", args.opponent, allowed)
         if args.frame and args.at_least:
             raise refuse("at_least", args.at_least, "must be left out with --frame")
         integer("seed", args.seed, 0, 2**63)
@@ -144,10 +143,8 @@ def main(argv=None):
         p.error(str(error))
     if args.frame:
         scores = env.tables.standing(0)["scores"]
-        made, where = (
-            f"{players[0]} {scores[0]} - {scores[1]} {players[1]}",
-            f"frame {seed}, noise {args.noise}",
-        )
+        made = f"{players[0]} {scores[0]} - {scores[1]} {players[1]}"
+        where = f"frame {seed}, noise {args.noise}"
     else:
         made = f"{players[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"

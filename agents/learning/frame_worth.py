@@ -44,7 +44,7 @@ class WorthNetwork(nn.Sequential):
         return [(one.weight.detach().numpy().copy(), one.bias.detach().numpy().copy()) for one in linear]
 
 
-def fitted(seen, wanted, weights, seed, passes, layers=None, tick=None):
+def fitted(seen, wanted, seed, passes, layers=None):
     """The layers of a network fitted to ``wanted`` (n,) points at ``seen`` (n, SIZE), from ``layers`` on."""
     torch.manual_seed(seed)
     network, rng = WorthNetwork(), np.random.default_rng(seed)
@@ -55,7 +55,6 @@ def fitted(seen, wanted, weights, seed, passes, layers=None, tick=None):
                 one.weight.copy_(torch.from_numpy(weight))
                 one.bias.copy_(torch.from_numpy(bias))
     x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS - seen[:, -1]).astype(np.float32))
-    w = torch.from_numpy(weights.astype(np.float32))
     batch = min(BATCH, len(x))
     steps = passes * (len(x) // batch)
     optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=1e-4)
@@ -64,13 +63,11 @@ def fitted(seen, wanted, weights, seed, passes, layers=None, tick=None):
         order = torch.from_numpy(rng.permutation(len(x)))
         for k in range(0, batch * (len(x) // batch), batch):
             rows = order[k : k + batch]
-            loss = (w[rows] * (network(x[rows])[:, 0] - y[rows]) ** 2).mean()
+            loss = ((network(x[rows])[:, 0] - y[rows]) ** 2).mean()
             optimiser.zero_grad()
             loss.backward()
             optimiser.step()
             schedule.step()
-        if tick:
-            tick()
     return network.layers()
 
 

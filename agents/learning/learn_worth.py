@@ -1,6 +1,6 @@
 """Learn what positions of frames are worth, by self-play: the worth of the ``tactician``.
 
-    python -m agents.learn_worth --out runs/worth [--rounds 6] [--ray local]
+    python -m agents.learn_worth --out runs/worth [--rounds 8] [--ray local]
 
 Each round plays frames against oneself, under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with
 what the rounds before have learned; each stroke is judged by search (``frame_self_play``). A network is then fitted to
@@ -59,24 +59,8 @@ def played(where, shared, many):
     for j, part in enumerate(parts):
         part["target"] = targets(part)
         part["held"] = (part["frame"] + j) % HELD == 0
-        part["scale"] = np.full(len(part["target"]), many[j]["scale"])
         part["unit"] = part.pop("frame") + TABLES * j
-    kept = (
-        "seen",
-        "hand",
-        "target",
-        "worth",
-        "held",
-        "scale",
-        "unit",
-        "lead",
-        "left",
-        "won",
-        "decided",
-        "swing",
-        "same",
-        "striker",
-    )
+    kept = "seen", "hand", "target", "held", "unit", "lead", "left", "won", "decided"
     rows = {name: np.concatenate([part[name] for part in parts]) for name in kept}
     for name in ("seen", "hand"):
         rows[name] = rows[name].astype(np.float16)
@@ -90,7 +74,7 @@ def learned(rounds, seed, layers):
     in_hand = used & (both["seen"] != both["hand"]).any(axis=1)
     seen = np.concatenate([both["seen"][used], both["hand"][in_hand]]).astype(np.float32)
     wanted = np.concatenate([both["target"][used], both["target"][in_hand]])
-    layers = fitted(seen, wanted, np.ones(len(wanted)), seed, PASSES, layers)
+    layers = fitted(seen, wanted, seed, PASSES, layers)
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
     lead = both["lead"] + said.astype(np.float64)
     ended, held = both["decided"], both["held"]  # a frame that was stopped was won by nobody
@@ -123,7 +107,7 @@ def main(argv=None):
     """Play, fit, write. Exit code 0."""
     p = parser_of("python -m agents.learn_worth", __doc__)
     p.add_argument("--out", type=Path, required=True, help="folder of rounds and weights")
-    p.add_argument("--rounds", type=int, default=6, help="[6]")
+    p.add_argument("--rounds", type=int, default=8, help="[8]")
     p.add_argument("--frames", type=int, default=384, help=f"frames of a round, a multiple of {TABLES} [384]")
     p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
     p.add_argument("--seed", type=int, default=0, help="[0]")
@@ -145,18 +129,9 @@ def main(argv=None):
     layers, chance, rounds, asked = None, None, [], [args.frames, args.budget, args.seed]
     with place(args.ray) as where:
         for k in range(args.rounds):
-            rows_file, weights_file, began = (
-                args.out / f"round-{k}.npz",
-                args.out / f"worth-{k}.npz",
-                time.time(),
-            )
-            shared = {
-                "options": FRAME,
-                "layers": layers,
-                "chance": chance,
-                "budget": args.budget,
-                "explore": EXPLORE,
-            }
+            rows_file, weights_file = args.out / f"round-{k}.npz", args.out / f"worth-{k}.npz"
+            shared = {"options": FRAME, "layers": layers, "chance": chance, "explore": EXPLORE}
+            shared, began = shared | {"budget": args.budget}, time.time()
             if rows_file.is_file():
                 rows = _kept_round(rows_file)
                 if rows.pop("asked").tolist() != asked:

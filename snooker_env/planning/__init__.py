@@ -26,7 +26,7 @@ from .geometry import Paths, Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
-from .proposals import Proposals, at_balls, at_pots, over_cushions, spread_strokes, strokes_at
+from .proposals import Proposals, at_balls, at_pots, over_cushions, safeties, spread_strokes, strokes_at
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import sobol_points
 from .stroke_search import Ranked, StrokeSearch
@@ -57,6 +57,7 @@ __all__ = [
     "pots",
     "processors",
     "prospects_of",
+    "safeties",
     "sobol_points",
     "spread_of",
     "spread_strokes",

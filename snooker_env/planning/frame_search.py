@@ -20,11 +20,9 @@ from ..tasks.threads import Threads, processors
 from .frame_trials import FrameTrials
 from .planner import options_in
 from .positions import Positions, PositionsLike, check_played, seeds_of
-from .proposals import Proposals, at_balls, over_cushions
+from .proposals import Proposals, at_balls, over_cushions, safeties
 from .prospects import spread_of
-from .safeties import safeties
-from .sobol import DIMENSIONS, normal_points
-from .stroke_search import PRIOR, Propose, in_turn
+from .stroke_search import Propose, halved, in_turn
 from .strokes import COLUMNS, Dynamics
 from .worth import Chance, Worth, follows, lead_of, left_of, passed
 
@@ -186,7 +184,6 @@ class FrameSearch:
         n, every = len(at), np.arange(len(at))[:, None]
         strokes, chances, kinds = self._proposed(at, seeds, plan)
         some, m = chances > 0.0, chances.shape[1]
-        both, tries = np.full((n, m, 2), -np.inf), np.zeros((n, m), np.int64)
         rounds = () if self.noise.silent else plan.rounds
         j, c = np.nonzero(some)
         after, before = self.outcomes(at, j, strokes[j, c], np.zeros((len(j), COLUMNS))), lead_of(at)
@@ -204,28 +201,17 @@ class FrameSearch:
         worse = np.flatnonzero(called)
         points = np.minimum(looks[worse, 1], lead_of(after)[worse] - before[j[worse]] + most[j[worse]])
         looks[worse] = self._both(before[j[worse]], points, after[worse])
+        both = np.full((n, m, 2), -np.inf)
         both[j, c] = looks
-        sums, scores = PRIOR * both, self._score(both)
-        order = np.argsort(-scores, axis=1, kind="stable")
+        order = np.argsort(-self._score(both), axis=1, kind="stable")
         if plan.safeties:  # a look without error flatters: the best of each kind are sampled
             order = in_turn(order, kinds)
             order = np.take_along_axis(order, np.argsort(~some[every, order], axis=1, kind="stable"), 1)
-        samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in seeds.tolist()])
-        done = 0
-        for many, each in rounds:
-            best = order[:, :many]
-            j, c = np.nonzero(some[every, best])
-            c = best[j, c]
-            errors = samples[:, done : done + each][j].reshape(-1, DIMENSIONS)
-            met = self.gains(at, np.repeat(j, each), np.repeat(strokes[j, c], each, 0), errors, most)
-            sums[j, c] += met.reshape(-1, each, 2).sum(axis=1)
-            tries[j, c] += each
-            done += each
-            both[j, c] = sums[j, c] / (PRIOR + tries[j, c])[:, None]
-            scores[j, c] = self._score(both[j, c])
-            again = np.argsort(-scores[every, best], axis=1, kind="stable")
-            order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
+
+        def met(rows: Ints, picks: Ints, errors: Floats) -> Floats:
+            return self.gains(at, rows, strokes[rows, picks], errors, most)
+
+        order, both, tries = halved(both, order, rounds, seeds, met, self._score)
         parts: Any = [part[every, order] for part in (strokes, both[..., 0], both[..., 1], tries, kinds)]
-        return [
-            Tried(*(part[k, :count] for part in parts)) for k, count in enumerate(some.sum(axis=1).tolist())
-        ]
+        counts = some.sum(axis=1).tolist()
+        return [Tried(*(part[k, :count] for part in parts)) for k, count in enumerate(counts)]

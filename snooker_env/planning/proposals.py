@@ -7,6 +7,7 @@ strokes for each position that it has any for.
   the height of the tip and its side; half of them have no side.
 * ``at_balls``: to the places where a ball on is met first (``tasks.windows``), evenly. Every other
   stroke is hard, since a ball then goes in by chance more often.
+* ``safeties``: at the same places, of all speeds; every other one thin, near an edge of what is seen.
 * ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the
   models of the engine."""
 
@@ -25,7 +26,8 @@ from ..physics.cue import squirt
 from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
-from ..tasks.lines import EASY, aim_at_met, new_work
+from ..tasks.ghost_ball import break_off
+from ..tasks.lines import EASY, aim_at_met, new_work, racked
 from ..tasks.pot_aim import solved_aim
 from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
@@ -43,6 +45,10 @@ PLAIN = 0.5
 LOST = 0.01
 """Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly tells it."""
 POWER = 4.0  # power of the chance in a pot's share of the strokes
+GENTLEST, HARDEST, SAFE_TIP = 0.45, 6.0, 0.4
+"""Of safeties: cue speeds [m/s], and the largest tip offset over R to each side."""
+EDGE = 0.1
+"""How far from an edge of what is seen thin safeties are aimed, at most [rad]."""
 ESCAPES, ANYWHERE, MOST_POTS = 8, 8, 16
 """Escapes that share strokes, every which over cushions goes anywhere; pots that share strokes."""
 
@@ -161,12 +167,43 @@ def _plain_stroke(i, seed, hard, stroke):
     stroke[SPEED] = max(SLOWEST, MAX_SPEED * u ** (1.0 / 3.0)) if hard else soft
 
 
+@kernel
+def _safe_stroke(i, seed, stroke):
+    """Speed and tip of safety i, of all speeds."""
+    stroke[SPEED] = GENTLEST * exp(log(HARDEST / GENTLEST) * sobol(i, 0, seed))
+    stroke[TOP] = SAFE_TIP * (2.0 * sobol(i, 1, seed) - 1.0)
+    u = (sobol(i, 2, seed) - PLAIN) / (1.0 - PLAIN)
+    aside = 0.0 if u < 0.0 else SAFE_TIP * (2.0 * u - 1.0)
+    stroke[SIDE] = aside * (1.0 - 0.5 * abs(stroke[TOP]) / SAFE_TIP)
+
+
+@kernel
+def _along(windows, many, far):
+    """The direction ``far`` [rad] along the windows, one behind the other."""
+    w = 0
+    while w < many - 1 and far > windows[w, HIGH] - windows[w, LOW]:
+        far -= windows[w, HIGH] - windows[w, LOW]
+        w += 1
+    return windows[w, LOW] + far
+
+
+@kernel
+def _near_edge(windows, many, which, far):
+    """A direction within a window by the share ``far``^2 of ``EDGE``: all edges alike, the nearer the more."""
+    e = min(2 * many - 1, int(2 * many * which))
+    low, high = windows[e // 2, LOW], windows[e // 2, HIGH]
+    inside = min(EDGE, 0.5 * (high - low)) * far * far
+    return low + inside if e % 2 else high - inside
+
+
 @entry(what="the contacts of positions", seconds=2)
-def _contacts(balls, seeds, law, strokes, chances):
-    """Fill strokes (n, m, 5) and chances (n, m) with strokes at the balls on that are seen."""
+def _contacts(balls, seeds, law, safe, strokes, chances):
+    """Fill strokes (n, m, 5) and chances (n, m) with strokes at the balls on that are seen; ``safe``: safeties. Every
+    other one is hard, or thin: of two sequences, as every other point of one would fill a part of the cube only."""
     (positions, on_table, game), windows, work = balls, np.empty((MOST_EDGES, 3)), new_work()
     for k in range(len(strokes)):
-        p, here, seed, own = positions[k], on_table[k], seeds[k], row_of(k, law[0])
+        p, here, own = positions[k], on_table[k], row_of(k, law[0])
+        seed = seeds[k] ^ 0x3C3C if safe else seeds[k]
         its = CueLaw(law[0][own], law[1][own], 0, 0, law[4], law[5])
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
         chances[k, :] = 0.0
@@ -176,17 +213,23 @@ def _contacts(balls, seeds, law, strokes, chances):
         if total == 0.0:
             continue
         for i in range(strokes.shape[1]):
-            hard = i % 2 == 1  # two sequences: every other point of one would fill a part of the cube only
-            scramble = seed ^ 0xA5A5 if hard else seed
-            _plain_stroke(i // 2, scramble, hard, strokes[k, i])
-            w, along = 0, total * sobol(i // 2, 4, scramble)
-            while w < many - 1 and along > windows[w, HIGH] - windows[w, LOW]:
-                along -= windows[w, HIGH] - windows[w, LOW]
-                w += 1
-            played = strokes[k, i, SPEED], strokes[k, i, SIDE], strokes[k, i, TOP], 0.0
-            aim = aim_at_met(windows[w, LOW] + along, played, p, here, its, work)
-            strokes[k, i, AIM] = turned(aim)
+            stroke, j, other = strokes[k, i], i // 2, i % 2 == 1
+            scramble = seed + i % 2 if safe else seed ^ 0xA5A5 if other else seed
+            if safe:
+                _safe_stroke(j, scramble, stroke)
+            else:
+                _plain_stroke(j, scramble, other, stroke)
+            far = sobol(j, 4, scramble)
+            aim = _along(windows, many, total * far)
+            if safe and other:
+                aim = _near_edge(windows, many, sobol(j, 3, scramble), far)
+            played = stroke[SPEED], stroke[SIDE], stroke[TOP], 0.0
+            stroke[AIM] = turned(aim_at_met(aim, played, p, here, its, work))
             chances[k, i] = 1.0
+        end_red = racked(p, here) if safe else 0
+        if end_red:  # the one stroke that is known to be good
+            stroke = strokes[k, 0]
+            stroke[SPEED], stroke[SIDE], stroke[TOP], stroke[AIM] = break_off(p, end_red)
 
 
 @entry(what="the escapes of positions", seconds=5, uses=(escape_aim,))
@@ -294,13 +337,11 @@ def strokes_at(
 
 def _proposed(at, strokes, seeds, which, spread, dynamics):
     chances = np.empty(strokes.shape[:2])
-    _propose(
-        visits_of(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics, at), strokes, chances
-    )
+    _propose(_balls(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics, at), strokes, chances)
     return Proposals(strokes, chances)
 
 
-def visits_of(at):
+def _balls(at):
     """The arrays of visits that the kernels read."""
     at = at.as_visits()
     return at.positions, at.on_table, at.game
@@ -351,8 +392,35 @@ def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposal
     >>> at_balls(StrokeSearch({}), at, 4, [7]).chances.tolist()
     [[1.0, 1.0, 1.0, 1.0]]
     """
+    return _at_windows(search, at, m, seeds, False)
+
+
+def safeties(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
+    """Generate strokes at the balls on that the cue ball can strike, of all speeds, every other one thin.
+
+    Parameters
+    ----------
+    search, at, m, seeds
+        As for ``at_pots``.
+
+    Returns
+    -------
+    Proposals
+        The strokes; none where no ball on is seen. Before a break-off the first one is the built-in break-off.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, Positions, StrokeSearch, safeties
+    >>> at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0)))
+    >>> safeties(StrokeSearch({}), at, 4, [7]).chances.tolist()
+    [[1.0, 1.0, 1.0, 1.0]]
+    """
+    return _at_windows(search, at, m, seeds, True)
+
+
+def _at_windows(search, at, m, seeds, safe):
     made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
-    _contacts(visits_of(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
+    _contacts(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), safe, *made)
     return made
 
 
@@ -377,5 +445,5 @@ def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Pro
     [[1.0, 1.0, 1.0, 1.0]]
     """
     made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
-    _escapes(visits_of(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
+    _escapes(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
     return made

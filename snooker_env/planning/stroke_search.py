@@ -172,30 +172,25 @@ class StrokeSearch:
         if not n:
             return Ranked(np.zeros((0, looks, COLUMNS)), np.zeros((0, looks)), np.zeros((0, looks), np.int64))
         strokes, chances, which, safe = self._proposed(at, looks, keys)
-        scores = self._gains(at, safe, strokes[:, :, None], np.zeros((n, 1, DIMENSIONS)))[..., 0]
+        every, none = np.arange(n)[:, None], np.zeros((n * looks, DIMENSIONS))
+        rows = np.repeat(np.arange(n), looks)
+        scores = self._gains(at, safe, rows, strokes.reshape(-1, COLUMNS), none).reshape(n, looks)
         if not self.noise.silent:
             scores *= chances
             doubt = np.flatnonzero(safe & (chances < 1.0).any(axis=1))
             if len(doubt) and not self.pots_only:  # a pot that is missed leaves the balls about as they lie
                 scores[doubt] -= (1.0 - chances[doubt]) * LEFT * self.value(for_opponent(at[doubt]))[:, None]
-        every, tries, sums = np.arange(n)[:, None], np.zeros((n, looks), np.int64), PRIOR * scores
         order = np.argsort(-scores, axis=1, kind="stable")
         # a look flatters pots, and strokes that pot by luck: the best of each kind are sampled
         if safe.any():
             kinds = np.where((which > 0) & (scores > 0.0), -1, which)[safe]
             order[safe] = in_turn(order[safe], kinds)
-        samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in keys.tolist()])
-        done = 0
-        for many, each in rounds:
-            best = order[:, :many]
-            picked = np.repeat(strokes[every, best][:, :, None], each, 2)
-            sums[every, best] += self._gains(at, safe, picked, samples[:, done : done + each]).sum(2)
-            tries[every, best] += each
-            done += each
-            scores[every, best] = sums[every, best] / (PRIOR + tries[every, best])
-            again = np.argsort(-scores[every, best], axis=1, kind="stable")
-            order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
-        return Ranked(strokes[every, order], scores[every, order], tries[every, order])
+
+        def met(rows: Ints, picks: Ints, errors: Floats) -> Floats:
+            return self._gains(at, safe, rows, strokes[rows, picks], errors)[:, None]
+
+        order, values, tries = halved(scores[..., None], order, rounds, keys, met, lambda each: each[..., 0])
+        return Ranked(strokes[every, order], values[every, order, 0], tries[every, order])
 
     def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Outcomes:
         """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5) in standard deviations."""
@@ -224,22 +219,57 @@ class StrokeSearch:
         strokes, chances = (np.stack(part)[which, every, looks] for part in zip(*made, strict=True))
         return strokes, chances, which
 
-    def _gains(self, at: Positions, safe: Bools, strokes: Floats, errors: Floats) -> Floats:
-        """What strokes (n, m, s, 5) under errors (n, s, 5) bring, and what they leave is worth: (n, m, s)."""
-        n, m, s = strokes.shape[:3]
-        every = np.broadcast_to(errors[:, None], (n, m, s, DIMENSIONS)).reshape(-1, DIMENSIONS)
-        rows = np.repeat(np.arange(n), m * s)
-        after, out = self.planner._played(at, rows, strokes=strokes.reshape(-1, COLUMNS), errors=every)
+    def _gains(self, at: Positions, safe: Bools, rows: Ints, strokes: Floats, errors: Floats) -> Floats:
+        """What strokes (k, 5) on ``at[rows]`` under errors (k, 5) bring, and what they leave is worth: (k,)."""
+        after, out = self.planner._played(at, rows, strokes=strokes, errors=errors)
         gains, penalty, careful = out.reals[:, I_POINTS].copy(), out.counts[:, I_PENALTY], safe[rows]
         if self.pots_only:
-            return ((gains > 0).astype(np.float64) - (careful & (penalty > 0))).reshape(n, m, s)
+            return (gains > 0).astype(np.float64) - (careful & (penalty > 0))
         gains[careful] -= penalty[careful] + FOUL * (penalty[careful] > 0)
         on, left = np.flatnonzero(~after.over), np.flatnonzero(after.over & careful)
         if len(on):
             gains[on] += self.value(after[on])
         if len(left):
             gains[left] -= LEFT * self.value(for_opponent(after[left]))
-        return gains.reshape(n, m, s)
+        return gains
+
+
+def halved(
+    looks: Floats,
+    order: Ints,
+    rounds: Sequence[tuple[int, int]],
+    seeds: Ints,
+    met: Callable[[Ints, Ints, Floats], Floats],
+    score: Callable[[Floats], Floats],
+) -> tuple[Ints, Floats, Ints]:
+    """Sequential halving: of the strokes of n positions the best meet noise samples, the better ones more of them.
+
+    ``looks`` (n, m, v): the values of each stroke without error, -inf where there is none; they count as ``PRIOR``
+    samples. ``order`` (n, m): the strokes, best first. ``rounds``: how many go on, and their further samples.
+    ``met(rows, picks, errors)``: values (k, v) of the strokes ``picks`` of the positions ``rows`` under errors (k, 5).
+    ``score``: what values (..., v) are compared by. Returns the order then, means (n, m, v) and samples (n, m)."""
+    n, m = looks.shape[:2]
+    every, sums, values, tries = (
+        np.arange(n)[:, None],
+        PRIOR * looks,
+        looks.copy(),
+        np.zeros((n, m), np.int64),
+    )
+    samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in seeds.tolist()])
+    done = 0
+    for many, each in rounds:
+        best = order[:, :many]
+        j, c = np.nonzero(np.isfinite(looks[every, best, 0]))
+        c = best[j, c]
+        errors = samples[:, done : done + each][j].reshape(-1, DIMENSIONS)
+        got = met(np.repeat(j, each), np.repeat(c, each), errors).reshape(len(j), each, -1)
+        sums[j, c] += np.ascontiguousarray(got.transpose(0, 2, 1)).sum(axis=2)  # rounded in a fixed order
+        tries[j, c] += each
+        done += each
+        values[j, c] = sums[j, c] / (PRIOR + tries[j, c])[:, None]
+        again = np.argsort(-score(values[every, best]), axis=1, kind="stable")
+        order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
+    return order, values, tries
 
 
 def in_turn(order: Ints, kinds: Ints) -> Ints:

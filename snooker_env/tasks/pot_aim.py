@@ -14,10 +14,8 @@ from ..physics.impact.contact import collide_balls
 
 _ENOUGH = 1e-6  # rad that the object ball may pass the aim point by, a hundredth of the best player's error
 _TRIALS = 12
-_ROUNDS, _NEARLY = (
-    4,
-    1e-5,
-)  # of ``swerved_aim``: corrections of the aim; the last may be as large as that [rad]
+_ROUNDS, _NEARLY = 4, 1e-5
+"""Of ``swerved_aim``: corrections of the aim; the last may be as large as that [rad]."""
 _STEPS, _THERE = 30, 1e-9  # of Newton's method along the path, two to four as a rule; near enough [m]
 _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve of a pot
 

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from snooker_env.game import frame_columns as columns
-from snooker_env.planning import Position, Positions, at_pots, prospects_of, spread_of
+from snooker_env.planning import Position, Positions, at_pots, prospects_of, safeties, spread_of
 from snooker_env.planning.frame_search import AVERAGE, PLANS, FrameSearch
-from snooker_env.planning.safeties import safeties
 from snooker_env.planning.worth import (
     Chance,
     best_places,

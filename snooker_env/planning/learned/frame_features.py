@@ -87,8 +87,7 @@ def _features(positions, on_table, game, spread, out):
             row[o + c] = seen[16 + c]
         o += 6
         row[o] = game_row[columns.IN_HAND] != 0
-        if game_row.shape[0] > columns.RESPOTTED_BLACK:
-            row[o + 1], row[o + 2] = game_row[columns.FREE_BALL] != 0, game_row[columns.RESPOTTED_BLACK] != 0
+        row[o + 1], row[o + 2] = game_row[columns.FREE_BALL] != 0, game_row[columns.RESPOTTED_BLACK] != 0
         row[o + 3], row[o + 4], row[o + 5] = min(many, 4) / 4.0, min(total, 1.0), min(widest, 1.0)
         row[o + 6], row[o + 7] = total == 0.0, total < 0.02
         row[o + 8], row[o + 9] = strikeable / 8.0, (touching & on) != 0
@@ -96,9 +95,7 @@ def _features(positions, on_table, game, spread, out):
         row[o + 12], row[o + 13] = min(low, 1.0), closest / 4.0
         row[o + 14] = min(HALF_WIDTH - side * cx, 0.1) * 10.0
         row[o + 15] = min(HALF_LENGTH - abs(cy), 0.1) * 10.0
-        left = available(
-            mask, game_row[columns.BALL_ON], game_row[columns.FREE_BALL] if game_row.shape[0] > 5 else 0
-        )
+        left = available(mask, game_row[columns.BALL_ON], game_row[columns.FREE_BALL])
         row[o + 16] = sqrt(max(0.0, left)) / 12.0
         row[o + 17] = log(min(max(spread, NARROWEST), WIDEST)) - _SPREAD
 

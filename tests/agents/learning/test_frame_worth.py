@@ -55,7 +55,7 @@ def test_a_network_learns_what_it_is_told_beside_the_value():
     rng = np.random.default_rng(0)
     seen = rng.standard_normal((4000, SIZE)).astype(np.float32)
     wanted = POINTS * (seen[:, -1] + 0.3 * seen[:, 3] - 0.2)
-    layers = fitted(seen, wanted, np.ones(4000), 0, 30)
+    layers = fitted(seen, wanted, 0, 30)
     said = worth_of(Layers(layers, "relu"), seen)
     assert np.sqrt(np.mean((said - wanted) ** 2)) < 0.25 * np.std(wanted - POINTS * seen[:, -1])
 
