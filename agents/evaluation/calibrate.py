@@ -4,7 +4,7 @@ errors of several sizes, and the frames are compared with those of professionals
     python -m agents.calibrate FILE [--scales 1.0 1.4 2.0] [--frames 400] [--ray local] [--json FILE]
 
 FILE: frames of professionals, each with every scoring visit and foul, in the format of its first lines. A scale is
-a factor of the errors of ``noise="professional"`` (``agents.learning.frame_self_play.noise_of``). A visit scores if
+a factor of the errors of ``noise="professional"`` (``commands.noise_option``). A visit scores if
 it pots a ball; its points are its break. Frames that are lost are conceded, as in matches. Standard errors are over
 frames.
 """

@@ -23,6 +23,7 @@ from commands.lifecycle import command, needs, parser_of
 with needs("agents.tournament"):
     import snooker_env
     from commands.files import writable, write_atomic
+    from commands.noise_option import noise_option
     from commands.physics_option import physics_option
     from commands.tables import show
     from snooker_env import Options
@@ -57,7 +58,7 @@ def parser():
     p.add_argument("--fewer", nargs="+", default=[], metavar="LABEL=N", help=what)
     what = "play matches, each the best of so many frames; odd [1]"
     p.add_argument("--match", type=int, default=1, metavar="BEST_OF", help=what)
-    p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
+    p.add_argument("--noise", default="professional", help="errors: LEVEL or LEVEL*SCALE [professional]")
     what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
     p.add_argument("--physics", default="paper", help=what)
     p.add_argument("--miss", default="off", help="rule for a foul and a miss [off]")
@@ -109,7 +110,12 @@ def checked(args):
     }
     if args.match % 2 == 0:
         raise refuse("match", args.match, "must be odd: the best of so many frames")
-    game = {"noise": args.noise, "physics": args.physics, "miss": args.miss, "max_strokes": args.max_strokes}
+    game = {
+        "noise": noise_option(args.noise),
+        "physics": args.physics,
+        "miss": args.miss,
+        "max_strokes": args.max_strokes,
+    }
     game |= {} if args.rules == "snooker" else {"game": args.rules}
     game |= {} if args.cue == "free" else {"cue": args.cue}
     for entrant in entrants:

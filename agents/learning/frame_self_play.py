@@ -6,6 +6,7 @@ mean is what the position is worth. A frame's outcome alone varies by 60 points 
 
 import numpy as np
 
+from commands.noise_option import scaled
 from snooker_env import Options
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.sides import strikers_own
@@ -13,22 +14,13 @@ from snooker_env.planning import Positions
 from snooker_env.planning.worth import lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
 from snooker_env.players.tactician import Tactician
-from snooker_env.tasks import LEVELS, Noise
+from snooker_env.tasks import LEVELS
 from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.frame import Frames, Seat
 from snooker_env.tasks.threads import Threads
 
 FRESH = 8
 """Noise samples that judge the best stroke of a position."""
-
-
-def noise_of(scale: float) -> Noise:
-    """The errors of a professional, times ``scale``; those of the speed grow with its power 0.7, as from a
-    professional to a club player."""
-    one = LEVELS["professional"]
-    slower = one.speed_rel * scale**0.7
-    tip = {"offset_mm": one.offset_mm * scale, "elevation_deg": one.elevation_deg * scale}
-    return Noise(aim_deg=one.aim_deg * scale, speed_rel=slower, **tip)
 
 
 def frames(shared, args, threads):
@@ -42,7 +34,7 @@ def frames(shared, args, threads):
     that, -1 the other, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead",
     "left", "won" (m,): the striker's lead, the points on the table, whether the striker won; "decided": whether anybody
     did; "frame" and "striker" (m,)."""
-    noise = noise_of(args["scale"])
+    noise = scaled(LEVELS["professional"], args["scale"])
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
     rules, many = options.rules, args["many"]
     known = options.but(conditions="fixed")  # a player does not know the constants of a table

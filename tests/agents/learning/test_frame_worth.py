@@ -5,19 +5,13 @@ import pytest
 
 from agents.learn_worth import main
 from agents.learning import learn_worth
-from agents.learning.frame_self_play import frames, noise_of
+from agents.learning.frame_self_play import frames
 from agents.learning.frame_worth import TRACE, calibration, fitted, fitted_chance, targets
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
-from snooker_env.tasks import LEVELS
 
 SHARED = {"options": {"cue": "real", "miss": "clear_path", "max_strokes": 8}, "layers": None, "chance": None}
 SHARED |= {"budget": 30, "explore": 0.2}
-
-
-def test_the_errors_of_scale_one_are_a_professionals():
-    assert noise_of(1.0) == LEVELS["professional"]
-    assert noise_of(2.0).aim_deg == 2.0 * noise_of(1.0).aim_deg
 
 
 def test_a_target_is_the_search_and_what_followed():
