@@ -52,16 +52,15 @@ def test_visits_are_played_as_the_planner_plays_them():
     )
 
 
-def test_it_finishes_a_frame_against_a_player():
-    env = sn.SnookerVectorEnv(
-        2, task="frame", opponent="tactician_30", noise="club", miss="clear_path", cue="real"
-    )
-    env.reset(seed=0)
-    for _ in range(3):
-        _, _, _, _, infos = env.step(
-            np.random.default_rng(0).uniform(-1, 1, env.action_space.shape).astype(np.float32)
-        )
-    assert infos["opponent_strokes"].sum() > 0
+def test_it_plays_a_frame_to_its_end_as_an_opponent():
+    game = {"task": "frame", "opponent": "tactician_30", "noise": "club", "miss": "clear_path", "cue": "real"}
+    env, rng = sn.SnookerEnv(**game), np.random.default_rng(0)
+    _, info = env.reset(seed=0)
+    for _ in range(200):
+        _, _, terminated, _, info = env.step(rng.uniform(-1, 1, 4).astype(np.float32))
+        if terminated:
+            break
+    assert terminated and info["winner"] == 1 and info["opponent_score"] > info["score"]
 
 
 def test_a_third_miss_loses_the_frame_whatever_the_lead():
