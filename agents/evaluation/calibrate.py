@@ -22,7 +22,7 @@ with needs("agents.calibrate"):
     from commands.files import writable, write_json
     from commands.provenance import provenance
     from commands.tables import TextTable, show
-    from snooker_env.checks import integer, number, refuse
+    from snooker_env.checks import choice, integer, number, refuse
     from snooker_env.planning.frame_search import LEAST
     from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY
     from snooker_env.players.weights import learned_worth
@@ -30,6 +30,7 @@ with needs("agents.calibrate"):
     from ..cluster.ray_cluster import add_ray, checked_ray, place
     from ..learning.learn_worth import FRAME, TABLES
 
+CONDITIONS = "fixed", "drawn"
 FIRST_SEED = 900_000_000  # of frames that no training has played
 FIGURES = {
     "visits": "scoring visits a frame",
@@ -165,10 +166,11 @@ def figures_of(frames):
     return {name: out[name] for name in FIGURES}
 
 
-def self_played(where, scales, frames, budget):
+def self_played(where, scales, frames, budget, conditions):
     """What two copies of the ``tactician`` play under each scale: a list of the rows of its parts for each."""
     layers, chance = learned_worth()
-    shared = {"options": FRAME | {"says": ["decision", "concede"]}, "layers": layers, "chance": chance}
+    options = FRAME | {"says": ["decision", "concede"], "conditions": conditions}
+    shared = {"options": options, "layers": layers, "chance": chance}
     shared |= {"budget": budget, "explore": 0.0}
     parts, starts = [], range(0, frames, TABLES)
     for scale in scales:
@@ -193,12 +195,15 @@ def main(argv=None):
     p.add_argument("--scales", type=float, nargs="+", default=[1.0, 1.4, 2.0], help="[1.0 1.4 2.0]")
     p.add_argument("--frames", type=int, default=400, help="frames of each scale [400]")
     p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
+    what = "fixed, or drawn: each frame on a table whose constants the players do not know [fixed]"
+    p.add_argument("--conditions", default="fixed", help=what)
     add_ray(p)
     p.add_argument("--json", type=Path, metavar="FILE", help="write every figure here")
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
         integer("frames", args.frames, 2, 10**6)
         integer("budget", args.budget, LEAST, 10**6)
+        choice("conditions", args.conditions, CONDITIONS)
         for scale in args.scales:
             number("scales", scale, 0.01, 10.0)
         checked_ray(args.ray)
@@ -208,7 +213,7 @@ def main(argv=None):
         p.error(str(error))
     snooker_env.warmup()
     with place(args.ray) as where:
-        played = self_played(where, args.scales, args.frames, args.budget)
+        played = self_played(where, args.scales, args.frames, args.budget, args.conditions)
     names = [f"scale {scale:g}" for scale in args.scales]
     columns = {"professionals": figures_of(real)}
     for name, parts in zip(names, played, strict=True):

@@ -2,12 +2,10 @@
 and ``turned`` shows positions as their next striker sees them."""
 
 from copy import copy
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
-from .._types import Floats, Ints
+from .._types import Floats, Ints, Words
 from ..game import frame_columns as columns
 from ..game.ruling import AUTO
 from ..game.sides import strikers_own
@@ -16,14 +14,14 @@ from ..tasks.options import Rules
 from ..tasks.stroke import ShotBuffers
 from ..tasks.threads import Threads
 from .positions import Positions
-from .strokes import Struck, packed_under
+from .strokes import Struck
 
 
 class FrameTrials(Struck, Frames):
     """Frames of one stroke: strokes (n, 5) in SI with errors (n, 5) in standard deviations, judged as in a frame."""
 
     def __init__(self, rules: Rules, threads: Threads):
-        super().__init__(replace(rules, drawn=False, observed=False), 0)
+        super().__init__(rules, 0)
         self._crew, self._out = threads, self.output()
 
     def play(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Positions:
@@ -33,7 +31,7 @@ class FrameTrials(Struck, Frames):
         A cue ball in hand is played from where it lies. Decisions after a foul must have been made: rows in that
         phase are played as the table lies."""
         trial, after = copy(self), at[rows]  # a copy: several threads may play at once
-        trial.lay(after, errors)
+        trial.lay(after, np.zeros((len(after), 2), np.uint64), errors)
 
         def play(which: Ints, buffers: ShotBuffers) -> None:
             trial.address(which, strokes, buffers)
@@ -42,21 +40,13 @@ class FrameTrials(Struck, Frames):
         trial._crew(np.arange(len(after)), play)
         return after
 
-    def lay(self, after: Positions, errors: Floats) -> None:
-        """Put positions of frames on the tables; they are played in place."""
-        n = self.n = len(after)
-        self.errors, self.streams = errors, np.zeros((n, 2), np.uint64)
-        if after.conditions is not None:
-            self.packed = packed_under(after.conditions, self.rules)
-            self.packs = (self.packed,)
-        self.positions, self.on_table, self.game = after.positions, after.on_table, after.game
-        saved: Any = after.saved
-        if saved is None:
-            saved = columns.Layouts(after.positions.copy(), after.on_table.copy())
-            after.saved = saved
-        self._saved_positions, self._saved_on_table = saved
-        self._played = self._replies = np.zeros(n, np.int64)
-        self.nominated = np.full(n, AUTO, np.int64)
+    def lay(self, after: Positions, streams: Words, errors: Floats | None = None) -> None:
+        super().lay(after, streams, errors)
+        if after.saved is None:
+            after.saved = columns.Layouts(after.positions.copy(), after.on_table.copy())
+        self._saved_positions, self._saved_on_table = after.saved
+        self._played = self._replies = np.zeros(self.n, np.int64)
+        self.nominated = np.full(self.n, AUTO, np.int64)
 
 
 def turned(after: Positions) -> Positions:

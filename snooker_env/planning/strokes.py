@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .._check import array, integer, number, refuse, refuse_what
 from .._jit import entry
-from .._types import CueKind, Fidelity, Floats, Integers, Ints, Scalars, Vector, Vectors
+from .._types import CueKind, Fidelity, Floats, Integers, Ints, Scalars, Vector, Vectors, Words
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics.conditions import END_MASS_RATIO, pack_into
@@ -67,10 +67,20 @@ def _off_the_tip(strokes, every):
 
 
 class Struck(Tables):
-    """Tables whose strokes (n, 5) meet the given ``errors`` (n, 5); without them these are actions."""
+    """Tables of one stroke each, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of actions."""
 
     errors: Floats | None = None
     kick: float = 0.0  # the probability of a kick in strokes with ``errors``
+
+    def __init__(self, rules: Rules, n: int):
+        super().__init__(replace(rules, drawn=False, observed=False), n)
+
+    def lay(self, after: Positions, streams: Words, errors: Floats | None = None) -> None:
+        """Put positions on the tables, with their own constants if they have any; they are played in place."""
+        self.n, self.errors, self.streams = len(after), errors, streams
+        if after.conditions is not None:
+            self.packed = packed_under(after.conditions, self.rules)
+        self.positions, self.on_table, self.game = after.positions, after.on_table, after.game
 
     def address(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> None:
         if self.errors is None:
@@ -83,18 +93,7 @@ class Struck(Tables):
 
 
 class TrialVisits(Struck, Visits):
-    """Visits of one stroke, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of actions. Their
-    tables' constants are those of the positions, if these have any."""
-
-    def __init__(self, rules: Rules, n: int):
-        super().__init__(replace(rules, drawn=False, observed=False), n)
-
-    def lay(self, after: Positions, streams: np.ndarray, errors: Floats | None = None) -> None:
-        """Put positions on the tables; they are played in place."""
-        self.n, self.errors, self.streams = len(after), errors, streams
-        if after.conditions is not None:
-            self.packed = packed_under(after.conditions, self.rules)
-        self.positions, self.on_table, self.game = after.positions, after.on_table, after.game
+    """Visits of one stroke."""
 
 
 def decoded(

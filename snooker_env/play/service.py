@@ -20,13 +20,8 @@ from ..tasks.declarations import CLAIMS, CONCEDES
 from .session import DECLINED, Session
 
 PERSON = "person"
-OFFERED = (
-    AGENT,
-    "tactician_500",
-    "search_2000",
-    "ghost_ball",
-    "random",
-)  # the agents that can always be chosen
+OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")
+"""The agents that can always be chosen."""
 
 
 class Seats:

@@ -71,6 +71,9 @@ def test_the_command_compares_frames_played_with_those_of_a_file(tmp_path, capsy
     file, out = tmp_path / "frames.txt", tmp_path / "figures.json"
     file.write_text(TEXT)
     assert main([str(file), "--scales", "1.5", "--frames", "3", "--budget", "30", "--json", str(out)]) == 0
+    for wrong in (["--conditions", "wet"], ["--budget", "5"], ["--scales", "0"], ["--frames", "1"]):
+        with pytest.raises(SystemExit):
+            main([str(file), *wrong])
     assert "scale 1.5" in capsys.readouterr().out
     assert json.loads(out.read_text())["figures"]["scale 1.5"]["strokes"][0] <= 6.0
     with pytest.raises(SystemExit):
