@@ -78,6 +78,11 @@ def learned(rounds, seed, layers):
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
     lead = both["lead"] + said.astype(np.float64)
     ended, held = both["decided"], both["held"]  # a frame that was stopped was won by nobody
+    for some, what in ((used & ended, "fitted"), (held & ended, "kept from the fit")):
+        if not some.any():
+            raise refuse(
+                "frames", len(np.unique(both["unit"])), f"must be more: of those {what} none has ended"
+            )
     chance = fitted_chance(*(part[used & ended] for part in (lead, both["left"], both["won"])))
     wins, won = chance(lead, both["left"])[held & ended], both["won"][held & ended]
     figures = {
@@ -144,7 +149,10 @@ def main(argv=None):
             if weights_file.is_file():
                 layers, chance = learned_worth(weights_file)
                 continue
-            layers, chance, figures = learned(rounds, args.seed + k, layers)
+            try:
+                layers, chance, figures = learned(rounds, args.seed + k, layers)
+            except ValueError as error:
+                p.error(str(error))
             write_atomic(weights_file, packed(arrays_of(layers, chance)))
             frames = len(np.unique(rows["unit"]))
             told = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())

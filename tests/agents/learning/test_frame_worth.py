@@ -66,7 +66,8 @@ def test_the_chance_to_win_is_that_of_the_frames():
 
 
 def test_an_interrupted_training_goes_on_to_the_same_weights(tmp_path, monkeypatch):
-    monkeypatch.setattr(learn_worth, "FRAME", SHARED["options"])
+    short = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 60}
+    monkeypatch.setattr(learn_worth, "FRAME", short)
     monkeypatch.setattr(learn_worth, "PASSES", 2)
     line = ["--rounds", "2", "--frames", "16", "--budget", "30", "--out"]
     assert main([*line, str(tmp_path / "whole")]) == 0
@@ -81,6 +82,11 @@ def test_an_interrupted_training_goes_on_to_the_same_weights(tmp_path, monkeypat
         np.load(tmp_path / "whole" / "worth.npz") as other,
     ):
         assert not np.array_equal(one["worth/0/weight"], other["worth/0/weight"])
+    with np.load(tmp_path / "whole" / "worth.npz") as arrays:
+        assert np.isfinite(arrays["chance"]).all()
+    monkeypatch.setattr(learn_worth, "FRAME", short | {"max_strokes": 3})
+    with pytest.raises(SystemExit):  # no frame ends: nothing says who wins
+        main([*line, str(tmp_path / "none")])
     for wrong in (["--rounds", "0"], ["--frames", "20"], ["--budget", "5"]):
         with pytest.raises(SystemExit):
             main([*wrong, "--out", str(tmp_path)])
