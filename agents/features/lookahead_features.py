@@ -51,6 +51,7 @@ class ForesightView:
         self._planner: Any = None
         self._samples: Any = None
         self._spread = 0.0
+        self._cue: Any = "free"
 
     def at(self, options):
         """The view under the rules and the noise of ``options``."""
@@ -59,11 +60,12 @@ class ForesightView:
         bound._planner = planner = Planner(choices, threads=self._threads)
         bound._samples = np.array(EVEN_SAMPLES[:1] if planner.noise.silent else EVEN_SAMPLES, np.uint64)
         bound._spread = spread_of(planner.noise, planner.physics)
+        bound._cue = choices.cue
         return bound
 
     def __call__(self, at, observations):
         """The view of n ``Positions`` with these flat observations, as ``SPACE``: float32."""
-        ahead = self.ahead(at, action_masks(at)[:, PICKS])
+        ahead = self.ahead(at, action_masks(at, cue=self._cue)[:, PICKS])
         return np.concatenate([with_pots(observations), ahead.reshape(len(at), -1)], 1)
 
     def ahead(self, at, masks):

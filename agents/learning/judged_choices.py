@@ -26,14 +26,14 @@ class JudgedChoices:
 
     def __init__(self, policy, options, threads, n, rng, where=None):
         self._policy, self._rng, self._n, self._where = policy, rng, n, where or Here(threads)
-        self._sent = {"run": uuid.uuid4().hex, "options": options}
+        self._sent, self._cue = {"run": uuid.uuid4().hex, "options": options}, options.get("cue", "free")
         learned = [p for name, p in policy.named_parameters() if not name.startswith("position_value.")]
         self._optimizer, self._rounds = torch.optim.Adam(learned, RATE), []
         self.losses = deque(maxlen=100)
 
     def round(self, at, value, remaining):
         """Try choices in ``Positions``, judge what they leave by ``value``, learn; ``remaining``: share."""
-        seen, masks = with_pots(at.observations()), action_masks(at)
+        seen, masks = with_pots(at.observations()), action_masks(at, cue=self._cue)
         with torch.no_grad():
             scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
         picks, valid = to_try(scores, masks, self._rng)

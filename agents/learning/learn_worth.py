@@ -30,7 +30,7 @@ with needs("agents.learn_worth"):
 
     from .frame_worth import calibration, fitted, fitted_chance, targets
 
-SCALES = 0.4, 3.5
+SCALES = 0.3, 4.5
 """Errors of the frames played, times those of a professional, evenly spread in the logarithm."""
 FRAME = {"cue": "real", "miss": "clear_path", "max_strokes": 200}
 """Options of the frames."""

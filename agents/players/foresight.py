@@ -19,7 +19,7 @@ class ForesightRule(ChoicePlayer):
 
     def scores(self, at, seeds):
         """Expected points of the simulated choices; all others are worse."""
-        masks = action_masks(at)
+        masks = action_masks(at, cue=self.options.cue)
         # where none of the simulated choices is there, the first of the others
         scores = np.where(masks, -1e9, -np.inf)
         scores[:, PICKS] = np.maximum(worth_by_rule(self._view.ahead(at, masks[:, PICKS])), scores[:, PICKS])

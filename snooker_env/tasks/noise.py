@@ -2,32 +2,33 @@
 
 What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): aim, and the
 squirt of a tip that is off to the side. No measurement of a snooker player's errors was found, so the levels
-are set by what players achieve, on the pockets of this package; the figures of players are from secondary
-sources. ``python -m benchmarks.execution`` prints pot rates beside them, and with ``--fit`` the errors that
-give them.
+are set by what players achieve, on the pockets of this package.
 
-* "professional", 0.035 deg in all: professionals are said to make 50 to 65 % of long pots, this level that
-  mean of three of our choice (26, 62 and 84 %). A player that takes the likeliest pot then makes about 88 %
-  of those that it tries, 91 % of those with a chance of half or more; professionals are said to make 88 to 95.
-* "amateur", 0.048, and "club", 0.114: aim errors of 0.05 deg are given for a good amateur, 0.08 to 0.12 for
-  club players, as total errors for pockets with an effective half window of 22 mm. These levels give the same
-  mean rate of four pots on these pockets.
+* "professional", 0.063 deg in all: the first estimate of a professional's execution error from whole frames. Two
+  copies of the ``tactician``, with a real cue, play frames as professionals do in 37 matches (203 frames, half
+  of a set; the others are kept apart): scoring visits, strokes, breaks, shares of frames with a 50 and a century
+  (``python -m agents.calibrate``, docs/agents/tactician.md). It holds all that a person does not know, too: the
+  constants of the table, where exactly the balls lie.
+* "amateur", 0.126, and "club", 0.252: twice and four times a professional's. The aim errors that secondary
+  sources give, 0.02 to 0.03 deg for professionals, 0.05 for a good amateur, 0.08 to 0.12 for club players, are as
+  1 to 2 to 4; their sizes, of players who know the table, are too small for frames as people play them.
 * "robot", 0.046: that of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and
   left the cue ball 100 to 200 mm from the planned place, here 0.15 m. The pots ("moderate" in the benchmark)
   and putting the whole error of position, that of its predictions included, into the speed are our choice.
 * "olympiad", 0.149: the definition of the Computer Olympiad's billiards: aim 0.125 deg, elevation 0.1 deg,
   speed 0.075 m/s, offsets 0.5 mm. The squirt of the offset is added to the aim.
 
-A pot that loses the cue ball counts as missed, also in the fit: 17 % of a professional's strokes at the
-longest straight pot, without spin. If it counted as made, as in the published derivation, the fit would give
-about 0.040, 0.056 and 0.122 deg. The aim errors published for professionals, 0.02 to 0.03 deg, make 83 to 92
-% of those four pots, this level 76 %: both cannot be met at once, and we chose the long pots.
+What is said of pots does not agree with frames. Professionals are said to make 50 to 65 % of long pots and 88 to
+95 % of the likeliest ones; 0.035 deg would make 57 and 88 % (``python -m benchmarks.execution`` prints what the
+levels make, with ``--fit`` the errors that give such rates), but two players who err so clear the table nearly
+every time that they come to it: 1.6 scoring visits a frame, breaks of 60 and more. We chose the frames, which were
+counted.
 
 Our choices: aim and squirt have half of the variance each. The errors are independent, so the tip error, as
 large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope
-(0.35 m) behind the ball squirt cancels the turn. Speed 1.75, 2.5 and 4 %: a good pool player is said to roll
-a ball a table's length to within an inch or two, 0.5 to 1 % of the speed, a beginner to within a diamond, 6 %
-(Waldron, Pool Table Stimpmeter, 2009). Elevation 0.1 to 0.3 deg hardly matters with a level cue.
+(0.35 m) behind the ball squirt cancels the turn. Speed 2.6, 4.3 and 7 %, growing as the power 0.7 of the others:
+a good pool player is said to roll a ball a table's length to within an inch or two, 0.5 to 1 % of the speed, a
+beginner to within a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009). Elevation hardly matters with a level cue.
 
 A real cue (the option ``cue="real"``) that must be raised is harder to deliver straight, over a rail or a ball the
 bridge is cramped. The errors of aim and tip then grow as 1 + elevation / 20 deg: twice as large at 20 deg. That is
@@ -202,9 +203,9 @@ NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
 """The types that arguments called ``noise`` accept, see ``Noise.of``."""
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
-    "professional": Noise(aim_deg=0.025, speed_rel=0.0175, offset_mm=0.15, elevation_deg=0.1),
-    "amateur": Noise(aim_deg=0.034, speed_rel=0.025, offset_mm=0.21, elevation_deg=0.2),
-    "club": Noise(aim_deg=0.08, speed_rel=0.04, offset_mm=0.5, elevation_deg=0.3),
+    "professional": Noise(aim_deg=0.045, speed_rel=0.026, offset_mm=0.27, elevation_deg=0.18),
+    "amateur": Noise(aim_deg=0.09, speed_rel=0.043, offset_mm=0.54, elevation_deg=0.36),
+    "club": Noise(aim_deg=0.18, speed_rel=0.07, offset_mm=1.08, elevation_deg=0.72),
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
 }

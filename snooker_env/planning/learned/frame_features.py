@@ -24,10 +24,10 @@ LIKELY = VISIT_SIZE - SHARED_OF_VISITS + 10
 """The entry that holds the chance of the likeliest direct pot."""
 HIDDEN = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + 6
 """The entry that is 1 where no ball on can be struck along a straight line: the striker is snookered."""
-NARROWEST, WIDEST = 2.4e-4, 2.2e-3
+NARROWEST, WIDEST = 3.3e-4, 5e-3
 """Errors of direction beyond which the size of the errors is shown as these [rad]: none was learned from."""
-_SPREAD = log(5e-4)
-"""Logarithm of an error of direction between a professional's and a club player's [rad]."""
+_SPREAD = log(1.2e-3)
+"""Logarithm of an error of direction in the middle of those learned from [rad]."""
 
 
 @entry(what="the features of frames", seconds=4)
