@@ -22,7 +22,7 @@ from ..physics.arrays import Boundaries, Law
 from ..physics.columns import AXIS_X, AXIS_Y, P_R
 from ..physics.detection import boundary_event, pair_time
 from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
-from .pot_aim import struck_in_room
+from .pot_aim import stroke_in_room, struck_by
 from .windows import turned
 
 ROLL = 0.25  # twice a rolling ball's deceleration [m/s^2]
@@ -172,7 +172,7 @@ def find_escapes(positions, on_table, on, lines, first):
 def _played(aim, stroke, positions, on_table, law, work):
     """The ball that the cue ball meets first, by the engine's models; 0: none, or a pocket."""
     phys, motion, state, R = law.phys, work.motion, work.state, law.phys[P_R]
-    (vx, vy, _), w = struck_in_room(aim, stroke, positions, on_table, law)
+    (vx, vy, _), w = struck_by(stroke_in_room(aim, stroke, positions, on_table, law), law)
     boundaries, rough = Boundaries(_BED, _NO_JAWS, _NO_FALLS, R), Law(phys, FAST, 0)
     cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
     legs, now = 1, 0.0

@@ -17,27 +17,37 @@ _TRIALS = 12
 _ROUNDS, _NEARLY = 4, 1e-5
 """Of ``swerved_aim``: corrections of the aim; the last may be as large as that [rad]."""
 _STEPS, _THERE = 30, 1e-9  # of Newton's method along the path, two to four as a rule; near enough [m]
+_SAME_ROOM = 1e-4
+"""A cue that turns by less keeps its elevation while an aim is solved [rad]: that would change the aim by 1e-6."""
+_SWERVE = 5e-3
+"""The same of the first trial, which only shows the way [rad]."""
 _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve of a pot
 
 
 @kernel
-def struck_in_room(aim, stroke, positions, on_table, law):
-    """Velocity and spin of a stroke (speed, side, top, elevation), the cue raised as it must be; see ``cue.struck``."""
+def stroke_in_room(aim, stroke, positions, on_table, law):
+    """(speed, side, top, aim of the cue, elevation) of a stroke (speed, side, top, elevation) that is meant to leave
+    in the direction ``aim``, its cue raised as it must be."""
     speed, side, top, elevation = stroke
-    R, mu_s, m = law.phys[P_R], law.phys[P_MU_S], law.end_mass_ratio
-    meant = speed, side, top, aim - cue.squirt(side, m), elevation
-    played, _ = in_room(meant, positions, on_table, law.rails, R, law.max_offset)
-    speed, side, top, aim, elevation = played
-    return cue.struck(speed, aim, side, top, elevation, R, mu_s, m)
+    meant = speed, side, top, aim - cue.squirt(side, law.end_mass_ratio), elevation
+    return in_room(meant, positions, on_table, law.rails, law.phys[P_R], law.max_offset)[0]
 
 
 @kernel
-def _passes(aim, stroke, positions, on_table, b, p, law, work):
-    """Angle [rad] by which the ball at b, hit by the cue ball, passes p on the left; 9: missed."""
+def struck_by(played, law):
+    """Velocity and spin of a stroke of ``stroke_in_room``; see ``cue.struck``."""
+    speed, side, top, aim, elevation = played
+    return cue.struck(speed, aim, side, top, elevation, law.phys[P_R], law.phys[P_MU_S], law.end_mass_ratio)
+
+
+@kernel
+def _passes(played, positions, b, p, law, work):
+    """Angle [rad] by which the ball at b, hit by the cue ball of a stroke of ``stroke_in_room``, passes p on the
+    left; 9: missed."""
     (cx, cy), (bx, by), (px, py) = (positions[0, 0], positions[0, 1]), b, p
     phys, motion, state = law.phys, work.motion, work.state
     R = phys[P_R]
-    (vx, vy, _), w = struck_in_room(aim, stroke, positions, on_table, law)
+    (vx, vy, _), w = struck_by(played, law)
     cloth.begin(motion, state, 0, 0.0, (cx, cy), (vx, vy), w, phys)
     cloth.begin(motion, state, 1, 0.0, (bx, by), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
     t, now = 1e300, 0.0
@@ -88,11 +98,12 @@ def _passes(aim, stroke, positions, on_table, b, p, law, work):
 
 
 @kernel
-def _sent(aim, far, stroke, positions, on_table, law, work):
-    """Direction [rad], from where it lies, in which the cue ball is as ``far`` away [m], or where it stops."""
+def _sent(played, far, positions, law, work):
+    """Direction [rad], from where it lies, in which the cue ball of a stroke of ``stroke_in_room`` is as ``far`` away
+    [m], or where it stops."""
     phys, motion, state = law.phys, work.motion, work.state
     cx, cy = positions[0, 0], positions[0, 1]
-    (vx, vy, _), w = struck_in_room(aim, stroke, positions, on_table, law)
+    (vx, vy, _), w = struck_by(played, law)
     cloth.begin(motion, state, 0, 0.0, (cx, cy), (vx, vy), w, phys)
     x, y = cx + vx, cy + vy
     while state[0] > cloth.REST:
@@ -115,14 +126,21 @@ def _sent(aim, far, stroke, positions, on_table, law, work):
 
 
 @kernel
-def _turned_back(line, far, stroke, positions, on_table, law, work, rounds):
-    """``swerved_aim`` after so many corrections."""
+def _off(played, line, far, positions, law, work):
+    """Angle [rad] from ``line`` to where the stroke ``played`` sends the cue ball, in (-pi, pi]."""
+    off = _sent(played, far, positions, law, work) - line
+    return off - 2.0 * pi * round(off / (2.0 * pi))
+
+
+@kernel
+def swerved_aim(line, far, stroke, positions, on_table, law, work):
+    """Direction [rad] in which a stroke (speed, side, top, elevation) leaves, so that its swerve under a raised
+    cue brings it to the place that is ``far`` along the direction ``line``. A free cue's is the line itself."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return line
     aim, last_aim, last, slope = line, line, 0.0, 1.0
-    for k in range(rounds):
-        off = _sent(aim, far, stroke, positions, on_table, law, work) - line
-        off -= 2.0 * pi * round(off / (2.0 * pi))
+    for k in range(_ROUNDS):
+        off = _off(stroke_in_room(aim, stroke, positions, on_table, law), line, far, positions, law, work)
         if k and aim != last_aim:  # the elevation turns with the aim, if little
             slope = min(2.0, max(0.5, (off - last) / (aim - last_aim)))
         last_aim, last = aim, off
@@ -130,13 +148,6 @@ def _turned_back(line, far, stroke, positions, on_table, law, work, rounds):
         if abs(off) < _NEARLY:
             break
     return aim
-
-
-@kernel
-def swerved_aim(line, far, stroke, positions, on_table, law, work):
-    """Direction [rad] in which a stroke (speed, side, top, elevation) leaves, so that its swerve under a raised
-    cue brings it to the place that is ``far`` along the direction ``line``. A free cue's is the line itself."""
-    return _turned_back(line, far, stroke, positions, on_table, law, work, _ROUNDS)
 
 
 @kernel(seconds=5, uses=(collide_balls,))
@@ -151,12 +162,19 @@ def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
     run = hypot(px - bx, py - by)
     cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)
     slope = -far / (2.0 * law.phys[0] * max(cut, 0.05))
-    # a raised cue with side bends the path: by more than a thin cut or a soft stroke would show
-    begin = _turned_back(line, max(far, law.phys[P_R]), stroke, positions, on_table, law, work, 1)
+    squirted = cue.squirt(stroke[1], law.end_mass_ratio)
+    begin, raised_at, played = line, line, stroke_in_room(line, stroke, positions, on_table, law)
+    if law.rails.shape[0] and stroke[1] != 0.0:
+        # a raised cue with side bends the path: by more than a thin cut or a soft stroke would show
+        begin -= _off(played, line, max(far, law.phys[P_R]), positions, law, work)
     aim, best, least = begin, begin, 9.0
     last_aim, last = begin, 9.0
-    for _ in range(_TRIALS):
-        off = _passes(aim, stroke, positions, on_table, (bx, by), target, law, work)
+    for k in range(_TRIALS):
+        if abs(aim - raised_at) > (_SAME_ROOM if k else _SWERVE):  # the first trial is never the last
+            played, raised_at = stroke_in_room(aim, stroke, positions, on_table, law), aim
+        speed, side, top, _, elevation = played
+        at_aim = speed, side, top, aim - squirted, elevation
+        off = _passes(at_aim, positions, (bx, by), target, law, work)
         if abs(off) < abs(least):
             best, least = aim, off
         if abs(off) <= _ENOUGH:
