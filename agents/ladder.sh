@@ -3,13 +3,13 @@
 #
 #     bash agents/ladder.sh [FILE.json]     agents/results/ladder.json, and the tables beside it
 #
-# Run again after an interruption, it goes on. Slow players meet the others in fewer frames. LIST=1 bash agents/ladder.sh prints the command.
+# Run again after an interruption, it goes on. LIST=1 bash agents/ladder.sh prints the command.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 file=${1:-agents/results/ladder.json}
 export OMP_NUM_THREADS=1 # the networks are small: more threads than one make them slower
-command=(python -m agents.tournament random ghost_ball geometric ppo_target ppo_mask ppo_foresight search search_200
-    --frames 60 --fewer ppo_foresight=20 search_200=20 --threads 1 --resume --out "$file" --markdown "${file%.json}.md")
+command=(python -m agents.tournament random ghost_ball ppo_mask best_pot search planner tactician
+    --cue real --miss clear_path --frames 100 --threads 1 --resume --out "$file" --markdown "${file%.json}.md")
 if [[ -n ${LIST:-} ]]; then
     printf '%q ' "${command[@]}"
     echo

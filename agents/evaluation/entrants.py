@@ -19,7 +19,7 @@ from ..learning.model_files import Trained
 from ..learning.models import POLICY, PRETRAINED, file_of, pretrained
 from ..players.trained import read_model
 
-UNKNOWN = dict.fromkeys(("layout", "noise", "fidelity", "physics"), "unknown")
+UNKNOWN = dict.fromkeys(("layout", "noise", "fidelity", "physics", "cue"), "unknown")
 """The training record of a model that train.py did not make."""
 
 
@@ -91,7 +91,7 @@ class Entrant:
             seconds = None if seconds is None else 3600.0 * seconds
         else:
             seconds, imitated = _number_in(results, "seconds"), model.imitated
-        usual = {"layout": Options().layout, "noise": "none", "fidelity": "standard"}
+        usual = {"layout": Options().layout, "noise": "none", "fidelity": "standard", "cue": "free"}
         return {
             "recipe": model.recipe,
             "shots": model.num_timesteps,

@@ -9,7 +9,7 @@ several training seeds.
 
 Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that
 are never used in training, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every
-agent plays under every value of --noise, --fidelity and --physics, so agents that were trained under A and B
+agent plays under every value of --noise, --fidelity, --physics and --cue, so agents that were trained under A and B
 make a table of A against B. (The aim of a discrete choice is solved with the physics that is played.) Results
 for the leaderboard are made by ``python -m snooker_env.benchmark`` instead.
 
@@ -129,6 +129,7 @@ def parser():
     add("--fidelity", nargs="+", default=["standard"], help=what)
     what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
     add("--physics", nargs="+", default=["paper"], help=what)
+    add("--cue", nargs="+", default=["real"], choices=("free", "real"), help="whether rails and balls are in its way [real]")
     what = "new execution errors after every decision: a control that no agent has seen them beforehand"
     add("--rekey", action="store_true", help=what)
     add_ray(p, keep=True)

@@ -28,9 +28,9 @@ SEEDS = 5
 """Fewer training seeds than that are pointed out."""
 SAME = 0.1
 """Times that differ by less than this share are called equal."""
-AXES = ("noise", "fidelity", "physics")
+AXES = ("noise", "fidelity", "physics", "cue")
 PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
-USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
+USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper", "cue": "real"}
 
 _pm = partial(shown, form="{:.2f}")
 
@@ -104,19 +104,19 @@ def agents_tables(report):
         if "recipe" not in runs[0]:
             by_noise = re.fullmatch(r"planner(_value|_policy)?(_\d+)?", runs[0]["from"])
             how = "pre-trained, by the noise played" if by_noise else "not trained"
-            trained.append([label, how, "", "", "", ""])
+            trained.append([label, how, *[""] * (len(AXES) + 1)])
             continue
-        keys = ("recipe", "noise", "fidelity", "physics")
+        keys = ("recipe", *AXES)
         words = [", ".join(sorted({str(run[key]) for run in runs})) for key in keys]
         rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]
         numbers = [_between([run[key] for run in runs]) for key in ("imitated", "shots", "seconds")]
         gammas = ", ".join(sorted({f"{run['gamma']:g}" for run in runs}))
         trained.append([label, *words, gammas])
         long.append([label, str(_seeds(runs)), *numbers, _between(rates)])
-    how = ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
+    how = ["agent", "recipe", "trained: noise", *AXES[1:], "gamma"]
     how_long = ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
     long_table = TextTable("How long they were trained", how_long, long, 1, 1)
-    return [TextTable("The agents", how, trained, 1, 5), long_table]
+    return [TextTable("The agents", how, trained, 1, len(how) - 1), long_table]
 
 
 def _seeds(runs):
@@ -210,9 +210,9 @@ def conditions(report):
     """Tables of every layout and condition: what was scored, and how the cue ball was placed."""
     p, tables = report["protocol"], []
     for layout, visits in p["layouts"].items():
-        for physics, fidelity in product(p["physics"], p["fidelity"]):
-            rows = _picked(report, layout=layout, physics=physics, fidelity=fidelity)
-            where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}"
+        for physics, fidelity, cue in product(p["physics"], p["fidelity"], p["cue"]):
+            rows = _picked(report, layout=layout, physics=physics, fidelity=fidelity, cue=cue)
+            where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}, {cue} cue"
             for name, columns in _columns(p["against"], most_points(layout)).items():
                 cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
                 tables.append(TextTable(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True))

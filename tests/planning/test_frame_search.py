@@ -50,7 +50,7 @@ def search(**more):
 
 
 def test_a_pot_that_is_easy_is_played_and_hard_positions_get_more_shots():
-    easy = frame_of(Position(cue=(0.0, 1.0), reds=[(0.3, 1.4)], black=(0.0, 1.4605), on="red"))
+    easy = frame_of(Position(cue=(0.3, 1.3), reds=[(0.6, 1.6)], black=(0.0, 1.4605), on="red"))
     one = search()
     (tried,) = one.rank(easy, [3])
     assert tried.kinds[0] == 0 and one.shots <= sum(PLANS[0][:3]) + sum(a * b for a, b in PLANS[0].rounds)

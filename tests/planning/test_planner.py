@@ -30,7 +30,7 @@ def same(one, other):
 @pytest.mark.parametrize(
     "options",
     [
-        {"aim": "target", "noise": "amateur"},
+        {"aim": "target", "noise": "professional"},
         {"action": "discrete", "noise": "club", "layout": "random:6"},
         {"aim": "target", "elevation": True, "placement": True, "layout": "break_off", "noise": "club"},
         {"aim": "target", "physics": "match", "table": "tight", "fidelity": "fast", "layout": "line_up"},

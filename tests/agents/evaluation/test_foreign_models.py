@@ -102,7 +102,7 @@ def test_a_foreign_model_is_compared_with_consent(foreign, tmp_path, capsys):
     assert protocol.main([*agents, *QUICK, "--json", str(tmp_path / "r.json")]) == 0
     (run,) = json.loads((tmp_path / "r.json").read_text())["agents"][0]["runs"]
     its = {"from": str(foreign / "ppo.zip"), "recipe": "PPO", "shots": 0, "seed": 4, "gamma": 0.99}
-    under = dict.fromkeys(("layout", "noise", "fidelity", "physics"), "unknown")
+    under = dict.fromkeys(("layout", "noise", "fidelity", "physics", "cue"), "unknown")
     assert run == {**its, **under, "imitated": None, "seconds": None}
     assert "unknown" in capsys.readouterr().out
 

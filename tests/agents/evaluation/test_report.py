@@ -18,7 +18,7 @@ GHOST = {"from": "ghost_ball"}
 def run(seed, **changes):
     """A training run as agents/evaluation/protocol.py keeps it."""
     trained = {"from": f"m-{seed}", "recipe": "r", "seed": seed, "shots": 1000, "imitated": 0, "gamma": 0.95}
-    under = {"layout": "opened", "noise": "none", "fidelity": "fast", "physics": "paper"}
+    under = {"layout": "opened", "noise": "none", "fidelity": "fast", "physics": "paper", "cue": "real"}
     return trained | under | {"seconds": 10.0} | changes
 
 
@@ -28,7 +28,7 @@ def agent(label, seeds=(0, 1, 2, 3, 4), **changes):
 
 def report_of(*agents, layouts=("held_out",)):
     """A report of these agents before anything was played."""
-    axes = {"noise": ["none", "club"], "fidelity": ["standard"], "physics": ["paper"]}
+    axes = {"noise": ["none", "club"], "fidelity": ["standard"], "physics": ["paper"], "cue": ["real"]}
     played = {"layouts": dict.fromkeys(layouts, 10), **axes, "against": ["b"]}
     return {"agents": list(agents), "protocol": played, "results": []}
 
@@ -77,10 +77,10 @@ def test_who_was_trained_on_what_is_played_is_named():
 def test_the_agents():
     ghost = {"label": "ghost_ball", "runs": [GHOST]}
     trained, long = report.agents_tables(report_of(agent("a", imitated=300, seconds=None), ghost))
-    assert trained.header == ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
+    assert trained.header == ["agent", "recipe", "trained: noise", "fidelity", "physics", "cue", "gamma"]
     assert trained.rows == [
-        ["a", "r", "none", "fast", "paper", "0.95"],
-        ["ghost_ball", "not trained", "", "", "", ""],
+        ["a", "r", "none", "fast", "paper", "real", "0.95"],
+        ["ghost_ball", "not trained", "", "", "", "", ""],
     ]
     assert long.header == ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
     assert long.rows == [["a", "5", "300", "1,000", "", ""]]
@@ -90,10 +90,10 @@ def test_the_agents():
         ("planner_mine:Mine", "not trained"),
     ):
         played = report_of({"label": "p", "runs": [{"from": name}]})
-        assert report.agents_tables(played)[0].rows == [["p", recipe, "", "", "", ""]]
+        assert report.agents_tables(played)[0].rows == [["p", recipe, "", "", "", "", ""]]
 
 
-PLAYED = {"layout": "held_out", "noise": "none", "fidelity": "standard", "physics": "paper", "runs": 1}
+PLAYED = {"layout": "held_out", "noise": "none", "fidelity": "standard", "physics": "paper", "cue": "real", "runs": 1}
 
 
 def figure(value, low=None, high=None):
@@ -124,7 +124,7 @@ def test_the_comparison_says_whose_is_which(ratio, words, more):
     ]
     shares = "after a pot it pots again: 90.0 against 60.0 %; an easy pot is left: 50.0 against 20.0 %"
     assert report.comparison(made) == [  # the other way round is not given again
-        "On layout held_out, noise none, fidelity standard, physics paper:",
+        "On layout held_out, noise none, fidelity standard, physics paper, cue real:",
         f"a makes {words} times the points of b{more}; {shares}.",
     ]
 
@@ -134,7 +134,7 @@ def test_a_under_b():
     points = {("a", "none"): 4.0, ("a", "club"): 1.0, ("b", "none"): 3.0, ("b", "club"): 2.0}
     made["results"] = [row(label, noise, value, (None,) * 3, {}) for (label, noise), value in points.items()]
     (table,) = report.crossed(made)
-    assert table.title == "held_out: points a visit, played under noise ..., fidelity standard, physics paper"
+    assert table.title == "held_out: points a visit, played under noise ..., fidelity standard, physics paper, cue real"
     assert table.header == ["agent", "trained under", "none", "club"]
     assert table.rows == [["a", "none", "4.00", "1.00"], ["b", "club", "3.00", "2.00"]]
 
@@ -187,7 +187,7 @@ def test_what_cannot_be_on_a_layout_is_left_out():
     shares = {"centuries": 0.0, "maximums": 0.0, "clearances": 0.5, "pot_rate": 0.5, "fouls_a_visit": 0.1}
     layouts = {"pots:easy": 30, "colours": 30, "random:10": 30, "opened": 30}
     tables = tables_of(*(result(layout, **shares) for layout in layouts), layouts=layouts)
-    where = "{}, 30 visits, physics paper, fidelity standard: {}"
+    where = "{}, 30 visits, physics paper, fidelity standard, real cue: {}"
     for layout, breaks in (
         ("pots:easy", ["clearances %"]),
         ("colours", ["clearances %"]),
@@ -248,14 +248,12 @@ def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
 
 
 def test_no_two_titles_are_alike():
-    titles = [report.title(report.read(file)) for file in KEPT]
-    assert len(KEPT) == 20 and len(set(titles)) == 20
-    assert titles[0] == "How search and ghost_ball play on break_off, noise none"
-    for who, axis, values in (
-        ("agents", "fidelity", "fast, standard and reference"),
-        ("planners", "noise", "none, professional, amateur and club"),
-    ):
-        assert f"How {who} trained under one {axis} play under another, on held_out: {values}" in titles
+    titles = {file.stem: report.title(report.read(file)) for file in KEPT}
+    assert list(titles) == ["ladder", "planner_budgets", "planner_noise", "visits"]
+    assert len(set(titles.values())) == 4
+    values = "none, professional, amateur and club"
+    said = f"How planners trained under one noise play under another, on held_out: {values}"
+    assert titles["planner_noise"] == said
 
 
 def test_the_command_writes_the_markdown_beside(tmp_path, capsys, refused):

@@ -109,7 +109,7 @@ def test_frames_do_not_depend_on_the_company(tmp_path):
     assert rows[0] == rows[1] and len(rows[0]) == 6
 
 
-MAIN = "agents/results/main.json"
+MAIN = "agents/results/visits.json"
 
 
 @pytest.mark.parametrize(
