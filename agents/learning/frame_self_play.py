@@ -1,5 +1,5 @@
-"""How is a round of frames played against oneself, here or by many workers? Each part plays some frames, both sides
-with the worth that has been learned so far, under errors of its own.
+"""How is a round of frames of self-play played, here or by many workers? Each part plays some frames under errors of its
+own, with the worth that has been learned so far; the other is oneself, a past self or a player of the package.
 
 A stroke is judged by *search*, not by luck: before it is played its best stroke meets fresh noise samples, and their
 mean is what the position is worth. A frame's outcome alone varies by 60 points and would drown it."""
@@ -13,6 +13,7 @@ from snooker_env.game.sides import strikers_own
 from snooker_env.planning import Positions
 from snooker_env.planning.worth import lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
+from snooker_env.players import player as snooker_player
 from snooker_env.players.tactician import Tactician
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.carry_out import carry_out
@@ -24,11 +25,12 @@ FRESH = 8
 
 
 def frames(shared, args, threads):
-    """The task: play frames against oneself, and say what each position was worth.
+    """The task: play frames, and say what each position that one's own side met was worth.
 
     ``shared``: "options" of the frames, "layers" of the worth (None: the value of the visit alone), "chance" (None or its numbers),
     "budget", "explore" (share of strokes that are not the best). ``args``: "scale" of the errors, "seed" of the first
-    table, "many" frames. Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue
+    table, "many" frames, "other": the name of who plays against it, or layers and chance of a past self; None: itself,
+    and both sides count. Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue
     ball where it was played from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search,
     "swing" (m,) points of the striker less the other's until the next stroke, "same" (m,): 1 if the striker plays
     that, -1 the other, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead",
@@ -39,7 +41,10 @@ def frames(shared, args, threads):
     rules, many = options.rules, args["many"]
     known = options.but(conditions="fixed")  # a player does not know the constants of a table
     player = Tactician(shared["budget"], (shared["layers"], shared["chance"])).at(known)
-    worth = player.search.worth
+    worth, other = player.search.worth, args["other"]
+    if other is not None:
+        other = snooker_player(other) if isinstance(other, str) else Tactician(shared["budget"], other)
+        other = other.at(known)
     rng, seed = np.random.default_rng([args["seed"], 7]), args["seed"]
     tables, crew = Frames(rules, many, seats=[Seat.of(rules)] * 2), Threads(threads or 1)
     for k in range(many):
@@ -47,11 +52,13 @@ def frames(shared, args, threads):
     tables.deal(np.arange(many), drawn=True, breakers=np.arange(many) % 2)
     out, rows, step, held, last = tables.output(), [], 0, 0, np.full(many, -1)
     while len(going := np.flatnonzero(~tables.ended())):
-        at = _seen_by_strikers(tables, going)
-        strokes, tried, start = player.decided(at, decision_seeds(seed, going, step))
+        theirs = (tables.game[going, columns.STRIKER] == 1) & (other is not None)
+        mine, keys = going[~theirs], decision_seeds(seed, going, step)
+        at = _seen_by_strikers(tables, mine)
+        strokes, tried, start = player.decided(at, keys[~theirs])
         here = np.flatnonzero([one is not None for one in tried])
         if len(here):
-            which, best = going[here], strokes.values[here]
+            which, best = mine[here], strokes.values[here]
             again, errors = np.repeat(here, FRESH), rng.standard_normal((FRESH * len(here), 5))
             judged = player.search.gains(start, again, np.repeat(best, FRESH, 0), errors)
             explored = rng.random(len(here)) < shared["explore"]
@@ -75,8 +82,12 @@ def frames(shared, args, threads):
             last[which] = held + np.arange(len(here))
             held += len(here)
         parts = tuple(np.zeros((many, *part.shape[1:]), part.dtype) for part in strokes.parts)
-        for whole, part in zip(parts, strokes.parts, strict=True):
-            whole[going] = part
+        made = [(mine, strokes)]
+        if theirs.any():
+            made.append((going[theirs], other.play(_seen_by_strikers(tables, going[theirs]), keys[theirs])))
+        for who, said in made:
+            for whole, part in zip(parts, said.parts, strict=True):
+                whole[who] = part
         tables.turn(lambda which, b, parts=parts: carry_out(tables, which, parts, b, 0), out, crew, going)
         step += 1
     return _followed({name: np.concatenate([one[name] for one in rows]) for name in rows[0]}, tables)

@@ -2,8 +2,9 @@
 
     python -m agents.learn_worth --out runs/worth [--rounds 8] [--ray local]
 
-Each round plays frames against oneself, under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with
-what the rounds before have learned; each stroke is judged by search (``frame_self_play``). A network is then fitted to
+Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds
+before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
+Each stroke is judged by search (``frame_self_play``). A network is then fitted to
 the last rounds, and with it the chance to win. After each round OUT holds its data and its weights: the same command
 goes on from there. The last round's weights are written to OUT/worth.npz, and with --export into the package.
 """
@@ -40,17 +41,23 @@ EXPLORE = 0.08
 """Share of strokes that are not the best ones found, so that positions after worse ones are seen, too."""
 KEEP, PASSES = 3, 15
 """Rounds whose positions a network is fitted to, and passes over them."""
+VISITORS = ("planner",)
+"""Players of the league that are no past selves."""
 HELD = 8
 """One frame in so many is kept from the fit, to say how good it is."""
 
 
-def drawn_parts(seed, k, parts):
-    """The arguments of the parts of round k."""
+def drawn_parts(seed, k, parts, past):
+    """The arguments of the parts of round k; ``past``: layers and chance of each round before."""
     rng = np.random.default_rng([seed, k])
     shares = (np.arange(parts) + rng.random(parts)) / parts
     scales = SCALES[0] * (SCALES[1] / SCALES[0]) ** shares
-    first = 10_000_000 * (seed + 1) + 100_000 * k
-    return [{"scale": float(s), "seed": first + TABLES * i, "many": TABLES} for i, s in enumerate(scales)]
+    first, league = 10_000_000 * (seed + 1) + 100_000 * k, [*past, *VISITORS]
+    others = [league[rng.integers(len(league))] if i % 2 else None for i in range(parts)]
+    return [
+        {"scale": float(scale), "seed": first + TABLES * i, "many": TABLES, "other": other}
+        for i, (scale, other) in enumerate(zip(scales, others, strict=True))
+    ]
 
 
 def played(where, shared, many):
@@ -131,7 +138,8 @@ def main(argv=None):
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
-    layers, chance, rounds, asked = None, None, [], [args.frames, args.budget, args.seed]
+    layers, chance, past, rounds = None, None, [], []
+    asked = [args.frames, args.budget, args.seed]
     with place(args.ray) as where:
         for k in range(args.rounds):
             rows_file, weights_file = args.out / f"round-{k}.npz", args.out / f"worth-{k}.npz"
@@ -143,16 +151,18 @@ def main(argv=None):
                     wanted = "must hold rounds of the same --frames, --budget and --seed"
                     p.error(str(refuse("out", str(args.out), wanted)))
             else:
-                rows = played(where, shared, drawn_parts(args.seed, k, args.frames // TABLES))
+                rows = played(where, shared, drawn_parts(args.seed, k, args.frames // TABLES, past))
                 write_atomic(rows_file, packed(rows | {"asked": np.array(asked)}))
             rounds = [*rounds, rows][-KEEP:]
             if weights_file.is_file():
                 layers, chance = learned_worth(weights_file)
+                past.append((layers, chance))
                 continue
             try:
                 layers, chance, figures = learned(rounds, args.seed + k, layers)
             except ValueError as error:
                 p.error(str(error))
+            past.append((layers, chance))
             write_atomic(weights_file, packed(arrays_of(layers, chance)))
             frames = len(np.unique(rows["unit"]))
             told = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())

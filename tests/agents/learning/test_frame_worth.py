@@ -12,6 +12,7 @@ from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
 
 SHARED = {"options": {"cue": "real", "miss": "clear_path", "max_strokes": 8}, "layers": None, "chance": None}
 SHARED |= {"budget": 30, "explore": 0.2}
+PART = {"scale": 2.0, "seed": 3, "many": 4, "other": None}
 
 
 def test_a_target_is_the_search_and_what_followed():
@@ -31,7 +32,7 @@ def test_a_target_is_the_search_and_what_followed():
 
 
 def test_rows_of_a_frame_follow_each_other():
-    rows = frames(SHARED, {"scale": 2.0, "seed": 3, "many": 4}, 1)
+    rows = frames(SHARED, PART, 1)
     n = len(rows["worth"])
     assert rows["seen"].shape == rows["hand"].shape == (n, SIZE) and n > 20
     after, linked = rows["next"], rows["next"] >= 0
@@ -41,8 +42,26 @@ def test_rows_of_a_frame_follow_each_other():
     assert np.array_equal(rows["same"][linked], np.where(same, 1, -1))
     sign = np.where(same, 1.0, -1.0)  # the lead goes on from stroke to stroke
     assert np.allclose(rows["lead"][linked] + rows["swing"][linked], sign * rows["lead"][after[linked]])
-    again = frames(SHARED, {"scale": 2.0, "seed": 3, "many": 4}, 1)
+    again = frames(SHARED, PART, 1)
     assert all(np.array_equal(rows[name], again[name]) for name in rows)
+
+
+@pytest.mark.parametrize("other", ["ghost_ball", (None, None)])
+def test_of_a_frame_against_another_only_ones_own_strokes_are_learned_from(other):
+    rows, alone = frames(SHARED, PART | {"other": other}, 1), frames(SHARED, PART, 1)
+    assert (rows["striker"] == 0).all() and set(rows["frame"].tolist()) == {0, 1, 2, 3}
+    linked = rows["next"] >= 0
+    assert (rows["same"][linked] == 1).all()  # what the other scored lies between: the lead goes on
+    assert np.allclose((rows["lead"] + rows["swing"])[linked], rows["lead"][rows["next"][linked]])
+    first, mine = rows["frame"] == 0, alone["frame"] == 0  # nobody but oneself has played there yet
+    assert rows["worth"][first][0] == alone["worth"][mine][0]
+
+
+def test_the_league_is_past_selves_and_the_planner():
+    parts = learn_worth.drawn_parts(0, 1, 40, ["first", "second"])
+    assert [part["other"] for part in parts[::2]] == [None] * 20
+    assert {part["other"] for part in parts[1::2]} == {"first", "second", "planner"}
+    assert {part["other"] for part in learn_worth.drawn_parts(0, 0, 4, [])} == {None, "planner"}
 
 
 def test_a_network_learns_what_it_is_told_beside_the_value():
