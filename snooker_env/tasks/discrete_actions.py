@@ -3,7 +3,7 @@ aim is solved for them, or is the straight line if none can be. Without a direct
 ``lines`` stand in the pots' places. ``action_masks`` says how many there are."""
 
 from collections.abc import Collection
-from math import atan2
+from math import atan2, cos, sin
 from typing import Any
 
 import numpy as np
@@ -37,6 +37,9 @@ SIZE = POTS * STROKES
 _NEAR_RAIL, _NEAR_BALL = 0.038, 0.064
 """A real cue need not be steeper than ``STEEPEST`` for what is farther from the cue ball's centre [m]: the nose of a
 rail; the centre of a ball."""
+_ABOUT = 0.1
+"""What is behind the cue ball by the sine of an angle, or ahead of it by less than this one, may be under the cue: more
+than the squirt of its side and the width of its tip turn it."""
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
@@ -86,16 +89,18 @@ def chosen(index, positions, on_table, on, law, work):
 
 
 @kernel
-def _crowded(positions, on_table, rails):
-    """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``; a free cue never."""
+def _crowded(positions, on_table, rails, ax, ay):
+    """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``: one that points about
+    along (ax, ay), or any cue if that is (0, 0). A free cue never."""
     x, y, near = positions[0, 0], positions[0, 1], False
     for m in range(0, rails.shape[0], EDGE):
-        across = x if rails[m + EDGE_AXIS] == 0.0 else y
+        across, along = (x, ax) if rails[m + EDGE_AXIS] == 0.0 else (y, ay)
         if rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * across < _NEAR_RAIL:
-            return True
+            near = near or rails[m + EDGE_SIDE] * along < _ABOUT
     for i in range(1, N_BALLS if rails.shape[0] else 1):
         dx, dy = positions[i, 0] - x, positions[i, 1] - y
-        near = near or (on_table[i] and dx * dx + dy * dy < _NEAR_BALL * _NEAR_BALL)
+        if on_table[i] and dx * dx + dy * dy < _NEAR_BALL * _NEAR_BALL:
+            near = near or dx * ax + dy * ay < _ABOUT * _NEAR_BALL
     return near
 
 
@@ -106,6 +111,9 @@ def _without_room(positions, on_table, options, rows, pots, many, out):
     rails, x, y, left = options[declarations.A_RAILS :], positions[0, 0], positions[0, 1], 0
     for line in range(many):
         aim = atan2(rows[line, GHOST_Y] - y, rows[line, GHOST_X] - x) if pots else rows[line, LINE_AIM]
+        if not _crowded(positions, on_table, rails, cos(aim), sin(aim)):
+            left += STROKES
+            continue
         for s in range(len(SIDES)):
             cue_aim, steep = aim - squirt(SIDES[s], options[declarations.A_END_MASS]), True
             for t in range(len(TOPS)):  # the higher the tip, the lower the cue
@@ -134,7 +142,7 @@ def masks(which, positions, on_table, game, options, out):
                 available = declarations.may_nominate(n, row)
             p, here, many, pots = positions[k], on_table[k], 1, 0
             chooses = available and here[0]
-            crowded = chooses and _crowded(p, here, options[declarations.A_RAILS :])
+            crowded = chooses and _crowded(p, here, options[declarations.A_RAILS :], 0.0, 0.0)
             if crowded:  # the lines themselves are asked for
                 pots = find_pots(p, here, on, BALL_RADIUS, rows[:POTS])
                 many = pots if pots else find_lines(p, here, on, rows)
