@@ -125,7 +125,8 @@ def test_planners_meet_the_kicks_of_the_environment():
         ends.add(by_strokes[21, 0].round(3))
     assert len(ends) > 1
     env.reset(seed=1, options=CUT)
-    silent = planner.stops(env, [0], strokes=strokes, errors=np.zeros((1, 5))).places[0]
+    always = Planner(options.but(noise={"kick": 1.0, "aim_deg": 0.05}), threads=1)
+    silent = always.stops(env, [0], strokes=strokes, errors=np.zeros((1, 5))).places[0]
     plain = Planner(options.but(noise="none"), threads=1).stops(env, [0], strokes=strokes).places[0]
     assert (silent == plain).all()
 
