@@ -23,7 +23,7 @@ from snooker_env.tasks.noise import Noise
 
 R, HALF_WIDTH, HALF_LENGTH = 0.02625, 0.889, 1.7845
 TOLERANCE = 5e-4
-"""Pots whose aim may err by less than this [rad] are not played: about a professional's standard
+"""Pots whose aim may err by less than this [rad] are not played: about half of a professional's standard
 deviation."""
 AIM_ERROR = np.radians(0.02)
 """Aims that leave the object ball further than this [rad] from its line are thrown away (thin cuts that do

@@ -14,6 +14,9 @@ pot, root mean square, along its way from the impact and across. In play: visits
 player who takes the pot, of all at several speeds, that goes in most often when tried on copies of the table.
 Layouts: the widest pot of tables dealt by ``"pots:easy"`` and so on, along its solved line at 2.3 m/s.
 
+The levels of people are set by whole frames (``python -m agents.calibrate``), not by what is published of pots,
+which takes about half of their errors; the robot's is set by it.
+
 Published: professionals pot 88 to 95 % of what they choose and 50 to 65 % of long pots. Aim errors of 0.02 to
 0.03 deg for professionals, 0.05 for good amateurs, 0.08 to 0.12 in clubs were derived as total errors of
 direction, for a corner pocket with an effective half window of 22 mm; the pot rates "derived" are computed

@@ -143,7 +143,7 @@ class Noise:
     --------
     >>> from snooker_env.tasks import LEVELS, Noise
     >>> LEVELS["club"].aim_deg, Noise(speed_rel=0.02).silent
-    (0.08, False)
+    (0.18, False)
     """
 
     aim_deg: float = 0.0
