@@ -120,7 +120,7 @@ def lines(results: Sequence[Any], *, markdown: bool = False, awaited: Sequence[s
         made += [*table(head, rows, 1, 2), ""] if rows else []
         made += [*wrap(f"Missing: {', '.join(lacking)}.", WIDTH), ""] if lacking else []
         if task.counts and rows:
-            title = "Share of visits [%] with at least so many points:"
+            title = "Share of episodes [%] with at least so many points:"
             made += [title, "", *table(*profile(results, task), 0), ""]
     return [*made, *wrap(LEGEND, WIDTH)]
 
