@@ -37,8 +37,6 @@ class Task:
     episodes, thresholds : int, tuple of int
         Episodes of an official result for each training seed, and the scores of its performance profile: the
         share of episodes with at least each of these.
-    note : str
-        What a reader of its table should know; empty: nothing.
 
     Examples
     --------
@@ -56,7 +54,6 @@ class Task:
     measure: str
     episodes: int
     thresholds: tuple[int, ...] = (1,)
-    note: str = ""
 
     def options(self, **free: Any) -> Options:
         """The options of the task as it is trained: frozen ones and these of ``FREE``, no others."""
