@@ -107,7 +107,7 @@ _BREAK = (1, 10, 25, 50, 75, 100, 147)
 _COLOURS = (2, 5, 9, 14, 20, 27)
 _LEAD = (-60, -40, -20, -10, -4, 0, 1)
 _MEASURES = {"points": ("points a visit", 500), "pots": ("share of balls potted", 1000)}
-_MEASURES |= {"legal": ("share of escapes", 1000), "won": ("share of frames won", 200)}
+_MEASURES |= {"legal": ("share of escapes", 500), "won": ("share of frames won", 200)}
 _MEASURES |= {"lead": ("points of lead gained", 500)}
 """Of each score: the name of its mean, and the number of episodes."""
 
