@@ -5,7 +5,7 @@
 
 A constant choice is one of ``action="discrete"``, whatever lies on the table: a pot or line (the widest first), a
 speed, a side and a top; its aim is solved. All of the first ``--lines`` lines are screened on tables of training, the
-best third four times as long, and so on; the last three then play the judged tables beside the players. "of the most":
+best third three times as long, and so on; the last three then play the judged tables beside the players. "of the most":
 the score over the highest that an episode can have. "cleared": the share of episodes that end with an empty table.
 """
 
@@ -63,7 +63,7 @@ def screened(task, lines, episodes, seed):
         scores = [np.mean([row[2] for row in rows_of(training, Constant(one), seeds)]) for one in left]
         order = np.argsort(-np.array(scores), kind="stable")
         left = [left[k] for k in order[: max(FINALISTS, len(left) // 3)]]
-        first, episodes = first + episodes, 4 * episodes
+        first, episodes = first + episodes, 3 * episodes
     return left
 
 
