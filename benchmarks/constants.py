@@ -70,6 +70,7 @@ def screened(task, lines, episodes, seed):
 def measured(task, player, label, episodes):
     """The figures of a player on the judged tables: "label", "score", "of_most" and "cleared"."""
     figures = figures_of(task, "constants", rows_of(task, player, task.seeds(episodes)))
+    assert figures is not None  # every episode was played
     score = figures["score"]
     return {
         "label": label,
