@@ -31,6 +31,7 @@ SHOWN = {
     "colours": "the six colours on their spots",
     "random:6": "six reds at random",
     "snookered": "no red can be hit on both edges",
+    "safety": "no pot is on",
     "pots:easy": "aim may err by 0.23° or more",
     "pots:medium": "aim may err by 0.06 to 0.23°",
     "pots:hard": "aim may err by 0.02 to 0.06°",
@@ -77,7 +78,7 @@ def draw(seed, file):
     with picture_style.drawing() as plt:
         rows = -(-len(SHOWN) // COLUMNS)
         figure, axes = picture_style.page(
-            plt, 0.95 + 2.5 * rows, "Ten ways to lay out a table", note, rows=rows, columns=COLUMNS
+            plt, 0.95 + 2.5 * rows, "Eleven ways to lay out a table", note, rows=rows, columns=COLUMNS
         )
         figure.get_layout_engine().set(w_pad=0.06, h_pad=0.05, hspace=0.02, wspace=0.02)
         for ax, name in zip(axes.flat, SHOWN, strict=False):

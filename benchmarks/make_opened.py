@@ -12,8 +12,8 @@ import numpy as np
 from snooker_env.game import layouts
 from snooker_env.game.apply_ruling import settle_table
 from snooker_env.game.balls import CUE, N_BALLS, N_REDS, REDS_MASK, BallOn, mask_of
+from snooker_env.game.banks import FOLDER
 from snooker_env.game.in_hand import within_d
-from snooker_env.game.opened import FILE
 from snooker_env.game.pots import pots
 from snooker_env.game.referee import Situation, Stroke
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
@@ -25,6 +25,7 @@ from snooker_env.simulation import play
 
 from ._common.command import Command, at_least, run, save_bytes, save_json
 
+FILE = "opened.npz"
 PHYSICS, TABLE, FIDELITY = Physics.preset("match"), Table.preset("match"), parse_fidelity("standard")
 SPREAD = 6.0  # m: mean distance of the reds from their centre of mass, times 15, that counts as opened
 STROKES = 8
@@ -74,7 +75,7 @@ def opened_table(rng):
 
 def main():
     """Command line."""
-    parser = Command("make_opened", __doc__, files=(FILE.name,), folder=FILE.parent, seed=0)
+    parser = Command("make_opened", __doc__, files=(FILE,), folder=FOLDER, seed=0)
     parser.add_argument("--tables", type=at_least(1), default=10240, help="so many [10240]")
     options = parser.options()
     rng = np.random.default_rng(options.seed)
@@ -87,9 +88,9 @@ def main():
             tables.append(table.astype(np.float32))
     packed = io.BytesIO()
     np.savez_compressed(packed, positions=np.array(tables))
-    save_bytes(options.folder / FILE.name, packed.getvalue())
+    save_bytes(options.folder / FILE, packed.getvalue())
     save_json(options.json, {"seed": options.seed, "tables": len(tables), "frames": frames})
-    print(f"{len(tables)} tables from {frames} frames -> {options.folder / FILE.name}")
+    print(f"{len(tables)} tables from {frames} frames -> {options.folder / FILE}")
 
 
 if __name__ == "__main__":

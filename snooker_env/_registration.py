@@ -7,7 +7,7 @@ ENTRY_POINT = "snooker_env.envs.snooker:SnookerEnv"
 VECTOR_ENTRY_POINT = "snooker_env.envs.vector:SnookerVectorEnv"
 
 _TASKS = "snooker_env.benchmark.environments"
-_NAMES = ("Break", "BreakClub", "LineUp", "Colours", "PotHard", "Escape", "Frame")
+_NAMES = ("Break", "BreakClub", "LineUp", "Colours", "PotHard", "Escape", "Safety", "Frame")
 ENTRY_POINTS = {
     ID: (ENTRY_POINT, VECTOR_ENTRY_POINT),
     **{f"Snooker{name}-v0": (f"{_TASKS}:{name}Env", f"{_TASKS}:{name}VectorEnv") for name in _NAMES},

@@ -241,7 +241,8 @@ def _profile(args: Any) -> int:
     for task in TASKS.values():
         head, rows = profile(results, task)
         if rows:
-            title = f"{task.id}: share of episodes [%] with at least so many {task.score}"
+            what = "points" if task.counts else task.score
+            title = f"{task.id}: share of episodes [%] with at least so many {what}"
             print("\n".join([title, "", *text_table(head, rows), ""]))
     return 0
 

@@ -115,12 +115,12 @@ def lines(results: Sequence[Any], *, markdown: bool = False, awaited: Sequence[s
         lacking = [label for label in awaited if present(label) not in labels]
         if not rows and not lacking:
             continue
-        judged = f"Judged by {task.measure}, {task.episodes:,} episodes. {task.note}"
+        judged = f"Judged by {task.measure}, {task.episodes:,} episodes."
         made += [f"{'## ' if markdown else ''}{task.id}: {task.title}", "", *wrap(judged, WIDTH), ""]
         made += [*table(head, rows, 1, 2), ""] if rows else []
         made += [*wrap(f"Missing: {', '.join(lacking)}.", WIDTH), ""] if lacking else []
         if task.counts and rows:
-            title = "Share of visits [%] with at least so many points:"
+            title = "Share of episodes [%] with at least so many points:"
             made += [title, "", *table(*profile(results, task), 0), ""]
     return [*made, *wrap(LEGEND, WIDTH)]
 

@@ -189,5 +189,6 @@ def rows_of(
             cleared[done] = (scored & ~tables.tables.on_table[:, 1:].any(axis=1))[done]
     tables.close()
     scores = {"points": sums["points"], "pots": sums["pots"], "legal": 1 - sums["fouls"], "won": won}
+    scores["lead"] = sums["points"] - opponent
     columns = (np.full(n, run), seeds, scores[task.score], *sums.values(), cleared, opponent, ended)
     return np.array(columns).T.astype(int).tolist()

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .._check import choice, integer, refuse, refuse_what
-from ..game.balls import VALUES
+from ..game.balls import N_REDS, VALUES
 from ..game.layouts import layout as deal
 from ..game.layouts import plan_of
 from ..tasks.options import SAYS, Options
@@ -33,12 +33,10 @@ class Task:
     changes, judged_layout : mapping, str
         Options that differ from those of ``Snooker-v0``, and the layout of the judging in place of theirs.
     score, measure : str
-        The score of an episode, "points", "pots", "legal" or "won", and the name of its mean.
+        The score of an episode, "points", "pots", "legal", "lead" or "won", and the name of its mean.
     episodes, thresholds : int, tuple of int
         Episodes of an official result for each training seed, and the scores of its performance profile: the
         share of episodes with at least each of these.
-    note : str
-        What a reader of its table should know; empty: nothing.
 
     Examples
     --------
@@ -56,7 +54,6 @@ class Task:
     measure: str
     episodes: int
     thresholds: tuple[int, ...] = (1,)
-    note: str = ""
 
     def options(self, **free: Any) -> Options:
         """The options of the task as it is trained: frozen ones and these of ``FREE``, no others."""
@@ -84,60 +81,63 @@ class Task:
     @property
     def counts(self) -> bool:
         """Whether the score of an episode is a number of points; else it is 0 or 1, the mean a share."""
-        return self.score == "points"
+        return self.score in ("points", "lead")
 
     @property
     def frame(self) -> bool:
-        """Whether an episode is a whole frame."""
+        """Whether an episode is a frame, or a stroke and a visit of one."""
         return self.changes.get("task") == "frame"
 
     def seeds(self, n: int) -> list[int]:
-        """The seeds of the first n judged tables (of frames: of the errors). ValueError for too many."""
+        """The seeds of the first n judged tables (of racks: of the errors). ValueError for too many."""
         integer("episodes", n, 1, 2**20)
-        first = HELD_OUT_SEED
-        return list(range(first, first + n)) if self.frame else tables_of(self.judged_layout, n)
+        first, alike = HELD_OUT_SEED, plan_of(self.judged_layout).in_hand
+        return list(range(first, first + n)) if alike else tables_of(self.judged_layout, n)
 
     @property
     def most(self) -> int:
         """The highest score that an episode can have."""
+        if self.score == "lead":
+            return N_REDS  # of one stroke that pots all reds
         return most_points(self.judged_layout) if self.counts else 1
 
 
 _USUAL = {f.name: f.default for f in fields(Options) if f.init} | dict.fromkeys(SAYS, False)
 _BREAK = (1, 10, 25, 50, 75, 100, 147)
-_ESCAPE = "ghost_ball escapes from 96.2 % of these tables: a share below that is no achievement."
-_FRAME = (
-    "A constant choice wins 78.5 % of these frames: the widest pot at 2.3 m/s with a little top, whatever lies on the "
-    "table. A share near that shows no skill."
-)
-
-
+_COLOURS = (2, 5, 9, 14, 20, 27)
+_LEAD = (-60, -40, -20, -10, -4, 0, 1)
 _MEASURES = {"points": ("points a visit", 500), "pots": ("share of balls potted", 1000)}
-_MEASURES |= {"legal": ("share of escapes", 1000), "won": ("share of frames won", 200)}
+_MEASURES |= {"legal": ("share of escapes", 500), "won": ("share of frames won", 200)}
+_MEASURES |= {"lead": ("points of lead gained", 500)}
 """Of each score: the name of its mean, and the number of episodes."""
 
 
 def _task(name: str, title: str, layout: str, score: str, judged: str = "", **more: Any) -> Task:
-    """A task with a professional's errors, judged on its own layout, unless it is said otherwise."""
-    changes = MappingProxyType({"layout": layout, "noise": "professional"} | more.pop("changes", {}))
+    """A task with a real cue and a professional's errors, judged on its own layout, unless it is said otherwise."""
+    usual = {"layout": layout, "noise": "professional", "cue": "real"}
+    changes = MappingProxyType(usual | more.pop("changes", {}))
     measure, episodes = _MEASURES[score]
     more |= {"judged_layout": judged or layout, "measure": measure, "episodes": episodes, "changes": changes}
     return Task(id=f"Snooker{name}-v0", title=title, score=score, **more)
 
 
 _LEGAL = {"reward": "legal", "one_stroke": True}
-_WIN = {"task": "frame", "opponent": "ghost_ball", "reward": "win"}
+_FRAME = {"task": "frame", "opponent": "planner", "miss": "clear_path"}
 _CLUB = {"changes": {"noise": "club"}, "thresholds": _BREAK}
-_COLOURS = (2, 5, 9, 14, 20, 27)
-_SNOOKER = {"changes": _LEGAL, "note": _ESCAPE}
+_SAFE = {"changes": _FRAME | {"one_stroke": True}, "thresholds": _LEAD}
 _ALL = (
     _task("Break", "build a break on an opened table", "opened", "points", "held_out", thresholds=_BREAK),
     _task("BreakClub", "the same with a club player's errors", "opened", "points", "held_out", **_CLUB),
     _task("LineUp", "clear the line-up", "line_up", "points", thresholds=_BREAK),
     _task("Colours", "clear the six colours", "colours", "points", thresholds=_COLOURS),
     _task("PotHard", "pot one hard ball", "pots:hard", "pots", changes={"reward": "pots"}),
-    _task("Escape", "one stroke out of a snooker, without a foul", "snookered", "legal", **_SNOOKER),
-    _task("Frame", "win a frame against ghost_ball", "break_off", "won", changes=_WIN, note=_FRAME),
+    _task(
+        "Escape", "one stroke out of a snooker, no foul", "escape", "legal", "held_out_escape", changes=_LEGAL
+    ),
+    _task(
+        "Safety", "one stroke where no pot is on, then planner", "safety", "lead", "held_out_safety", **_SAFE
+    ),
+    _task("Frame", "win a frame against planner", "break_off", "won", changes=_FRAME | {"reward": "win"}),
 )
 TASKS: dict[str, Task] = {task.id: task for task in _ALL}
 """The tasks of the benchmark by id."""

@@ -59,9 +59,10 @@ def match_options(options: Options | None, keywords: Mapping[str, Any]) -> Optio
         task = "match" if "frames" in keywords else "frame"
         keywords = {"task": task, "placement": box, "decision": box, **keywords}
     options = options_of(options, keywords)
-    if options.task == "visit" or options.opponent != "none" or options.trust:
-        what = f"task={options.task!r}, opponent={options.opponent!r}, trust={options.trust!r}"
-        allowed = 'must be task="frame" or "match", opponent="none" and trust=False: a match has two players'
+    if options.task == "visit" or options.opponent != "none" or options.trust or options.one_stroke:
+        names = "task", "opponent", "trust", "one_stroke"
+        what = ", ".join(f"{name}={getattr(options, name)!r}" for name in names)
+        allowed = 'must be task="frame" or "match", opponent="none", trust=False and one_stroke=False: a match has two players'
         raise ValueError(f"options = {what}: {allowed}")
     return options
 

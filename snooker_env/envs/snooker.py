@@ -64,8 +64,9 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     reward; "win": +1 or -1 at the end; in a match "frames": growth of the lead in frames.
 
     ## Episode
-    A visit terminates as said above, with ``one_stroke=True`` after any stroke, and is never truncated by
-    itself. A frame terminates by the rules, and is truncated after ``max_strokes`` strokes of both players.
+    A visit terminates as said above, and is never truncated by itself. A frame terminates by the rules, and
+    is truncated after ``max_strokes`` strokes of both players. With ``one_stroke=True`` either terminates
+    after its first step; of a frame the agent has the first stroke.
     The seed says how tables are dealt (``layout``) and who breaks. ``reset(options=...)`` takes "state" (of
     ``get_state``), "position" (a ``snooker_env.Position``) or "breaker" (0 the agent, 1 the opponent). The
     info has the same keys each time.

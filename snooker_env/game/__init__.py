@@ -1,8 +1,8 @@
 """The game of snooker: balls, rules, frames, layouts, without physics and Gymnasium; public: ``__all__``."""
 
 from .balls import COLOUR_NAMES, CUE, N_BALLS, NAMES, SPOTS, TOUCH, VALUES, BallOn, balls_on, ids_of, mask_of
+from .banks import HELD_OUT
 from .layouts import LAYOUTS, POT_WINDOWS, Plan, layout, plan_of
-from .opened import HELD_OUT
 
 __all__ = [
     "COLOUR_NAMES",

@@ -12,14 +12,14 @@ from .._jit import entry, kernel
 from .._types import Bools, Floats
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from .balls import CUE, GREEN, N_BALLS, N_REDS, REDS_MASK, SPOTS, YELLOW
-from .opened import NO_BANK, bank_without, kept
+from .banks import NO_BANK, bank_without, kept
 from .philox import normals, pair, stream_of
 from .pots import POT_COLUMNS, TOLERANCE, find_pots
 from .snookered import NO_JAWS, snookered_from
 
 GAP, CUSHION_GAP, POCKET_GAP = 0.001, 0.05, 0.15
 """Least gaps [m] of a ball placed at random to balls, to cushions, and of its centre to pockets."""
-OPENED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
+STORED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
 """Kinds of layouts, for the kernels."""
 
 
@@ -61,8 +61,8 @@ def _put(positions, on_table, ball, kind, stream):
 
 
 @kernel
-def _opened(positions, on_table, tables, first, last, stream):
-    """One of the tables first to last - 1 of the bank, with probability 1/2 mirrored in the long axis."""
+def _stored(positions, on_table, tables, first, last, stream):
+    """One of the tables first to last - 1 of a bank, with probability 1/2 mirrored in the long axis."""
     u, v = pair(stream)
     table = tables[first + int(u * (last - first))]
     for i in range(N_BALLS):
@@ -70,7 +70,9 @@ def _opened(positions, on_table, tables, first, last, stream):
         if v < 0.5 and YELLOW <= i <= GREEN:
             j = YELLOW + GREEN - i  # so that each stays on its side of the table
         positions[i, 0], positions[i, 1] = -table[j, 0] if v < 0.5 else table[j, 0], table[j, 1]
-        on_table[i] = True
+        on_table[i] = not np.isnan(table[j, 0])
+        if not on_table[i]:
+            positions[i, 0], positions[i, 1] = SPOTS[i, 0], SPOTS[i, 1]
 
 
 @kernel
@@ -116,8 +118,8 @@ player's 92, 63 and 24 % (``python -m benchmarks.execution --strokes 2000``)."""
 def _deal(code, tables, stream, positions, on_table, pot):
     """One layout: racked and spotted balls, loose reds, last the cue ball; until its condition holds."""
     kind, reds, low, high = int(code[0]), int(code[1]), code[2], code[3]
-    if kind == OPENED:
-        _opened(positions, on_table, tables, int(low), int(high), stream)
+    if kind == STORED:
+        _stored(positions, on_table, tables, int(low), int(high), stream)
         return
     racked = reds if kind == BREAK_OFF or kind == LINE_UP else 0
     loose = reds - racked
@@ -163,7 +165,7 @@ class Plan:
         Name of the layout.
     code, tables : numpy.ndarray
         float64 (4,): kind, number of reds, and the range of tables of the bank or of a pot's tolerance [rad].
-        float64 (b, 22, 2): the bank of opened tables [m]; b = 0 for a layout without one.
+        float64 (b, 22, 2): the bank of stored tables [m]; b = 0 for a layout without one.
     unfit : tuple of int
         Tables of the bank that do not fit the table played on; others replace them.
 
@@ -189,12 +191,22 @@ class Plan:
         return plan_of, (self.name, self.unfit)
 
 
+STORED_IN = {
+    "opened": ("opened", False),
+    "held_out": ("opened", True),
+    "safety": ("safety", False),
+    "held_out_safety": ("safety", True),
+    "escape": ("escape", False),
+    "held_out_escape": ("escape", True),
+}
+"""Of each layout of stored tables its bank, and whether it deals those that are held out."""
 _NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS)}
 _NAMES |= {"colours": (COLOURS, 0), "snookered": (SNOOKERED, SNOOKERED_REDS)}
 _COUNTED = {"random": RANDOM, "break_off": BREAK_OFF}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
-LAYOUTS = ("opened", "held_out", *_NAMES)
-"""Names without a number: "opened", "held_out", "break_off", "line_up", "colours", "snookered"."""
+LAYOUTS = (*STORED_IN, *_NAMES)
+"""Names without a number: "opened", "safety", "escape" and what is held out of each; "break_off", "line_up",
+"colours", "snookered"."""
 
 
 def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
@@ -222,10 +234,10 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     name, asked = name if isinstance(name, str) else "", name
     head, _, which = name.partition(":")
     tables, code = NO_BANK, None
-    if name in ("opened", "held_out"):
-        tables = bank_without(unfit)
-        part = kept(len(tables))[name == "held_out"]
-        code = (OPENED, N_REDS, part.start, part.stop)
+    if name in STORED_IN:
+        which, held_out = STORED_IN[name]
+        tables, part = bank_without(which, unfit), kept(which)[held_out]
+        code = (STORED, N_REDS, part.start, part.stop)
     elif name in _NAMES:
         code = (*_NAMES[name], 0, 0)
     elif head in _COUNTED and which in _COUNTS:

@@ -2,6 +2,7 @@
 and ``turned`` shows positions as their next striker sees them."""
 
 from copy import copy
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from ..game.ruling import AUTO
 from ..game.sides import strikers_own
 from ..tasks.frame import Frames
 from ..tasks.options import Rules
+from ..tasks.rewards import FRAME_REWARDS
 from ..tasks.stroke import ShotBuffers
 from ..tasks.threads import Threads
 from .positions import Positions
@@ -21,7 +23,7 @@ class FrameTrials(Struck, Frames):
     """Frames of one stroke: strokes (n, 5) in SI with errors (n, 5) in standard deviations, judged as in a frame."""
 
     def __init__(self, rules: Rules, threads: Threads):
-        super().__init__(rules, 0)
+        super().__init__(replace(rules, reward=FRAME_REWARDS[0], one_stroke=False), 0)  # of a visit, too
         self._crew, self._out = threads, self.output()
 
     def play(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Positions:

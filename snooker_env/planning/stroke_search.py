@@ -96,7 +96,8 @@ class StrokeSearch:
     Parameters
     ----------
     env_or_options : Env, VectorEnv, AECEnv, Options or dict
-        Where strokes are played, see ``Planner``: physics, table, fidelity and execution noise count.
+        Where strokes are played, see ``Planner``: physics, table, fidelity and execution noise count. With the
+        reward "legal" strokes of all kinds are tried, and the share of them that is no foul is their score.
     budget : int, optional
         Largest number of simulated shots for a decision, at least 8; default 120.
     value : callable, optional
@@ -141,7 +142,8 @@ class StrokeSearch:
         self.dynamics = Dynamics.of(rules)
         self.value: Value = self._by_rule if value is None else value
         self.propose: Propose | Sequence[Propose] = propose
-        self.doubtful: float = number("doubtful", doubtful, 0.0, 1.0)
+        self.legal: bool = options.reward == "legal"
+        self.doubtful: float = 1.0 if self.legal else number("doubtful", doubtful, 0.0, 1.0)
         self.pots_only = pots_only
 
     @property
@@ -175,7 +177,7 @@ class StrokeSearch:
         every, none = np.arange(n)[:, None], np.zeros((n * looks, DIMENSIONS))
         rows = np.repeat(np.arange(n), looks)
         scores = self._gains(at, safe, rows, strokes.reshape(-1, COLUMNS), none).reshape(n, looks)
-        if not self.noise.silent:
+        if not self.noise.silent and not self.legal:
             scores *= chances
             doubt = np.flatnonzero(safe & (chances < 1.0).any(axis=1))
             if len(doubt) and not self.pots_only:  # a pot that is missed leaves the balls about as they lie
@@ -223,6 +225,8 @@ class StrokeSearch:
         """What strokes (k, 5) on ``at[rows]`` under errors (k, 5) bring, and what they leave is worth: (k,)."""
         after, out = self.planner._played(at, rows, strokes=strokes, errors=errors)
         gains, penalty, careful = out.reals[:, I_POINTS].copy(), out.counts[:, I_PENALTY], safe[rows]
+        if self.legal:
+            return (penalty == 0).astype(np.float64)
         if self.pots_only:
             return (gains > 0).astype(np.float64) - (careful & (penalty > 0))
         gains[careful] -= penalty[careful] + FOUL * (penalty[careful] > 0)

@@ -7,6 +7,8 @@ turns of the opponent, player 1, up to the agent's next one. A match is played t
 With ``opponent="none"`` the table returns to the agent whenever it would go to the opponent. Penalties still
 go to the opponent's score; after a foul the agent plays on from where the balls lie, without a free ball.
 
+With ``one_stroke`` the agent begins, and its first step is the episode.
+
 A frame that ends in the opponent's first visit is shown by that reset; the next step plays nothing, reports
 the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once on the free place of the D
 nearest to its usual one (``balls.SPOTS``), so that it can be seen; the player may place it elsewhere. The
@@ -113,7 +115,7 @@ class Frames(Tables):
         self.SIZE += REPLACED_SIZE if rules.misses else 0
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         game, won = rules.rule_set, rules.frames // 2 + 1
-        limits = limit, rules.max_strokes, won, game.clock
+        limits = limit, rules.max_strokes, rules.one_stroke, won, game.clock
         self._numbers = game.code, self._miss, rules.time_to_play, self._reward, *limits
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
@@ -180,7 +182,8 @@ class Frames(Tables):
         return self.game[:, columns.STROKES] >= self.rules.max_strokes
 
     def ended(self) -> Bools:
-        return super().ended() | self.stopped()
+        ended = super().ended() | self.stopped()
+        return ended | (self.game[:, columns.STEPS] > 0) if self.rules.one_stroke else ended
 
     def finished(self) -> Bools:
         return self.ended() & ~self.due
@@ -345,10 +348,11 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
-        """New frames on ``which``. Who breaks: the agent, or ``drawn``: ``breakers`` (n,), -1 by lot."""
-        plan = self.rules.plan
+        """New frames on ``which``. Who breaks: the agent, or ``drawn``: ``breakers`` (n,), -1 by lot; without
+        them by lot, too, but the agent in an episode of one stroke."""
+        plan, usual = self.rules.plan, AGENT if self.rules.one_stroke else -1
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
-        breakers = np.full(self.n, -1) if breakers is None else breakers
+        breakers = np.full(self.n, usual) if breakers is None else breakers
         frame_kernels.begin(which, drawn, breakers, plan.in_hand, self.on_table, self.game, self.streams)
         self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
         self.draw_conditions(which)

@@ -43,6 +43,7 @@ class Setting(NamedTuple):
     reward: int  # its code
     limit: int  # steps after which an episode is truncated
     max_strokes: int  # strokes after which a frame is stopped
+    one_stroke: bool  # whether an episode ends after its first step
     frames: int  # frames that win a match
     clock: int  # time of a frame [ms]; 0: no clock
     options: Floats  # packed, of the action space
@@ -265,7 +266,7 @@ def finish(which, tables, saved, setting, due, replies, played, output):
         out.rewards[k] = frame_reward_of(setting.reward, worth - row[columns.PAID], winner, AGENT)
         row[columns.PAID], due[k] = worth, False
         stopped = not row[columns.OVER] and row[columns.STROKES] >= setting.max_strokes
-        out.terminated[k] = row[columns.OVER]
+        out.terminated[k] = row[columns.OVER] or setting.one_stroke
         out.truncated[k] = stopped or row[columns.STEPS] >= setting.limit
         if not played[k]:
             write_empty_info(k, out, row[columns.BALL_ON])

@@ -65,7 +65,7 @@ class Rules:
     observation: ObservationKind
     miss: MissRule = "off"  # of a frame, as all below but one: the rule for a foul and a miss
     max_strokes: int = NEVER  # strokes of both players after which it is stopped
-    one_stroke: bool = False  # in a visit: whether it ends after its first stroke
+    one_stroke: bool = False  # whether an episode ends after its first step
     frames: int = 0  # in a match: of how many frames at most; 0 for a single frame, which is no match
     game: RulesName = "snooker"  # the rule set
     time_to_play: int = 0  # with a clock: from the rest of the balls to the next stroke [ms]
@@ -130,7 +130,7 @@ _ABOUT: dict[str, tuple[str, str | None, str]] = {
     "fidelity": ("shot", None, '"fast", "standard", "reference", "euler:N"'),
     "conditions": ("shot", None, '"fixed", "drawn": whether each episode draws constants of its table'),
     "observe_conditions": ("view", None, "whether observations hold the constants drawn"),
-    "one_stroke": ("task", "visit", "whether it ends with its first stroke"),
+    "one_stroke": ("task", None, "whether an episode ends with its first step; not of a match"),
     "opponent": (
         "task",
         "frame",
@@ -176,8 +176,9 @@ class Options:
         "visit" (default): build a break until the first miss or foul. "frame": play a whole frame. "match":
         the best of several; what is said below of a frame holds for a match, too.
     layout : str, optional
-        How tables are dealt: "opened", "held_out", "break_off", "line_up", "colours", "random:N" (N reds),
-        "snookered", "pots:easy", "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
+        How tables are dealt: "opened", "held_out", "safety", "held_out_safety", "escape", "held_out_escape",
+        "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy", "pots:medium" or
+        "pots:hard". "default": "opened", in a frame "break_off".
     action : {"box", "discrete"}, optional
         "box" (default): numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a
         top, in [0, 540) unless options of frames add more.
@@ -214,9 +215,11 @@ class Options:
         In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
     max_strokes : int or None, optional
         In a frame: strokes of both after which the referee stops it and its match; default 1000, None: never.
-    one_stroke, trust : bool, optional
-        In a visit: whether it ends after its first stroke. In a frame: whether code in an opponent's ``.zip``
-        may run. Default False.
+    one_stroke : bool, optional
+        Whether an episode ends with its first step: a stroke, and in a frame what the opponent makes of it until
+        it is the agent's turn again; the agent then begins. Not of a match. Default False.
+    trust : bool, optional
+        In a frame: whether code in an opponent's ``.zip`` may run. Default False.
     says : sequence of str, optional
         In a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a
         free ball; else the one struck first), "decision" (after a foul, of box actions only), "concede",
@@ -304,6 +307,8 @@ class Options:
         rewards = {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}
         choice("reward", self.reward, rewards[self.task])
         one_stroke = truth("one_stroke", self.one_stroke)
+        if one_stroke and self.task == "match":
+            raise refuse("one_stroke", True, 'must be False with task="match"')
         limit = NEVER
         self._check_task()
         frames = self.frames if self.task == "match" else 0

@@ -5,8 +5,8 @@ from functools import lru_cache
 import numpy as np
 
 from .._check import refuse
-from ..game.layouts import Plan, plan_of
-from ..game.opened import bank
+from ..game.banks import bank
+from ..game.layouts import STORED_IN, Plan, plan_of
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.bounds import deepest
 from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
@@ -63,14 +63,15 @@ def _check_pockets(cloth: Table) -> None:
 
 
 def fitted(layout: str, cloth: Table) -> Plan:
-    """The ``Plan`` of a layout on a table, without the opened tables that do not fit its pockets."""
+    """The ``Plan`` of a layout on a table, without the stored tables that do not fit its pockets."""
     plan = plan_of(layout)
-    return plan_of(layout, _unfit(cloth)) if len(plan.tables) else plan
+    return plan_of(layout, _unfit(cloth, STORED_IN[layout][0])) if len(plan.tables) else plan
 
 
 @lru_cache(8)
-def _unfit(cloth: Table) -> tuple[int, ...]:
-    """Indices of stored tables with a ball, as dealt or mirrored, in a jaw or over a fall."""
+def _unfit(cloth: Table, which: str) -> tuple[int, ...]:
+    """Indices of the tables of a bank with a ball, as dealt or mirrored, in a jaw or over a fall."""
     if cloth is Table.preset("match"):
         return ()  # the stored tables were played on it
-    return tuple(sorted({*cloth.unfit(bank(), BALL_RADIUS), *cloth.unfit(bank() * (-1.0, 1.0), BALL_RADIUS)}))
+    tables = bank(which)
+    return tuple(sorted({*cloth.unfit(tables, BALL_RADIUS), *cloth.unfit(tables * (-1.0, 1.0), BALL_RADIUS)}))

@@ -16,7 +16,7 @@ import { ask, by, confirmed, fill, keep, Latest, make } from "./play_parts.js";
 import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 
-const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
+const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "escape", "safety", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
 const CUES = { real: "real: over rails and balls", free: "free: nothing in its way" };
 const CHOICES = { play: "Play the table as it lies", play_again: "Let the offender play again", replace: "Replace the balls: play again from before" };
 

@@ -9,7 +9,7 @@ from snooker_env.benchmark import HELD_OUT_SEED, play_visits, rollouts, tables_o
 from snooker_env.benchmark.rollouts import FIGURES, Strokes, counts, summary
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BallOn
-from snooker_env.game.opened import HELD_OUT
+from snooker_env.game.banks import HELD_OUT
 
 
 class Watched:

@@ -3,8 +3,6 @@
 import dataclasses
 import json
 import multiprocessing
-import re
-from pathlib import Path
 
 import gymnasium
 import numpy as np
@@ -14,16 +12,25 @@ from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
 from snooker_env._registration import ENTRY_POINTS, ID
-from snooker_env.benchmark import COLUMNS, FREE, HELD_OUT_SEED, TASKS, play_episodes, tables_of, task_of
+from snooker_env.benchmark import (
+    COLUMNS,
+    FREE,
+    HELD_OUT_SEED,
+    TASKS,
+    figures_of,
+    play_episodes,
+    tables_of,
+    task_of,
+)
 from snooker_env.benchmark import tasks as benchmark_tasks
 from snooker_env.benchmark.playing import Repeater, rows_of, tables_for
 from snooker_env.game import layout
+from snooker_env.game.layouts import STORED_IN
 from snooker_env.players import BoundPlayer, Strokes
-from snooker_env.tasks import OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, choice_of
+from snooker_env.tasks import OBSERVATION_SIZE
 from tests.processes import python
 
 IDS = tuple(TASKS)
-DOCS = Path(__file__).parents[2] / "docs"
 
 
 def many(name, n, **options):
@@ -102,7 +109,7 @@ def test_an_escape_is_one_stroke_whose_reward_is_1_if_it_is_legal():
     assert state["over"] is True
 
 
-def test_one_stroke_is_an_option_of_a_visit_that_no_planner_minds():
+def test_one_stroke_is_an_option_that_no_planner_minds():
     env = sn.SnookerEnv(layout="pots:easy", one_stroke=True)
     env.reset(seed=1)
     assert env.step([0.0, 0.0, 0.0, 0.1])[2]
@@ -110,8 +117,41 @@ def test_one_stroke_is_an_option_of_a_visit_that_no_planner_minds():
     colours.reset(seed=1)
     outcome = sn.Planner(colours, noise="none").play(colours, np.zeros(60, int), np.arange(60))
     assert (outcome.goes_on == (outcome.points > 0)).all() and outcome.goes_on.any()
-    with pytest.raises(ValueError, match='one_stroke = True: must be False with task="frame"'):
-        sn.Options(task="frame", one_stroke=True)
+
+
+def test_a_safety_is_judged_by_what_the_other_makes_of_it():
+    task = TASKS["SnookerSafety-v0"]
+    rows = [
+        dict(zip(COLUMNS, row, strict=True)) for row in play_episodes(task, "random", task.seeds(40)).rows
+    ]
+    assert all(row["strokes"] == row["ended"] == 1 for row in rows)
+    assert all(row["score"] == row["points"] - row["opponent_points"] <= task.most for row in rows)
+    assert any(row["opponent_points"] > 10 for row in rows) and any(row["points"] for row in rows)
+    figures = figures_of(task, "random", [list(row.values()) for row in rows])
+    shares = [one["value"] for one in figures["profile"]]
+    assert len(shares) == len(task.thresholds) and shares == sorted(shares, reverse=True) and shares[0] < 1.0
+    assert figures["score"]["value"] < 0 and figures["iqm"] is not None
+
+
+def test_who_searches_escapes_and_the_plain_stroke_does_not():
+    task = TASKS["SnookerEscape-v0"]
+    share = {}
+    for name in ("ghost_ball", "search_60", "tactician_60"):
+        share[name] = np.mean([row[2] for row in play_episodes(task, name, task.seeds(100)).rows])
+    assert share["ghost_ball"] < 0.55 and min(share["search_60"], share["tactician_60"]) > 0.9
+
+
+def test_a_search_for_legal_strokes_cares_for_nothing_else():
+    """Of a pot and a touch, both sure to be legal, it may play either; a foul it never ranks first."""
+    at = sn.Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red")
+    for reward in ("legal", "points"):
+        search = sn.planning.StrokeSearch({"reward": reward, "noise": "professional"}, budget=60)
+        ranked = search.rank(at, [7])
+        if reward == "legal":
+            assert set(np.unique(ranked.scores[ranked.samples == 0])) <= {0.0, 1.0}
+            assert ranked.scores.min() >= 0.0 and ranked.scores[0, 0] > 0.8
+        else:
+            assert ranked.scores.min() < -10.0
 
 
 @pytest.mark.parametrize("name", IDS)
@@ -120,15 +160,17 @@ def test_judged_tables_are_not_those_of_training(name):
     task = TASKS[name]
     seeds = task.seeds(30)
     assert len(set(seeds)) == 30 and min(seeds) >= HELD_OUT_SEED == 1_000_000
-    assert task.options().layout != "held_out" and task.judged().layout == task.judged_layout
-    if name in ("SnookerBreak-v0", "SnookerBreakClub-v0"):
-        trained, judged = (
+    trained, judged = task.options().layout, task.judged().layout
+    assert judged == task.judged_layout
+    if trained in STORED_IN:
+        assert STORED_IN[judged] == (STORED_IN[trained][0], True) and not STORED_IN[trained][1]
+        dealt, held_out = (
             {layout(name, np.random.default_rng(seed))[0].round(6).tobytes() for seed in some}
-            for name, some in (("opened", range(300)), (task.judged_layout, seeds))
+            for name, some in ((trained, range(300)), (judged, seeds))
         )
-        assert len(judged) == 30 and not trained & judged
+        assert len(held_out) == 30 and not dealt & held_out
     else:
-        assert task.judged_layout == task.options().layout
+        assert judged == trained and len(task.seeds(task.episodes)) == task.episodes
 
 
 def test_tables_are_different_and_always_the_same():
@@ -195,28 +237,3 @@ def test_a_mirrored_table_is_no_other_table(monkeypatch):
     monkeypatch.setattr(benchmark_tasks, "plan_of", lambda name: None)
     made = benchmark_tasks._tables_of.__wrapped__("made here", 5)
     assert made == tuple(HELD_OUT_SEED + 2 * k for k in range(5))
-
-
-class Constant:
-    options = {"action": "discrete"}  # noqa: RUF012
-
-    def act(self, observations, masks, seeds):
-        return np.full(len(seeds), choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.2)))
-
-
-@pytest.mark.parametrize(
-    ("name", "page", "player", "before", "near"),
-    [
-        ("SnookerFrame-v0", "task_frame", Constant(), "A constant choice wins", 3.0),
-        ("SnookerEscape-v0", "task_escape", "ghost_ball", "ghost_ball escapes from", 1.0),
-    ],
-)
-def test_the_notes_say_how_often_a_simple_player_wins(name, page, player, before, near):
-    """And the page of the benchmark and that of the task repeat it."""
-    task = TASKS[name]
-    (share,) = re.findall(rf"{before} (\d+\.\d) %", task.note)
-    for file in ("benchmark", f"environment/{page}"):
-        words = (DOCS / f"{file}.md").read_text(encoding="utf-8").replace("`", "").split()
-        assert f"{before} {share} %" in " ".join(words)
-    rows = play_episodes(task, player, task.seeds(task.episodes)).rows
-    assert 100 * np.mean([row[2] for row in rows]) == pytest.approx(float(share), abs=near)

@@ -16,7 +16,8 @@ from tests.tables import begun
 NOT_A_NAME = ("", 3, None, True, b"x")
 NOT_A_TRUTH = (0, 1, None, "yes", 0.5, [True])
 LAYOUTS = (
-    "must be one of 'opened', 'held_out', 'break_off', 'line_up', 'colours', 'snookered', "
+    "must be one of 'opened', 'held_out', 'safety', 'held_out_safety', 'escape', 'held_out_escape', 'break_off', "
+    "'line_up', 'colours', 'snookered', "
     '"pots:easy", "pots:medium", "pots:hard", "random:N" or "break_off:N" with N from 0 to 15'
 )
 NOISE = "must be one of 'none', 'professional', 'amateur', 'club', 'robot', 'olympiad' or a dict of"
@@ -51,7 +52,7 @@ WRONG = [
     (FRAME, "miss", "must be one of 'off', 'clear_path'", ("on", None, True)),
     (FRAME, "reward", "must be one of 'points', 'win'", ("pots", "wins", "frames")),
     (FRAME, "max_strokes", "must be an integer in [1, 1000000000]", (0, -1, 1.5, "9", True, 10**9 + 1, NAN)),
-    (FRAME, "one_stroke", 'must be False with task="frame"', (True,)),
+    ({"task": "match"}, "one_stroke", 'must be False with task="match"', (True,)),
     (FRAME, "frames", 'must be 7 with task="frame"', (5,)),
     (FRAME, "game", "must be one of", ("pool",)),
     (FRAME | {"game": "shoot_out"}, "miss", "must be", ("clear_path",)),

@@ -5,11 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from snooker_env import SnookerVectorEnv
 from snooker_env.game import layouts
-from snooker_env.game.balls import SPOTS, YELLOW
+from snooker_env.game.balls import GREEN, SPOTS, YELLOW
+from snooker_env.game.banks import BANKS, bank, kept
 from snooker_env.game.pots import pots
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
+from snooker_env.planning import Positions, prospects_of, spread_of
 from tests.kernels import from_python
 
 NAMES = ["break_off", "line_up", "colours", "random:0", "random:6", "random:15"]
@@ -140,3 +143,57 @@ def test_single_pots_are_as_hard_as_they_say(difficulty):
 def test_the_difficulties_leave_no_gap_and_do_not_overlap():
     windows = [layouts.POT_WINDOWS[d] for d in ("hard", "medium", "easy")]
     assert [w[1] for w in windows[:2]] == [w[0] for w in windows[1:]] and windows[-1][1] == np.inf
+
+
+# Stored tables
+
+
+@pytest.mark.parametrize("name", ["safety", "held_out_safety"])
+def test_no_pot_is_on_where_a_safety_is_asked_for(name):
+    env = SnookerVectorEnv(60, layout=name, cue="real", noise="professional", threads=1)
+    env.reset(seed=1)
+    at, rules = Positions.of(env), env.options.rules
+    chances = prospects_of(at, spread_of(rules.noise, rules.physics), most=16, rails=rules.rails)[1]
+    assert 0.05 < chances.max() <= 0.3 + 1e-3  # tables are stored as float32
+    assert at.on_table[:, [0, *range(YELLOW, 22)]].all() and (at.on_table[:, 1:YELLOW].sum(axis=1) >= 3).all()
+    for positions, on_table in zip(at.positions, at.on_table, strict=True):
+        assert (
+            np.array_equal(positions[~on_table], SPOTS[~on_table]) and gaps(positions, on_table).min() > -1e-6
+        )
+        assert not is_snookered(positions, on_table, 0xFFFE)[0]
+
+
+@pytest.mark.parametrize("name", ["escape", "held_out_escape"])
+@pytest.mark.parametrize("seed", range(15))
+def test_an_escape_is_from_a_snooker(name, seed):
+    positions, on_table = layouts.layout(name, np.random.default_rng(seed))
+    assert is_snookered(positions, on_table, 0xFFFE)[0] and 1 <= on_table[1:YELLOW].sum() <= 3
+    assert np.allclose(positions[YELLOW:], SPOTS[YELLOW:], rtol=0.0, atol=1e-6)
+    assert gaps(positions, on_table).min() >= layouts.GAP - 1e-6
+
+
+@pytest.mark.parametrize("name", BANKS)
+def test_no_stored_table_is_of_both_parts(name):
+    tables, (trained, held_out) = bank(name), kept(name)
+    assert len(held_out) == BANKS[name] and trained.stop == held_out.start and trained.start == 0
+    cues = [
+        np.sort(np.abs(tables[part.start : part.stop, 0]).round(7), axis=1) for part in (trained, held_out)
+    ]
+    assert not set(map(tuple, cues[0].tolist())) & set(map(tuple, cues[1].tolist()))
+
+
+def test_a_stored_table_is_dealt_as_it_is_or_mirrored():
+    plan, seen = layouts.plan_of("held_out_safety"), set()
+    for seed in range(20):
+        positions, on_table = layouts.layout(plan, np.random.default_rng(seed))
+        swapped = positions.copy() * (-1.0, 1.0)
+        swapped[[YELLOW, GREEN]] = swapped[[GREEN, YELLOW]]
+        for mirrored, made in ((False, positions), (True, swapped)):
+            same = (plan.tables[kept("safety")[1]][:, on_table] == made[on_table]).all((1, 2))
+            if same.any():
+                seen.add(mirrored)
+                assert np.array_equal(on_table, ~np.isnan(plan.tables[kept("safety")[1]][same][0, :, 0]))
+                break
+        else:
+            raise AssertionError(seed)
+    assert seen == {False, True}

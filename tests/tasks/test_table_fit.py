@@ -9,8 +9,8 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import SnookerEnv, SnookerVectorEnv, Table
-from snooker_env.game.layouts import LAYOUTS, deal_tables
-from snooker_env.game.opened import bank, kept
+from snooker_env.game.banks import bank, kept
+from snooker_env.game.layouts import LAYOUTS, STORED_IN, deal_tables
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.table_fit import fitted
 from tests.refusals import refused
@@ -67,20 +67,20 @@ def test_every_layout_fits_every_table_that_is_accepted(name, layout):
 
 
 @pytest.mark.parametrize("name", ["match", "tight", "sharp jaws"])
-def test_every_opened_table_that_can_be_dealt_fits(name):
-    """All of the bank, as it is and mirrored."""
-    for layout in ("opened", "held_out"):
+def test_every_stored_table_that_can_be_dealt_fits(name):
+    """All of a bank, as it is and mirrored."""
+    for layout in STORED_IN:
         tables = fitted(layout, FIT[name]).tables
         assert not FIT[name].unfit(tables, BALL_RADIUS) and not FIT[name].unfit(tables * (-1, 1), BALL_RADIUS)
 
 
 def test_others_stand_in_for_the_opened_tables_that_do_not_fit_and_no_other_deal_changes():
     plan = fitted("opened", Table.preset("tight"))
-    differ = np.flatnonzero((plan.tables != bank()).any((1, 2)))
+    differ = np.flatnonzero((plan.tables != bank("opened")).any((1, 2)))
     assert set(differ) <= set(plan.unfit) and len(differ) >= len(plan.unfit) - 1
-    for part in kept(len(bank())):
+    for part in kept("opened"):
         for k in set(differ) & set(part):
-            assert any(np.array_equal(plan.tables[k], bank()[j]) for j in part)
+            assert any(np.array_equal(plan.tables[k], bank("opened")[j]) for j in part)
     streams = np.arange(8000, dtype=np.uint64).reshape(-1, 2)
     dealt = []
     for each in (plan, fitted("opened", MATCH)):

@@ -1,0 +1,101 @@
+"""Where do the tables of the layout "safety" come from? From frames of the tactician against itself: the positions in
+which no pot is on. Writes ``game/safety.npz``.
+
+    python -m benchmarks.make_safety [--tables 1024] [--player tactician_30] [--seed 0] [--json FILE] [--out FOLDER]
+
+A position is kept if a red is on and can be struck, no direct pot is likelier than 30 %, three reds or more and the six
+colours are on the table, the cue ball is not in hand and no ball is free; of a frame at most three of them. The later
+half of the tables is held out; no frame has tables in both halves.
+"""
+
+import io
+
+import numpy as np
+
+from snooker_env import MatchVectorEnv
+from snooker_env.game.balls import REDS_MASK, BallOn
+from snooker_env.game.banks import FOLDER
+from snooker_env.game.snookered import is_snookered
+from snooker_env.planning import Positions, prospects_of, spread_of
+from snooker_env.players import decided, decision_seeds, player
+
+from ._common.command import Command, at_least, run, save_bytes, save_json
+
+FILE = "safety.npz"
+RULES = {"task": "frame", "noise": "professional", "cue": "real", "miss": "clear_path", "elevation": True}
+LIKELY = 0.3
+"""Chance of a direct pot, by its width, above which a position is none for a safety."""
+REDS, SIDE_BY_SIDE, A_FRAME = 3, 32, 3
+"""The fewest reds; frames that are played side by side; the most positions that are kept of one."""
+
+
+def calls_for_safety(at, spread, rails):
+    """Whether each position is one to keep: bool (n,)."""
+    kept = (at.ball_on == BallOn.RED) & ~at.in_hand & ~at.free_ball & ~at.choice
+    kept &= at.on_table[:, 16:].all(axis=1) & (at.on_table[:, 1:16].sum(axis=1) >= REDS)
+    kept &= prospects_of(at, spread, most=16, rails=rails)[1].max(axis=1) <= LIKELY
+    for k in np.flatnonzero(kept):
+        kept[k] = not is_snookered(at.positions[k], at.on_table[k], REDS_MASK)[0]
+    return kept
+
+
+def played(name, first, many):
+    """Of each of ``many`` frames with seeds from ``first`` on the positions to keep: (22, 2) each, with NaN for balls
+    that are not on the table."""
+    tables = MatchVectorEnv(many, **RULES)
+    rules, seeds = tables.options.rules, np.arange(first, first + many)
+    spread, who = spread_of(rules.noise, rules.physics), player(name).at(tables)
+    tables.reset(seed=first)
+    found, going, number = [[] for _ in range(many)], np.ones(many, bool), 0
+    while going.any():
+        at, rows = Positions.of(tables), np.flatnonzero(going)
+        for k in rows[calls_for_safety(at[rows], spread, rules.rails)].tolist():
+            found[k].append(np.where(at.on_table[k][:, None], at.positions[k], np.nan))
+        actions = decided(who, tables, going, decision_seeds(first, seeds, number))
+        _, _, terminated, truncated, _ = tables.step(actions)
+        # with fewer reds no position to come is kept
+        going &= ~(terminated | truncated) & (tables.tables.on_table[:, 1:16].sum(axis=1) >= REDS)
+        number += 1
+    tables.close()
+    return found
+
+
+def some_of(tables, rng):
+    """At most ``A_FRAME`` of a frame's tables, all different: after a miss they may have been replaced."""
+    different = list({table.tobytes(): table for table in tables}.values())
+    chosen = rng.permutation(len(different))[:A_FRAME]
+    return [different[k].astype(np.float32) for k in sorted(chosen.tolist())]
+
+
+def in_halves(frames, size):
+    """``size`` tables of frames [[table, ...], ...], half of them of earlier frames than the rest; fewer if there are
+    not so many."""
+    made = []
+    for tables in frames:
+        across = len(made) < size // 2 < len(made) + len(tables)
+        made += tables[: size // 2 - len(made)] if across else tables
+    return made[:size]
+
+
+def main():
+    """Command line."""
+    parser = Command("make_safety", __doc__, files=(FILE,), folder=FOLDER, seed=0)
+    parser.add_argument("--tables", type=at_least(2), default=1024, help="so many [1024]")
+    parser.add_argument("--player", default="tactician_30", help="who plays both sides [tactician_30]")
+    options = parser.options()
+    rng = np.random.default_rng(options.seed)
+    frames, tables = [], []
+    while len(tables) < options.tables:
+        first = 1_000_000 * options.seed + len(frames)
+        frames += [some_of(found, rng) for found in played(options.player, first, SIDE_BY_SIDE)]
+        tables = in_halves(frames, options.tables)
+    packed = io.BytesIO()
+    np.savez_compressed(packed, positions=np.array(tables))
+    save_bytes(options.folder / FILE, packed.getvalue())
+    counts = {"seed": options.seed, "player": options.player, "tables": len(tables), "frames": len(frames)}
+    save_json(options.json, counts)
+    print(f"{len(tables)} tables of {len(frames)} frames -> {options.folder / FILE}")
+
+
+if __name__ == "__main__":
+    run(main)
