@@ -96,11 +96,11 @@ def lies(stops: Stops) -> list[str]:
 
 def _nearest_in_the_way(at: Positions, k: int) -> int:
     """The ball nearest to the cue ball of those on its straight lines to the balls on; -1 if there is none."""
-    on = np.flatnonzero(at.balls_on[k])
-    here = at.positions[k]
-    ends, ignore = here[on], np.stack([np.full(len(on), CUE), on], axis=1)
-    starts = np.repeat(here[None, CUE], len(on), 0)
-    way = np.flatnonzero(obstructions(at, np.full(len(on), k), starts, ends, ignore=ignore).any(axis=0))
+    here, on = at.positions[k], np.flatnonzero(at.balls_on[k])
+    many, starts = np.arange(len(on)), np.repeat(here[None, CUE], len(on), 0)
+    hit = obstructions(at, np.full(len(on), k), starts, here[on], ignore=[CUE])
+    hit[many, on] = False
+    way = np.flatnonzero(hit.any(axis=0))
     if not len(way):
         return -1
     return int(way[np.hypot(*(here[way] - here[CUE]).T).argmin()])

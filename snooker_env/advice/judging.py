@@ -83,11 +83,9 @@ def _joined(positions: list[Positions]) -> Positions:
     places, present, game = zip(*((one.positions, one.on_table, one.game) for one in positions), strict=True)
     own = [one.conditions for one in positions if one.conditions is not None]
     saved = [one.saved for one in positions if one.saved is not None]
-    return Positions(
-        *(np.concatenate(part) for part in (places, present, game)),
-        Layouts(*map(np.concatenate, zip(*saved, strict=True))) if saved else None,
-        np.concatenate(own) if own else None,
-    )
+    layouts = Layouts(*map(np.concatenate, zip(*saved, strict=True))) if saved else None
+    tables = np.concatenate(own) if own else None
+    return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game), layouts, tables)
 
 
 def _trial(
@@ -108,8 +106,12 @@ def _trial(
     elif hidden:
         kind, how = "escape", cushion_words(x, y, stroke.aim) if room.elevation < RAISED else ""
     else:
-        kind = "safety" if starts.of_frames else "contact"
-        how = contact_words(dx, dy, stroke.aim)
+        kind, on = "safety" if starts.of_frames else "contact", starts.balls_on[k]
+        if first >= 0 and on[first]:
+            how = contact_words(dx, dy, stroke.aim)
+        else:  # fair without a contact: it is played away from a ball on that it touches
+            gaps = np.hypot(*(starts.positions[k] - (x, y)).T)
+            ball = int(np.where(on, gaps, np.inf).argmin())
     distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
     what, physics = what_words(kind, ball, pocket, first, how), practice.options.rules.physics
     played = replace(stroke, side=room.side, top=room.top)  # its spin is that of the tip that is reached
@@ -178,7 +180,7 @@ def judged(
     out = []
     for k, one in enumerate(strokes):
         mine = slice(k * tries, (k + 1) * tries)
-        look = looks and looks[k]
+        look = None if looks is None else looks[k]
         no_foul = stops.penalty[mine] == 0
         made = no_foul & (stops.potted[mine, one.ball] == one.pocket) if one.kind == "pot" else no_foul
         chance = float(made.mean())

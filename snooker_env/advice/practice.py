@@ -54,13 +54,13 @@ class Practice:
 
         Of positions of frames the points, the penalty and what is left are those of a frame, and whoever played is
         still player 0 in ``afterstates``. Blocks (``Noise.kick``) do not change what is left."""
-        planner, silent = (self.exact if keys is None else self.noisy), self.sure or keys is None
+        planner = self.exact if keys is None else self.noisy
         stops = planner.stops(at, rows, strokes=strokes, keys=None if self.sure else keys)
         if not at.of_frames:
             return stops
-        streams = np.zeros((len(strokes), 2), np.uint64)
-        streams[:, 0] = 0 if silent else keys
-        errors = np.zeros_like(strokes) if silent else errors_of(streams)
+        errors = np.zeros_like(strokes)
+        if not (self.sure or keys is None):
+            errors = errors_of(np.stack([keys, np.zeros_like(keys)], axis=1))
         after = self.judge.outcomes(at.known_to(self.options.rules), np.asarray(rows), strokes, errors)
         game, before = after.game, at.game[rows]
         stays = (game[:, columns.PHASE] == columns.STROKE) & (game[:, columns.STRIKER] == 0)

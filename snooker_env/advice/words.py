@@ -114,7 +114,8 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does without errors. ``how``: an escape's first cushion, or how full a ball is struck."""
+    """What a stroke does without errors. ``how``: an escape's first cushion, or how full a ball is struck; "" if it is
+    played away from a ball that it touches."""
     if kind == "pot":
         how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
         return f"{ball_words(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
@@ -124,6 +125,8 @@ def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> 
         return f"foul, {ball_words(first)} first" if first >= 0 else "foul, nothing struck"
     if kind == "escape":
         return f"escape{f' off the {how}' if how else ''} to the {ball_words(ball)}"
+    if not how:
+        return f"{'safety ' if kind == 'safety' else ''}away from the touching {ball_words(ball)}"
     return f"{'safety off' if kind == 'safety' else 'contact with'} the {ball_words(ball)}, {how}"
 
 
