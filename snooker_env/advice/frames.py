@@ -39,8 +39,8 @@ def outlooks(
     before = lead_of(starts)[each]
     points = follows(search.worth, after, before, search.rules.rule_set.code)
     wins = search._both(before, points, after)[:, 0].reshape(n, -1)
-    comes = np.flatnonzero(_others(after))
-    theirs = _met(after[comes])
+    comes = np.flatnonzero(others_next(after))
+    theirs = met(after[comes])
     hidden = ~clear_paths(theirs).any_part
     groups = [np.flatnonzero(each[comes] == k) for k in range(n)]
     scored = rest_of(practice, theirs, groups, visits, seed)
@@ -68,14 +68,14 @@ def rest_of(practice: Practice, left: Positions, groups: list[Ints], visits: int
     return np.split(rest, np.cumsum([len(some) for some in rows])[:-1])
 
 
-def _others(after: Positions) -> np.ndarray:
+def others_next(after: Positions) -> np.ndarray:
     """Where the other comes to the table next: bool (n,)."""
     game = after.game
     plays = np.isin(game[:, columns.PHASE], (columns.STROKE, columns.CHOICE))
     return plays & (game[:, columns.STRIKER] == 1)
 
 
-def _met(after: Positions) -> Positions:
+def met(after: Positions) -> Positions:
     """What the other meets: as he plays, after a foul as the balls lie, with a cue ball in hand where it is good."""
     return placed(chosen(turned(after), columns.PLAY), np.zeros(len(after), np.int64))[0]
 
@@ -83,8 +83,8 @@ def _met(after: Positions) -> Positions:
 def lies(stops: Stops) -> list[str]:
     """Where strokes that leave the table to the other put the cue ball, in words; "" elsewhere."""
     out, after = [""] * len(stops.first), stops.afterstates
-    rows = np.flatnonzero(_others(after) & (stops.penalty == 0))
-    theirs = _met(after[rows])
+    rows = np.flatnonzero(others_next(after) & (stops.penalty == 0))
+    theirs = met(after[rows])
     seen = clear_paths(theirs).any_part
     for j, k in enumerate(rows.tolist()):
         x, y = theirs.positions[j, CUE].tolist()
