@@ -140,7 +140,8 @@ class Suggestion(CueStroke):
         "escape": the same where no straight path leads to a ball on. "in-off": it loses the cue ball. "foul":
         any other foul.
     ball : int
-        Id of the ball that it pots without errors or, if none, strikes first; -1 if it strikes nothing.
+        Id of the ball that it pots without errors or, if none, strikes first; of a touching ball that it is played
+        away from, that one; -1 if it strikes nothing.
     pocket : int
         Pocket of that ball, an index into ``snooker_env.POCKETS``; -1 if it is not potted.
     first : int
