@@ -40,11 +40,7 @@ class PolicyPlayer(ChoicePlayer):
 
     def scores(self, at, seeds):
         """The policy's logits, whose softmax are its probabilities."""
-        policy, masks, observations = (
-            self.model.policy,
-            action_masks(at, cue=self.options.cue),
-            at.observations(),
-        )
+        policy, masks, observations = self.model.policy, action_masks(at, cue=self.options.cue), at.observations()
         if self._view is None:
             return np.where(masks, policy(observations), -np.inf)
         if _sees_constants(self.model):
