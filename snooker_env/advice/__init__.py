@@ -4,7 +4,7 @@
 >>> position = sn.Position(cue=(0.25, 0.6), reds=[(-0.4, 1.3)], black=(0.0, 1.4605), on="red")
 >>> advice = sn.advise(position, n=2, samples=40, visits=8)
 >>> print(advice[0].words)  # doctest: +ELLIPSIS
-red, top left, ... m/s, ..., chance ... %, ... points expected
+red, top left, ... m/s, ..., pot ... %, ... points expected
 
 In words the ``snooker_env.POCKETS`` are called green pocket, yellow pocket, right middle, top right, top left
 and left middle. Left and right are as seen from the baulk end: right is the yellow side (+x).

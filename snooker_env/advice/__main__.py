@@ -10,7 +10,7 @@ from ..planning import Position
 from ..players import players
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
-from .ask import AGENT, advise
+from .ask import AGENT, OF_FRAMES, advise
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -20,7 +20,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     from_file = "JSON of a position: from Position.save, or hand-written"
     parser.add_argument("--position", required=True, metavar="FILE", help=from_file)
     for name, default, words in (
-        ("agent", AGENT, f"{', '.join(players())}, a model's .zip or MODULE:CLASS"),
         ("noise", "professional", f"execution errors: {', '.join(LEVELS)}"),
         ("n", 5, "largest number of strokes"),
         ("samples", 200, "noise samples of each stroke"),
@@ -30,13 +29,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser.add_argument(
             f"--{name}", type=type(default), default=default, help=f"{words} (default: {default})"
         )
+    whom = f"{', '.join(players())}, a model's .zip or MODULE:CLASS (default: {AGENT}; with --scores {OF_FRAMES})"
+    parser.add_argument("--agent", help=whom)
+    frame = "scores of who plays and of the other: the position is of a frame, and safeties are judged"
+    parser.add_argument("--scores", nargs=2, type=int, metavar=("MINE", "OTHERS"), help=frame)
     cue = "whether rails and balls are in the way of the cue (default: free)"
     parser.add_argument("--cue", choices=CUES, default="free", help=cue)
     parser.add_argument("--json", action="store_true", help="print all figures as JSON")
     parser.add_argument("--trust", action="store_true", help="let code in a model's file run")
     args = parser.parse_args(argv)
     try:
-        names = ("agent", "noise", "n", "samples", "visits", "seed", "trust")
+        names = ("agent", "scores", "noise", "n", "samples", "visits", "seed", "trust")
         how: dict[str, Any] = {name: getattr(args, name) for name in names}
         advice = advise(Position.load(args.position), options={"cue": args.cue}, **how)
     except (ValueError, OSError) as error:
@@ -48,11 +51,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     print(advice.order)
     for k, one in enumerate(advice, 1):
         (low, high), (least, most) = one.chance_interval, one.points_interval
-        chance, points = (
-            ("chance", f", points {least:.1f} to {most:.1f}") if one.kind == "pot" else ("fair", "")
-        )
+        chance, points = ("pot", f", points {least:.1f} to {most:.1f}") if one.kind == "pot" else ("fair", "")
         print(f"{k}. {one.words}")
-        print(f"   {chance} {100 * low:.0f} to {100 * high:.0f} %{points} (95 %)", end="")
+        won = (
+            ""
+            if one.win_interval is None
+            else "; win chance {:.0f} to {:.0f} %".format(*(100 * end for end in one.win_interval))
+        )
+        print(f"   {chance} {100 * low:.0f} to {100 * high:.0f} %{points}{won} (95 %)", end="")
         x, y = one.stops or (0.0, 0.0)
         print(f"; cue ball stops at ({x:.2f}, {y:.2f}) m, spread {one.spread:.2f} m" if one.stops else "")
     return 0

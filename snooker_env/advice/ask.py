@@ -14,7 +14,8 @@ from . import judging
 from .practice import Practice, one_position, practice_of
 from .strokes import Advice, CueStroke, cue_strokes
 
-AGENT = "planner_500"  # who is asked if nobody is named: 120 points a visit, in a twentieth of a second
+AGENT, OF_FRAMES = "planner_500", "tactician"
+"""Who is asked if nobody is named: in a visit, and in a frame."""
 INSTEAD = "random"
 """Whose strokes are judged where none of an agent's is fair: many of the choices of ``action="discrete"``."""
 CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
@@ -23,7 +24,8 @@ CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so
 def advise(
     position: PositionsLike,
     *,
-    agent: Any = AGENT,
+    agent: Any = None,
+    scores: tuple[int, int] | None = None,
     noise: NoiseLike = "professional",
     n: int = 5,
     samples: int = 200,
@@ -35,16 +37,16 @@ def advise(
 ) -> Advice:
     """Return the strokes that a player would play in a position, best first, and their outcomes.
 
-    Each stroke is played ``samples`` times, with the same execution errors whichever player is asked, and
-    judged as a stroke of a visit. Of the visits that go on, ``visits`` are played to their end by a fast
-    player (``snooker_env.advice.visits``), so ``points`` is what a good player makes of the position, not the
-    best.
+    Each stroke is played ``samples`` times, with the same execution errors whichever player is asked. Of the
+    visits that go on, ``visits`` are played to their end by a fast player (``snooker_env.advice.visits``), so
+    ``points`` is what a good player makes of the position, not the best.
 
     Of the strokes that the player ranks, the first ``n`` are returned that are fair: no foul without errors,
-    nor in most samples. Pots are ordered by points expected, others by how often they are fair, because what
-    a stroke is worth as a safety is not judged; those that the player prefers, pots or others, come first.
-    Where none is fair, many choices of ``action="discrete"`` are judged, too; where none of these is, the
-    stroke that is fair most often is returned, and its words say so.
+    nor in most samples. In a frame they are ordered by the chance to win it; each says what the other finds, of
+    whose next visits ``visits`` are played, too. In a visit pots are ordered by points expected, others by how
+    often they are fair, because what a stroke is worth as a safety is not judged there; those that the player
+    prefers, pots or others, come first. Where none is fair, many choices of ``action="discrete"`` are judged,
+    too; where none of these is, the stroke that is fair most often is returned, and its words say so.
 
     The errors are drawn from ``seed`` alone, independent of the random stream that a saved state carries: the
     same seed gives the same advice, and advice never reveals the errors of the next stroke.
@@ -53,10 +55,13 @@ def advise(
     ----------
     position : Position, dict, Positions or environment
         One position, as ``Positions.of`` takes it, or a ``Position.to_dict()``. With the cue ball in hand
-        each stroke has its ``place``. Points so far do not count. In a frame a free ball counts as any
-        colour.
-    agent : str, Path or player
-        The player, as ``snooker_env.player`` takes it. One without ``rank`` has one stroke.
+        each stroke has its ``place``. Points of the break so far do not count.
+    agent : str, Path or player, optional
+        The player, as ``snooker_env.player`` takes it. One without ``rank`` has one stroke. Default None:
+        "planner_500", in a frame "tactician".
+    scores : (int, int), optional
+        Of the striker and of the other, in [0, 1000]: they make a frame of a position of a visit. Default None:
+        it is what it is.
     noise : str, dict or Noise
         Execution errors with which strokes are chosen and judged.
     n : int
@@ -68,8 +73,8 @@ def advise(
     seed : int
         Seed of the noise samples, in [0, 2**63].
     options : dict or Options, optional
-        An ``Options``, or a dict with "physics", "table" and "fidelity". Default None: those of ``position``
-        if it is an environment, else the defaults.
+        An ``Options``, or a dict with "physics", "table", "fidelity", "cue" and, in a frame, "miss" and "game".
+        Default None: those of ``position`` if it is an environment, else the defaults.
     distinct : bool
         Whether only the first of strokes with equal descriptions is kept, apart from the speed of a pot.
     trust : bool
@@ -92,7 +97,9 @@ def advise(
     integer("samples", samples, 1, 100_000)
     integer("visits", visits, 0, 100_000)
     integer("seed", seed, 0, 2**63)
-    at, practice = one_position(position), practice_of(noise, options, position)
+    at = one_position(position, scores)
+    practice = practice_of(noise, options, position, of_frames=at.of_frames)
+    agent = (OF_FRAMES if at.of_frames else AGENT) if agent is None else agent
     asked = player_of(agent, trust=trust)
 
     def tried(one: Player) -> list[judging.Tried]:
@@ -110,6 +117,7 @@ def advise(
     return Advice(
         suggestions=tuple(chosen),
         position=at[0],
+        scores=tuple(at.scores[0].tolist()) if at.of_frames else None,
         agent=name,
         own=all(one.stroke in of_agent for one in chosen),
         noise=noise if isinstance(noise, str) else asdict(practice.noise),
@@ -117,18 +125,11 @@ def advise(
     )
 
 
-def _ranked(asked: Player, practice: Practice, at: Positions, seed: int) -> judging.Rankings:
-    """The player's ranking in the one position ``at``, best first with scores, or the one that it plays."""
-    bound, shown = asked.at(practice.options), _shown(at)
+def _ranked(asked: Player, practice: Practice, at: Positions, seed: int) -> list[CueStroke]:
+    """The player's ranking in the one position ``at``, best first, or the one stroke that it plays."""
+    bound = asked.at(practice.options)
     rank = getattr(bound, "rank", None)
-    strokes, scores = (bound.play(shown, [seed]), None) if rank is None else rank(shown, [seed])[0]
-    each = [None] * len(strokes) if scores is None else scores.tolist()
-    return list(zip(cue_strokes(strokes, shown), each, strict=True))
-
-
-def _shown(at: Positions) -> Positions:
-    """What a player is asked: the stroke to come, with no choice before it and the cue ball within the D."""
-    return at.as_visits() if at.choice[0] or at.lot[0] or at.anywhere[0] else at
+    return cue_strokes(bound.play(at, [seed]) if rank is None else rank(at, [seed])[0].strokes, at)
 
 
 def stroke_of(
@@ -163,5 +164,6 @@ def stroke_of(
     True
     """
     integer("seed", seed, 0, 2**63)
-    shown, practice = _shown(one_position(position)), practice_of(noise, options, position)
-    return cue_strokes(player_of(player).at(practice.options).play(shown, [seed]), shown)[0]
+    at = one_position(position)
+    practice = practice_of(noise, options, position, of_frames=at.of_frames)
+    return cue_strokes(player_of(player).at(practice.options).play(at, [seed]), at)[0]

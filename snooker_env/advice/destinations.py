@@ -115,7 +115,7 @@ def destinations(
     integer("samples", samples, 1, 1_000_000)
     integer("seed", seed, 0, 2**63)
     practice, struck = practice_of(noise, options, position), CueStroke.of(stroke)
-    start, row = played_from(one_position(position), struck), struck.numbers()[None]
+    start, row = played_from(one_position(position).as_visits(), struck), struck.numbers()[None]
     tries = 1 if practice.sure else samples
     rows = np.zeros(tries, np.int64)
     ball = int(practice.play(start, rows[:1], row).first[0])

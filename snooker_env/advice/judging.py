@@ -2,24 +2,34 @@
 
 from dataclasses import replace
 from math import hypot, sqrt
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
 from .._types import Bools, Floats
 from ..game.balls import CUE
+from ..game.frame_columns import Layouts
 from ..geometry import BALL_RADIUS
 from ..planning import Positions, Stops, clear_paths
+from .frames import Outlook, Z, lies, outlooks, rest_of
 from .practice import JUDGING, Practice, keys, played_from
 from .room import Room, room_for
 from .strokes import CueStroke, Suggestion
-from .visits import played_on
-from .words import RAISED, contact_words, cushion_words, figures_words, stroke_words, what_words
+from .words import (
+    RAISED,
+    against_words,
+    contact_words,
+    cushion_words,
+    figures_words,
+    percent,
+    reply_words,
+    stroke_words,
+    what_words,
+)
 
 FOULS = ("foul", "in-off")  # kinds of strokes that are fouls without errors
-Rankings: TypeAlias = list[tuple[CueStroke, float | None]]
-"""Strokes, best first, each with the player's own score of it."""
-Z = 1.959964  # standard deviations of a 95 % interval
+RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with
+OFTEN = 0.05  # share of misses from which is said what a missed pot leaves
 
 
 def wilson(made: int, tries: int) -> tuple[float, float]:
@@ -46,7 +56,6 @@ class Tried(NamedTuple):
     """A stroke of a ranking, and what it does without errors."""
 
     stroke: CueStroke
-    score: float | None
     start: Positions  # the position that it is played from
     kind: str
     ball: int
@@ -57,31 +66,33 @@ class Tried(NamedTuple):
     room: Room
 
 
-def tried(practice: Practice, at: Positions, ranked: Rankings) -> list[Tried]:
-    """What the strokes of a ranking do without errors in the one position ``at``."""
-    strokes = [stroke for stroke, _ in ranked]
+def tried(practice: Practice, at: Positions, strokes: list[CueStroke]) -> list[Tried]:
+    """What strokes do without errors in the one position ``at``."""
     starts = _joined([played_from(at, stroke) for stroke in strokes])
     stops = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
     hidden = ~clear_paths(starts).any_part
+    ends = lies(stops) if at.of_frames else [""] * len(strokes)
     return [
-        Tried(*one, starts[k : k + 1], *_trial(practice, starts, stops, k, one[0], bool(hidden[k])))
-        for k, one in enumerate(ranked)
+        Tried(one, starts[k : k + 1], *_trial(practice, starts, stops, k, one, bool(hidden[k]), ends[k]))
+        for k, one in enumerate(strokes)
     ]
 
 
 def _joined(positions: list[Positions]) -> Positions:
-    """Several positions of visits as the rows of one."""
+    """Several positions of one table as the rows of one."""
     places, present, game = zip(*((one.positions, one.on_table, one.game) for one in positions), strict=True)
     own = [one.conditions for one in positions if one.conditions is not None]
-    tables = np.concatenate(own) if own else None  # all are of one table
-    return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game), None, tables)
+    saved = [one.saved for one in positions if one.saved is not None]
+    layouts = Layouts(*map(np.concatenate, zip(*saved, strict=True))) if saved else None
+    tables = np.concatenate(own) if own else None
+    return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game), layouts, tables)
 
 
 def _trial(
-    practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool
+    practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool, lie: str
 ) -> tuple[str, int, int, int, str, str, Room]:
     """Kind, ball, pocket, first ball, words, words without room, and room of stroke k; ``hidden``: no straight path
-    to a ball on."""
+    to a ball on; ``lie``: where it leaves the cue ball, in words."""
     room = room_for(stroke.numbers(), starts[k : k + 1], practice.options.rules)
     first, pocket, how = int(trial.first[k]), -1, ""
     ball, (x, y) = first, starts.positions[k, CUE].tolist()
@@ -95,12 +106,20 @@ def _trial(
     elif hidden:
         kind, how = "escape", cushion_words(x, y, stroke.aim) if room.elevation < RAISED else ""
     else:
-        kind, how = "contact", contact_words(dx, dy, stroke.aim)
+        kind, on = "safety" if starts.of_frames else "contact", starts.balls_on[k]
+        if first >= 0 and on[first]:
+            how = contact_words(dx, dy, stroke.aim)
+        else:  # fair without a contact: it is played away from a ball on that it touches
+            gaps = np.hypot(*(starts.positions[k] - (x, y)).T)
+            ball = int(np.where(on, gaps, np.inf).argmin())
     distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
     what, physics = what_words(kind, ball, pocket, first, how), practice.options.rules.physics
     played = replace(stroke, side=room.side, top=room.top)  # its spin is that of the tip that is reached
-    words = f"{what}, {stroke_words(played, distance, physics, room)}"
-    return kind, ball, pocket, first, words, f"{what}, {stroke_words(played, distance, physics)}", room
+    words, alike = (
+        ", ".join(filter(None, (what, stroke_words(played, distance, physics, way), lie)))
+        for way in (room, None)
+    )
+    return kind, ball, pocket, first, words, alike, room
 
 
 def distinct(strokes: list[Tried]) -> list[Tried]:
@@ -118,7 +137,26 @@ def fair(practice: Practice, strokes: list[Tried], n: int, **how: int) -> list[S
     while waiting and len(out) < n:
         some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
         out += [one for one in judged(practice, some, **how) if one.foul <= 0.5]
+    if out and out[0].win is not None:
+        out.sort(key=lambda one: -one.figure)
+        pot = out[0].kind == "pot"
+        others = [one for one in waiting if (one.kind == "pot") != pot][:RIVALS]
+        others = judged(practice, others, **how | {"visits": 0}) if others else []
+        return [_compared(out, [one for one in out[1:] + others if one.foul <= 0.5]), *out[1:]]
     return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
+
+
+def _compared(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
+    """The best stroke of a frame with the chance to win that it compares with: of the best of ``others`` of the other
+    kind, pots or not, or of the next best."""
+    one = best[0]
+    rivals = [other for other in others if (other.kind == "pot") != (one.kind == "pot")]
+    rivals = rivals or best[1:]
+    if not rivals:
+        return one
+    rival = max(rivals, key=lambda other: other.figure)
+    kind = rival.kind if (rival.kind == "pot") != (one.kind == "pot") else ""
+    return replace(one, against=rival.win, words=one.words + against_words(rival.figure, kind))
 
 
 def least_bad(practice: Practice, strokes: list[Tried], **how: int) -> Suggestion:
@@ -136,10 +174,13 @@ def judged(
     rows, starts = [one.stroke.numbers() for one in strokes], _joined([one.start for one in strokes])
     each, noise = np.repeat(np.arange(n), tries), np.tile(keys(seed, JUDGING, tries), n)
     stops = practice.play(starts, each, np.repeat(rows, tries, 0), noise)
-    rest = _rest(practice, stops, n, tries, again, seed)
+    groups = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries]) for k in range(n)]
+    rest = rest_of(practice, stops.afterstates, groups, again, seed)
+    looks = outlooks(practice, starts, each, stops, n, again, seed) if starts.of_frames else None
     out = []
     for k, one in enumerate(strokes):
         mine = slice(k * tries, (k + 1) * tries)
+        look = None if looks is None else looks[k]
         no_foul = stops.penalty[mine] == 0
         made = no_foul & (stops.potted[mine, one.ball] == one.pocket) if one.kind == "pot" else no_foul
         chance = float(made.mean())
@@ -149,7 +190,8 @@ def judged(
         out.append(
             Suggestion(
                 **vars(one.stroke),
-                **{name: getattr(one, name) for name in ("room", "kind", "ball", "pocket", "first", "score")},
+                **{name: getattr(one, name) for name in ("room", "kind", "ball", "pocket", "first")},
+                **(look._asdict() if look else {}),
                 chance=chance,
                 chance_interval=(chance, chance) if practice.sure else wilson(int(made.sum()), tries),
                 points=points,
@@ -158,7 +200,8 @@ def judged(
                 in_off=float((~stayed).mean()),
                 stops=middle,
                 spread=spread,
-                words=f"{one.words}, {figures_words(one.kind, chance, points)}",
+                words=f"{one.words}, {figures_words(one.kind, chance, points, look is not None)}"
+                + (_why(one.kind, chance, look) if look else ""),
             )
         )
     return out
@@ -172,10 +215,8 @@ def _cloud(places: Floats) -> tuple[tuple[float, float] | None, float | None]:
     return (x, y), float(np.sqrt(((places - (x, y)) ** 2).sum(axis=1).mean()))
 
 
-def _rest(practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int) -> list[Floats]:
-    """For each of n strokes: the points that followed in the first ``visits`` samples that went on."""
-    rows = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries])[:visits] for k in range(n)]
-    numbers = np.concatenate([np.arange(len(each)) for each in rows]).astype(np.int64)
-    rest = played_on(practice, stops.afterstates[np.concatenate(rows).astype(np.int64)], numbers, seed)
-    ends = np.cumsum([len(each) for each in rows])
-    return np.split(rest, ends[:-1])
+def _why(kind: str, chance: float, look: Outlook) -> str:
+    """The words of what a stroke of a frame leads to."""
+    seldom = kind == "pot" and 1.0 - chance < OFTEN
+    reply = "" if seldom else reply_words(kind, look.replies, look.leaves, look.snookers)
+    return f"{reply and f', {reply}'}; win chance {percent(look.win)}"

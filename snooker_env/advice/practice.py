@@ -1,23 +1,32 @@
-"""Where are trial strokes played for advice? On a ``Practice``: with and without execution errors."""
+"""Where are trial strokes played for advice? On a ``Practice``: with and without execution errors, in a visit or by the
+rules of a frame."""
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from .._check import choice, refuse, refuse_what
+from .._check import choice, integer, refuse, refuse_what
 from .._types import Floats
-from ..game.frame_columns import POINTS
+from ..game import frame_columns as columns
 from ..game.in_hand import place_cue
 from ..planning import RULE_OF_THUMB, SURE, Planner, Positions, Stops, prospects_of, spread_of
+from ..planning.frame_search import LEAST, FrameSearch
 from ..planning.positions import bare
-from ..tasks.noise import Noise, NoiseLike
+from ..planning.worth import chosen
+from ..players.seen import begun
+from ..players.tactician import Tactician
+from ..tasks.noise import Noise, NoiseLike, errors_of
 from ..tasks.options import Options
 from ..tasks.tables import Tables
 from .strokes import CueStroke
 
 PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")
 """The options that say where strokes are played. All others belong to a game."""
+FRAME_OPTIONS = tuple(Options.group("frame"))
+"""Those of a frame that count as well where a position is of one."""
+MOST_SCORE = 1000  # largest score of a player in a position of a frame
 JUDGING, GOING_ON = 1, 2
 """Of noise samples: not those that chose a stroke judge it, so that a lucky choice is not overestimated."""
 
@@ -35,10 +44,32 @@ class Practice:
         self.sure: bool = self.noise.silent
         self._spread = spread_of(self.noise, options.rules.physics)
 
+    @cached_property
+    def judge(self) -> FrameSearch:
+        """Plays strokes of frames and knows what is worth what in them: the same for all players."""
+        return Tactician(LEAST).at(self.options).search
+
     def play(self, at: Positions, rows: Any, strokes: Floats, keys: Any = None) -> Stops:
-        """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without."""
+        """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without.
+
+        Of positions of frames the points, the penalty and what is left are those of a frame, and whoever played is
+        still player 0 in ``afterstates``. Blocks (``Noise.kick``) do not change what is left."""
         planner = self.exact if keys is None else self.noisy
-        return planner.stops(at, rows, strokes=strokes, keys=None if self.sure else keys)
+        stops = planner.stops(at, rows, strokes=strokes, keys=None if self.sure else keys)
+        if not at.of_frames:
+            return stops
+        errors = np.zeros_like(strokes)
+        if not (self.sure or keys is None):
+            errors = errors_of(np.stack([keys, np.zeros_like(keys)], axis=1))
+        after = self.judge.outcomes(at.known_to(self.options.rules), np.asarray(rows), strokes, errors)
+        game, before = after.game, at.game[rows]
+        stays = (game[:, columns.PHASE] == columns.STROKE) & (game[:, columns.STRIKER] == 0)
+        return stops._replace(
+            points=(game[:, columns.SCORE_0] - before[:, columns.SCORE_0]).astype(np.float64),
+            penalty=game[:, columns.SCORE_1] - before[:, columns.SCORE_1],
+            goes_on=stays,
+            afterstates=after,
+        )
 
     def chosen(self, at: Positions, rows: Any, choices: Any) -> Floats:
         """The strokes (n, 5) that choices of ``action="discrete"`` mean on ``at[rows]``."""
@@ -52,27 +83,31 @@ class Practice:
         )
 
 
-def practice_of(noise: NoiseLike, options: Any = None, source: Any = None) -> Practice:
-    """The practice table for a noise and ``options``; None: those of an environment ``source``."""
+def practice_of(
+    noise: NoiseLike, options: Any = None, source: Any = None, *, of_frames: bool = False
+) -> Practice:
+    """The practice table for a noise and ``options``; None: those of an environment ``source``. ``of_frames``: whether
+    strokes of frames are played on it."""
     if options is None:
         options = getattr(bare(source), "options", None)
         options = options if isinstance(options, Options) else {}
+    names = (*PHYSICAL_OPTIONS, *FRAME_OPTIONS) if of_frames else PHYSICAL_OPTIONS
     if isinstance(options, Options):
-        names = PHYSICAL_OPTIONS if options.task == "visit" else (*PHYSICAL_OPTIONS, *Options.group("frame"))
-        same: dict[str, Any] = {name: getattr(options, name) for name in names}
-        same |= {} if options.task == "visit" else {"task": "frame"}
+        held = PHYSICAL_OPTIONS if options.task == "visit" else names
+        same: dict[str, Any] = {name: getattr(options, name) for name in held}
     elif isinstance(options, Mapping):
         for key in options:
-            choice("key of options", key, PHYSICAL_OPTIONS)
+            choice("key of options", key, names)
         same = dict(options)
     else:
-        allowed = f"must be None, an Options, or a dict with keys of {PHYSICAL_OPTIONS}"
+        allowed = f"must be None, an Options, or a dict with keys of {names}"
         raise refuse_what("options", f"a {type(options).__name__}", allowed)
-    return Practice(Options(noise=Noise.of(noise), **same))
+    return Practice(Options(task="frame" if of_frames else "visit", noise=Noise.of(noise), **same))
 
 
-def one_position(source: Any) -> Positions:
-    """The one position in a source, with no points in its visit; ValueError if there is not one to play."""
+def one_position(source: Any, scores: Any = None) -> Positions:
+    """The one position in a source, as its next stroke is played: with no decision before it, and no points in its
+    visit. ``scores`` make a frame of it. ValueError if there is not one to play."""
     tables = getattr(bare(source), "tables", None)
     if isinstance(tables, Tables) and not tables.begun.all():
         words = "must have a position: call reset() first"
@@ -83,13 +118,33 @@ def one_position(source: Any) -> Positions:
     if at.over[0]:
         raise refuse("position.over", True, "must be False: the visit has ended, there is no stroke to play")
     at = at.copy()
-    at.game[:, POINTS] = 0  # only future points count, and no break can exceed what a table allows
+    at.game[:, columns.POINTS] = 0  # only future points count, and no break can exceed what a table allows
+    if scores is not None:
+        at = _with_scores(at, scores)
+    if at.choice[0]:
+        at = chosen(at, columns.PLAY)
+    if at.of_frames:
+        at.game[:, columns.PHASE] = columns.STROKE  # who has won the lot begins
+    if at.anywhere[0]:  # the places that strokes know are those of the D
+        at.game[:, [columns.IN_HAND, columns.ANYWHERE]] = 0
+    return at
+
+
+def _with_scores(at: Positions, scores: Any) -> Positions:
+    """A position of a visit as one of a frame with these scores of the striker and of the other."""
+    if at.of_frames:
+        raise refuse("scores", scores, "must be None: the position is of a frame, which has its own")
+    if not isinstance(scores, list | tuple) or len(scores) != 2:
+        raise refuse("scores", scores, "must be two integers: of the striker and of the other")
+    mine, others = (integer(f"scores[{k}]", score, 0, MOST_SCORE) for k, score in enumerate(scores))
+    at = begun(at)
+    at.game[:, [columns.SCORE_0, columns.SCORE_1]] = mine, others
+    at.game[:, columns.STROKES] = not at.on_table.all()  # else it is the break-off
     return at
 
 
 def played_from(at: Positions, stroke: CueStroke) -> Positions:
-    """``at`` as a visit, with a cue ball in hand at the free place nearest to that of the stroke."""
-    at = at.as_visits()
+    """``at`` with a cue ball in hand at the free place nearest to that of the stroke."""
     if stroke.place is None:
         return at
     if not at.in_hand[0]:

@@ -134,12 +134,14 @@ class Suggestion(CueStroke):
         As in ``CueStroke``.
     room : Room
         How the cue finds room for it: ``cue="real"`` may raise it and move its tip.
-    kind : {"pot", "contact", "escape", "in-off", "foul"}
+    kind : {"pot", "contact", "safety", "escape", "in-off", "foul"}
         What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores
-        nothing; what it is worth as a safety is not judged. "escape": the same where no straight path leads
-        to a ball on. "in-off": it loses the cue ball. "foul": any other foul.
+        nothing; what it is worth as a safety is not judged. "safety": the same in a frame, where it is judged.
+        "escape": the same where no straight path leads to a ball on. "in-off": it loses the cue ball. "foul":
+        any other foul.
     ball : int
-        Id of the ball that it pots without errors or, if none, strikes first; -1 if it strikes nothing.
+        Id of the ball that it pots without errors or, if none, strikes first; of a touching ball that it is played
+        away from, that one; -1 if it strikes nothing.
     pocket : int
         Pocket of that ball, an index into ``snooker_env.POCKETS``; -1 if it is not potted.
     first : int
@@ -160,8 +162,20 @@ class Suggestion(CueStroke):
         Mean stopping point of the cue ball [m] where it stayed on the table; None if it never did.
     spread : float or None
         Root of the mean square distance from that point [m].
-    score : float or None
-        The agent's own score of the stroke, in its own unit: points for a search, a probability for a policy.
+    win : float or None
+        Of a frame: the chance to win it, the mean over the samples; None in a visit, as all below. It is the
+        ``tactician``'s, whoever is asked: the lead that its learned worth expects, turned into a chance.
+    win_interval : (float, float) or None
+        95 % interval of that mean: the sampling error alone, not that of the worth.
+    against : float or None
+        Of the first stroke: the chance to win of the best stroke of the other sort, a pot or none, or if none was
+        ranked of the next best.
+    replies, leaves : float or None
+        Where the stroke brings the other to the table: the share of his next visits in which he pots, and their
+        mean points, played by the same fast player from the first ``visits`` of these samples. After a foul he
+        plays from where the balls lie; penalties do not count. None if no such visit was played.
+    snookers : float or None
+        The share of these samples in which he has no straight path to a ball on.
     words : str
         All this in one line of text.
 
@@ -173,7 +187,7 @@ class Suggestion(CueStroke):
     >>> suggestion.kind, suggestion.chance
     ('pot', 1.0)
     >>> print(suggestion)  # doctest: +ELLIPSIS
-    black, top left, ... m/s, ..., chance 100 %, 7 points expected
+    black, top left, ... m/s, ..., pot 100 %, 7 points expected
     """
 
     room: Room
@@ -189,12 +203,20 @@ class Suggestion(CueStroke):
     in_off: float
     stops: Place | None
     spread: float | None
-    score: float | None
     words: str
+    win: float | None = None
+    win_interval: tuple[float, float] | None = None
+    against: float | None = None
+    replies: float | None = None
+    leaves: float | None = None
+    snookers: float | None = None
 
     @property
     def figure(self) -> float:
-        """What its kind is ordered by: a pot's expected points, otherwise the share without a foul."""
+        """What it is ordered by: in a frame the chance to win; else a pot's expected points, or the share without a
+        foul."""
+        if self.win is not None:
+            return self.win
         return self.points if self.kind == "pot" else self.chance
 
     @property
@@ -221,6 +243,8 @@ class Advice(Sequence[Suggestion]):
         The strokes.
     position : Position
         The position.
+    scores : (int, int) or None
+        Of a frame: the scores of the striker and of the other.
     agent : str
         Name of the agent.
     own : bool
@@ -239,11 +263,12 @@ class Advice(Sequence[Suggestion]):
     (1, 'search')
     >>> print(advice)  # doctest: +ELLIPSIS
     Pots by points expected:
-    1. black, top left, ... m/s, ..., chance 100 %, 7 points expected
+    1. black, top left, ... m/s, ..., pot 100 %, 7 points expected
     """
 
     suggestions: tuple[Suggestion, ...]
     position: Position
+    scores: tuple[int, int] | None
     agent: str
     own: bool
     noise: str | dict[str, float]
@@ -269,15 +294,18 @@ class Advice(Sequence[Suggestion]):
     @property
     def order(self) -> str:
         """Whose strokes these are if not the agent's own, and by what they are ordered, in words."""
+        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are not its own. "
+        if self.scores is not None:
+            return f"{whose}By chance to win:"
         by = {True: "pots by points expected", False: "strokes without a pot by how often they are fair"}
         parts = ", then ".join(by[pot] for pot in dict.fromkeys(one.kind == "pot" for one in self))
-        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are not its own. "
         return f"{whose}{parts.capitalize()}:"
 
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types; the position and the suggestions as dicts."""
         names = ("agent", "own", "order", "noise", "samples", "visits", "seed")
         kept = {"position": self.position.to_dict(), **{name: getattr(self, name) for name in names}}
+        kept["scores"] = self.scores and list(self.scores)
         return {**kept, "suggestions": [one.to_dict() for one in self]}
 
     def __str__(self) -> str:

@@ -18,6 +18,8 @@ _SIDE = 0.05  # tip offsets over R from which side is mentioned
 _FULLNESS = (0.38, 0.62, 0.87)
 """Offsets of a ball over its diameter up to which it is struck three-quarter, half or quarter."""
 RAISED = 0.05  # elevation [rad] from which a raised cue is mentioned
+TIGHT = 0.05  # largest gap [m] to a ball that the cue ball lies tight behind
+AT_CUSHION = 0.15  # largest gap [m] to the cushion at an end that the cue ball is played to
 
 
 def ball_words(ball: int) -> str:
@@ -82,6 +84,16 @@ def stroke_words(
     return words if stroke.place is None else f"{words}, {place_words(*stroke.place)}"
 
 
+def lie_words(x: float, y: float, ball: int, apart: float) -> str:
+    """Where a cue ball at (x, y) lies: behind a ``ball`` that hides the balls on, its centre ``apart`` [m] away, in
+    baulk or at an end; "" elsewhere. ``ball`` -1: a ball on is seen."""
+    if ball >= 0:
+        return f"{'tight ' if apart - 2.0 * BALL_RADIUS <= TIGHT else ''}behind the {ball_words(ball)}"
+    if HALF_LENGTH - BALL_RADIUS - abs(y) <= AT_CUSHION:
+        return f"to the {'top' if y > 0 else 'baulk'} cushion"
+    return "to baulk" if y < BAULK_Y else ""
+
+
 def cushion_words(x: float, y: float, aim: float) -> str:
     """The cushion that a ball at (x, y) meets in the direction ``aim`` [rad]; "top" is the black end."""
     dx, dy = cos(aim), sin(aim)
@@ -102,7 +114,8 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does without errors. ``how``: an escape's first cushion, or how full a ball is struck."""
+    """What a stroke does without errors. ``how``: an escape's first cushion, or how full a ball is struck; "" if it is
+    played away from a ball that it touches."""
     if kind == "pot":
         how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
         return f"{ball_words(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
@@ -112,13 +125,43 @@ def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> 
         return f"foul, {ball_words(first)} first" if first >= 0 else "foul, nothing struck"
     if kind == "escape":
         return f"escape{f' off the {how}' if how else ''} to the {ball_words(ball)}"
-    return f"contact with the {ball_words(ball)}, {how}"
+    if not how:
+        return f"{'safety ' if kind == 'safety' else ''}away from the touching {ball_words(ball)}"
+    return f"{'safety off' if kind == 'safety' else 'contact with'} the {ball_words(ball)}, {how}"
 
 
-def figures_words(kind: str, chance: float, points: float) -> str:
-    """The figures of a stroke: chance and points expected of a pot, otherwise how often it is fair."""
-    if kind != "pot":
-        unjudged = "; no pot intended, its worth as a safety is not judged"
-        return f"fair {100.0 * chance:.0f} %{unjudged if kind in ('contact', 'escape') else ''}"
-    scored = f"{points:.0f}" if points >= 9.5 else f"{points:.1f}".removesuffix(".0")
-    return f"chance {100.0 * chance:.0f} %, {scored} point{'' if scored == '1' else 's'} expected"
+def percent(share: float) -> str:
+    """A share in whole percent."""
+    return f"{100.0 * share:.0f} %"
+
+
+def points_words(points: float) -> str:
+    """Points, with a digit after the point where they are few."""
+    shown = f"{points:.0f}" if points >= 9.5 else f"{points:.1f}".removesuffix(".0")
+    return f"{shown} point{'' if shown == '1' else 's'}"
+
+
+def figures_words(kind: str, chance: float, points: float, judged: bool = False) -> str:
+    """The figures of a stroke: chance and points expected of a pot, otherwise how often it is fair. ``judged``: its
+    worth as a safety is said elsewhere."""
+    if kind == "pot":
+        return f"pot {percent(chance)}, {points_words(points)} expected"
+    unjudged = kind in ("contact", "escape") and not judged
+    no_pot = "; no pot intended, its worth as a safety is not judged" if unjudged else ""
+    return f"fair {percent(chance)}{no_pot}"
+
+
+def reply_words(kind: str, replies: float | None, leaves: float | None, snookers: float | None) -> str:
+    """What the other finds where a stroke brings him to the table: "" where it never did."""
+    if replies is None or leaves is None:
+        return ""
+    if kind == "pot":
+        return f"leaves him {points_words(leaves)} if missed"
+    hidden = f", snookered in {percent(snookers)}" if snookers is not None and snookers >= 0.01 else ""
+    return f"he pots next in {percent(replies)}, leaves him {points_words(leaves)}{hidden}"
+
+
+def against_words(win: float, other: str) -> str:
+    """What a chance to win compares with: that of the best stroke of another kind, or of the next best."""
+    kinds = {"pot": "best pot", "safety": "best safety", "escape": "best escape"}
+    return f" against {percent(win)} for the {kinds.get(other, 'next best')}"

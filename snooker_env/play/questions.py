@@ -111,7 +111,10 @@ def suggestions(
     """Strokes of the agent in words and data, with paths without errors; whose they are, and their order."""
     choice("agent", agent, seats.agents)
     how: Any = {"noise": noise, "n": n, "samples": samples, "seed": seed, "options": {"cue": session.cue}}
-    advice, out = advise(session.planned(), agent=seats.players[agent], **how), []
+    at = session.planned()
+    if not session.practice:  # alone at the table nobody wins
+        at, how["options"]["miss"] = session.position, session.miss
+    advice, out = advise(at, agent=seats.players[agent], **how), []
     for one in advice:
         twin = session.twin()
         if one.place is not None:

@@ -83,6 +83,11 @@ class Session:
         self._options, self._with = self._options.but(cue=kind), {}
         self.tables.rules = self._options.rules
 
+    @property
+    def miss(self) -> str:
+        """The rule for a foul and a miss."""
+        return self._options.miss
+
     def room(self, stroke: CueStroke) -> Room:
         """How the cue finds room for a stroke as the table lies; nothing is played."""
         return room_for(stroke.numbers(), self.planned(), self._options.rules)

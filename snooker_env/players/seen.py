@@ -138,7 +138,7 @@ class SeenPlayer(BoundPlayer):
         """The positions as it sees them, and where cue balls in hand were placed for it (n, 2), else NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
-            return (at if at.of_frames else _begun(at)), none
+            return (at if at.of_frames else begun(at)), none
         if not self._rules.actions.placement:
             return placed(at, keys)
         anywhere, visits = at.anywhere & at.in_hand, at.as_visits()
@@ -180,7 +180,7 @@ def conditions_seen(at: Positions, rules: Rules) -> Singles:
     return normalised(_conditions_known(at, rules)).astype(np.float32)
 
 
-def _begun(at: Positions) -> Positions:
+def begun(at: Positions) -> Positions:
     """Positions of visits as those of frames: the striker's points alone have been scored."""
     game = np.zeros((len(at), COLUMNS), np.int64)
     game[:, :VISIT_COLUMNS], game[:, SCORE_0], game[:, WINNER] = at.game, at.points, -1

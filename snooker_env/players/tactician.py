@@ -64,7 +64,7 @@ class Tactician(BoundPlayer):
         return self.decided(at, np.asarray(seeds)).strokes if at.of_frames else self._visits.play(at, seeds)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """The strokes that met noise samples, most first, best first, with the points that each is worth."""
+        """The strokes that met noise samples, most first, best first, with their chances to win; in visits their points."""
         at = Positions.of(positions)
         if not at.of_frames:
             return self._visits.rank(at, seeds)

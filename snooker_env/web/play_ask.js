@@ -128,8 +128,10 @@ export class Advisor {
   show({ order, suggestions }) {
     this.list = suggestions;
     const items = suggestions.map((one, k) => {
-      const [low, high] = one.kind === "pot" ? one.points_interval.map(value => value.toFixed(1)) : one.chance_interval.map(value => Math.round(100 * value));
-      const range = one.kind === "pot" ? `points ${low} to ${high}` : `fair ${low} to ${high} %`;
+      const [low, high] = (one.win_interval ?? one.chance_interval).map(value => Math.round(100 * value));
+      const [least, most] = one.points_interval.map(value => value.toFixed(1));
+      const visit = one.kind === "pot" ? `points ${least} to ${most}` : `fair ${low} to ${high} %`;
+      const range = one.win_interval ? `win chance ${low} to ${high} %` : visit;
       const button = make("button", { type: "button" }, one.words, make("small", { textContent: `${range} (95 % interval)` }));
       button.setAttribute("aria-pressed", "false");
       button.onpointerenter = event => event.pointerType === "mouse" && this.preview(k, event);

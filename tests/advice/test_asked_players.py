@@ -89,13 +89,13 @@ def test_a_player_who_cannot_place_the_cue_ball_plays_from_a_good_place():
         assert sn.planning.pots(Position(**position.to_dict() | {"cue": place})).ball[0, 0] == 1
 
 
-def test_a_ranking_chooses_and_its_scores_are_kept():
+def test_a_ranking_chooses():
     """Its first stroke pots less surely, and so comes second where both are shown."""
     (first,) = sn.advise(ENDGAME, agent=Ranking(), n=1, samples=200, visits=0)
     advice = sn.advise(ENDGAME, agent=Ranking(), n=2, samples=200, visits=0)
-    assert [one.score for one in advice] == [1.0, 2.0] and advice[0].points > advice[1].points
+    assert advice[0].points > advice[1].points
     assert advice.agent == "Ranking" and first == advice[1]
-    assert [one.score for one in sn.advise(ENDGAME, agent=Soft(), n=3, **QUICK)] == [None]
+    assert len(sn.advise(ENDGAME, agent=Soft(), n=3, **QUICK)) == 1
 
 
 def test_a_player_of_frames_sees_the_frame_and_a_visit_as_one():
@@ -132,8 +132,6 @@ def test_players_are_asked_by_their_names(name, position):
     assert (advice[0].place is not None) == position.in_hand
 
 
-def test_a_pretrained_agent_gives_its_probabilities():
+def test_a_pretrained_agent_ranks_several_strokes():
     pytest.importorskip("sb3_contrib")
-    advice = sn.advise(OPEN, agent="ppo_mask", n=4, **QUICK)
-    scores = [one.score for one in advice]
-    assert len(set(scores)) == len(scores) > 1 and min(scores) > 0.0 and sum(scores) <= 1.0
+    assert len({one.stroke.aim for one in sn.advise(OPEN, agent="ppo_mask", n=4, **QUICK)}) > 1

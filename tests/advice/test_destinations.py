@@ -17,8 +17,8 @@ def blue():
 
 
 def test_shares_are_those_of_the_environment(blue):
-    stops = destinations(ENDGAME, blue, noise="club", samples=2000)
-    points, fouls, after = played(ENDGAME, blue.stroke, 2000, noise="club")
+    stops = destinations(ENDGAME, blue, noise="amateur", samples=2000)
+    points, fouls, after = played(ENDGAME, blue.stroke, 2000, noise="amateur")
     cue = np.array([s["positions"][0] for s in after if s["on_table"][0]])
     assert stops.scored == pytest.approx((points > 0).mean(), abs=0.05)
     assert stops.foul == pytest.approx(fouls.mean(), abs=0.03)

@@ -58,7 +58,7 @@ def test_advice_is_fair_ordered_by_what_it_shows_and_called_what_it_is(positions
         assert [one.chance for one in others] == sorted((one.chance for one in others), reverse=True)
         for one in pots:
             assert one.pocket >= 0 and one.words.endswith(" expected")
-            assert f"chance {100 * one.chance:.0f} %" in one.words
+            assert f"pot {100 * one.chance:.0f} %" in one.words
         for one in others:
             assert one.words.startswith({"contact": "contact with the ", "escape": "escape "}[one.kind])
             fair = f"fair {100 * one.chance:.0f} %; no pot intended, its worth as a safety is not judged"

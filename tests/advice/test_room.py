@@ -94,17 +94,13 @@ def test_suggestions_say_their_room():
 
 def test_strokes_that_differ_in_their_room_alone_are_one():
     practice, at = practice_of("none", {"cue": "real"}), Positions.of(FROZEN)
-    strokes: judging.Rankings = [(replace(ACROSS, top=top), None) for top in (0.1, 0.0, -0.1)]
+    strokes = [replace(ACROSS, top=top) for top in (0.1, 0.0, -0.1)]
     some = judging.tried(practice, at, strokes)
     assert len({one.words for one in some}) == len({one.room.words for one in some}) == 3
     assert judging.distinct(some) == some[:1]
-    screws = judging.tried(
-        practice, at, [(replace(ACROSS, speed=5.0, top=top), None) for top in (-0.5, -0.25)]
-    )
+    screws = judging.tried(practice, at, [replace(ACROSS, speed=5.0, top=top) for top in (-0.5, -0.25)])
     assert len(judging.distinct(screws)) == 1  # both are played with the one tip that the cue reaches
-    raised = judging.tried(
-        practice, at, [(replace(ACROSS, aim=0.5 * pi, elevation=e), None) for e in (0.0, 0.4)]
-    )
+    raised = judging.tried(practice, at, [replace(ACROSS, aim=0.5 * pi, elevation=e) for e in (0.0, 0.4)])
     assert len(judging.distinct(raised)) == 2  # a cue raised on purpose is another stroke
 
 

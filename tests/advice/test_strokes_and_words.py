@@ -117,11 +117,11 @@ def test_what_a_stroke_does_in_words():
     assert say("escape", 1, -1, 1) == "escape to the red"
     assert say("foul", -1, -1, -1) == "foul, nothing struck"
     assert say("foul", 16, -1, 16) == "foul, yellow first"
-    assert words.figures_words("pot", 0.874, 23.4) == "chance 87 %, 23 points expected"
+    assert words.figures_words("pot", 0.874, 23.4) == "pot 87 %, 23 points expected"
     safety = "fair 50 %; no pot intended, its worth as a safety is not judged"
     assert [words.figures_words(kind, 0.5, 1.04) for kind in ("contact", "escape")] == [safety] * 2
     assert words.figures_words("foul", 0.03, 0.0) == "fair 3 %"
-    assert words.figures_words("pot", 1.0, 1.04) == "chance 100 %, 1 point expected"
+    assert words.figures_words("pot", 1.0, 1.04) == "pot 100 %, 1 point expected"
     assert words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")
     assert words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
     assert words.place_words(0, -1.0475) == "from the brown spot"
@@ -132,7 +132,7 @@ def test_the_words_of_a_suggestion_are_its_data():
         parts = one.words.split(", ")
         assert parts[0] == "red" and parts[1] == POCKET_WORDS[one.pocket]
         assert parts[2] == f"{one.speed:.1f} m/s"
-        assert f"chance {100 * one.chance:.0f} %" in parts and one.words.endswith(" expected")
+        assert f"pot {100 * one.chance:.0f} %" in parts and one.words.endswith(" expected")
         points, _, (state,) = played(OPEN, one.stroke, 1, noise="none")
         assert points[0] >= 1 and not state["on_table"][one.ball]
 

@@ -43,7 +43,7 @@ def by_plain_python(position, visit, visits, seed, noise):
             return total, strokes
 
 
-@pytest.mark.parametrize("noise", ["professional", "club"])
+@pytest.mark.parametrize("noise", ["professional", "amateur"])
 def test_visits_are_played_on_stroke_by_stroke(noise):
     positions = [OPEN, ENDGAME, OPEN, ENDGAME, OPEN]
     numbers = np.array([0, 0, 1, 3, 2])

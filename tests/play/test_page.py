@@ -413,7 +413,7 @@ def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
     assert not shown.page.is_visible("#pockets")
     shown.page.click("#advise")
     shown.until("document.querySelectorAll('#advice button').length")
-    assert shown.page.inner_text("#advice-order") == "Pots by points expected:"
+    assert shown.page.inner_text("#advice-order") == "By chance to win:"
     assert "right is the lower side" in shown.page.inner_text("#advice-sides")
     assert "95 % interval" in shown.page.inner_text("#advice li:first-child")
     names = shown(

@@ -135,7 +135,11 @@ def test_questions_are_answered_for_the_errors_of_the_seat(game):
         assert found == game("destinations", speed=2.0, aim=STRAIGHT + 0.01, noise=noise)
         asked = game("advise", agent="ghost_ball", n=2)
         assert asked == game("advise", agent="ghost_ball", n=2, noise=noise)
-        assert asked["order"] == "Pots by points expected:"
+        assert asked["order"] == "By chance to win:"
+        assert all(0.0 < one["win"] < 1.0 for one in asked["suggestions"])
+    game("players", practice=True)
+    alone = game("advise", agent="ghost_ball", n=2)  # where nobody wins
+    assert alone["order"] == "Pots by points expected:" and alone["suggestions"][0]["win"] is None
 
 
 def test_an_aim_may_be_given_by_a_pot_and_is_solved(game):

@@ -1,0 +1,239 @@
+"""Does advice of a frame say why: the chance to win, what the other finds, where the cue ball goes?"""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cases import ENDGAME, HIDDEN, OPEN, SNOOKERED, played
+
+import snooker_env as sn
+from snooker_env.advice import CueStroke, stroke_of, words
+from snooker_env.advice.__main__ import main
+from snooker_env.advice.practice import one_position
+from snooker_env.game import frame_columns as columns
+from snooker_env.planning import Position, Positions, clear_paths
+from snooker_env.players import Ranked, Strokes
+from tests.refusals import refused
+
+QUICK = {"samples": 60, "visits": 4, "scores": (20, 24)}
+LAST = Position(cue=(0.0, 0.4), black=(0.0, 1.0))
+
+
+class Given:
+    """These strokes, in this order."""
+
+    name = "given"
+
+    def __init__(self, *strokes):
+        self.strokes = strokes
+
+    def at(self, rules):
+        return self
+
+    def rank(self, positions, seeds):
+        return [Ranked(Strokes(np.stack([stroke.numbers() for stroke in self.strokes])), None)]
+
+    def play(self, positions, seeds):
+        return self.rank(positions, seeds)[0].strokes[:1]
+
+
+def errors_of_another(n):
+    return np.random.default_rng(8).normal(size=(n, 5))
+
+
+def test_the_tactician_is_asked_in_frames_and_the_planner_in_visits():
+    assert sn.advise(OPEN, samples=10, visits=0).agent == "planner_500"
+    advice = sn.advise(OPEN, **QUICK)
+    assert advice.agent == "tactician" and advice.scores == (20, 24) and advice.order == "By chance to win:"
+    env = sn.SnookerEnv(task="frame", opponent="ghost_ball", miss="clear_path")
+    env.reset(seed=1, options={"breaker": 0})
+    broken = sn.advise(env, samples=10, visits=0)
+    assert broken.agent == "tactician" and broken.scores == (0, 0) and broken[0].place is not None
+    at = one_position(OPEN, (20, 24))
+    first = sn.player("tactician").at({"task": "frame", "noise": "professional"}).play(at, [3])
+    asked = sn.advise(OPEN, n=1, seed=3, **QUICK)[0]
+    assert (
+        tuple(asked.stroke.numbers())
+        == tuple(first.values[0])
+        == tuple(stroke_of("tactician", at, seed=3).numbers())
+    )
+
+
+def test_the_chance_to_win_is_that_of_other_samples_too():
+    search = sn.player("tactician").at({"task": "frame", "noise": "professional"}).search
+    at, n = one_position(HIDDEN, (20, 24)), 2000
+    for one in sn.advise(HIDDEN, n=3, **QUICK | {"samples": 400}):
+        numbers = np.repeat(one.stroke.numbers()[None], n, 0)
+        gains = search.gains(at, np.zeros(n, np.int64), numbers, errors_of_another(n))
+        mean, spread = gains[:, 0].mean(), gains[:, 0].std()
+        assert abs(one.win - mean) < 4.0 * spread * np.sqrt(1 / 400 + 1 / n)
+        low, high = one.win_interval
+        assert low < one.win < high and high - low == pytest.approx(2 * 1.96 * spread / np.sqrt(400), rel=0.3)
+        assert f"win chance {100 * one.win:.0f} %" in one.words and 0.0 < one.win < 1.0
+
+
+def test_scores_decide_what_the_chance_is():
+    ahead, behind = (sn.advise(HIDDEN, n=1, **QUICK | {"scores": pair})[0] for pair in ((60, 0), (0, 60)))
+    assert behind.win < 0.2 < 0.8 < ahead.win
+
+
+def test_strokes_are_ordered_by_it_and_the_best_is_compared():
+    safe, pot = sn.advise(HIDDEN, n=4, **QUICK), sn.advise(ENDGAME, n=3, noise="amateur", **QUICK)
+    for advice in (safe, pot):
+        assert [one.win for one in advice] == sorted((one.win for one in advice), reverse=True)
+        assert all(one.against is None and " against " not in one.words for one in advice[1:])
+    assert safe[0].kind == "safety" and "safety off the red, " in safe[0].words
+    assert f" against {100 * safe[0].against:.0f} % for the best pot" in safe[0].words
+    assert pot[0].kind == "pot" and pot[0].words.endswith(f"{100 * pot[0].against:.0f} % for the best safety")
+    lone = sn.advise(LAST, agent=Given(CueStroke(speed=0.9, aim=np.pi / 2)), **QUICK)
+    assert len(lone) == 1 and lone[0].against is None and " against " not in lone[0].words
+    two = Given(*(CueStroke(speed=speed, aim=np.pi / 2) for speed in (0.9, 1.6)))
+    best, other = sn.advise(LAST, agent=two, **QUICK)
+    assert best.against == other.win and best.words.endswith(f"{100 * other.win:.0f} % for the next best")
+
+
+def test_what_the_other_finds_is_said_and_is_so():
+    """Without errors he pots whatever goes: the black after a soft stroke, which is then the frame's."""
+    (one,) = sn.advise(LAST, agent=Given(CueStroke(speed=0.7, aim=np.pi / 2)), noise="none", scores=(10, 8))
+    assert (one.kind, one.replies, one.leaves, one.snookers) == ("safety", 1.0, 7.0, 0.0)
+    assert "he pots next in 100 %, leaves him 7 points; win chance" in one.words
+    never = sn.advise(LAST, agent=Given(CueStroke(speed=0.7, aim=np.pi / 2)), **QUICK | {"visits": 0})[0]
+    assert never.replies is None and never.leaves is None and "he pots" not in never.words
+    made = sn.advise(Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), noise="none", n=1, scores=(8, 12))[0]
+    assert (made.kind, made.win, made.replies, made.leaves) == ("pot", 1.0, None, None) and made.chance == 1.0
+
+
+def test_a_missed_pot_says_what_it_leaves():
+    far = Position(cue=(0.3, -1.5), pink=(-0.5, 1.2), black=(0.0, 1.4605))
+    (one, *_) = sn.advise(far, agent="search", n=1, noise="club", **QUICK | {"samples": 200, "visits": 60})
+    assert one.kind == "pot" and one.chance < 0.8
+    assert f"leaves him {words.points_words(one.leaves)} if missed" in one.words and 0.0 < one.leaves < 13.0
+
+
+def test_how_often_he_is_snookered_is_as_in_the_environment():
+    """By independent strokes in visits, whose balls stop where those of frames do: the red beside the brown is hidden if
+    the cue ball comes near enough to it."""
+    beside = Position(cue=(0.0, -1.3), reds=[(0.5, 0.2)], brown=(0.0, -1.0475), on="any_colour")
+    for speed, least, most in ((0.36, 0.9, 1.0), (0.44, 0.2, 0.8)):
+        roll = Given(CueStroke(speed=speed, aim=np.pi / 2))
+        (one,) = sn.advise(beside, agent=roll, samples=400, visits=0, scores=(1, 0))
+        _, fouls, states = played(beside, one.stroke, 400, noise="professional")
+        balls = [(np.array(s["positions"]), np.array(s["on_table"])) for s in np.array(states)[~fouls]]
+        game = np.tile([1, 0, 0, 0, 0], (len(balls), 1))
+        left = Positions(*(np.stack(part) for part in zip(*balls, strict=True)), game)
+        share = float((~clear_paths(left).any_part).mean())
+        assert abs(share - one.snookers) < 4.0 * np.sqrt(0.5 * max(0.01, share * (1 - share)) / 100)
+        assert (
+            least <= one.snookers <= most
+            and f"snookered in {100 * one.snookers:.0f} %"
+            in words.reply_words(one.kind, 0.0, 0.0, one.snookers)
+        )
+
+
+def test_fouls_and_points_are_those_of_the_frame():
+    """With a free ball any ball may be struck first, and a colour counts as the ball on."""
+    at = one_position(Position(cue=(0.3, 1.1), reds=[(-0.6, -0.5)], black=(0.0, 1.4605), on="red"), (5, 5))
+    stroke = stroke_of("search", Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), noise="none")
+    (foul,) = sn.advise(at, agent=Given(stroke), noise="none", n=1, distinct=False)[:1]
+    assert foul.stroke != stroke  # the black is not on
+    at.game[:, columns.FREE_BALL] = 1
+    (free,) = sn.advise(at, agent=Given(stroke), noise="none", visits=0)
+    assert (free.stroke, free.kind, free.ball, free.points) == (stroke, "pot", 21, 1.0)
+
+
+def test_the_decision_after_a_foul_and_the_lot_are_behind_the_stroke():
+    at = one_position(OPEN, (20, 24))
+    usual = sn.advise(at, n=2, samples=20, visits=0)
+    for phase in (columns.CHOICE, columns.LOT):
+        at.game[:, columns.PHASE] = phase
+        assert [one.stroke for one in sn.advise(at, n=2, samples=20, visits=0)] == [
+            one.stroke for one in usual
+        ]
+    at.game[:, columns.PHASE], at.game[:, [columns.IN_HAND, columns.ANYWHERE]] = columns.STROKE, 1
+    assert sn.advise(at, n=1, samples=20, visits=0)[0].place is None
+
+
+def test_where_the_cue_ball_goes_in_words():
+    assert words.lie_words(0.0, -1.2, -1, 0.0) == "to baulk" and words.lie_words(0.0, 0.0, -1, 0.0) == ""
+    assert words.lie_words(0.3, -1.7, -1, 0.0) == "to the baulk cushion"
+    assert words.lie_words(0.3, 1.7, -1, 0.0) == "to the top cushion"
+    assert words.lie_words(0.0, -1.2, 18, 0.09) == "tight behind the brown"
+    assert (
+        words.lie_words(0.0, -1.7, 18, 0.4) == "behind the brown"
+        and words.lie_words(0.0, 0.0, 3, 0.3) == "behind the red"
+    )
+    roll = Position(cue=(0.0, -1.3), reds=[(0.02, 1.2)], brown=(0.0, -1.0475), on="any_colour")
+    (one,) = sn.advise(roll, agent=Given(CueStroke(speed=0.36, aim=np.pi / 2)), noise="none", scores=(1, 0))
+    assert (
+        one.kind == "safety" and ", tight behind the brown, fair 100 %" in one.words and one.snookers == 1.0
+    )
+    (out,) = sn.advise(SNOOKERED, n=1, **QUICK)
+    assert out.kind == "escape" and out.words.startswith("escape off the ")
+
+
+def test_a_touching_ball_is_played_away_from():
+    touching = Position(cue=(0.0, 0.5), reds=[(0.0, 0.5525001)], black=(0.0, 1.4605))
+    away = Given(CueStroke(speed=1.5, aim=-np.pi / 2 + 0.3))
+    (one,) = sn.advise(touching, agent=away, noise="none", scores=(0, 0))
+    assert (one.kind, one.ball, one.first) == ("safety", 1, -1)
+    assert one.words.startswith("safety away from the touching red, 1.5 m/s")
+    (visit,) = sn.advise(touching, agent=away, noise="none")
+    assert visit.kind == "contact" and visit.words.startswith("away from the touching red, 1.5 m/s")
+
+
+def test_figures_in_words():
+    say = words.reply_words
+    assert say("safety", 0.12, 3.04, 0.34) == "he pots next in 12 %, leaves him 3 points, snookered in 34 %"
+    assert say("escape", 0.5, 12.6, 0.004) == "he pots next in 50 %, leaves him 13 points"
+    assert (
+        say("pot", 0.5, 18.2, 0.0) == "leaves him 18 points if missed" and say("pot", None, None, None) == ""
+    )
+    assert words.against_words(0.55, "pot") == " against 55 % for the best pot"
+    assert words.against_words(0.55, "") == " against 55 % for the next best"
+    assert words.what_words("safety", 3, -1, 3, "thin on the left") == "safety off the red, thin on the left"
+
+
+def test_it_is_json_and_of_its_seed_alone():
+    advice = sn.advise(HIDDEN, n=2, **QUICK)
+    kept = json.loads(json.dumps(advice.to_dict()))
+    assert kept["scores"] == [20, 24] and kept["suggestions"][0]["win_interval"] == list(
+        advice[0].win_interval
+    )
+    assert kept == sn.advise(HIDDEN, n=2, **QUICK).to_dict()
+    assert sn.advise(HIDDEN, n=2, seed=1, **QUICK).to_dict() != kept
+    visit = sn.advise(OPEN, n=1, samples=10, visits=0)
+    assert visit.scores is None and visit[0].win is None and "win chance" not in visit[0].words
+    assert replace(visit[0], win=0.4).figure == 0.4 and visit[0].figure == visit[0].points
+
+
+WRONG = (
+    ((1,), "scores", "must be two integers"),
+    (7, "scores", "must be two integers"),
+    ((0, -1), "scores[1]", "must be an integer in [0, 1000]"),
+    ((0.5, 0), "scores[0]", "must be an integer"),
+)
+
+
+@pytest.mark.parametrize(("scores", "field", "allowed"), WRONG, ids=[str(wrong[0]) for wrong in WRONG])
+def test_wrong_scores_are_refused(scores, field, allowed):
+    with pytest.raises(ValueError, match="scores") as error:
+        sn.advise(OPEN, scores=scores)
+    assert str(error.value).startswith(f"{field} = ") and allowed in str(error.value)
+
+
+def test_a_frame_has_its_own_scores_and_options():
+    refused(lambda: sn.advise(one_position(OPEN, (0, 0)), scores=(1, 2)), "scores", "(1, 2)", "must be None")
+    refused(lambda: sn.advise(OPEN, options={"miss": "off"}), "key of options", "miss", "'physics'")
+    assert sn.advise(OPEN, options={"miss": "clear_path"}, n=1, **QUICK)[0].win is not None
+
+
+def test_the_command_says_it(tmp_path, capsys):
+    HIDDEN.save(tmp_path / "p.json")
+    ask = ["--position", str(tmp_path / "p.json"), "--n", "1", "--samples", "30", "--visits", "4"]
+    assert main([*ask, "--scores", "20", "24"]) == 0
+    printed = capsys.readouterr().out
+    (one,) = advice = sn.advise(HIDDEN, n=1, samples=30, visits=4, scores=(20, 24))
+    low, high = (round(100 * end) for end in one.win_interval)
+    assert printed.startswith(str(advice)) and f"; win chance {low} to {high} % (95 %)" in printed
+    assert main(ask) == 0 and "win chance" not in capsys.readouterr().out
