@@ -8,7 +8,8 @@ The replay is one HTML file that any browser plays from disk; .mp4 and .gif are 
 replay is written to a temporary file and opened in the browser. Visits are played on held-out tables, the
 seeds one after the other; --at-least takes the first of --tries visits with so many points. The same seed
 gives the same visit as ``agents.evaluate`` plays on that table. With --frame: a whole frame, against --opponent, with a
-real cue and the miss rule "clear_path"; --agent is then ``tactician`` unless it is named.
+real cue and the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The replay shows how likely
+each player was to win, by the ``tactician``.
 """
 
 import argparse
@@ -148,7 +149,9 @@ def main(argv=None):
     else:
         made = f"{players[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
-    replay = sn.replay(env, title=f"{made}, {args.noise}'s errors, {where.split(',')[0]}", players=players)
+    title = f"{made}, {args.noise}'s errors, {where.split(',')[0]}"
+    judge: Any = sn.player(TACTICIAN).at(env) if args.frame else None
+    replay = sn.replay(env, title=title, players=players, judge=judge)
     print(*described(replay), sep="\n")
     print(f"{made} in {len(replay)} strokes ({where})")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
