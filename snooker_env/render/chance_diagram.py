@@ -65,17 +65,19 @@ def win_chance(
         raise refuse(f"chances[{k}]", float(values[k]), "must be in [0, 1]")
     if isinstance(players, str) or len(players) != 2:
         raise refuse_what("players", repr(players), "must be two names")
-    if ax is None:
-        ax = pyplot().figure(figsize=(WIDTH, HEIGHT), layout="constrained").add_subplot()
+    plt: Any = pyplot()
+    drawn: Any = ax
+    if drawn is None:
+        drawn = plt.figure(figsize=(WIDTH, HEIGHT), layout="constrained").add_subplot()
     edges = np.arange(len(values) + 1) - 0.5
     parts: Any = (np.zeros(len(values)), values, np.ones(len(values)))
     for k, (name, colour) in enumerate(zip(players, ("first", "other"), strict=True)):
         style: dict[str, Any] = {"fill": True, "color": rgb(colour), "label": name, "gid": colour}
-        ax.stairs(parts[k + 1], edges, baseline=parts[k], **style)
-    ax.axhline(0.5, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
-    ax.set(xlim=(edges[0], edges[-1]), ylim=(0.0, 1.0), xlabel="strokes played", ylabel="chance to win")
-    ax.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0 %", "25 %", "50 %", "75 %", "100 %"])
-    ax.xaxis.get_major_locator().set_params(integer=True)
-    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False)
-    ax.set_title(title, loc="left")
-    return ax
+        drawn.stairs(parts[k + 1], edges, baseline=parts[k], **style)
+    drawn.axhline(0.5, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
+    drawn.set(xlim=(edges[0], edges[-1]), ylim=(0.0, 1.0), xlabel="strokes played", ylabel="chance to win")
+    drawn.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0 %", "25 %", "50 %", "75 %", "100 %"])
+    drawn.xaxis.set_major_locator(plt.MaxNLocator(integer=True))
+    drawn.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False)
+    drawn.set_title(title, loc="left")
+    return drawn

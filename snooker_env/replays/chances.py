@@ -50,8 +50,9 @@ def win_chances(judge: Judge, standings: Sequence[Standing]) -> list[float]:
     saved = columns.Layouts(np.zeros((n, 22, 2)), np.zeros((n, 22), np.bool_))
     for k, one in enumerate(standings):
         write_frame(one.frame, 0, game[k], saved, k)
-    places, present = (np.stack([one[part] for one in standings]) for part in (1, 2))
-    at = Positions(np.where(present[..., None], places, 0.0), present, strikers_own(game), saved)
+    present = np.stack([one.on_table for one in standings])
+    places = np.where(present[..., None], np.stack([one.positions for one in standings]), 0.0)
+    at = Positions(places, present, strikers_own(game), saved)
     theirs = np.asarray(judge.chance_to_win(at), np.float64)
     first = np.where(game[:, columns.STRIKER] == 0, theirs, 1.0 - theirs).round(DIGITS)
     least = np.where(game[:, columns.PHASE] == columns.FINISHED, 0.0, 10.0**-DIGITS)
