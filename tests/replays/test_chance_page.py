@@ -75,7 +75,7 @@ def test_there_is_room_for_it_on_every_screen(p):
         inside = p(f"{root}.scrollWidth <= innerWidth && {root}.scrollHeight <= innerHeight")
         assert inside and p.page.evaluate(OVERLAPS) == [], (width, height)
         left, right = p("p.replay.scene.extent[1].map(y => p.view.toScreen(0, y)[0])")
-        assert right - left > 0.85 * width or right - left > min(1.3, height / 400) * height, (width, height)
+        assert right - left > min(0.85 * width, 0.84 * height), (width, height)
         assert p.page.is_visible(".sn-win") and p.page.is_visible(".sn-graph") == (height > 500)
 
 
