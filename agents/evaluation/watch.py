@@ -113,7 +113,12 @@ def sought(args):
         other = args.opponent or name
         options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": other, "trust": args.trust}
         env = episode(entrant.player(0), args.seed, **options)
-        return env, args.seed, [entrant.label, other]
+        twins = entrant.label == other
+        return (
+            env,
+            args.seed,
+            [f"{name} {k}" if twins else name for k, name in (("A", entrant.label), ("B", other))],
+        )
     longest = -1
     for seed in range(args.seed, args.seed + args.tries):
         env = episode(entrant.player(0), seed, layout=args.layout, noise=args.noise)

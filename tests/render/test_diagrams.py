@@ -10,6 +10,7 @@ from snooker_env.render import palette, shot_paths
 from snooker_env.render.density_diagram import bandwidth_of, density_of, level_of
 from snooker_env.render.diagrams import compare, density, fan, plot, win_chance
 from snooker_env.render.fan_diagram import Strokes, fan_options, shade
+from tests.pictures import unreadable
 from tests.refusals import refused
 from tests.render.test_shot_paths import R, played
 
@@ -299,6 +300,7 @@ def test_the_chance_to_win_is_shared_out_over_the_strokes():
     assert first.get_facecolor() != other.get_facecolor()
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["Ada", "Grace"]
     assert ax.get_ylim() == (0.0, 1.0) and ax.get_title(loc="left") == "A frame"
+    assert unreadable(ax.figure) == []
     mine = plt.figure().add_subplot()
     assert win_chance([0.3], mine) is mine
     refused(lambda: win_chance(None), "chances", "None", "made with a judge")
