@@ -74,6 +74,18 @@ def test_the_chance_is_the_first_players_and_certain_at_the_end_alone(frame):
     assert chances[0] == 0.5 and chances[-1] == float(env.history[-1].winner == 0)
 
 
+def test_a_judge_that_is_sure_too_early_is_not_believed(frame):
+    env, _ = frame
+
+    class Sure:
+        def chance_to_win(self, positions):
+            return np.ones(len(positions))
+
+    chances = sn.replay(env, judge=Sure()).win_chance
+    strikers = [env.history[0].player, *(played.next_player for played in env.history[:-1])]
+    assert list(chances[:-1]) == [0.9999 if striker == 0 else 0.0001 for striker in strikers]
+
+
 def test_the_first_stroke_is_undone_whatever_it_was(frame):
     """The frame before each stroke, as if the replay began there, is the one after the stroke before it."""
     history = frame[0].history
