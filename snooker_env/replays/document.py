@@ -157,7 +157,8 @@ class Replay:
         """
         from .film import frames, shown
 
-        return frames(shown(self.strokes, self.table, self.players, self.title), fps, speed, size)
+        films = shown(self.strokes, self.table, self.players, self.title, self.win_chance)
+        return frames(films, fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
