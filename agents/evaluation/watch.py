@@ -8,7 +8,8 @@ The replay is one HTML file that any browser plays from disk; .mp4 and .gif are 
 replay is written to a temporary file and opened in the browser. Visits are played on held-out tables, the
 seeds one after the other; --at-least takes the first of --tries visits with so many points. The same seed
 gives the same visit as ``agents.evaluate`` plays on that table. With --frame: a whole frame, against --opponent, with a
-real cue and the miss rule "clear_path"; --agent is then ``tactician`` unless it is named.
+real cue and the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The replay shows how likely
+each player was to win, by the ``tactician``.
 """
 
 import argparse
@@ -112,7 +113,12 @@ def sought(args):
         other = args.opponent or name
         options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": other, "trust": args.trust}
         env = episode(entrant.player(0), args.seed, **options)
-        return env, args.seed, [entrant.label, other]
+        twins = entrant.label == other
+        return (
+            env,
+            args.seed,
+            [f"{name} {k}" if twins else name for k, name in (("A", entrant.label), ("B", other))],
+        )
     longest = -1
     for seed in range(args.seed, args.seed + args.tries):
         env = episode(entrant.player(0), seed, layout=args.layout, noise=args.noise)
@@ -148,7 +154,9 @@ def main(argv=None):
     else:
         made = f"{players[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
-    replay = sn.replay(env, title=f"{made}, {args.noise}'s errors, {where.split(',')[0]}", players=players)
+    title = f"{made}, {args.noise}'s errors, {where.split(',')[0]}"
+    judge: Any = sn.player(TACTICIAN).at(env) if args.frame else None
+    replay = sn.replay(env, title=title, players=players, judge=judge)
     print(*described(replay), sep="\n")
     print(f"{made} in {len(replay)} strokes ({where})")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"

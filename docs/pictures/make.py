@@ -1,8 +1,8 @@
 """How are the screenshots in docs made? ``python docs/pictures/make.py`` in a clone with the extra ``test``,
 and Chromium, makes them anew.
 
-The page of ``snooker_env.play`` with advice, and a replay of a trained agent's break, each as a browser shows
-it.
+The page of ``snooker_env.play`` with advice, and the replay of a frame, each as a browser shows it; and the chance to
+win of that frame as a diagram.
 """
 
 import argparse
@@ -15,6 +15,8 @@ import time
 from pathlib import Path
 
 from playwright.sync_api import sync_playwright
+
+from snooker_env.render.diagrams import win_chance
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -44,8 +46,6 @@ def page_with_advice(browser, out):
         "opened",
         "--seed",
         "3",
-        "--agent",
-        "ppo_foresight",
     ]
     server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     try:
@@ -66,29 +66,23 @@ def page_with_advice(browser, out):
 
 
 def replay(browser, out):
-    """The replay of a break, paths on, at a desk and on a phone."""
+    """The replay of a frame, paths on, at a desk and on a phone, and its chance to win."""
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "break.html"
-        command = [
-            sys.executable,
-            "-m",
-            "agents.watch",
-            "--agent",
-            "ppo_foresight",
-            "--at-least",
-            "50",
-            "--out",
-            str(file),
-        ]
+        file = Path(folder) / "frame.html"
+        command = [sys.executable, "-m", "agents.watch", "--frame", "--seed", "3", "--out", str(file)]
         subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
         for name, width, height in (("replay.jpg", 1280, 720), ("replay_phone.jpg", 390, 700)):
             page = browser.new_page(viewport={"width": width, "height": height})
             page.goto(file.as_uri())
             page.keyboard.press("p")
-            for _ in range(6):
+            for _ in range(12):
                 page.keyboard.press("Shift+ArrowRight")
             time.sleep(3.5)
             shoot(page, out / name)
+        chances, players = page.evaluate("[player.replay.win_chance, player.replay.players]")
+    ax = win_chance(chances, players=players, title="A frame")
+    ax.figure.savefig(out / "win_chance.png", dpi=100)
+    print(out / "win_chance.png")
 
 
 if __name__ == "__main__":

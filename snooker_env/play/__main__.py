@@ -23,7 +23,7 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--port", type=int, default=0, help="port to listen on (default: any free port)")
     add("--no-browser", action="store_true", help="only print the address")
     agent = """an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or
-        MODULE:CLASS; the first one is your opponent; may be given more than once"""
+        MODULE:CLASS; the first one is your opponent (default: tactician_500); may be given more than once"""
     add("--agent", action="append", default=[], metavar="NAME", help=agent)
     add("--trust", action="store_true", help="let code in an --agent's model file run")
     noise = "execution errors of the agent (default: %(default)s)"
@@ -46,7 +46,7 @@ def service_of(args: argparse.Namespace) -> Any:
 
     from ..players import player
     from .routes import position_of
-    from .service import PERSON, Seats, Service
+    from .service import OPPONENT, PERSON, Seats, Service
     from .session import Session
 
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
@@ -55,9 +55,8 @@ def service_of(args: argparse.Namespace) -> Any:
     players = [player(name, trust=args.trust) for name in args.agent]
     agents = dict(zip(shown, players, strict=True))
     seats = Seats(agents)
-    if agents:
-        seats.sit([PERSON, next(iter(agents))])
-        session.noise[1] = args.noise
+    seats.sit([PERSON, next(iter(agents), OPPONENT)])
+    session.noise[1] = args.noise
     if args.position is not None:
         read = _read(args.position)
         if read.get("format") == "snooker-game":
@@ -77,7 +76,8 @@ def warm_up(service: Any) -> None:
         if session.frame.phase == "stroke":
             stroke = CueStroke(speed=2.0, aim=1.0)
             questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
-            service.seats.decided(service.seats.agents[0], session)
+            for name in {service.seats.agents[0], service.seats.who[1]}:
+                service.seats.decided(name, session)
     with service.reading():
         report(service)
 

@@ -72,7 +72,7 @@ class ProgramPlayer(BoundPlayer):
         self.name = f"program:{command}"
         self._lines = _Lines(command, words, number("timeout", timeout, 0.0, 1e6, open_low=True))
         self._session = Session()
-        self._service = Service(self._session, Seats({}))
+        self._service = Service(self._session, Seats({}), judged=False)
 
     def _bind(self, options: Options) -> None:
         self._noise: Any = choice("noise", options.noise, tuple(LEVELS))

@@ -44,14 +44,15 @@ def scene(service: Service) -> dict[str, Any]:
     }
 
 
-def table_after(act: Act, labels: tuple[str, str]) -> dict[str, Any]:
-    """The table and the scoreboard after an act."""
+def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> dict[str, Any]:
+    """The table and the scoreboard after an act; ``win_chance``: how likely seat 0 wins, None for unknown."""
     state, frame = act.state, Frame.from_dict(act.state["frame"])
     present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"
     names = ("phase", "striker", "breaker", "free_ball", "in_hand", "winner")
     return {name: getattr(frame, name) for name in names} | {
         "scores": list(frame.scores),
+        "win_chance": win_chance,
         "break": frame.break_points,
         "ball_on": None if over else frame.ball_on.name.lower(),
         "reds": sum(0 < ball < YELLOW for ball in present),
@@ -67,7 +68,9 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
     acts, labels = service.session.acts, service.seats.labels
     played = acts[k].played
     assert played is not None
-    tables = [table_after(act, labels) for act in acts[k - 1 : k + 1]]
+    both = acts[k - 1 : k + 1]
+    chances = service.win_chances(both)
+    tables = [table_after(act, labels, chance) for act, chance in zip(both, chances, strict=True)]
     return encoded_stroke(played, labels) | {"tables": tables}
 
 
@@ -77,7 +80,8 @@ def report(service: Service) -> dict[str, Any]:
     frame, tables = session.frame, session.tables
     on = tables.on(0) if frame.phase == "stroke" else 0
     hidden, lines = (_snookered(session, frame, on), _lines(session, frame, on)) if on else (False, [])
-    state = table_after(session.acts[session.at - 1], seats.labels)
+    act = session.acts[session.at - 1]
+    state = table_after(act, seats.labels, service.win_chances([act])[0])
     state |= {
         "revision": service.revision,
         "players": list(seats.who),
@@ -130,6 +134,9 @@ def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[floa
     facts.append(f"Score: {one} {state['scores'][0]}, {other} {state['scores'][1]}; break {state['break']}.")
     if state["phase"] == "over":
         return facts
+    if (chance := state["win_chance"]) is not None:
+        share = min(99, max(1, round(100 * chance)))  # as the page shows it: nothing is certain yet
+        facts.append(f"Chance to win: {one} {share} %, {other} {100 - share} %.")
     left = f"{state['available']} points are left on the table"
     facts.append(f"{left}, {reds} red{'' if reds == 1 else 's'} among the balls.")
     if state["needs_snookers"]:

@@ -5,22 +5,30 @@ has seen. An agent's stroke is dropped if the game has changed in the meantime.
 """
 
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from time import monotonic
+from typing import Any
+
+import numpy as np
 
 from .._check import choice, refuse, refuse_what
 from ..advice.ask import AGENT
 from ..advice.strokes import cue_strokes
+from ..game.frame import Frame
 from ..game.frame_columns import PLAY_AGAIN, REPLACE, STROKES
 from ..game.ruling import AUTO
 from ..players import Player, Strokes, player
+from ..replays.chances import Judge, Standing, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
-from .session import DECLINED, Session
+from ..tasks.noise import LEVELS
+from .session import DECLINED, Act, Session
 
 PERSON = "person"
-OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")
+OPPONENT = "tactician_500"
+"""Who plays against a person unless someone is named."""
+OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")
 """The agents that can always be chosen."""
 
 
@@ -94,9 +102,11 @@ class Service:
     paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
     trouble: str  # why the last agent did not play, or ""
 
-    def __init__(self, session: Session, seats: Seats):
+    def __init__(self, session: Session, seats: Seats, *, judged: bool = True):
         self.session: Session = session
         self.seats: Seats = seats
+        self._judged = judged
+        self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
         self.revision: int = 0
         self.paused, self.trouble = False, ""
         self._changed = threading.Condition(threading.RLock())
@@ -145,6 +155,26 @@ class Service:
             yield twin
         finally:
             self._asking.release()
+
+    @property
+    def judge(self) -> Judge | None:
+        """Who says how likely each seat wins: the ``tactician``, with the larger errors of both seats, and at least a
+        professional's; None where nobody wins, alone at the table."""
+        if not self._judged or self.session.practice:
+            return None
+        level = max(("professional", *self.session.noise), key=lambda name: LEVELS[name].direction_deg())
+        options = self.session.options_with(level)
+        if self._judge[0] is not options:
+            self._judge = options, player("tactician").at(options)
+        return self._judge[1]
+
+    def win_chances(self, acts: Sequence[Act]) -> list[float] | list[None]:
+        """How likely seat 0 was to win after each of some acts; None for nobody says it."""
+        if (judge := self.judge) is None:
+            return [None] * len(acts)
+        tables = [(act.state["positions"], act.state["on_table"], act.state["frame"]) for act in acts]
+        parts = [(Frame.from_dict(frame), np.array(at), np.array(on)) for at, on, frame in tables]
+        return win_chances(judge, [Standing(*one) for one in parts])
 
     def wait(self, revision: int, seconds: float) -> None:
         """Return when the revision has changed, or after that time."""

@@ -6,13 +6,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._check import integer
+from .._check import integer, refuse, refuse_what
+from .._types import Floats
 from ..game import frame_columns as columns
 from ..planning import Positions, processors, spread_of
 from ..planning.frame_search import AVERAGE, LEAST, FrameSearch, Tried
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
+from ..planning.positions import PositionsLike
 from ..planning.worth import best_places, chosen, decide, lead_of, left_of
 from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options
@@ -78,6 +80,52 @@ class Tactician(BoundPlayer):
             same = [np.repeat(part[k : k + 1], m, 0) for part in strokes.parts[1:]]
             ranked.append(Ranked(Strokes(one.strokes[:m], *same), one.chances[:m]))
         return ranked
+
+    def chance_to_win(self, positions: PositionsLike) -> Floats:
+        """Return how likely the striker of each position wins the frame, if both play on as the ``tactician`` does.
+
+        The worth of the position is added to the lead, and a law (``planning.worth.Chance``) says what that lead at
+        the end is worth while so many points are still on the table. Nothing is simulated: a millisecond for one
+        position.
+
+        Parameters
+        ----------
+        positions : PositionsLike
+            n positions of frames, as their strikers see them. A cue ball in hand is not placed: the worth was
+            learned of such positions, too. After a foul, and where the striker has won the lot, the best decision
+            is taken.
+
+        Returns
+        -------
+        numpy.ndarray
+            float64 (n,), in [0, 1]. Of a frame that is over 0 or 1.
+
+        Raises
+        ------
+        ValueError
+            If the player is not bound, the positions are of visits, which nobody wins, or the player was made
+            without a law of the chance.
+        """
+        rules, at, search = self.options.rules, Positions.of(positions), self.search
+        if not at.of_frames:
+            raise refuse_what("positions", "those of visits", "must be of frames: nobody wins a visit")
+        if search is None or search.chance is None:
+            raise refuse("player", self.name, "must hold a law of the chance to win")
+        at, worth = at.known_to(rules), search.worth
+        gains, over = np.zeros(len(at)), at.game[:, columns.PHASE] == columns.FINISHED
+        rows = np.flatnonzero(~(over | at.choice | at.lot))
+        if len(rows):
+            gains[rows] = worth(at[rows])
+        rows = np.flatnonzero(at.choice)
+        if len(rows):
+            gains[rows] = decide(worth, at[rows], rules.rule_set.code)[1]
+        rows = np.flatnonzero(at.lot)
+        if len(rows):
+            black = at[rows]
+            black.game[:, columns.PHASE] = columns.STROKE
+            gains[rows] = np.abs(worth(black))  # it begins, or the other does
+        won = at.game[:, columns.WINNER] == 0
+        return np.where(over, won, search.chance(lead_of(at) + gains, left_of(at)))
 
     def decided(self, at: Positions, seeds: Any) -> Decided:
         """What it does in positions of frames, what it tried in those in which it strikes, and from where."""

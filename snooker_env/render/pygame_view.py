@@ -27,6 +27,7 @@ _ROWS = 72  # lengths in this file are those of a bar 72 pixels high, as in a pi
 _SMALLEST = 36  # A lower bar is one line of text [pixels]
 _EDGE = 28
 _GAP = 30
+_STRIP = 7  # height of the shares of the chance to win, at the upper edge
 
 
 @lru_cache(maxsize=64)
@@ -36,6 +37,10 @@ def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> Any:
     page = _Page(pygame.Surface((width, height), 0, 24), height / _ROWS)
     page.surface.fill(PALETTE["bar"])
     page.box(0, 0, width / page.unit, 2, "bar_edge")
+    if bar is not None and bar.win_chance is not None:
+        first = bar.win_chance * width / page.unit
+        page.box(0, 0, first, _STRIP, "first")
+        page.box(first, 0, width / page.unit - first, _STRIP, "other")
     if bar is None or height < _SMALLEST:
         words, size = in_words(bar) if bar is not None else text, 33 if height >= _SMALLEST else 44
         page.text(words, size, _EDGE, 36, room=width / page.unit - 2 * _EDGE)

@@ -75,6 +75,7 @@ class ScoreBar:
     points_on: int | None = None  # what is still on the table
     ball_on: str = ""  # "red", "any colour", "free ball", ...
     words: str = ""  # what just happened, as the referee would say it
+    win_chance: float | None = None  # how likely the first player wins the frame
 
     def __post_init__(self) -> None:
         if len(self.players) > 2 or not all(isinstance(name, str) for name in self.players):
@@ -86,6 +87,8 @@ class ScoreBar:
             raise refuse("striker", self.striker, "must be None or an index of players")
         for ball in self.potted:
             integer("potted", ball, 1, N_BALLS - 1)
+        if self.win_chance is not None:
+            number("win_chance", self.win_chance, 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)

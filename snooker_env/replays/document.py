@@ -18,6 +18,7 @@ from ..render.scene import scene_data
 from ..simulation import Shot, simulate
 from ..tasks.played import Played
 from ..web import WEB, table_js
+from .chances import Judge, checked_judge, standings_of, win_chances
 from .encode import encoded_stroke
 
 FORMAT, VERSION = "snooker-replay", 1
@@ -38,11 +39,16 @@ class Replay:
         Two names for a frame, one for a visit; default: "Player 1" and "Player 2", or "Player".
     table : str, Table or None, optional
         The table of the strokes; default: that of the shots, or "match".
+    judge : object with ``chance_to_win``, optional
+        Of a frame: who says how likely each player wins, as ``snooker_env.player("tactician").at(env)``, with
+        the errors of ``env``. ValueError with strokes that are of no frame. None (default): nobody says it.
 
     Attributes
     ----------
     strokes, title, players, table
         As tuples of Shot or Played and of names, the latter empty for bare shots, str and ``Table``.
+    win_chance : tuple of float or None
+        How likely the first player wins: before the first stroke, and after each. None without a judge.
 
     Examples
     --------
@@ -60,6 +66,7 @@ class Replay:
         title: str = "",
         players: Iterable[str] = (),
         table: TableLike = None,
+        judge: Judge | None = None,
     ):
         self.strokes: tuple[Shot | Played, ...] = tuple(strokes)
         for k, stroke in enumerate(self.strokes):
@@ -89,6 +96,9 @@ class Replay:
                 if not _same(other, self.table):
                     allowed = "must be on the table of the first, or pass table=..."
                     raise refuse_what(f"strokes[{k}]", "a shot on another table", allowed)
+        self.win_chance: tuple[float, ...] | None = None
+        if (asked := checked_judge(judge)) is not None:
+            self.win_chance = tuple(win_chances(asked, standings_of(self.strokes)))
         self._data: dict[str, Any] | None = None
 
     def _usual_players(self) -> tuple[str, ...]:
@@ -119,6 +129,7 @@ class Replay:
             self._data = {"format": FORMAT, "version": VERSION, "title": self.title}
             self._data |= {"players": list(self.players), "scene": scene_data(self.table)}
             self._data |= {"R": physics.R, "spin_decel": physics.spin_decel, "strokes": strokes}
+            self._data["win_chance"] = self.win_chance and list(self.win_chance)
         return dict(self._data)
 
     def html(self) -> str:
@@ -146,7 +157,8 @@ class Replay:
         """
         from .film import frames, shown
 
-        return frames(shown(self.strokes, self.table, self.players, self.title), fps, speed, size)
+        films = shown(self.strokes, self.table, self.players, self.title, self.win_chance)
+        return frames(films, fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
@@ -202,6 +214,7 @@ def replay(
     title: str = "",
     players: Iterable[str] = (),
     table: TableLike = None,
+    judge: Judge | None = None,
 ) -> Replay:
     """Make a replay of what was played, and write it to a file if ``path`` is given.
 
@@ -215,8 +228,8 @@ def replay(
         * A ``Replay`` is copied, with the other arguments applied.
     path : str or Path, optional
         A file that ends in ``.html``, ``.json``, ``.mp4`` or ``.gif``, see ``Replay.save``.
-    title, players, table
-        As in ``Replay``.
+    title, players, table, judge
+        As in ``Replay``. A copied ``Replay`` keeps what a judge has said of it.
 
     Returns
     -------
@@ -240,7 +253,9 @@ def replay(
         table = table or source.table
     else:
         strokes = _strokes(source, table)
-    made = Replay(strokes, title=title, players=players, table=table)
+    made = Replay(strokes, title=title, players=players, table=table, judge=judge)
+    if isinstance(source, Replay) and judge is None:
+        made.win_chance = source.win_chance
     if path is not None:
         made.save(path)
     return made

@@ -58,11 +58,15 @@ USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif":
 
 
 def shown(
-    strokes: Iterable[Shot | Played], table: Table, players: tuple[str, ...], title: str
+    strokes: Iterable[Shot | Played],
+    table: Table,
+    players: tuple[str, ...],
+    title: str,
+    chances: tuple[float, ...] | None = None,
 ) -> Iterator[tuple[Film, Scene]]:
-    """For each stroke its film, and the table after it with the referee's words."""
+    """For each stroke its film, and the table after it with the referee's words; ``chances``: as for ``bars``."""
     strokes = list(strokes)
-    shown_bars = iter(bars([stroke for stroke in strokes if isinstance(stroke, Played)], players))
+    shown_bars = iter(bars([stroke for stroke in strokes if isinstance(stroke, Played)], players, chances))
     for stroke in strokes:
         during, after = next(shown_bars) if isinstance(stroke, Played) else (None, None)
         yield filmed(table, stroke, during, after, "" if during else title)

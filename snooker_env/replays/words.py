@@ -1,6 +1,7 @@
 """What do the referee and the score bar say of each stroke? In plain words, during it and after it."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from ..game.balls import N_REDS, NAMES, BallOn, mask_of_present, points_available
 from ..game.frame_columns import BALL_ON
@@ -71,8 +72,11 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
     return words + "."
 
 
-def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreBar, ScoreBar]]:
-    """The bars during and after each stroke of one episode, in order; ``players``: their names."""
+def bars(
+    strokes: Iterable[Played], players: Sequence[str], chances: Sequence[float] | None = None
+) -> list[tuple[ScoreBar, ScoreBar]]:
+    """The bars during and after each of n strokes of one episode, in order; ``players``: their names; ``chances``:
+    ``Replay.win_chance``, n + 1."""
     made, names = [], tuple(players)
     potted: list[int] | None = []  # in this break; None: it began before the first recorded stroke
     run = 0
@@ -90,7 +94,10 @@ def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreB
         after = _bar(*game, names, one.scores, one.player, run, potted, sentence(one, names))
         made.append((before, after))
         run = run if one.points else 0
-    return made
+    if chances is None:
+        return made
+    kept = zip(made, chances[:-1], chances[1:], strict=True)
+    return [(replace(a, win_chance=now), replace(b, win_chance=then)) for (a, b), now, then in kept]
 
 
 def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar | None = None) -> ScoreBar:

@@ -7,6 +7,7 @@ from typing import Any
 import gymnasium
 
 from .._check import choice, refuse, refuse_what
+from .chances import Judge, checked_judge
 from .document import SUFFIXES, Replay, checked_players
 
 
@@ -31,6 +32,8 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         Format of the files, see ``Replay.save``.
     players : iterable of str, optional
         Names of the players, see ``snooker_env.replay``.
+    judge : object with ``chance_to_win``, optional
+        Of frames: who says how likely each player wins, see ``snooker_env.Replay``; ValueError for visits.
 
     Attributes
     ----------
@@ -60,9 +63,11 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         name_prefix: str = "snooker",
         suffix: str = ".html",
         players: Iterable[str] = (),
+        judge: Judge | None = None,
     ):
         arguments = {"episode_trigger": episode_trigger, "name_prefix": name_prefix, "suffix": suffix}
-        gymnasium.utils.RecordConstructorArgs.__init__(self, folder=str(folder), players=players, **arguments)
+        arguments |= {"players": players, "judge": judge}
+        gymnasium.utils.RecordConstructorArgs.__init__(self, folder=str(folder), **arguments)
         super().__init__(env)
         inner = env.unwrapped
         if not hasattr(inner, "keep_history"):
@@ -78,6 +83,9 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         self._wanted, self._players = episode_trigger, checked_players(players)
         if len(self._players) not in (0, 1 + frame):
             raise refuse("players", players, f"must be {1 + frame} names" if frame else "must be one name")
+        self._judge = checked_judge(judge)
+        if judge is not None and not frame:
+            raise refuse_what("judge", f"a {type(judge).__name__}", "must be None: nobody wins a visit")
         self._number, self._written = -1, True
         self._folder.mkdir(parents=True, exist_ok=True)
 
@@ -110,4 +118,5 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         if strokes and (self._wanted is None or self._wanted(self._number)):
             title = f"episode {self._number}"
             path = self._folder / f"{self._prefix}-episode-{self._number}{self._suffix}"
-            self.paths.append(Replay(strokes, title=title, players=self._players).save(path))
+            replay = Replay(strokes, title=title, players=self._players, judge=self._judge)
+            self.paths.append(replay.save(path))

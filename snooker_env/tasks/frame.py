@@ -442,7 +442,7 @@ class Frames(Tables):
         frame = self.frame(k)
         now = {"scores": frame.scores, "break_points": frame.break_points, "winner": frame.winner}
         turn = {"next_player": frame.striker, "next_free_ball": frame.free_ball}
-        return now | turn | {"choice": frame.phase == "choice"}
+        return now | turn | {"choice": frame.phase == "choice", "frame": frame}
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """See ``Tables.set_position``. Player 0 is at the table; the points are its break."""

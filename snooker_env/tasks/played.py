@@ -5,6 +5,7 @@ from typing import Any
 
 from .._types import Bools, Floats
 from ..game.balls import BallOn, ids_of
+from ..game.frame import Frame
 from ..game.ruling import Foul
 from ..physics.cue_room import MOVED, RAISED, UNPLAYABLE
 from ..simulation import Shot
@@ -47,6 +48,8 @@ class Played:
         whether the visit or frame has ended.
     winner : int or None
         Who has won the frame.
+    frame : Frame or None
+        All that the rules know of the frame after the stroke, such as what may be replaced; None in a visit.
 
     Examples
     --------
@@ -79,6 +82,7 @@ class Played:
     choice: bool
     over: bool
     winner: int | None
+    frame: Frame | None = None
     room: tuple[str, ...] = ()
 
 

@@ -404,7 +404,8 @@ class Tables(ABC):
 
     @abstractmethod
     def standing(self, k: int) -> dict[str, Any]:
-        """More fields of ``Played``: next_player, next_free_ball, scores, break_points, choice, winner."""
+        """More fields of ``Played``: next_player, next_free_ball, scores, break_points, choice, winner,
+        and of frames frame."""
 
     @abstractmethod
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:

@@ -13,7 +13,6 @@ def table_js() -> str:
     """The JavaScript module that draws a table and plays a replay; it imports nothing, so that a page can
     hold it."""
     style = json.dumps((_TABLE / "player.css").read_text("utf-8"))
-    parts = [
-        (_TABLE / f"{part}.js").read_text("utf-8") for part in ("decode", "pen", "paint", "draw", "play")
-    ]
+    names = ("decode", "pen", "paint", "draw", "chance", "play")
+    parts = [(_TABLE / f"{name}.js").read_text("utf-8") for name in names]
     return "\n".join([*parts, f"const STYLE = {style};\n"])

@@ -8,7 +8,7 @@
  * all strokes have been shown. Balls, score bar and words are drawn from it alone; what may be done comes from the state.
  */
 
-import { decode, TableView } from "./table.js";
+import { decode, showChance, TableView } from "./table.js";
 import { Aim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
 import { firstAim } from "./play_first.js";
@@ -392,6 +392,7 @@ class Page {
       by(`side-${k}`).querySelector("b").textContent = table.scores[k];
       by(`side-${k}`).classList.toggle("turn", table.striker === k && table.phase !== "over");
     }
+    showChance(by("win"), table.win_chance, this.state.labels);
     put("n-break", "break ", make("b", { textContent: table.break }));
     if (!on) put("n-on", "frame over");
     else {

@@ -291,6 +291,40 @@ def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
     shown.until("!page.behind")
 
 
+def test_the_bar_shows_who_is_likely_to_win_and_moves_with_the_strokes(shown):
+    """Before a stroke until the balls rest, then after it; not in practice."""
+    shown.set_up(EASY, scores=[20, 40])
+
+    def bar():
+        return shown.page.inner_text("#win").split("\n")
+
+    def said(chance):
+        first = min(99, max(1, round(100 * chance)))
+        return [f"{first} %", "chance to win", f"{100 - first} %"]
+
+    before = shown("page.state.win_chance")
+    assert bar() == said(before)
+    shown("page.aim.set({aim: argument, speed: 2})", STRAIGHT)
+    shown.page.click("#play")
+    shown.until("page.moving && page.moving.start && page.state.strokes === 1")
+    after = shown("page.state.win_chance")
+    assert said(after) != said(before) == bar()
+    edge = "parseFloat(getComputedStyle(document.getElementById('win')).getPropertyValue('--share'))"
+    assert shown(edge) == pytest.approx(100 * before)
+    shown.played(1)
+    assert bar() == said(after) and shown(edge) == pytest.approx(100 * after)
+    assert shown.page.get_attribute("#win", "aria-label").startswith("chance to win: Player 1 ")
+    shown.page.click("#undo")
+    shown.until("page.state.strokes === 0 && page.settled === page.state.revision")
+    assert bar() == said(before)
+    shown.line("api/players", {"practice": True})
+    shown.until("page.state.practice && page.settled === page.state.revision")
+    assert not shown.page.is_visible("#win")
+    shown.line("api/players", PERSONS)
+    shown.until("!page.state.practice && page.settled === page.state.revision")
+    assert shown.page.is_visible("#win")
+
+
 def test_the_end_of_a_frame_is_seen(shown):
     """The winner, the score from the viewer's side, and the next frame, which the other breaks off."""
     shown.set_up(EASY, striker=1, scores=[0, 1])

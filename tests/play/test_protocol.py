@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+import sys
 import time
 from math import pi
 
@@ -14,8 +15,9 @@ from snooker_env.game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from snooker_env.geometry import POCKETS
 from snooker_env.planning import Position, Positions
 from snooker_env.play import routes
+from snooker_env.play.program import ProgramPlayer
 from snooker_env.play.words import lines_of, where
-from snooker_env.players import Strokes
+from snooker_env.players import Strokes, player
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
 from tests.playing import COVERED, EASY, FROZEN, STRAIGHT
 from tests.processes import ROOT
@@ -124,6 +126,45 @@ def test_a_stroke_brings_the_tables_before_and_after_it(game):
         if k + 1 < len(strokes) and after["phase"] == "stroke":
             assert strokes[k + 1]["tables"][0] == after
     assert strokes[-1]["tables"][1] == {name: state[name] for name in after}
+
+
+def test_the_chance_to_win_is_said_of_seat_0_after_each_stroke(game):
+    behind = game("position", position=EASY, scores=[0, 130])
+    ahead = game("position", position=EASY, scores=[130, 0])
+    assert 0.0 < behind["win_chance"] < 0.05 and 0.95 < ahead["win_chance"] < 1.0
+    assert "Chance to win: Player 1 99 %, Player 2 1 %." in ahead["text"]
+    theirs = game("position", position=EASY, scores=[0, 130], striker=1)
+    assert theirs["win_chance"] < 0.05
+    judge = player("tactician").at(game.session.options_with("professional"))
+    level = game("position", position=EASY, scores=[20, 30])
+    assert level["win_chance"] == pytest.approx(judge.chance_to_win(game.session.position)[0], abs=1e-4)
+    answer = game("stroke", speed=2.0, aim=STRAIGHT)
+    first, then = answer["stroke"]["tables"]
+    assert first["win_chance"] == level["win_chance"] != then["win_chance"] == answer["state"]["win_chance"]
+    assert game.get("replay")["win_chance"] == [first["win_chance"], then["win_chance"]]
+    assert game("concede")["win_chance"] == 0.0
+
+
+def test_the_chance_is_for_the_larger_errors_and_nobody_wins_practice(game):
+    game("position", position=EASY, scores=[20, 30])
+    said = [
+        game("players", noise=noise)["win_chance"]
+        for noise in (["none"] * 2, ["club", "none"], ["robot"] * 2)
+    ]
+    assert said[0] == said[2] != said[1]
+    alone = game("players", practice=True, noise=["none", "none"])
+    assert alone["win_chance"] is None and "Chance to win" not in alone["text"]
+    game("stroke", speed=2.0, aim=STRAIGHT)
+    assert game.get("strokes")["strokes"][0]["tables"][1]["win_chance"] is None
+    assert game.get("replay")["win_chance"] is None
+
+
+def test_a_program_that_plays_is_not_told_the_chance():
+    """It is to find its stroke by itself."""
+    code = "import json,sys;print(json.dumps({'speed':1.0,'aim':float(json.loads(input())['win_chance'] is None)}))"
+    program = ProgramPlayer(f'{sys.executable} -c "{code}"').at({"noise": "club"})
+    assert program.play(Position(**EASY), [1]).aim.tolist() == [1.0]
+    program.close()
 
 
 def test_questions_are_answered_for_the_errors_of_the_seat(game):

@@ -10,7 +10,7 @@ import time
 import pytest
 
 from snooker_env.play import server as module
-from snooker_env.play.__main__ import main
+from snooker_env.play.__main__ import _arguments, main, service_of
 from snooker_env.play.routes import GET, POST
 from tests.processes import ROOT
 
@@ -245,6 +245,16 @@ def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     out, err = process.communicate(timeout=20)
     assert process.returncode == 0 and err == "Loading the players and the simulator ...\n"
     assert "Traceback" not in out
+
+
+@pytest.mark.parametrize(
+    ("agents", "other"), [([], "tactician_500"), (["ghost_ball", "random"], "ghost_ball")]
+)
+def test_the_first_agent_or_the_tactician_sits_opposite(agents, other):
+    arguments = [word for name in agents for word in ("--agent", name)]
+    service = service_of(_arguments(["--seed", "1", "--noise", "club", *arguments]))
+    assert service.seats.who == ["person", other] and service.session.noise == ["none", "club"]
+    service.close()
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,8 @@ import pytest
 import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position, Positions
+from snooker_env.planning.worth import chosen, lead_of, left_of
+from snooker_env.players.tactician import Tactician
 from snooker_env.players.weights import learned_worth
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from tests.planning.test_frame_search import frame_of
@@ -100,6 +102,79 @@ def test_a_lost_frame_is_conceded_only_where_it_may_be():
     ):
         player = sn.player("tactician_30").at(OPTIONS | {"concede": says})
         assert player.play(at, [1]).declare.tolist() == [wanted]
+
+
+PINK_BALL = Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink")
+
+
+def test_the_chance_to_win_is_that_of_the_lead_to_come():
+    """By the law, of the lead and the worth: of frames in play, one by one as all at once, which are left as they are."""
+    player = sn.player("tactician_30").at(OPTIONS)
+    at = positions_of(frames_in_play(12, OPTIONS, strokes=6, seed=11))
+    before = at.copy()
+    chances = player.chance_to_win(at)
+    assert (
+        chances.shape == (12,) and ((chances >= 0) & (chances <= 1)).all() and len(set(chances.tolist())) > 6
+    )
+    going = np.flatnonzero(~at.over)
+    law, worth = player.search.chance, player.search.worth
+    wanted = law(lead_of(at)[going] + worth(at[going]), left_of(at)[going])
+    np.testing.assert_allclose(chances[going], wanted, rtol=0, atol=1e-6)
+    for k in range(12):
+        assert player.chance_to_win(at[[k]])[0] == pytest.approx(chances[k], abs=1e-6)
+    for name in ("positions", "on_table", "game"):
+        assert np.array_equal(getattr(at, name), getattr(before, name))
+    leads = [
+        player.chance_to_win(frame_of(PINK_BALL, scores=(60 + lead, 60)))[0] for lead in (-90, -8, 0, 8, 90)
+    ]
+    assert leads == sorted(leads) and leads[0] < 0.01 and leads[-1] > 0.99
+    assert sn.player("tactician_500").at(OPTIONS).chance_to_win(at).tolist() == chances.tolist()
+
+
+def test_a_frame_that_is_over_is_won_or_lost():
+    over = frame_of(PINK_BALL, scores=(10, 90))
+    over.game[:, columns.PHASE], over.game[:, columns.OVER] = columns.FINISHED, 1
+    for winner, chance in ((0, 1.0), (1, 0.0)):  # the other conceded although ahead, or did not
+        over.game[:, columns.WINNER] = winner
+        assert sn.player("tactician_30").at(OPTIONS).chance_to_win(over).tolist() == [chance]
+
+
+def test_the_chance_after_a_foul_is_that_of_the_best_decision():
+    player = sn.player("tactician_30").at(OPTIONS)
+    # the cue ball lies before a red at the pocket, or, replaced, behind the black
+    easy = Position(cue=(0.3, 1.0), reds=[(0.6, 1.4)], black=(0.0, 1.4605), on="red")
+    at = frame_of(easy, scores=(4, 0))
+    at.game[:, columns.PHASE] = columns.CHOICE
+    play, again = (player.chance_to_win(chosen(at, what))[0] for what in (columns.PLAY, columns.PLAY_AGAIN))
+    assert (
+        player.chance_to_win(at)[0] == pytest.approx(max(play, 1.0 - again), abs=1e-6) and play > 1.0 - again
+    )
+    hard = Position(cue=(0.0, 1.70), reds=[(0.0, -1.70)], black=(0.0, 1.4605), blue=(0.0, 1.63), on="red")
+    snookered = frame_of(hard, scores=(4, 0))
+    snookered.game[:, columns.PHASE] = columns.CHOICE
+    play, again = (player.chance_to_win(chosen(snookered, what))[0] for what in (0, 1))
+    assert 1.0 - again > play
+    assert player.chance_to_win(snookered)[0] == pytest.approx(1.0 - again, abs=1e-6)
+
+
+def test_who_has_won_the_lot_is_never_the_worse_for_it():
+    far = frame_of(Position(cue=(0.1, -1.1), black=(0.0, 1.4605), on="black", in_hand=True))
+    far.game[:, columns.RESPOTTED_BLACK] = 1
+    player = sn.player("tactician_30").at(OPTIONS)
+    begins = player.chance_to_win(far)[0]
+    far.game[:, columns.PHASE] = columns.LOT
+    assert player.chance_to_win(far)[0] == pytest.approx(max(begins, 1.0 - begins), abs=1e-6)
+    assert far.game[0, columns.PHASE] == columns.LOT
+
+
+def test_nobody_wins_a_visit_and_a_player_without_a_law_says_nothing():
+    player = sn.player("tactician_30")
+    with pytest.raises(ValueError, match="must be bound first"):
+        player.chance_to_win(frame_of(PINK_BALL))
+    with pytest.raises(ValueError, match="positions = those of visits: must be of frames"):
+        player.at(OPTIONS).chance_to_win(PINK_BALL)
+    with pytest.raises(ValueError, match="law of the chance"):
+        Tactician(30, (None, None)).at(OPTIONS).chance_to_win(frame_of(PINK_BALL))
 
 
 def test_weights_are_of_the_network_that_reads_them():

@@ -8,8 +8,9 @@ import pytest
 import snooker_env as sn
 from snooker_env.render import palette, shot_paths
 from snooker_env.render.density_diagram import bandwidth_of, density_of, level_of
-from snooker_env.render.diagrams import compare, density, fan, plot
+from snooker_env.render.diagrams import compare, density, fan, plot, win_chance
 from snooker_env.render.fan_diagram import Strokes, fan_options, shade
+from tests.pictures import unreadable
 from tests.refusals import refused
 from tests.render.test_shot_paths import R, played
 
@@ -286,6 +287,26 @@ def test_points_that_are_none_are_left_out_and_reported():
     refused(lambda: density(points[0]), "points", "array of shape (2,)", "must be real numbers of shape")
     refused(lambda: density(points, shares=[1.0]), "shares", "[1.0]", "must each be below 1")
     assert len(density(points, position=[(0.0, 0.0), (0.3, 0.3)], view="shot").patches) > 20
+
+
+def test_the_chance_to_win_is_shared_out_over_the_strokes():
+    chances = [0.5, 0.25, 0.75, 1.0]
+    ax = win_chance(chances, players=("Ada", "Grace"), title="A frame")
+    first, other = ax.patches
+    assert [part.get_gid() for part in (first, other)] == ["first", "other"]
+    assert first.get_data().values.tolist() == other.get_data().baseline.tolist() == chances
+    assert first.get_data().baseline.tolist() == [0.0] * 4 and other.get_data().values.tolist() == [1.0] * 4
+    assert first.get_data().edges.tolist() == [-0.5, 0.5, 1.5, 2.5, 3.5]  # around the strokes played: 0 to 3
+    assert first.get_facecolor() != other.get_facecolor()
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["Ada", "Grace"]
+    assert ax.get_ylim() == (0.0, 1.0) and ax.get_title(loc="left") == "A frame"
+    assert unreadable(ax.figure) == []
+    mine = plt.figure().add_subplot()
+    assert win_chance([0.3], mine) is mine
+    refused(lambda: win_chance(None), "chances", "None", "made with a judge")
+    refused(lambda: win_chance([]), "chances", "[]", "must hold at least one")
+    refused(lambda: win_chance([0.5, 1.2]), "chances[1]", "1.2", "must be in [0, 1]")
+    refused(lambda: win_chance([0.5], players="AB"), "players", "AB", "must be two names")
 
 
 @pytest.mark.parametrize(

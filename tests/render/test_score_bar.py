@@ -46,6 +46,18 @@ def test_the_bar_is_under_the_table_and_changes_nothing_else():
     assert np.array_equal(said, rgb_array(scene("match", SPOTS, bar=ScoreBar(**FULL), text="not shown")))
 
 
+def test_the_chance_to_win_is_a_strip_of_two_colours():
+    for chance in (0.0, 0.25, 1.0):
+        strip = pixels(ScoreBar(("Ann", "Bob"), (0, 0), win_chance=chance))[:7]
+        first = np.all(strip == PALETTE["first"], axis=2)
+        assert first[:, : round(1920 * chance)].all() and not first[:, round(1920 * chance) + 1 :].any()
+        assert np.all(strip[:, round(1920 * chance) + 1 :] == PALETTE["other"])
+    plain, said = (pixels(ScoreBar(("Ann", "Bob"), (0, 0), **FULL, win_chance=c)) for c in (None, 0.5))
+    assert np.array_equal(plain[7:], said[7:]) and not np.any(np.all(plain[:7] == PALETTE["first"], axis=2))
+    with pytest.raises(ValueError, match="win_chance"):
+        ScoreBar(("Ann", "Bob"), (0, 0), win_chance=1.5)
+
+
 def test_balls_of_the_break_are_shown_in_order():
     for potted in ((16,), (1, 16, 2, 17), (1, 21) * 15 + (16, 17, 18, 19, 20, 21)):
         bar = pixels(ScoreBar(("Ann", "Bob"), (0, 0), break_points=1, potted=potted))

@@ -59,12 +59,13 @@ const setAll = (element, attributes) => {
 };
 
 /** The player's elements; `STYLE` is the text of player.css. */
-const page = (ratio, players, total) => {
+const page = (ratio, players, total, judged) => {
   const who = '<div class="sn-who"><span></span><b></b></div>';
   const parts = [who, '<div class="sn-now"></div>', who].slice(0, players.length + 1);
   return `<style>${STYLE}</style>
     <div class="sn-stage" style="aspect-ratio:${ratio}"><canvas></canvas></div>
     ${players.length ? `<div class="sn-score">${parts.join("")}</div>` : ""}
+    ${judged ? '<div class="sn-win"></div><div class="sn-graph"></div>' : ""}
     <div class="sn-bar" role="slider" tabindex="0" aria-label="time" aria-valuemin="0" aria-valuemax="${total}">
       <div></div><div></div><b></b></div>
     <div class="sn-foot">
@@ -118,12 +119,12 @@ export class Player {
 
   build(element) {
     const { options } = this;
-    const { scene, players, title } = this.replay;
+    const { scene, players, title, win_chance } = this.replay;
     const root = (this.root = put(element, "div"));
     const [wide, high] = TableView.size(scene);
     const kind = options.fill ? "sn sn-fill" : "sn";
     setAll(root, { class: kind, tabindex: 0, role: "group", "aria-label": title || "replay" });
-    root.innerHTML = page(wide / high, players, this.total.toFixed(1));
+    root.innerHTML = page(wide / high, players, this.total.toFixed(1), win_chance);
     [this.canvas, this.tip] = root.querySelectorAll("canvas");
     this.canvas.onclick = () => this.toggle();
     this.view = new TableView(this.canvas, scene);
@@ -132,6 +133,7 @@ export class Player {
     this.who.forEach((one, k) => {
       one.firstChild.textContent = players[k];
     });
+    this.graph = win_chance && new ChanceGraph(this.part("graph"), this);
     this.buildBar();
     this.buildButtons();
     this.keys = options.keys ?? root;
@@ -249,16 +251,25 @@ export class Player {
     this.update();
   }
 
+  /** The stroke at a time of the whole replay [s]. */
+  strokeAt(sum) {
+    return max(0, this.starts.findLastIndex((start, j) => start - this.leads[j] <= sum));
+  }
+
   /** Show a time of the whole replay [s]. */
   seekTotal(sum) {
-    const k = max(0, this.starts.findLastIndex((start, j) => start - this.leads[j] <= sum));
+    const k = this.strokeAt(sum);
     this.seek(k, sum - this.starts[k]);
+  }
+
+  /** Show the beginning of a stroke; past the last one the end. */
+  skipTo(k) {
+    this.seek(k, k < this.strokes.length ? -LEAD : Infinity);
   }
 
   /** On by a stroke, or back, first to the start of this one. */
   skip(way) {
-    const k = this.k + (way < 0 && this.t > 0.5 ? 0 : way);
-    this.seek(k, k < this.strokes.length ? -LEAD : Infinity);
+    this.skipTo(this.k + (way < 0 && this.t > 0.5 ? 0 : way));
   }
 
   /** Stop at the next event (+1) or the one before (-1). */
@@ -351,6 +362,7 @@ export class Player {
     this.view.draw(this.shown);
     this.done.style.width = this.thumb.style.left = `${100 * sum / this.total}%`;
     this.bar.setAttribute("aria-valuenow", sum.toFixed(1));
+    this.graph?.mark(sum);
     this.write();
     this.options.ontime?.(this.t, this.k);
   }
@@ -406,10 +418,11 @@ export class Player {
   /** The score bar: as it was before the stroke until the balls rest. */
   score(stroke, over, reds) {
     const { strokes } = this;
-    const { balls } = this.replay.scene;
+    const { scene: { balls }, win_chance, players } = this.replay;
     const upTo = over ? this.k : this.k - 1;
     const last = strokes[upTo];
     const mine = stroke.player;
+    if (win_chance) showChance(this.part("win"), win_chance[this.k + over], players);
     this.who.forEach((one, k) => {
       const before = stroke.score[k] - (k === mine ? stroke.points : stroke.penalty);
       one.lastChild.textContent = (last ? last.score[k] : before) ?? 0;

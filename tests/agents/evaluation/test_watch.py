@@ -26,6 +26,7 @@ def test_a_page_and_data_are_written_and_the_play_is_reported(tmp_path, capsys):
     said = capsys.readouterr().out
     data = json.loads((tmp_path / "visit.json").read_text())
     assert all(stroke["words"] in said for stroke in data["strokes"]) and data["players"] == ["ghost_ball"]
+    assert data["win_chance"] is None
     assert watch.main([*SHORT, "--out", str(tmp_path / "new" / "visit.html")]) == 0
     assert "<html" in (tmp_path / "new" / "visit.html").read_text("utf-8")
 
@@ -69,6 +70,9 @@ def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
     } == {0, 1}
     first, other = data["strokes"][-1]["score"]
     assert f"ghost_ball {first} - {other} random in {len(data['strokes'])} strokes" in said
+    assert len(data["win_chance"]) == len(data["strokes"]) + 1 and data["win_chance"][-1] == float(
+        first > other
+    )
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,90 @@
+"""Does a replay's page show who is likely to win? In a real headless Chromium."""
+
+import pytest
+
+from tests.web.chromium import Watched, chromium  # noqa: F401
+from tests.web.replay_data import page_of, visit
+from tests.web.test_replay_page import OVERLAPS, SIZES
+
+CHANCES = [0.5, 0.3, 0.9961, 1.0]
+
+
+@pytest.fixture
+def p(chromium, tmp_path):  # noqa: F811
+    data, _, _ = visit()
+    file = tmp_path / "judged.html"
+    file.write_text(page_of(data | {"win_chance": CHANCES}), encoding="utf-8")
+    page = Watched(chromium, file.as_uri(), ("file:", "data:"), "p", reduced_motion="reduce")
+    yield page
+    page.close()
+
+
+def test_the_bar_changes_once_the_balls_rest(p):
+    bar = p.page.locator(".sn-win")
+    for place, first, other in (
+        ("0, 1", 50, 50),
+        ("0, p.strokes[0].duration", 30, 70),
+        ("1, 0", 30, 70),
+        ("1, p.strokes[1].duration", 99, 1),  # the frame goes on: nothing is certain yet
+        ("2, p.strokes[2].duration", 100, 0),
+    ):
+        p(f"p.seek({place})")
+        assert bar.inner_text().split("\n") == [f"{first} %", "chance to win", f"{other} %"]
+        assert bar.get_attribute("aria-label").startswith(f"chance to win: Ada <b>Lovelace</b> {first} %, ")
+    p("p.seek(0, p.strokes[0].duration)")
+    edge = p("getComputedStyle(document.querySelector('.sn-win')).backgroundImage")
+    assert "30%" in edge
+
+
+def test_the_graph_shows_each_share_until_the_next_stroke_is_over(p):
+    box = p.page.locator(".sn-graph svg").bounding_box()
+    assert box["height"] > 30 and box["width"] == p.page.locator(".sn-bar").bounding_box()["width"]
+    inside = """(() => {
+      const path = document.querySelector(".sn-first"), svg = path.ownerSVGElement;
+      return (time, share) => path.isPointInFill(Object.assign(svg.createSVGPoint(), { x: time, y: 1 - share }));
+    })()"""
+    ends = p("p.strokes.map((stroke, k) => p.starts[k] + stroke.duration)")
+    times = [0.1, ends[0] - 0.1, ends[0] + 0.1, ends[1] - 0.1, ends[1] + 0.1, ends[2] - 0.1]
+    for time, chance in zip(times, [0.5, 0.5, 0.3, 0.3, 0.9961, 0.9961], strict=True):
+        found = p(f"[-0.02, 0.002].map(more => ({inside})(argument[0], argument[1] + more))", [time, chance])
+        assert found == [True, False], time
+    p("p.seek(1, 2)")
+    assert p("document.querySelector('.sn-moment').getBBox().x") == pytest.approx(
+        p("p.starts[1] + 2"), abs=1e-3
+    )
+
+
+def test_a_click_on_the_graph_shows_the_stroke_there(p):
+    box = p.page.locator(".sn-graph").bounding_box()
+    for k, shares in ((2, "100 : 0"), (0, "30 : 70"), (1, "99 : 1")):
+        share = p("(p.starts[argument] + 0.5 * p.strokes[argument].duration) / p.total", k)
+        p.page.mouse.move(box["x"] + share * box["width"], box["y"] + 20)
+        said = p.page.locator(".sn-graph").get_attribute("title")
+        assert said == f"{k + 1}: The referee's words after stroke {k + 1}. {shares} %"
+        p.page.mouse.down()
+        p.page.mouse.up()
+        assert p("[p.stroke, p.time]") == pytest.approx([k, p("-p.leads[argument]", k)])
+
+
+def test_there_is_room_for_it_on_every_screen(p):
+    for width, height in SIZES:
+        p.page.set_viewport_size({"width": width, "height": height})
+        p.until("p.canvas.width === argument", width)
+        p("p.seek(1, p.strokes[1].duration)")
+        root = "document.documentElement"
+        inside = p(f"{root}.scrollWidth <= innerWidth && {root}.scrollHeight <= innerHeight")
+        assert inside and p.page.evaluate(OVERLAPS) == [], (width, height)
+        left, right = p("p.replay.scene.extent[1].map(y => p.view.toScreen(0, y)[0])")
+        assert right - left > min(0.85 * width, 0.84 * height), (width, height)
+        assert p.page.is_visible(".sn-win") and p.page.is_visible(".sn-graph") == (height > 500)
+
+
+def test_a_replay_without_it_shows_none(chromium, tmp_path):  # noqa: F811
+    data, _, _ = visit()
+    del data["win_chance"]  # as replays of earlier versions
+    file = tmp_path / "plain.html"
+    file.write_text(page_of(data), encoding="utf-8")
+    page = Watched(chromium, file.as_uri(), ("file:", "data:"), "p", reduced_motion="reduce")
+    page("p.seek(2, p.strokes[2].duration)")
+    assert page.page.locator(".sn-win, .sn-graph").count() == 0
+    page.close()

@@ -1,0 +1,166 @@
+"""Is the chance to win in a replay that of each position of the frame, from the first player's side?"""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game import frame_columns as columns
+from snooker_env.game.frame import frame_of
+from snooker_env.planning import Positions
+from snooker_env.render import PALETTE
+from snooker_env.replays.chances import standings_of
+from snooker_env.replays.words import bars
+from tests.refusals import refused
+from tests.replays.test_replays import keeping, visit
+
+GAME = {"task": "frame", "opponent": "ghost_ball", "miss": "clear_path", "noise": "club", **sn.players.FRAMES}
+
+
+class Judge:
+    """Says a chance of the striker's lead, and remembers the positions."""
+
+    def chance_to_win(self, positions):
+        self.seen = positions
+        lead = positions.scores[:, 0] - positions.scores[:, 1]
+        won = positions.game[:, columns.WINNER] == 0
+        return np.where(
+            positions.game[:, columns.PHASE] == columns.FINISHED, won, 1 / (1 + np.exp(-lead / 9))
+        )
+
+
+@pytest.fixture(scope="module")
+def frame():
+    """A frame to its end, and the positions in which the agent was asked, by the strokes before them."""
+    env, player = keeping(4, **GAME), sn.player("ghost_ball").at(GAME)
+    asked, ended = {}, False
+    while not ended:
+        at = Positions.of(env)
+        asked[len(env.history)] = at
+        _, _, ended, _, _ = env.step(player.play(at, [7]).actions(env.options, at)[0].astype(np.float32))
+    return env, asked
+
+
+def test_each_position_is_judged_as_it_stood(frame):
+    env, asked = frame
+    judge = Judge()
+    replay = sn.replay(env, judge=judge)
+    assert len(judge.seen) == len(env.history) + 1 == len(replay.win_chance)
+    choices = 0
+    for k, at in asked.items():
+        if k == 0 and env.history[0].player == 0:
+            continue  # the break-off: its cue ball is placed by then
+        rules = [
+            frame_of(row, "clear_path", saved, j)
+            for row, saved, j in ((judge.seen.game[k], judge.seen.saved, k), (at.game[0], at.saved, 0))
+        ]
+        assert rules[0] == rules[1], k
+        here = at.on_table[0]
+        assert np.array_equal(judge.seen.on_table[k], here)
+        assert np.array_equal(judge.seen.positions[k][here], at.positions[0][here])
+        choices += rules[0].saved is not None and rules[0].saved.layout is not None
+    assert choices > 0  # of fouls, the balls before them are known, too
+
+
+def test_the_chance_is_the_first_players_and_certain_at_the_end_alone(frame):
+    env, _ = frame
+    chances = sn.replay(env, judge=Judge()).win_chance
+    for played, chance in zip(env.history[:-1], chances[1:-1], strict=True):
+        first, other = played.scores
+        assert chance == pytest.approx(
+            np.clip(1 / (1 + np.exp((other - first) / 9)), 1e-4, 1 - 1e-4), abs=1e-4
+        )
+        assert 0.0 < chance < 1.0
+    assert chances[0] == 0.5 and chances[-1] == float(env.history[-1].winner == 0)
+
+
+def test_a_judge_that_is_sure_too_early_is_not_believed(frame):
+    env, _ = frame
+
+    class Sure:
+        def chance_to_win(self, positions):
+            return np.ones(len(positions))
+
+    chances = sn.replay(env, judge=Sure()).win_chance
+    strikers = [env.history[0].player, *(played.next_player for played in env.history[:-1])]
+    assert list(chances[:-1]) == [0.9999 if striker == 0 else 0.0001 for striker in strikers]
+
+
+def test_the_first_stroke_is_undone_whatever_it_was(frame):
+    """The frame before each stroke, as if the replay began there, is the one after the stroke before it."""
+    history = frame[0].history
+    seen = set()
+    for k in range(1, len(history)):
+        before, after = standings_of(history[k:])[0], standings_of(history)[k]
+        if after.frame.phase != "stroke" or after.frame.in_hand:
+            continue
+        seen.add((history[k].points > 0, history[k].penalty > 0))
+        for name in (
+            "scores",
+            "striker",
+            "breaker",
+            "break_points",
+            "on_table",
+            "ball_on",
+            "free_ball",
+            "rack",
+        ):
+            assert getattr(before.frame, name) == getattr(after.frame, name), (k, name)
+        assert np.array_equal(before.on_table, after.on_table)
+        here = before.on_table
+        np.testing.assert_allclose(before.positions[here], after.positions[here], rtol=0, atol=1e-12)
+    assert {(True, False), (False, True), (False, False)} <= seen
+
+
+def test_a_replay_holds_it_only_if_it_was_asked_for(frame):
+    env, _ = frame
+    plain, judged = sn.replay(env), sn.replay(env, judge=Judge())
+    assert plain.win_chance is None and plain.to_dict()["win_chance"] is None
+    assert judged.to_dict()["win_chance"] == list(judged.win_chance)
+    assert sn.replay(judged, title="again").win_chance == judged.win_chance
+    data = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', judged.html(), re.DOTALL)
+    assert json.loads(data[1])["win_chance"] == list(judged.win_chance)
+
+
+def test_a_film_shows_it_before_and_after_each_stroke(frame):
+    history = frame[0].history
+    replay = sn.replay(history, judge=Judge())
+    shown_bars = bars(history, replay.players, replay.win_chance)
+    assert [now.win_chance for now, _ in shown_bars] == list(replay.win_chance[:-1])
+    assert [then.win_chance for _, then in shown_bars] == list(replay.win_chance[1:])
+    pytest.importorskip("pygame")
+    pictures = [
+        next(sn.replay(history[:2], judge=judge).frames(size=(640, 360))) for judge in (Judge(), None)
+    ]
+    seen = [np.any(np.all(picture == PALETTE["first"], axis=2)) for picture in pictures]
+    assert seen == [True, False]
+
+
+def test_what_nobody_wins_is_refused(frame, tmp_path):
+    env, _ = frame
+    strokes, shot = visit(3, 2), env.history[0].shot
+    refused(lambda: sn.replay(strokes, judge=Judge()), "strokes[0]", "visit", "must be of a frame")
+    refused(lambda: sn.replay([shot], judge=Judge()), "strokes[0]", "bare shot", "must be of a frame")
+    refused(lambda: sn.replay(env, judge=3), "judge", "int", "must have chance_to_win")
+    made = lambda env: sn.RecordReplay(env, tmp_path / "new", judge=Judge())  # noqa: E731
+    refused(lambda: made(sn.SnookerEnv()), "judge", "Judge", "nobody wins a visit")
+    refused(
+        lambda: sn.RecordReplay(sn.SnookerEnv(**GAME), tmp_path / "new", judge=3),
+        "judge",
+        "int",
+        "chance_to_win",
+    )
+    assert not (tmp_path / "new").exists()
+
+
+def test_recorded_episodes_are_judged(tmp_path):
+    env = sn.SnookerEnv(**GAME, max_strokes=4)
+    recorded = sn.RecordReplay(env, tmp_path, suffix=".json", judge=sn.player("tactician").at(env))
+    recorded.reset(seed=1)
+    while not any(recorded.step(np.zeros(env.action_space.shape, np.float32))[2:4]):
+        pass
+    data = json.loads(recorded.paths[0].read_text())
+    assert len(data["win_chance"]) == len(data["strokes"]) + 1
+    assert all(0.0 < chance < 1.0 for chance in data["win_chance"][:-1])
