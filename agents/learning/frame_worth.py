@@ -71,16 +71,20 @@ def fitted(seen, wanted, seed, passes, layers=None):
     return network.layers()
 
 
-def fitted_chance(lead, left, won):
-    """The ``Chance`` that is likeliest, of expected final leads, points on the table and who won: (n,) each."""
-    lead, left, won = (torch.from_numpy(np.asarray(one, np.float64)) for one in (lead, left, won))
-    raw = torch.tensor([1.0, 1.0], dtype=torch.float64, requires_grad=True)
+def fitted_chance(lead, left, now, won):
+    """The ``Chance`` that is likeliest, of expected final leads, points on the table, leads and who won: (n,) each."""
+    beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
+    lead, left, beyond, won = (
+        torch.from_numpy(np.asarray(one, np.float64)) for one in (lead, left, beyond, won)
+    )
+    raw = torch.tensor([1.0, 1.0, -2.0], dtype=torch.float64, requires_grad=True)
     optimiser = torch.optim.LBFGS([raw], max_iter=200, line_search_fn="strong_wolfe")
 
     def loss():
         optimiser.zero_grad()
-        near, far = nn.functional.softplus(raw)
-        value = nn.functional.binary_cross_entropy_with_logits(lead / (near + far * left.sqrt()), won)
+        near, far, snookers = nn.functional.softplus(raw)
+        logit = lead / (near + far * left.sqrt()) + snookers * beyond
+        value = nn.functional.binary_cross_entropy_with_logits(logit, won)
         value.backward()
         return value
 

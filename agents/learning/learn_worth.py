@@ -90,8 +90,8 @@ def learned(rounds, seed, layers):
             raise refuse(
                 "frames", len(np.unique(both["unit"])), f"must be more: of those {what} none has ended"
             )
-    chance = fitted_chance(*(part[used & ended] for part in (lead, both["left"], both["won"])))
-    wins, won = chance(lead, both["left"])[held & ended], both["won"][held & ended]
+    chance = fitted_chance(*(part[used & ended] for part in (lead, both["left"], both["lead"], both["won"])))
+    wins, won = chance(lead, both["left"], both["lead"])[held & ended], both["won"][held & ended]
     figures = {
         "positions": len(wanted),
         "rmse": float(np.sqrt(np.mean((said - both["target"])[held] ** 2))),
@@ -167,7 +167,7 @@ def main(argv=None):
             frames = len(np.unique(rows["unit"]))
             told = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())
             spent = f"{time.time() - began:.0f} s, {len(rows['target']) / frames:.0f} strokes a frame"
-            print(f"round {k}: {told}  chance {chance.near:.3g} {chance.far:.3g}  {spent}", flush=True)
+            print(f"round {k}: {told}  chance {chance.near:.3g} {chance.far:.3g} {chance.snookers:.3g}  {spent}", flush=True)
     content = packed(arrays_of(layers, chance))
     write_atomic(args.out / "worth.npz", content)
     if args.export:

@@ -150,12 +150,14 @@ class FrameSearch:
         points = follows(self.worth, after, before, self.rules.rule_set.code, least)
         return self._both(before, points, after)
 
-    def _both(self, before: Floats, points: Floats, after: Positions) -> Floats:
-        """Chances to win and points, (m, 2), of strokes that bring and leave ``points`` more than the leads ``before``."""
+    def _both(self, before: Floats, points: Floats, after: Positions, now: Floats | None = None) -> Floats:
+        """Chances to win and points, (m, 2), of strokes that bring and leave ``points`` more than the leads ``before``;
+        ``now`` (m,): the leads then, if they are not those of player 0."""
         chance = np.zeros(len(points))
         if self.chance is not None:
             over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
-            chance = np.where(over, won, self.chance(before + points, left_of(after)))
+            now = lead_of(after) if now is None else now
+            chance = np.where(over, won, self.chance(before + points, left_of(after), now))
         return np.column_stack([chance, points])
 
     def _score(self, both: Floats) -> Floats:
@@ -192,7 +194,7 @@ class FrameSearch:
         if rounds:  # a pot that is missed leaves the balls about as they lie
             left = passed(at)
             points = -self.worth(left).astype(np.float64)
-            missed, made = self._both(before, points, left)[j], chances[j, c, None]
+            missed, made = self._both(before, points, left, before)[j], chances[j, c, None]
             looks = made * looks + (1.0 - made) * missed
         # a called miss may be played again: it is worth less than the best of the others, by its penalty
         called, most = after.game[:, columns.MISS_CALLED] != 0, np.full(n, -np.inf)

@@ -118,14 +118,19 @@ def follows(
 
 class Chance(NamedTuple):
     """The chance to win a frame, of the lead that is expected at its end: a logistic law, as wide as the luck that
-    is still to come: ``near`` + ``far`` sqrt(points on the table) [points]."""
+    is still to come: ``near`` + ``far`` sqrt(points on the table) [points]. Who leads by more than is on the table can
+    lose by fouls alone: each such point adds ``snookers`` to the logit."""
 
     near: float
     far: float
+    snookers: float
 
-    def __call__(self, lead: Floats, left: Floats) -> Floats:
-        """The chance (n,) of who is expected to end with ``lead`` (n,) when ``left`` (n,) are on the table."""
-        return 1.0 / (1.0 + np.exp(-np.clip(lead / (self.near + self.far * np.sqrt(left)), -50.0, 50.0)))
+    def __call__(self, lead: Floats, left: Floats, now: Floats) -> Floats:
+        """The chance (n,) of who leads by ``now`` (n,) and is expected to end with ``lead`` (n,) when ``left`` (n,) are
+        on the table."""
+        beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
+        logit = lead / (self.near + self.far * np.sqrt(left)) + self.snookers * beyond
+        return 1.0 / (1.0 + np.exp(-np.clip(logit, -50.0, 50.0)))
 
 
 def left_of(at: Positions) -> Floats:

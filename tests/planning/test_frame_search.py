@@ -95,20 +95,26 @@ def test_the_score_is_what_the_stroke_brings_and_leaves():
 
 
 def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
-    chance = Chance(1.0, 2.0)
+    chance, level = Chance(1.0, 2.0, 0.3), np.zeros(5)
     leads = np.array([-60.0, -5.0, 0.0, 5.0, 60.0])
-    few, many = chance(leads, np.full(5, 7.0)), chance(leads, np.full(5, 140.0))
+    few, many = chance(leads, np.full(5, 7.0), level), chance(leads, np.full(5, 140.0), level)
     assert many[2] == 0.5 and (np.diff(few) > 0).all() and few[3] > many[3] and few[0] < many[0]
     assert np.allclose(few + few[::-1], 1.0)
-    assert chance(np.array([10.0]), np.array([49.0]))[0] == pytest.approx(
-        1.0 / (1.0 + np.exp(-10.0 / 15.0)), rel=1e-12
-    )
+    ten, left = np.full(5, 10.0), np.full(5, 49.0)
+    logits = 10.0 / 15.0 + 0.3 * np.array([-11.0, 0.0, 0.0, 0.0, 2.0])  # points beyond those on the table
+    now = np.array([-60.0, -49.0, 0.0, 49.0, 51.0])
+    assert chance(ten, left, now) == pytest.approx(1.0 / (1.0 + np.exp(-logits)), rel=1e-12)
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
     both = search(chance=chance).gains(
         at, np.arange(len(at)), np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5))
     )
     assert ((both[:, 0] > 0.0) & (both[:, 0] < 1.0)).all()
+    far, sign = at.copy(), np.where(np.arange(len(at)) % 2, 1, -1)
+    far.game[:, columns.SCORE_0] += np.maximum(sign, 0) * 200  # one of both needs snookers, whatever the stroke does
+    far.game[:, columns.SCORE_1] += np.maximum(-sign, 0) * 200
+    for tried, ahead in zip(search(chance=chance).rank(far, np.arange(len(far))), sign > 0, strict=True):
+        assert (tried.chances > 0.99).all() if ahead else (tried.chances < 0.01).all()
 
 
 def test_safeties_meet_a_ball_on_first_and_every_other_one_thinly():

@@ -76,10 +76,12 @@ def test_a_network_learns_what_it_is_told_beside_the_value():
 def test_the_chance_to_win_is_that_of_the_frames():
     rng, n = np.random.default_rng(1), 40_000
     lead, left = rng.normal(0.0, 40.0, n), rng.uniform(1.0, 147.0, n)
-    won = rng.random(n) < 1.0 / (1.0 + np.exp(-lead / (1.0 + 2.5 * np.sqrt(left))))
-    chance = fitted_chance(lead, left, won)
-    assert chance.far == pytest.approx(2.5, rel=0.1)
-    table, error = calibration(chance(lead, left), won)
+    now = lead - rng.normal(0.0, 10.0, n)
+    beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
+    won = rng.random(n) < 1.0 / (1.0 + np.exp(-lead / (1.0 + 2.5 * np.sqrt(left)) - 0.2 * beyond))
+    chance = fitted_chance(lead, left, now, won)
+    assert chance.far == pytest.approx(2.5, rel=0.1) and chance.snookers == pytest.approx(0.2, rel=0.2)
+    table, error = calibration(chance(lead, left, now), won)
     assert error < 0.01 and len(table) == 10
     assert calibration(np.full(n, 0.9), won)[1] > 0.2
 
