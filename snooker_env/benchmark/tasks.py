@@ -134,9 +134,7 @@ _ALL = (
     _task(
         "Escape", "one stroke out of a snooker, no foul", "escape", "legal", "held_out_escape", changes=_LEGAL
     ),
-    _task(
-        "Safety", "one stroke where no pot is on, then planner", "safety", "lead", "held_out_safety", **_SAFE
-    ),
+    _task("Safety", "one stroke where no pot is on", "safety", "lead", "held_out_safety", **_SAFE),
     _task("Frame", "win a frame against planner", "break_off", "won", changes=_FRAME | {"reward": "win"}),
 )
 TASKS: dict[str, Task] = {task.id: task for task in _ALL}
