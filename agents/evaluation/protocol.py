@@ -129,7 +129,13 @@ def parser():
     add("--fidelity", nargs="+", default=["standard"], help=what)
     what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
     add("--physics", nargs="+", default=["paper"], help=what)
-    add("--cue", nargs="+", default=["real"], choices=("free", "real"), help="whether rails and balls are in its way [real]")
+    add(
+        "--cue",
+        nargs="+",
+        default=["real"],
+        choices=("free", "real"),
+        help="whether rails and balls are in its way [real]",
+    )
     what = "new execution errors after every decision: a control that no agent has seen them beforehand"
     add("--rekey", action="store_true", help=what)
     add_ray(p, keep=True)

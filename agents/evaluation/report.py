@@ -30,7 +30,13 @@ SAME = 0.1
 """Times that differ by less than this share are called equal."""
 AXES = ("noise", "fidelity", "physics", "cue")
 PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
-USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper", "cue": "real"}
+USUAL = {
+    "layout": "held_out",
+    "noise": "professional",
+    "fidelity": "standard",
+    "physics": "paper",
+    "cue": "real",
+}
 
 _pm = partial(shown, form="{:.2f}")
 

@@ -167,7 +167,10 @@ def main(argv=None):
             frames = len(np.unique(rows["unit"]))
             told = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())
             spent = f"{time.time() - began:.0f} s, {len(rows['target']) / frames:.0f} strokes a frame"
-            print(f"round {k}: {told}  chance {chance.near:.3g} {chance.far:.3g} {chance.snookers:.3g}  {spent}", flush=True)
+            print(
+                f"round {k}: {told}  chance {chance.near:.3g} {chance.far:.3g} {chance.snookers:.3g}  {spent}",
+                flush=True,
+            )
     content = packed(arrays_of(layers, chance))
     write_atomic(args.out / "worth.npz", content)
     if args.export:

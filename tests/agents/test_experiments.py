@@ -56,7 +56,9 @@ def test_a_run_that_fails_stops_the_whole(tmp_path):
     fake = tmp_path / "python"
     fake.write_text("#!/bin/sh\necho no memory\nexit 3\n")
     fake.chmod(0o755)
-    done = script("experiments.sh", tmp_path / "runs", ONLY="ppo_mask-2", PATH=f"{tmp_path}:{os.environ['PATH']}")
+    done = script(
+        "experiments.sh", tmp_path / "runs", ONLY="ppo_mask-2", PATH=f"{tmp_path}:{os.environ['PATH']}"
+    )
     assert done.returncode != 0 and "ppo_mask-2 failed" in done.stderr
     assert (tmp_path / "runs/ppo_mask-2.txt").read_text() == "no memory\n"
 

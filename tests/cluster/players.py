@@ -27,7 +27,13 @@ def note(decision, n):
         time.sleep(0.05)
 
 
-AT = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper", "cue": "real"}
+AT = {
+    "layout": "held_out",
+    "noise": "professional",
+    "fidelity": "standard",
+    "physics": "paper",
+    "cue": "real",
+}
 
 
 def same(a, b):

@@ -111,7 +111,9 @@ def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
     )
     assert ((both[:, 0] > 0.0) & (both[:, 0] < 1.0)).all()
     far, sign = at.copy(), np.where(np.arange(len(at)) % 2, 1, -1)
-    far.game[:, columns.SCORE_0] += np.maximum(sign, 0) * 200  # one of both needs snookers, whatever the stroke does
+    far.game[:, columns.SCORE_0] += (
+        np.maximum(sign, 0) * 200
+    )  # one of both needs snookers, whatever the stroke does
     far.game[:, columns.SCORE_1] += np.maximum(-sign, 0) * 200
     for tried, ahead in zip(search(chance=chance).rank(far, np.arange(len(far))), sign > 0, strict=True):
         assert (tried.chances > 0.99).all() if ahead else (tried.chances < 0.01).all()

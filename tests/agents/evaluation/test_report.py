@@ -93,7 +93,14 @@ def test_the_agents():
         assert report.agents_tables(played)[0].rows == [["p", recipe, "", "", "", "", ""]]
 
 
-PLAYED = {"layout": "held_out", "noise": "none", "fidelity": "standard", "physics": "paper", "cue": "real", "runs": 1}
+PLAYED = {
+    "layout": "held_out",
+    "noise": "none",
+    "fidelity": "standard",
+    "physics": "paper",
+    "cue": "real",
+    "runs": 1,
+}
 
 
 def figure(value, low=None, high=None):
@@ -134,7 +141,10 @@ def test_a_under_b():
     points = {("a", "none"): 4.0, ("a", "club"): 1.0, ("b", "none"): 3.0, ("b", "club"): 2.0}
     made["results"] = [row(label, noise, value, (None,) * 3, {}) for (label, noise), value in points.items()]
     (table,) = report.crossed(made)
-    assert table.title == "held_out: points a visit, played under noise ..., fidelity standard, physics paper, cue real"
+    assert (
+        table.title
+        == "held_out: points a visit, played under noise ..., fidelity standard, physics paper, cue real"
+    )
     assert table.header == ["agent", "trained under", "none", "club"]
     assert table.rows == [["a", "none", "4.00", "1.00"], ["b", "club", "3.00", "2.00"]]
 
