@@ -12,6 +12,9 @@ from snooker_env.planning.worth import Chance
 
 WIDTHS = (96, 48)
 BATCH, RATE = 512, 2e-3
+SNOOKERS, STROKES = 0.3, 40
+"""Standard deviation of the prior of ``Chance.snookers``, for hardly anybody wins who needs some: without it the chance
+would be 0; and strokes of a frame, which count as one observation."""
 TRACE = 0.6
 """Share of what really followed in a target, beside what the search says of the next position."""
 
@@ -85,6 +88,7 @@ def fitted_chance(lead, left, now, won):
         near, far, snookers = nn.functional.softplus(raw)
         logit = lead / (near + far * left.sqrt()) + snookers * beyond
         value = nn.functional.binary_cross_entropy_with_logits(logit, won)
+        value = value + 0.5 * (snookers / SNOOKERS) ** 2 * STROKES / len(won)
         value.backward()
         return value
 
