@@ -42,9 +42,10 @@ def frames(shared, args, threads):
     known = options.but(conditions="fixed")  # a player does not know the constants of a table
     player = Tactician(shared["budget"], (shared["layers"], shared["chance"])).at(known)
     worth, other = player.search.worth, args["other"]
-    if other is not None:
-        other = snooker_player(other) if isinstance(other, str) else Tactician(shared["budget"], other)
-        other = other.at(known)
+    if isinstance(other, str):
+        other = snooker_player(other).at(known)
+    elif other is not None:
+        other = Tactician(shared["budget"], other).at(known)
     rng, seed = np.random.default_rng([args["seed"], 7]), args["seed"]
     tables, crew = Frames(rules, many, seats=[Seat.of(rules)] * 2), Threads(threads or 1)
     for k in range(many):
@@ -83,7 +84,7 @@ def frames(shared, args, threads):
             held += len(here)
         parts = tuple(np.zeros((many, *part.shape[1:]), part.dtype) for part in strokes.parts)
         made = [(mine, strokes)]
-        if theirs.any():
+        if other is not None and theirs.any():
             made.append((going[theirs], other.play(_seen_by_strikers(tables, going[theirs]), keys[theirs])))
         for who, said in made:
             for whole, part in zip(parts, said.parts, strict=True):

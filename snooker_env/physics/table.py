@@ -204,7 +204,7 @@ class Table:
     def unfit(self, positions: Floats, R: float) -> list[int]:
         """The layouts that ``check`` would refuse: their indices, in order. ``positions`` (b, n, 2) [m], NaN for
         balls that are not on the table; ``R``: their radius [m]."""
-        here, unfit, first = ~np.isnan(positions).any(axis=2), [], 0
+        here, unfit, first = ~np.isnan(positions[..., 0]), [], 0
         while True:
             k, _, fault, _ = first_fault(
                 positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R)
