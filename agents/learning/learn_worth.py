@@ -1,6 +1,6 @@
 """Learn what positions of frames are worth, by self-play: the worth of the ``tactician``.
 
-    python -m agents.learn_worth --out runs/worth [--rounds 8] [--ray local]
+    python -m agents.learn_worth --out runs/worth [--rounds 4] [--ray local]
 
 Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds
 before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
@@ -119,7 +119,7 @@ def main(argv=None):
     """Play, fit, write. Exit code 0."""
     p = parser_of("python -m agents.learn_worth", __doc__)
     p.add_argument("--out", type=Path, required=True, help="folder of rounds and weights")
-    p.add_argument("--rounds", type=int, default=8, help="[8]")
+    p.add_argument("--rounds", type=int, default=4, help="[4]")
     p.add_argument("--frames", type=int, default=384, help=f"frames of a round, a multiple of {TABLES} [384]")
     p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
     p.add_argument("--seed", type=int, default=0, help="[0]")
