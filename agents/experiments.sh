@@ -55,14 +55,8 @@ evaluate() { # name of the output, then the options of agents.evaluate
     shift
     module agents.evaluate "$@" ${RAY:+--ray "$RAY"} --json "agents/results/$name.json" --markdown "agents/results/$name.md"
 }
-module agents.curves "ppo_value=$folder/ppo_value-0" "ppo_mask=$folder/ppo_mask-?"
+module agents.curves "ppo_value=$folder/ppo_value-0"
 # the published models, by their names
-evaluate visits --layouts held_out --noise professional club --against search best_pot --picture agents/pictures/destinations.png --agent \
-    planner best_pot ghost_ball search planner_value planner_policy foresight_rule geometric random ppo_mask_finetuned ppo_value \
-    ppo_mask ppo_absolute ppo_target ppo_foresight ppo_foresight_gamma0
-evaluate planner_budgets --layouts held_out=200 --noise professional --against search --agent \
-    planner_30 planner_60 planner planner_500 planner_2000 search search_2000
-evaluate planner_noise --layouts held_out=300 --against search --agent none=planner@none professional=planner@professional \
-    amateur=planner@amateur club=planner@club search
-module agents.value_quality --visits 500 --layouts held_out line_up colours random:3 --noise professional club \
-    --markdown agents/results/value_quality.md
+evaluate visits --layouts held_out=500 --noise professional --against search best_pot --picture agents/pictures/destinations.png --agent \
+    planner best_pot ghost_ball search ppo_mask_finetuned ppo_value ppo_mask random
+module agents.value_quality --visits 500 --layouts held_out --noise professional --markdown agents/results/value_quality.md

@@ -174,7 +174,10 @@ def self_played(where, scales, frames, budget, conditions):
     shared |= {"budget": budget, "explore": 0.0}
     parts, starts = [], range(0, frames, TABLES)
     for scale in scales:
-        parts += [{"scale": scale, "seed": FIRST_SEED + k, "many": min(TABLES, frames - k)} for k in starts]
+        parts += [
+            {"scale": scale, "seed": FIRST_SEED + k, "many": min(TABLES, frames - k), "other": None}
+            for k in starts
+        ]
     made = where.map("agents.learning.frame_self_play:frames", shared, parts)
     n = len(starts)
     return [made[n * i : n * (i + 1)] for i in range(len(scales))]

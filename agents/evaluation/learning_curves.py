@@ -8,9 +8,6 @@ of the last 1,000 visits on the tables of training, exploring. Discs, and the li
 tables, a run at its end, without exploration, with two standard errors. A run that imitated first starts its
 line where it begins to play; what a run with --start brought along is not counted. Shots are taken to be
 spread evenly over the time, and the machine was shared: minutes say a factor, not a percentage.
-
-The runs of version 0.1.0 were not kept: agents/pictures/curves.json holds, for each agent, the range of its
-seeds' lines, read off the chart of that version, and the ends with 95 % intervals from agents/results.
 """
 
 from itertools import cycle

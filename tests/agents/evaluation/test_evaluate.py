@@ -59,7 +59,7 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     assert (first["seconds"], first["imitated"], second["seconds"], second["imitated"]) == (2.0, 0, None, 300)
     assert first["layout"] == "opened" and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
     assert len(found["results"]) == 3 * 2 * 2
-    names = "agent layout noise fidelity physics visits runs figures ratios counted longest_break by_run"
+    names = "agent layout noise fidelity physics cue visits runs figures ratios counted longest_break by_run"
     for row in found["results"]:
         assert sorted(row) == sorted(f"{names} strokes ms_a_decision".split())
         assert set(row["figures"]) == {*FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}

@@ -259,11 +259,7 @@ def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
 
 def test_no_two_titles_are_alike():
     titles = {file.stem: report.title(report.read(file)) for file in KEPT}
-    assert list(titles) == ["ladder", "planner_budgets", "planner_noise", "visits"]
-    assert len(set(titles.values())) == 4
-    values = "none, professional, amateur and club"
-    said = f"How planners trained under one noise play under another, on held_out: {values}"
-    assert titles["planner_noise"] == said
+    assert list(titles) == ["ladder", "visits"] and len(set(titles.values())) == 2
 
 
 def test_the_command_writes_the_markdown_beside(tmp_path, capsys, refused):
