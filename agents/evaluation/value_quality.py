@@ -53,7 +53,9 @@ class Recording(BoundPlayer):
 def quality(player, visits, layout, noise):
     """Figures of the value of ``player``, a planner, over so many visits."""
     recording = Recording(player)
-    strokes = play_visits(recording, visits, layout=layout, noise=noise, first_seed=tables_of(layout, visits))
+    strokes = play_visits(
+        recording, visits, layout=layout, noise=noise, cue="real", first_seed=tables_of(layout, visits)
+    )
     so_far, value, rule = np.concatenate(recording.rows).T
     visit = strokes.visit  # strokes are in the order of play, as the planner was asked
     followed = strokes.a_visit(strokes.points)[visit] - so_far
