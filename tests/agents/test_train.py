@@ -55,7 +55,7 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
         assert figures["pot_rate"] == pytest.approx(4 * figures["pots_a_visit"] / figures["strokes"])
         assert all(figures[name + "_se"] >= 0 for name in ("pots_a_visit", "points_a_visit", "fouls_a_visit"))
     assert "512 shots" in found["learned"]
-    assert found["evaluation"]["trained"] == summary(play_visits(load_player(out / "model.zip"), 4))
+    assert found["evaluation"]["trained"] == summary(play_visits(load_player(out / "model.zip"), 4, cue="real"))
 
 
 @pytest.mark.parametrize(("agent", "number"), [("ppo_mask", signal.SIGTERM), ("tqc_target", signal.SIGINT)])
@@ -267,7 +267,7 @@ def test_evaluation_plays_under_the_options_of_training(judged):
     level = {"noise": "club", "table": "tight", "physics": physics, "fidelity": "fast"}
     whole = {"action": "discrete", "layout": "line_up", "reward": "pots", **level}
     for changes, wanted in (
-        ((), {"noise": "professional"}),
+        ((), {"noise": "professional", "cue": "real"}),
         ((f"env_kwargs={whole}",), level),
         (("env_kwargs={'action': 'discrete'}",), {"noise": "none"}),
     ):
@@ -290,7 +290,7 @@ def test_random_play_is_the_same_for_every_agent(finished):
     of_each = [results(finished / agent)["evaluation"] for agent in AGENTS]
     for name in ("random", "ghost_ball"):
         assert all(figures[name] == of_each[0][name] for figures in of_each)
-    assert of_each[0]["random"] == summary(play_visits(sn.player("random"), 4))
+    assert of_each[0]["random"] == summary(play_visits(sn.player("random"), 4, cue="real"))
 
 
 def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
@@ -353,7 +353,7 @@ class AnyAction:
 def test_it_learns(tmp_path, agent, steps, least):
     assert run(tmp_path, "--agent", agent, "--steps", steps, "--envs", "64", "--eval-visits", "300") == 0
     trained = results(tmp_path)["evaluation"]["trained"]
-    chance = summary(play_visits(sn.player(AnyAction(load_player(tmp_path))), 300))
+    chance = summary(play_visits(sn.player(AnyAction(load_player(tmp_path))), 300, cue="real"))
     gain = trained["points_a_visit"] - chance["points_a_visit"]
     assert gain > least and gain > 3 * trained["points_a_visit_se"]
 
@@ -381,7 +381,7 @@ def test_agents_with_longer_actions_are_judged_and_not_taken_for_shorter(tmp_pat
     longer = usual | {"elevation": True, "placement": True}
     assert run(out, "--agent", "ppo_target", "--steps", "128", "--set", f"env_kwargs={longer}") == 0
     assert load_player(out).sees == longer
-    assert summary(play_visits(load_player(out), 4, noise="none")) == results(out)["evaluation"]["trained"]
+    assert summary(play_visits(load_player(out), 4, noise="none", cue="real")) == results(out)["evaluation"]["trained"]
     start = ["--agent", "ppo_target", "--start", out, "--out", tmp_path / "new", "--set"]
     error = refused(train.main, *start, f"env_kwargs={usual}")
     assert "start = " in error and "must be a model with actions" in error

@@ -156,7 +156,7 @@ def test_an_agent_can_observe_the_constants_of_its_table(observed, agent):
         trained.policy.observation_space.shape == (SHOWN + 8,) and trained.env_options["observe_conditions"]
     )
     player = load_player(observed / agent)
-    options = {"noise": "professional", "conditions": "drawn"}
+    options = {"noise": "professional", "cue": "real", "conditions": "drawn"}
     assert summary(play_visits(player, 4, **options)) == found["evaluation"]["trained"]
 
 
@@ -263,8 +263,8 @@ def test_a_planner_of_a_run_over_tables_plays_them(few, tmp_path):
     out = tmp_path / "run"
     assert run(out, "--agent", "ppo_value", "--envs", "4", "--imitate", "64", "--conditions", "drawn") == 0
     found = results(out)
-    again = play_visits(sn.player(f"planner@{out}"), 4, conditions="drawn", noise="professional")
+    again = play_visits(sn.player(f"planner@{out}"), 4, conditions="drawn", noise="professional", cue="real")
     assert summary(again) == found["evaluation"]["planner"]
     assert found["evaluation"]["ghost_ball"] != summary(
-        play_visits(sn.player("ghost_ball"), 4, noise="professional")
+        play_visits(sn.player("ghost_ball"), 4, noise="professional", cue="real")
     )

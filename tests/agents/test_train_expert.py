@@ -34,7 +34,7 @@ def test_the_run_says_what_the_planner_gains(finished):
     assert "a rule by hand" in found["learned"]
     assert found["imitation"][-1]["states"] == 64 and found["imitation"][-1]["value_loss"] > 0
     for name in (f"planner@{finished}", "search"):
-        again = summary(play_visits(sn.player(name), 4))
+        again = summary(play_visits(sn.player(name), 4, cue="real"))
         assert again == found["evaluation"][name.partition("@")[0]]
 
 

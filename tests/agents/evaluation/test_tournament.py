@@ -218,7 +218,7 @@ def test_the_ladder_of_the_repository_is_sound(capsys):
     from agents.evaluation.tournament_report import markdown
 
     assert (folder / "ladder.md").read_text() == markdown(found)
-    names = "random ghost_ball geometric ppo_target ppo_mask ppo_foresight search_200"
+    names = "random ghost_ball best_pot search planner tactician"
     assert {p["label"] for p in found["players"]}.issuperset(names.split())
 
 
