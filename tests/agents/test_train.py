@@ -381,7 +381,7 @@ def test_agents_with_longer_actions_are_judged_and_not_taken_for_shorter(tmp_pat
     longer = usual | {"elevation": True, "placement": True}
     assert run(out, "--agent", "ppo_target", "--steps", "128", "--set", f"env_kwargs={longer}") == 0
     assert load_player(out).sees == longer
-    assert summary(play_visits(load_player(out), 4, noise="none", cue="real")) == results(out)["evaluation"]["trained"]
+    assert summary(play_visits(load_player(out), 4, noise="none")) == results(out)["evaluation"]["trained"]
     start = ["--agent", "ppo_target", "--start", out, "--out", tmp_path / "new", "--set"]
     error = refused(train.main, *start, f"env_kwargs={usual}")
     assert "start = " in error and "must be a model with actions" in error
