@@ -55,7 +55,9 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
         assert figures["pot_rate"] == pytest.approx(4 * figures["pots_a_visit"] / figures["strokes"])
         assert all(figures[name + "_se"] >= 0 for name in ("pots_a_visit", "points_a_visit", "fouls_a_visit"))
     assert "512 shots" in found["learned"]
-    assert found["evaluation"]["trained"] == summary(play_visits(load_player(out / "model.zip"), 4, cue="real"))
+    assert found["evaluation"]["trained"] == summary(
+        play_visits(load_player(out / "model.zip"), 4, cue="real")
+    )
 
 
 @pytest.mark.parametrize(("agent", "number"), [("ppo_mask", signal.SIGTERM), ("tqc_target", signal.SIGINT)])

@@ -146,7 +146,9 @@ def test_the_chance_after_a_foul_is_that_of_the_best_decision():
     at = frame_of(easy, scores=(4, 0))
     at.game[:, columns.PHASE] = columns.CHOICE
     play, again = (player.chance_to_win(chosen(at, what))[0] for what in (columns.PLAY, columns.PLAY_AGAIN))
-    assert player.chance_to_win(at)[0] == pytest.approx(max(play, 1.0 - again), abs=1e-6) and play != 1.0 - again
+    assert (
+        player.chance_to_win(at)[0] == pytest.approx(max(play, 1.0 - again), abs=1e-6) and play != 1.0 - again
+    )
     hard = Position(cue=(0.0, 1.70), reds=[(0.0, -1.70)], black=(0.0, 1.4605), blue=(0.0, 1.63), on="red")
     snookered = frame_of(hard, scores=(4, 0))
     snookered.game[:, columns.PHASE] = columns.CHOICE
