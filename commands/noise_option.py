@@ -1,4 +1,4 @@
-"""How are execution errors given on the command line? As LEVEL or LEVEL*SCALE, for example ``professional*1.8``."""
+"""How are execution errors given on the command line? As LEVEL or LEVEL*SCALE, for example ``professional*1.2``."""
 
 from dataclasses import asdict, replace
 

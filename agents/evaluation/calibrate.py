@@ -1,7 +1,7 @@
 """How large are a professional's errors, judged by whole frames? Two copies of the ``tactician`` play frames under
 errors of several sizes, and the frames are compared with those of professionals.
 
-    python -m agents.calibrate FILE [--scales 1.0 1.4 2.0] [--frames 400] [--ray local] [--json FILE]
+    python -m agents.calibrate FILE [--scales 0.9 1.0 1.1] [--frames 400] [--ray local] [--json FILE]
 
 FILE: frames of professionals, each with every scoring visit and foul, in the format of its first lines. A scale is
 a factor of the errors of ``noise="professional"`` (``commands.noise_option``). A visit scores if
@@ -195,7 +195,7 @@ def main(argv=None):
     """Play, compare. Exit code 0."""
     p = parser_of("python -m agents.calibrate", __doc__)
     p.add_argument("file", type=Path, help="frames of professionals")
-    p.add_argument("--scales", type=float, nargs="+", default=[1.0, 1.4, 2.0], help="[1.0 1.4 2.0]")
+    p.add_argument("--scales", type=float, nargs="+", default=[0.9, 1.0, 1.1], help="[0.9 1.0 1.1]")
     p.add_argument("--frames", type=int, default=400, help="frames of each scale [400]")
     p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
     what = "fixed, or drawn: each frame on a table whose constants the players do not know [fixed]"

@@ -1,7 +1,6 @@
 """How fast do agents learn? A chart of the points a visit over the time and the shots of training.
 
-    python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--json FILE] [--out agents/pictures/curves.png]
-    python -m agents.curves --from                    the chart again, from agents/pictures/curves.json
+    python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--out runs/curves.png]
 
 Read from the ``results.json`` of finished runs (train.py). Thin lines: one training seed each, points a visit
 of the last 1,000 visits on the tables of training, exploring. Discs, and the line of ``ghost_ball``: held-out
@@ -20,15 +19,14 @@ with needs("agents.curves"):
     import numpy as np
 
     from commands import picture_style
-    from commands.files import read_json, writable, write_json
+    from commands.files import read_json, writable
     from snooker_env import __version__
     from snooker_env.checks import choice, refuse
 
     from .destinations import formats
     from .entrants import Entrant
 
-PICTURE = Path(__file__).parents[1] / "pictures" / "curves.png"
-KEPT = PICTURE.with_suffix(".json")
+PICTURE = Path("runs", "curves.png")
 LEVELS = ("trained", "ghost_ball")
 """Whose score on held-out visits is drawn: the run's own at its end, and that of the rule-based player."""
 LEAST = 0.1
@@ -113,24 +111,15 @@ def main(argv=None):
     """Check, draw. Exit code 0."""
     p = parser_of("python -m agents.curves", __doc__)
     what = "a run folder, or LABEL=FOLDER,FOLDER,... or patterns"
-    p.add_argument("agents", nargs="*", metavar="AGENT", help=what)
-    what = "no runs: draw the figures that --json wrote [agents/pictures/curves.json]"
-    p.add_argument("--from", dest="kept", type=Path, nargs="?", const=KEPT, metavar="FILE", help=what)
-    p.add_argument("--json", type=Path, metavar="FILE", help="write what is drawn into this file")
-    p.add_argument("--out", type=Path, default=PICTURE, help="the picture [agents/pictures/curves.png]")
+    p.add_argument("agents", nargs="+", metavar="AGENT", help=what)
+    p.add_argument("--out", type=Path, default=PICTURE, help="the picture [runs/curves.png]")
     args = p.parse_args(argv)
     try:
         choice("out", args.out.suffix, formats())
-        if (args.kept is None) == (not args.agents):
-            raise refuse("agents", " ".join(args.agents), "must be runs, or none with --from FILE")
-        kept = "must be a file that --json wrote"
-        drawn = figures_of(_runs(args.agents)) if args.kept is None else read_json("from", args.kept, kept)
-        for name in ("json", "out"):
-            writable(name, getattr(args, name))
+        drawn = figures_of(_runs(args.agents))
+        writable("out", args.out)
     except ValueError as error:
         p.error(str(error))
-    if args.json:
-        write_json(args.json, drawn)
     draw(drawn, args.out)
     print(args.out)
     return 0

@@ -11,7 +11,7 @@ from ..game import frame_columns as columns
 from ..game.balls import CUE
 from ..planning import Positions, Stops, clear_paths, obstructions
 from ..planning.frame_trials import turned
-from ..planning.worth import chosen, follows, lead_of
+from ..planning.worth import chosen, lead_of
 from ..players.player import placed
 from .practice import Practice
 from .visits import played_on
@@ -35,10 +35,8 @@ def outlooks(
 ) -> list[Outlook]:
     """The outlook of n strokes, each played equally often from ``starts``: ``each`` (n * tries,) says which one is
     played in a row of ``stops``. Of the visits of the other ``visits`` are played to their end."""
-    after, search = stops.afterstates, practice.judge
-    before = lead_of(starts)[each]
-    points = follows(search.worth, after, before, search.rules.rule_set.code)
-    wins = search._both(before, points, after)[:, 0].reshape(n, -1)
+    after = stops.afterstates
+    wins = practice.judge.valued(lead_of(starts)[each], after)[:, 0].reshape(n, -1)
     comes = np.flatnonzero(others_next(after))
     theirs = met(after[comes])
     hidden = ~clear_paths(theirs).any_part

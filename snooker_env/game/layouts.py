@@ -110,8 +110,8 @@ def _hide(positions, on_table, reds, stream):
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
 """Difficulty -> range of the tolerance of the layout's widest pot [rad], by which the aim may err to either
-side. Along the solved line at 2.3 m/s a professional's execution errors pot 94, 90 and 61 % of them, a club
-player's 92, 63 and 24 % (``python -m benchmarks.execution --strokes 2000``)."""
+side. Along the solved line at 2.3 m/s a professional's execution errors pot 94, 80 and 40 % of them, a club
+player's 79, 35 and 12 % (``python -m benchmarks.execution --strokes 2000``)."""
 
 
 @kernel

@@ -146,9 +146,12 @@ class FrameSearch:
         """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m, 2), the chance to
         win and the points. ``again`` (n,): what the positions are worth at most, see ``follows``."""
         after, before = self.outcomes(at, rows, strokes, errors), lead_of(at)[rows]
-        least = None if again is None else again[rows]
-        points = follows(self.worth, after, before, self.rules.rule_set.code, least)
-        return self._both(before, points, after)
+        return self.valued(before, after, None if again is None else again[rows])
+
+    def valued(self, before: Floats, after: Positions, again: Floats | None = None) -> Floats:
+        """What strokes that were played at the leads ``before`` (m,) and left ``after`` are worth to their strikers:
+        (m, 2), as ``gains``; ``again`` (m,) as in ``follows``."""
+        return self._both(before, follows(self.worth, after, before, self.rules.rule_set.code, again), after)
 
     def _both(self, before: Floats, points: Floats, after: Positions, now: Floats | None = None) -> Floats:
         """Chances to win and points, (m, 2), of strokes that bring and leave ``points`` more than the leads ``before``;
@@ -189,8 +192,7 @@ class FrameSearch:
         rounds = () if self.noise.silent else plan.rounds
         j, c = np.nonzero(some)
         after, before = self.outcomes(at, j, strokes[j, c], np.zeros((len(j), COLUMNS))), lead_of(at)
-        points = follows(self.worth, after, before[j], self.rules.rule_set.code)
-        looks = self._both(before[j], points, after)
+        looks = self.valued(before[j], after)
         if rounds:  # a pot that is missed leaves the balls about as they lie
             left = passed(at)
             points = -self.worth(left).astype(np.float64)

@@ -1,6 +1,9 @@
 """On which positions do the tests of advice ask?"""
 
+import numpy as np
+
 import snooker_env as sn
+from snooker_env.players import Ranked, Strokes
 
 REDS = [(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)]
 OPEN = sn.Position(cue=(0.25, -0.4), reds=REDS, blue=(0.0, 0.0), pink=(0.2, 0.1), black=(0.0, 1.4605))
@@ -16,6 +19,26 @@ HIDDEN = sn.Position(cue=(0.3, -0.5), reds=[(0.0, 1.74), (0.06, 1.74)], pink=(0.
 """Reds that straight lines reach, and none of them can be potted."""
 ALL = {"open": OPEN, "endgame": ENDGAME, "in_hand": IN_HAND, "respotted": RESPOTTED}
 ALL |= {"snookered": SNOOKERED, "hidden": HIDDEN}
+
+
+class Given:
+    """A player who ranks these strokes, in this order."""
+
+    name = "given"
+
+    def __init__(self, *strokes):
+        self.strokes = strokes
+
+    def at(self, rules):
+        return self
+
+    def rank(self, positions, seeds):
+        places = [(np.nan, np.nan) if stroke.place is None else stroke.place for stroke in self.strokes]
+        values = np.stack([stroke.numbers() for stroke in self.strokes])
+        return [Ranked(Strokes(values, np.array(places)), None)]
+
+    def play(self, positions, seeds):
+        return self.rank(positions, seeds)[0].strokes[:1]
 
 
 def state_of(position, **options):

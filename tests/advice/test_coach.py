@@ -2,33 +2,16 @@
 
 import numpy as np
 import pytest
+from cases import Given
 from coach import CASES, LIKELY, NOISE, OPTIONS, SAFE, UNLIKE, Case, at, measured, unlike
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke
 from snooker_env.advice.practice import one_position
 from snooker_env.planning import prospects_of, spread_of
-from snooker_env.players import Ranked, Strokes
 from snooker_env.tasks import LEVELS
 
 SEEN = {"seeds": (0,), "samples": 300}
-
-
-class Given:
-    """One stroke, placed where it says."""
-
-    def __init__(self, stroke):
-        self.stroke = stroke
-
-    def at(self, rules):
-        return self
-
-    def rank(self, positions, seeds):
-        place = None if self.stroke.place is None else [self.stroke.place]
-        return [Ranked(Strokes(self.stroke.numbers()[None], place), None)]
-
-    def play(self, positions, seeds):
-        return self.rank(positions, seeds)[0].strokes
 
 
 def test_there_are_twenty_and_no_pot_is_on_in_any():

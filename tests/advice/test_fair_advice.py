@@ -5,12 +5,11 @@ from math import asin, atan2, hypot
 
 import numpy as np
 import pytest
-from cases import SNOOKERED
+from cases import SNOOKERED, Given
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke
 from snooker_env.play.session import Session
-from snooker_env.players import Ranked, Strokes
 
 TABLES = 30
 QUICK = {"samples": 60, "visits": 2}
@@ -63,24 +62,6 @@ def test_advice_is_fair_ordered_by_what_it_shows_and_called_what_it_is(positions
             assert one.words.startswith({"contact": "contact with the ", "escape": "escape "}[one.kind])
             fair = f"fair {100 * one.chance:.0f} %; no pot intended, its worth as a safety is not judged"
             assert fair in one.words and "points" not in one.words
-
-
-class Given:
-    """These strokes, in this order."""
-
-    name = "given"
-
-    def __init__(self, *strokes):
-        self.strokes = strokes
-
-    def at(self, rules):
-        return self
-
-    def rank(self, positions, seeds):
-        return [Ranked(Strokes(np.stack([stroke.numbers() for stroke in self.strokes])), None)]
-
-    def play(self, positions, seeds):
-        return self.rank(positions, seeds)[0].strokes[:1]
 
 
 BLUE_FIRST, POT, AWAY = (CueStroke(speed=1.5, aim=aim) for aim in (0.0, np.pi / 2, -2.0))

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cases import ENDGAME, HIDDEN, OPEN, SNOOKERED, played
+from cases import ENDGAME, HIDDEN, OPEN, SNOOKERED, Given, played
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke, stroke_of, words
@@ -13,29 +13,10 @@ from snooker_env.advice.__main__ import main
 from snooker_env.advice.practice import one_position
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position, Positions, clear_paths
-from snooker_env.players import Ranked, Strokes
 from tests.refusals import refused
 
 QUICK = {"samples": 60, "visits": 4, "scores": (20, 24)}
 LAST = Position(cue=(0.0, 0.4), black=(0.0, 1.0))
-
-
-class Given:
-    """These strokes, in this order."""
-
-    name = "given"
-
-    def __init__(self, *strokes):
-        self.strokes = strokes
-
-    def at(self, rules):
-        return self
-
-    def rank(self, positions, seeds):
-        return [Ranked(Strokes(np.stack([stroke.numbers() for stroke in self.strokes])), None)]
-
-    def play(self, positions, seeds):
-        return self.rank(positions, seeds)[0].strokes[:1]
 
 
 def errors_of_another(n):

@@ -141,19 +141,21 @@ def test_a_frame_that_is_over_is_won_or_lost():
 
 def test_the_chance_after_a_foul_is_that_of_the_best_decision():
     player = sn.player("tactician_30").at(OPTIONS)
-    # the cue ball lies before a red at the pocket, or, replaced, behind the black
+    # whoever plays from the lower half is worth 20 points more than the other
+    player.search.worth = lambda at: np.where(at.positions[:, 0, 1] < 1.5, 20.0, -20.0)
     easy = Position(cue=(0.3, 1.0), reds=[(0.6, 1.4)], black=(0.0, 1.4605), on="red")
     at = frame_of(easy, scores=(4, 0))
     at.game[:, columns.PHASE] = columns.CHOICE
     play, again = (player.chance_to_win(chosen(at, what))[0] for what in (columns.PLAY, columns.PLAY_AGAIN))
-    assert (
-        player.chance_to_win(at)[0] == pytest.approx(max(play, 1.0 - again), abs=1e-6) and play != 1.0 - again
-    )
+    assert player.chance_to_win(at)[0] == play > 0.6 > 1.0 - again
     hard = Position(cue=(0.0, 1.70), reds=[(0.0, -1.70)], black=(0.0, 1.4605), blue=(0.0, 1.63), on="red")
     snookered = frame_of(hard, scores=(4, 0))
     snookered.game[:, columns.PHASE] = columns.CHOICE
     play, again = (player.chance_to_win(chosen(snookered, what))[0] for what in (0, 1))
-    assert player.chance_to_win(snookered)[0] == pytest.approx(max(play, 1.0 - again), abs=1e-6)
+    assert (
+        player.chance_to_win(snookered)[0] == pytest.approx(1.0 - again, abs=1e-12)
+        and 1.0 - again > 0.6 > play
+    )
 
 
 def test_who_has_won_the_lot_is_never_the_worse_for_it():

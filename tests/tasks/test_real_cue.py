@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 
@@ -9,6 +10,8 @@ import snooker_env as sn
 from snooker_env.game import pots
 from snooker_env.game.balls import mask_of
 from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.geometry import POCKET_AIMS
+from snooker_env.physics.cue import squirt
 from snooker_env.physics.cue_room import NO_RAILS, STEEPEST, least_elevation
 from snooker_env.planning import (
     RULE_OF_THUMB,
@@ -21,10 +24,14 @@ from snooker_env.planning import (
     at_pots,
     prospects_of,
 )
+from snooker_env.planning import pots as direct_pots
 from snooker_env.tasks import choice_of
+from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.declarations import A_RAILS
 from snooker_env.tasks.discrete_actions import _NEAR_BALL, _NEAR_RAIL, SIDES, SPEEDS, STROKES, TOPS
+from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
+from snooker_env.tasks.pot_aim import _passes, stroke_in_room
 from tests.kernels import from_python
 from tests.tables import jsonable, table_state
 
@@ -297,6 +304,74 @@ def test_only_what_is_near_makes_a_cue_too_steep():
             ]
             worst.append(max(found))
         assert worst[0] < np.radians(42.0) and worst[1] > STEEPEST
+
+
+def crowded(n, seed):
+    """Tables whose cue ball lies at a cushion, or at a ball."""
+    env, rng = sn.SnookerVectorEnv(n, layout="opened", action="discrete"), np.random.default_rng(seed)
+    env.reset(seed=seed)
+    places, here = env.tables.positions.copy(), env.tables.on_table.copy()
+    for k in range(n):
+        gap, turn = rng.uniform(1e-6, 0.012), rng.uniform(0.0, 2.0 * np.pi)
+        other = places[k, 1 + rng.choice(np.flatnonzero(here[k, 1:]))]
+        beside = other + (2.0 * R + gap) * np.array([np.cos(turn), np.sin(turn)])
+        at_rail = rng.choice([-1.0, 1.0]) * (0.889 - R - gap), rng.uniform(-1.7, 1.7)
+        x, y = at_rail if k % 2 else beside
+        apart = np.hypot(*(places[k, 1:] - (x, y)).T)
+        inside = abs(x) < 0.889 - R and abs(y) < 1.74 and apart.min() >= 2.0 * R
+        places[k, 0] = (x, y) if inside else (FROZEN, 0.9)
+    return Positions(places, here, env.tables.game.copy())
+
+
+def test_masks_of_crowded_tables_are_those_of_every_stroke_asked_for_its_room():
+    least, turned = from_python(least_elevation), from_python(squirt)
+    rails = np.array(sn.Options(cue="real").rules.rails)
+    at, cleared = crowded(60, 3), 0
+    free, real, direct = action_masks(at), action_masks(at, cue="real"), direct_pots(at)
+    for k in np.flatnonzero(direct.ball[:, 0] >= 0).tolist():
+        wanted = free[k].reshape(4, len(SPEEDS), len(SIDES), len(TOPS)).copy()
+        for line in np.flatnonzero(direct.ball[k] >= 0).tolist():
+            dx, dy = direct.ghost[k, line] - at.positions[k, 0]
+            for s, side in enumerate(SIDES):
+                aim = np.arctan2(dy, dx) - turned(side, sn.Physics().end_mass_ratio)
+                for t, top in enumerate(TOPS):
+                    stroke = side, top, aim, 0.0
+                    if least(stroke, at.positions[k], at.on_table[k], rails, R) > STEEPEST:
+                        wanted[line, :, s, t] = False
+        wanted = wanted.ravel() if wanted.any() else free[k]
+        assert np.array_equal(real[k], wanted), k
+        cleared += (free[k] & ~wanted).any()
+    assert cleared > 5
+
+
+@numba.njit(error_model="numpy")
+def passed_by(aims, positions, on_table, balls, targets, strokes, law, work):
+    """Angles by which object balls pass their aim points, the cue raised anew for each aim; 9: missed."""
+    out = np.empty(len(aims))
+    for k in range(len(aims)):
+        p, stroke, ball = positions[k], (strokes[k, 0], strokes[k, 1], strokes[k, 2], 0.0), balls[k]
+        played = stroke_in_room(aims[k], stroke, p, on_table[k], law)
+        place, target = (p[ball, 0], p[ball, 1]), (targets[k, 0], targets[k, 1])
+        out[k] = _passes(played, p, place, target, law, work)
+    return out
+
+
+def test_a_solved_aim_is_that_of_the_cue_as_it_is_raised_for_it():
+    """The solver keeps the elevation while the aim turns by less than 1e-4 rad. A professional's object balls err by 1e-2."""
+    env = sn.SnookerVectorEnv(400, layout="opened", action="discrete", cue="real")
+    env.reset(seed=9)
+    at, rng, n = Positions.of(env), np.random.default_rng(1), 400
+    direct, rules = direct_pots(at), env.options.rules
+    balls, targets = direct.ball[:, 0], POCKET_AIMS[direct.pocket[:, 0], :2]
+    strokes = np.zeros((n, 5))
+    for column, values in enumerate((SPEEDS[2:], SIDES, TOPS)):
+        strokes[:, column] = rng.choice(values, n)
+    aims = Planner(env).pot_aim(at, np.arange(n), balls, targets, strokes, ghosts=direct.ghost[:, 0])
+    phys, fidelity = rules.physics, rules.fidelity
+    law = CueLaw(phys.packed_for(fidelity), phys.end_mass_ratio, *fidelity, phys.max_offset, rules.rails)
+    off = np.abs(passed_by(aims, at.positions, at.on_table, balls, targets, strokes, law, new_work()))
+    solved = off < 9.0
+    assert solved.mean() > 0.95 and (np.quantile(off[solved], [0.5, 0.9, 0.99]) < [1e-6, 2e-5, 2e-4]).all()
 
 
 def test_planning_and_players_of_choices_have_the_masks_of_the_task():

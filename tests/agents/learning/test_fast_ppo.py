@@ -37,7 +37,8 @@ def weights(model):
 def test_an_update_is_that_of_sb3(agent):
     """Of one rollout in one minibatch, by gradient descent: Adam would enlarge rounding errors.
 
-    Weights of order 0.1 in float32 and steps of Adam on gradients near 0 allow 1e-5; the update moves them by a thousand times as much."""
+    Gradients of single strokes are up to a hundred times their mean, so its rounding in float32 is up to 1e-4 of the
+    largest movement, by the order of the sums (the number of threads); an error of the formula of 1 % is fifty times that."""
     found, before, said = [], None, []
     for train in (FastPPO.train, MaskablePPO.train):
         model = with_rollout(made(agent, batch_size=16 * TABLES, learning_rate=0.3, vf_coef=0.5))
@@ -48,7 +49,8 @@ def test_an_update_is_that_of_sb3(agent):
         found.append(weights(model))
         figures = model.logger.name_to_value
         said.append({name: figures[name] for name in figures if name.startswith("train/")})
-    assert (found[0] - found[1]).abs().max() < 1e-5 and (found[0] - before).abs().max() > 1e-3
+    moved = (found[0] - before).abs().max()
+    assert (found[0] - found[1]).abs().max() < 2e-4 * moved and moved > 1e-3
     assert said[0].keys() == said[1].keys() and len(said[0]) == 10
     for name, value in said[1].items():
         assert said[0][name] == pytest.approx(value, rel=1e-4, abs=1e-6), name

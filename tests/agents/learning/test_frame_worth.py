@@ -83,6 +83,10 @@ def test_the_chance_to_win_is_that_of_the_frames():
     assert chance.far == pytest.approx(2.5, rel=0.1) and chance.snookers == pytest.approx(0.2, rel=0.2)
     table, error = calibration(chance(lead, left, now), won)
     assert error < 0.01 and len(table) == 10
+    never = fitted_chance(
+        lead, left, now, np.where(beyond != 0.0, beyond > 0.0, won)
+    )  # needing snookers always loses
+    assert 0.3 < never.snookers < 3.0  # the prior keeps it finite
     assert calibration(np.full(n, 0.9), won)[1] > 0.2
 
 
