@@ -53,7 +53,7 @@ class Practice:
         """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without.
 
         Of positions of frames the points, the penalty and what is left are those of a frame, and whoever played is
-        still player 0 in ``afterstates``. Blocks (``Noise.kick``) do not change what is left."""
+        still player 0 in ``afterstates``. Kicks (``Noise.kick``) do not change what is left."""
         planner = self.exact if keys is None else self.noisy
         stops = planner.stops(at, rows, strokes=strokes, keys=None if self.sure else keys)
         if not at.of_frames:
