@@ -46,7 +46,7 @@ from snooker_env.tasks import (
     observation_space,
 )
 
-GAME: dict[str, Any] = {"task": "frame", "action": "discrete", "noise": "professional", "cue": "real", "reward": "points"}
+GAME: dict[str, Any] = {"task": "frame", "action": "discrete", "noise": "professional", "reward": "points"}
 LEARNING: dict[str, Any] = {
     "n_steps": 64,
     "n_epochs": 2,

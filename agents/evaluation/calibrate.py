@@ -1,12 +1,12 @@
 """How large are a professional's errors, judged by whole frames? Two copies of the ``tactician`` play frames under
 errors of several sizes, and the frames are compared with those of professionals.
 
-    python -m agents.calibrate FILE [--scales 0.9 1.0 1.1] [--frames 400] [--ray local] [--json FILE]
+    python -m agents.calibrate FILE [--scales 0.9 1.0 1.1] [--frames 400] [--ray local] [--picture FILE] [--json FILE]
 
 FILE: frames of professionals, each with every scoring visit and foul, in the format of its first lines. A scale is
 a factor of the errors of ``noise="professional"`` (``commands.noise_option``). A visit scores if
 it pots a ball; its points are its break. Frames that are lost are conceded, as in matches. Standard errors are over
-frames.
+frames. The chance to win that the ``tactician`` sees before each stroke is compared with who won.
 """
 
 import re
@@ -19,15 +19,19 @@ with needs("agents.calibrate"):
     import numpy as np
 
     import snooker_env
+    from commands import picture_style
     from commands.files import writable, write_json
     from commands.provenance import provenance
     from commands.tables import TextTable, show
     from snooker_env.checks import choice, integer, number, refuse
     from snooker_env.planning.frame_search import LEAST
+    from snooker_env.planning.learned.dense_layers import Layers
     from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY
+    from snooker_env.planning.learned.learned_worth import worth_of
     from snooker_env.players.weights import learned_worth
 
     from ..cluster.ray_cluster import add_ray, checked_ray, place
+    from ..learning.frame_worth import calibration
     from ..learning.learn_worth import FRAME, TABLES
 
 CONDITIONS = "fixed", "drawn"
@@ -171,7 +175,7 @@ def self_played(where, scales, frames, budget, conditions):
     layers, chance = learned_worth()
     options = FRAME | {"says": ["decision", "concede"], "conditions": conditions}
     shared = {"options": options, "layers": layers, "chance": chance}
-    shared |= {"budget": budget, "explore": 0.0}
+    shared |= {"budget": budget, "explore": 0.0, "replies": False}
     parts, starts = [], range(0, frames, TABLES)
     for scale in scales:
         parts += [
@@ -181,6 +185,32 @@ def self_played(where, scales, frames, budget, conditions):
     made = where.map("agents.learning.frame_self_play:frames", shared, parts)
     n = len(starts)
     return [made[n * i : n * (i + 1)] for i in range(len(scales))]
+
+
+def chances_of(parts):
+    """The chance to win of who plays each stroke and the share that won, (10, 2), of groups of strokes sorted by the
+    chance, and the mean absolute difference; of the rows of all parts. None if no frame was won."""
+    layers, chance = learned_worth()
+    rows = {
+        name: np.concatenate([part[name] for part in parts])
+        for name in ("seen", "lead", "left", "won", "decided")
+    }
+    worth, ended = worth_of(None if layers is None else Layers(layers, "relu"), rows["seen"]), rows["decided"]
+    said = chance(rows["lead"] + worth, rows["left"], rows["lead"])
+    return calibration(said[ended], rows["won"][ended]) if ended.any() else None
+
+
+def draw(table, error, frames, file):
+    """The diagram of ``chances_of``."""
+    with picture_style.drawing() as plt:
+        figure, axes = picture_style.page(plt, 5.0, "The chance to win, and who won", columns=1)
+        axes.plot([0, 100], [0, 100], color=picture_style.GREY, linewidth=1)
+        axes.plot(*(100.0 * table.T), "o-", color=picture_style.BLUE)
+        axes.set(xlabel="chance to win that the tactician sees before a stroke [%]", ylabel="won [%]")
+        axes.set_title(
+            f"{frames} frames, groups of equally many strokes: {100.0 * error:.1f} % apart on average"
+        )
+        picture_style.save(figure, file)
 
 
 def _table(title, words, columns):
@@ -201,6 +231,7 @@ def main(argv=None):
     what = "fixed, or drawn: each frame on a table whose constants the players do not know [fixed]"
     p.add_argument("--conditions", default="fixed", help=what)
     add_ray(p)
+    p.add_argument("--picture", type=Path, metavar="FILE", help="draw the chance to win and who won here")
     p.add_argument("--json", type=Path, metavar="FILE", help="write every figure here")
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
@@ -210,7 +241,8 @@ def main(argv=None):
         for scale in args.scales:
             number("scales", scale, 0.01, 10.0)
         checked_ray(args.ray)
-        writable("json", args.json)
+        for name in ("picture", "json"):
+            writable(name, getattr(args, name))
         real = frames_of(args.file.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
         p.error(str(error))
@@ -223,7 +255,17 @@ def main(argv=None):
         columns[name] = figures_of([one for rows in parts for one in frames_played(rows)])
     tactics = dict(zip(names, map(tactics_of, played), strict=True))
     title = f"{len(real)} frames of professionals, {args.frames} played of each scale"
-    show([_table(title, FIGURES, columns), _table("Tactics", TACTICS, tactics)])
+    parts, chances = [_table(title, FIGURES, columns), _table("Tactics", TACTICS, tactics)], None
+    if won := chances_of([rows for each in played for rows in each]):
+        table, error = won
+        chances = {"groups": table.tolist(), "error": error}
+        rows = [[str(k), f"{100.0 * a:.1f}", f"{100.0 * b:.1f}"] for k, (a, b) in enumerate(table, 1)]
+        said = f"The chance to win before each stroke, all scales: {100.0 * error:.1f} % apart on average"
+        parts.append(TextTable(said, ["group", "chance, %", "won, %"], rows, 1, 1))
+        if args.picture:
+            draw(table, error, args.frames * len(args.scales), args.picture)
+    show(parts)
     if args.json:
-        write_json(args.json, {"figures": columns, "tactics": tactics, "frames": args.frames, **provenance()})
+        report = {"figures": columns, "tactics": tactics, "chances": chances, "frames": args.frames}
+        write_json(args.json, report | provenance())
     return 0

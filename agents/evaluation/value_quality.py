@@ -45,7 +45,8 @@ class Recording(BoundPlayer):
 
     def play(self, positions, seeds):
         at, search = Positions.of(positions), self._planner.search
-        rule = prospects_of(at, search.spread, SURE if search.noise.silent else RULE_OF_THUMB)[0]
+        constants = SURE if search.noise.silent else RULE_OF_THUMB
+        rule = prospects_of(at, search.spread, constants, rails=search.dynamics.rails)[0]
         self.rows.append(np.column_stack([at.points, search.value(at), rule]))
         return self._planner.play(at, seeds)
 

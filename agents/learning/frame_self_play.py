@@ -1,8 +1,9 @@
 """How is a round of frames of self-play played, here or by many workers? Each part plays some frames under errors of its
 own, with the worth that has been learned so far; the other is oneself, a past self or a player of the package.
 
-A stroke is judged by *search*, not by luck: before it is played its best stroke meets fresh noise samples, and their
-mean is what the position is worth. A frame's outcome alone varies by 60 points and would drown it."""
+A position is judged by *search*, not by luck: the best stroke that is found meets fresh noise samples, and their mean
+is what the position is worth. A frame's outcome alone varies by 60 points and would drown it. A search finds what
+a worth is wrong about, so what the best strokes of a position may leave is judged as well, in ``REPLIES`` cases."""
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from snooker_env import Options
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.sides import strikers_own
 from snooker_env.planning import Positions
+from snooker_env.planning.frame_trials import turned
 from snooker_env.planning.worth import lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
 from snooker_env.players import player as snooker_player
@@ -22,26 +24,30 @@ from snooker_env.tasks.threads import Threads
 
 FRESH = 8
 """Noise samples that judge the best stroke of a position."""
+REPLIES, FINALISTS = (1, 6), 6
+"""What the best strokes of a position may leave: cases that are judged where a pot is likely, and elsewhere; and among
+how many strokes."""
 
 
 def frames(shared, args, threads):
     """The task: play frames, and say what each position that one's own side met was worth.
 
     ``shared``: "options" of the frames, "layers" of the worth (None: the value of the visit alone), "chance" (None or its numbers),
-    "budget", "explore" (share of strokes that are not the best). ``args``: "scale" of the errors, "seed" of the first
+    "budget", "explore" (share of strokes that are not the best), "replies" (whether cases that strokes may leave are judged,
+    too). ``args``: "scale" of the errors, "seed" of the first
     table, "many" frames, "other": the name of who plays against it, or layers and chance of a past self; None: itself,
     and both sides count. Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue
     ball where it was played from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search,
     "swing" (m,) points of the striker less the other's until the next stroke, "same" (m,): 1 if the striker plays
     that, -1 the other, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead",
     "left", "won" (m,): the striker's lead, the points on the table, whether the striker won; "decided": whether anybody
-    did; "frame" and "striker" (m,)."""
+    did; "frame" and "striker" (m,), -1 in the rows of positions beside the frames, that nothing followed."""
     noise = scaled(LEVELS["professional"], args["scale"])
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
     rules, many = options.rules, args["many"]
     known = options.but(conditions="fixed")  # a player does not know the constants of a table
     player = Tactician(shared["budget"], (shared["layers"], shared["chance"])).at(known)
-    worth, other = player.search.worth, args["other"]
+    other = args["other"]
     if isinstance(other, str):
         other = snooker_player(other).at(known)
     elif other is not None:
@@ -51,26 +57,25 @@ def frames(shared, args, threads):
     for k in range(many):
         tables.seed(k, np.random.default_rng(seed + k))
     tables.deal(np.arange(many), drawn=True, breakers=np.arange(many) % 2)
-    out, rows, step, held, last = tables.output(), [], 0, 0, np.full(many, -1)
+    out, rows, beside, step, held, last = tables.output(), [], [], 0, 0, np.full(many, -1)
     while len(going := np.flatnonzero(~tables.ended())):
         theirs = (tables.game[going, columns.STRIKER] == 1) & (other is not None)
         mine, keys = going[~theirs], decision_seeds(seed, going, step)
         at = _seen_by_strikers(tables, mine)
-        strokes, tried, start = player.decided(at, keys[~theirs])
-        here = np.flatnonzero([one is not None for one in tried])
+        decided, here, row = _judged(player, at, keys[~theirs], rng)
+        strokes, tried, start = decided
         if len(here):
-            which, best = mine[here], strokes.values[here]
-            again, errors = np.repeat(here, FRESH), rng.standard_normal((FRESH * len(here), 5))
-            judged = player.search.gains(start, again, np.repeat(best, FRESH, 0), errors)
+            which = mine[here]
+            if shared["replies"]:
+                replies, first = _replies(player, decided, here, rng)
+                beside.append(replies | {"frame": which[first]})
             explored = rng.random(len(here)) < shared["explore"]
             for k in here[explored].tolist():
                 met = max(1, int((tried[k].samples > 0).sum()))
                 strokes.values[k] = tried[k].strokes[rng.integers(met)]
             rows.append(
-                {
-                    "seen": worth.seen(start[here]),
-                    "hand": worth.seen(at[here]),
-                    "worth": judged[:, 1].reshape(-1, FRESH).mean(axis=1),
+                row
+                | {
                     "explored": explored,
                     "lead": lead_of(start)[here],
                     "left": left_of(start)[here],
@@ -91,7 +96,53 @@ def frames(shared, args, threads):
                 whole[who] = part
         tables.turn(lambda which, b, parts=parts: carry_out(tables, which, parts, b, 0), out, crew, going)
         step += 1
-    return _followed({name: np.concatenate([one[name] for one in rows]) for name in rows[0]}, tables)
+    rows = _followed(_joined(rows), tables)
+    return _with(rows, _joined(beside)) if beside else rows
+
+
+def _judged(player, at, keys, rng):
+    """What it does in n positions, in which of them it strikes (m,), and of these what is seen and what they are worth
+    by search."""
+    decided, worth = player.decided(at, keys), player.search.worth
+    here = np.flatnonzero([one is not None for one in decided.tried])
+    seen = [worth.seen(each[here]) for each in (decided.start, at)]
+    again, errors = np.repeat(here, FRESH), rng.standard_normal((FRESH * len(here), 5))
+    strokes = np.repeat(decided.strokes.values[here], FRESH, 0)
+    judged = player.search.gains(decided.start, again, strokes, errors)[:, 1]
+    return decided, here, {"seen": seen[0], "hand": seen[1], "worth": judged.reshape(-1, FRESH).mean(axis=1)}
+
+
+def _replies(player, decided, here, rng):
+    """What is seen of cases that the best strokes of the positions ``here`` may leave, what they are worth to who plays
+    next, and for each the index in ``here``."""
+    rows, best = [], []
+    for j, k in enumerate(here.tolist()):
+        tried = decided.tried[k]
+        many, hard = min(FINALISTS, max(1, int((tried.samples > 0).sum()))), bool((tried.kinds > 0).any())
+        picks = rng.integers(many, size=REPLIES[hard]) * (
+            rng.random(REPLIES[hard]) < 0.5
+        )  # each other the best
+        rows += [j] * len(picks)
+        best += [tried.strokes[pick] for pick in picks.tolist()]
+    rows, errors = np.array(rows), rng.standard_normal((len(rows), 5))
+    left = turned(player.search.outcomes(decided.start, here[rows], np.array(best), errors))
+    on = np.flatnonzero(left.game[:, columns.OVER] == 0)
+    _, played, row = _judged(player, left[on], rng.integers(2**31, size=len(on)), rng)
+    return row, rows[on[played]]
+
+
+def _joined(parts):
+    return {name: np.concatenate([one[name] for one in parts]) for name in parts[0]}
+
+
+def _with(rows, beside):
+    """The rows of strokes that were played, and rows of positions that nothing followed."""
+    zeros = {
+        name: np.zeros((len(beside["worth"]), *part.shape[1:]), part.dtype) for name, part in rows.items()
+    }
+    nothing = {"next": zeros["next"] - 1, "explored": ~zeros["explored"], "striker": zeros["striker"] - 1}
+    more = zeros | nothing | beside
+    return _joined([rows, {name: more[name] for name in rows}])
 
 
 def _seen_by_strikers(tables, which):

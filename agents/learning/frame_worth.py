@@ -10,12 +10,12 @@ from torch import nn
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE
 from snooker_env.planning.worth import Chance
 
-WIDTHS = (96, 48)
-BATCH, RATE = 512, 2e-3
+WIDTHS = (32, 16)
+BATCH, RATE, DECAY = 512, 2e-3, 1.0
 SNOOKERS, STROKES = 0.3, 40
 """Standard deviation of the prior of ``Chance.snookers``, for hardly anybody wins who needs some: without it the chance
 would be 0; and strokes of a frame, which count as one observation."""
-TRACE = 0.6
+TRACE = 0.4
 """Share of what really followed in a target, beside what the search says of the next position."""
 
 
@@ -47,20 +47,15 @@ class WorthNetwork(nn.Sequential):
         return [(one.weight.detach().numpy().copy(), one.bias.detach().numpy().copy()) for one in linear]
 
 
-def fitted(seen, wanted, seed, passes, layers=None):
-    """The layers of a network fitted to ``wanted`` (n,) points at ``seen`` (n, SIZE), from ``layers`` on."""
+def fitted(seen, wanted, seed, passes):
+    """The layers of a network fitted to ``wanted`` (n,) points at ``seen`` (n, SIZE), from nothing: fitted on from those of
+    a round before it came to see less than the value alone."""
     torch.manual_seed(seed)
     network, rng = WorthNetwork(), np.random.default_rng(seed)
-    if layers is not None:
-        linear = [one for one in network if isinstance(one, nn.Linear)]
-        with torch.no_grad():
-            for one, (weight, bias) in zip(linear, layers, strict=True):
-                one.weight.copy_(torch.from_numpy(weight))
-                one.bias.copy_(torch.from_numpy(bias))
     x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS - seen[:, -1]).astype(np.float32))
     batch = min(BATCH, len(x))
     steps = passes * (len(x) // batch)
-    optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=1e-4)
+    optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=DECAY)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=max(2, steps), pct_start=0.1)
     for _ in range(passes):
         order = torch.from_numpy(rng.permutation(len(x)))

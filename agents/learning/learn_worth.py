@@ -1,10 +1,10 @@
 """Learn what positions of frames are worth, by self-play: the worth of the ``tactician``.
 
-    python -m agents.learn_worth --out runs/worth [--rounds 4] [--ray local]
+    python -m agents.learn_worth --out runs/worth [--rounds 2] [--ray local]
 
 Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds
 before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
-Each stroke is judged by search (``frame_self_play``). A network is then fitted to
+Each position, and what its best strokes may leave, is judged by search (``frame_self_play``). A network is then fitted to
 the last rounds, and with it the chance to win. After each round OUT holds its data and its weights: the same command
 goes on from there. The last round's weights are written to OUT/worth.npz, and with --export into the package.
 """
@@ -31,7 +31,7 @@ with needs("agents.learn_worth"):
 
     from .frame_worth import calibration, fitted, fitted_chance, targets
 
-SCALES = 0.3, 4.5
+SCALES = 0.6, 4.5
 """Errors of the frames played, times those of a professional, evenly spread in the logarithm."""
 FRAME = {"cue": "real", "miss": "clear_path", "max_strokes": 200}
 """Options of the frames."""
@@ -39,7 +39,7 @@ TABLES = 16
 """Frames that one part plays side by side."""
 EXPLORE = 0.08
 """Share of strokes that are not the best ones found, so that positions after worse ones are seen, too."""
-KEEP, PASSES = 3, 15
+KEEP, PASSES = 4, 15
 """Rounds whose positions a network is fitted to, and passes over them."""
 VISITORS = ("planner",)
 """Players of the league that are no past selves."""
@@ -67,24 +67,25 @@ def played(where, shared, many):
         part["target"] = targets(part)
         part["held"] = (part["frame"] + j) % HELD == 0
         part["unit"] = part.pop("frame") + TABLES * j
-    kept = "seen", "hand", "target", "held", "unit", "lead", "left", "won", "decided"
+    kept = "seen", "hand", "target", "held", "unit", "striker", "lead", "left", "won", "decided"
     rows = {name: np.concatenate([part[name] for part in parts]) for name in kept}
     for name in ("seen", "hand"):
         rows[name] = rows[name].astype(np.float16)
     return rows
 
 
-def learned(rounds, seed, layers):
+def learned(rounds, seed):
     """Layers and chance fitted to the rows of some rounds, and figures of the frames kept from the fit."""
     both = {name: np.concatenate([one[name] for one in rounds]) for name in rounds[0]}
     used = ~both["held"]
     in_hand = used & (both["seen"] != both["hand"]).any(axis=1)
     seen = np.concatenate([both["seen"][used], both["hand"][in_hand]]).astype(np.float32)
     wanted = np.concatenate([both["target"][used], both["target"][in_hand]])
-    layers = fitted(seen, wanted, seed, PASSES, layers)
+    layers = fitted(seen, wanted, seed, PASSES)
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
     lead = both["lead"] + said.astype(np.float64)
-    ended, held = both["decided"], both["held"]  # a frame that was stopped was won by nobody
+    # a frame that was stopped was won by nobody; nor is it known what follows positions beside the frames
+    ended, held = both["decided"], both["held"]
     for some, what in ((used & ended, "fitted"), (held & ended, "kept from the fit")):
         if not some.any():
             raise refuse(
@@ -97,7 +98,7 @@ def learned(rounds, seed, layers):
         "rmse": float(np.sqrt(np.mean((said - both["target"])[held] ** 2))),
         "correlation": float(np.corrcoef(said[held], both["target"][held])[0, 1]),
         "chance_error": calibration(wins, won)[1],
-        "stopped": float(1.0 - ended.mean()),
+        "stopped": float(1.0 - ended[both["striker"] >= 0].mean()),
     }
     return layers, chance, figures
 
@@ -119,7 +120,7 @@ def main(argv=None):
     """Play, fit, write. Exit code 0."""
     p = parser_of("python -m agents.learn_worth", __doc__)
     p.add_argument("--out", type=Path, required=True, help="folder of rounds and weights")
-    p.add_argument("--rounds", type=int, default=4, help="[4]")
+    p.add_argument("--rounds", type=int, default=2, help="[2]")
     p.add_argument("--frames", type=int, default=384, help=f"frames of a round, a multiple of {TABLES} [384]")
     p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
     p.add_argument("--seed", type=int, default=0, help="[0]")
@@ -144,7 +145,7 @@ def main(argv=None):
         for k in range(args.rounds):
             rows_file, weights_file = args.out / f"round-{k}.npz", args.out / f"worth-{k}.npz"
             shared = {"options": FRAME, "layers": layers, "chance": chance, "explore": EXPLORE}
-            shared, began = shared | {"budget": args.budget}, time.time()
+            shared, began = shared | {"budget": args.budget, "replies": True}, time.time()
             if rows_file.is_file():
                 rows = _kept_round(rows_file)
                 if rows.pop("asked").tolist() != asked:
@@ -159,14 +160,16 @@ def main(argv=None):
                 past.append((layers, chance))
                 continue
             try:
-                layers, chance, figures = learned(rounds, args.seed + k, layers)
+                layers, chance, figures = learned(rounds, args.seed + k)
             except ValueError as error:
                 p.error(str(error))
             past.append((layers, chance))
             write_atomic(weights_file, packed(arrays_of(layers, chance)))
             frames = len(np.unique(rows["unit"]))
             told = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())
-            spent = f"{time.time() - began:.0f} s, {len(rows['target']) / frames:.0f} strokes a frame"
+            spent = (
+                f"{time.time() - began:.0f} s, {(rows['striker'] >= 0).sum() / frames:.0f} strokes a frame"
+            )
             print(
                 f"round {k}: {told}  chance {chance.near:.3g} {chance.far:.3g} {chance.snookers:.3g}  {spent}",
                 flush=True,

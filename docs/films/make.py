@@ -46,12 +46,15 @@ class Film:
         What the episode must bring at least: points, or in a frame the agent's score when the film ends.
     title : str
         Shown in the first picture.
+    quiet : int
+        How many strokes without points the film must show at least: safeties.
     """
 
     agent: str
     options: Mapping[str, Any] = field(default_factory=dict)
     at_least: int = 0
     title: str = ""
+    quiet: int = 0
 
 
 def _visit(agent, layout, at_least, noise="professional", **options):
@@ -71,10 +74,16 @@ FILMS = {
     "pot_hard": _visit("planner_500", "pots:hard", 1),
     "escape": _visit("geometric", "snookered", 0, reward="legal", one_stroke=True),
     "frame": Film(
-        "planner_500",
-        {"task": "frame", "opponent": "ghost_ball", "noise": "professional"},
-        8,
-        "a frame: planner_500 against ghost_ball",
+        "tactician",
+        {
+            "task": "frame",
+            "opponent": "tactician",
+            "noise": "professional",
+            "cue": "real",
+            "miss": "clear_path",
+        },
+        title="a frame: tactician against tactician",
+        quiet=5,
     ),
     "break_off": _visit("planner_500", "break_off", 0),
     "random": _visit("planner_500", "random:6", 15),
@@ -95,7 +104,8 @@ def episode(film: Film, seed: int) -> Any:
         if terminated or truncated or len(env.history) >= MOST_STROKES:
             break
     points = film.at_least if film.options.get("reward") == "legal" else info.get("score", env.points)
-    return env if points >= film.at_least and not info["foul"] else None
+    quiet = sum(played.points == 0 for played in env.history)
+    return env if points >= film.at_least and quiet >= film.quiet and not info["foul"] else None
 
 
 def found(film: Film) -> tuple[Any, int]:

@@ -7,7 +7,7 @@ import json
 import matplotlib as mpl
 import pytest
 
-from agents.evaluation import destinations, learning_curves
+from agents.evaluation import destinations
 from benchmarks import layouts_picture, pictures
 from commands import picture_style
 from tests.pictures import saved_figures, unreadable
@@ -40,12 +40,11 @@ def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch
     assert {file.name for file in tmp_path.glob("*.png")} <= kept
 
 
-def test_learning_curves_and_destinations_can_be_read(tmp_path):
+def test_destinations_can_be_read(tmp_path):
     kept = json.loads((ROOT / "agents/pictures/destinations.json").read_text())
     with saved_figures() as figures:
-        assert learning_curves.main(["--from", "--out", str(tmp_path / "c.png")]) == 0
         destinations.draw_figures(kept, tmp_path / "d.png")
-    read(figures, 2)
+    read(figures)
 
 
 @pytest.mark.parametrize("module", [layouts_picture, pictures])

@@ -8,6 +8,8 @@ import pytest
 from agents.evaluation import calibrate
 from agents.evaluation.calibrate import figures_of, frames_of, frames_played, main, tactics_of
 from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, SIZE
+from snooker_env.planning.worth import Chance
+from tests.pictures import saved_figures, unreadable
 
 TEXT = """# frames
 M 20 30
@@ -66,15 +68,50 @@ def test_breaks_of_frames_played_are_counted():
     assert tactics["escapes"][0] == 100.0
 
 
+def test_the_chance_to_win_is_compared_with_who_won(monkeypatch, tmp_path):
+    """A worth without a network is the value, the last entry of what is seen; a frame that nobody won does not count."""
+    monkeypatch.setattr(calibrate, "learned_worth", lambda: (None, Chance(40.0, 0.0, 0.0)))
+    n = 400
+    seen = np.zeros((n, SIZE + 1), np.float32)
+    seen[:, -1] = 1.0  # 40 points
+    lead = np.where(np.arange(n) % 2 == 0, 0.0, -80.0)  # expected to win by 40, to lose by 40
+    won, decided = np.arange(n) % 4 != 1, np.arange(n) < 200
+    rows = {"seen": seen, "lead": lead, "left": np.full(n, 100.0), "won": won, "decided": decided}
+    table, error = calibrate.chances_of([rows])
+    high = 1.0 / (1.0 + np.exp(-1.0))
+    assert table[:5] == pytest.approx(np.array([[1.0 - high, 0.5]] * 5))
+    assert table[5:] == pytest.approx(np.array([[high, 1.0]] * 5))
+    assert error == pytest.approx(0.5 * (0.5 - (1.0 - high)) + 0.5 * (1.0 - high))
+    assert calibrate.chances_of([rows | {"decided": np.zeros(n, bool)}]) is None
+    with saved_figures() as figures:
+        calibrate.draw(table, error, 40, tmp_path / "c.png")
+    assert len(figures) == 1 and unreadable(figures[0]) == []
+    assert figures[0].axes[0].get_lines()[1].get_xydata() == pytest.approx(100.0 * table)
+
+
 def test_the_command_compares_frames_played_with_those_of_a_file(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(calibrate, "FRAME", {"cue": "real", "miss": "clear_path", "max_strokes": 6})
-    file, out = tmp_path / "frames.txt", tmp_path / "figures.json"
+    short = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 60}
+    monkeypatch.setattr(calibrate, "FRAME", short)
+    file, out, picture = (tmp_path / name for name in ("frames.txt", "figures.json", "chance.png"))
     file.write_text(TEXT)
-    assert main([str(file), "--scales", "1.5", "--frames", "3", "--budget", "30", "--json", str(out)]) == 0
+    options = [
+        "--scales",
+        "1.5",
+        "--frames",
+        "8",
+        "--budget",
+        "30",
+        "--json",
+        str(out),
+        "--picture",
+        str(picture),
+    ]
+    assert main([str(file), *options]) == 0 and picture.stat().st_size > 10_000
     for wrong in (["--conditions", "wet"], ["--budget", "5"], ["--scales", "0"], ["--frames", "1"]):
         with pytest.raises(SystemExit):
             main([str(file), *wrong])
     assert "scale 1.5" in capsys.readouterr().out
-    assert json.loads(out.read_text())["figures"]["scale 1.5"]["strokes"][0] <= 6.0
+    told = json.loads(out.read_text())
+    assert told["figures"]["scale 1.5"]["strokes"][0] <= 60.0 and len(told["chances"]["groups"]) == 10
     with pytest.raises(SystemExit):
         main([str(tmp_path / "none.txt")])

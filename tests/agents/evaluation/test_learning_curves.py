@@ -7,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from agents.evaluation import learning_curves
+from tests.pictures import unreadable
 
 
 def evaluated(trained, ghost):
@@ -51,7 +52,7 @@ def test_every_run_is_drawn(tmp_path, drawn, capsys):
     file = tmp_path / "new" / "c.png"
     assert learning_curves.main([f"A={tmp_path}/a-?", str(tmp_path / "b-0"), "--out", str(file)]) == 0
     assert str(file) in capsys.readouterr().out and file.stat().st_size > 10_000
-    assert len(drawn) == 1
+    assert len(drawn) == 1 and unreadable(drawn[0]) == []
     time, shots = drawn[0].axes
     lines = [line.get_xydata().tolist() for line in shots.get_lines() if line.get_linestyle() == "-"]
     assert [line for line in lines if len(line) == 2] == 3 * [[[0, 2.0], [500, 3.5]]]

@@ -3,15 +3,20 @@
 import numpy as np
 import pytest
 
+import snooker_env as sn
 from agents.learn_worth import main
-from agents.learning import learn_worth
+from agents.learning import frame_self_play, learn_worth
 from agents.learning.frame_self_play import frames
 from agents.learning.frame_worth import TRACE, calibration, fitted, fitted_chance, targets
+from snooker_env.planning import Positions
+from snooker_env.planning.frame_trials import turned
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
+from snooker_env.players import FRAMES
+from snooker_env.players.tactician import Tactician
 
 SHARED = {"options": {"cue": "real", "miss": "clear_path", "max_strokes": 8}, "layers": None, "chance": None}
-SHARED |= {"budget": 30, "explore": 0.2}
+SHARED |= {"budget": 30, "explore": 0.2, "replies": False}
 PART = {"scale": 2.0, "seed": 3, "many": 4, "other": None}
 
 
@@ -46,6 +51,36 @@ def test_rows_of_a_frame_follow_each_other():
     assert all(np.array_equal(rows[name], again[name]) for name in rows)
 
 
+def test_what_strokes_may_leave_is_judged_beside_the_frames():
+    rows, alone = frames(SHARED | {"replies": True}, PART, 1), frames(SHARED, PART, 1)
+    played = rows["striker"] >= 0
+    assert (~played).sum() > played.sum() > 20 and not played[played.sum() :].any()
+    beside = {name: part[~played] for name, part in rows.items()}
+    assert (
+        (beside["next"] == -1).all() and not beside["decided"].any() and set(beside["frame"]) <= {0, 1, 2, 3}
+    )
+    assert np.array_equal(targets(rows)[~played], beside["worth"])  # nothing followed
+    first = np.unique(rows["frame"][played], return_index=True)[1]
+    assert np.array_equal(rows["seen"][first], alone["seen"][np.unique(alone["frame"], return_index=True)[1]])
+
+
+def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees():
+    """Without errors a stroke leaves one position: that one is judged, as often as is asked."""
+    env = sn.SnookerEnv(task="frame", noise="none", **FRAMES)
+    env.reset(seed=4)
+    player, rng = Tactician(30, (None, None)).at(env), np.random.default_rng(0)
+    at = Positions.of(env)
+    decided, here, row = frame_self_play._judged(player, at, np.array([5]), rng)
+    hard = bool((decided.tried[0].kinds > 0).any())
+    replies, first = frame_self_play._replies(player, decided, here, rng)
+    assert hard and first.tolist() == [0] * frame_self_play.REPLIES[hard]
+    left = turned(player.search.outcomes(decided.start, here, decided.strokes.values, np.zeros((1, 5))))
+    seen = player.search.worth.seen(player.decided(left, np.array([6])).start)
+    assert np.array_equal(replies["seen"], np.repeat(seen, len(first), 0))
+    gains = player.search.gains(decided.start, here, decided.strokes.values, np.zeros((1, 5)))
+    assert row["worth"] == pytest.approx(gains[:, 1])
+
+
 @pytest.mark.parametrize("other", ["ghost_ball", (None, None)])
 def test_of_a_frame_against_another_only_ones_own_strokes_are_learned_from(other):
     rows, alone = frames(SHARED, PART | {"other": other}, 1), frames(SHARED, PART, 1)
@@ -70,7 +105,7 @@ def test_a_network_learns_what_it_is_told_beside_the_value():
     wanted = POINTS * (seen[:, -1] + 0.3 * seen[:, 3] - 0.2)
     layers = fitted(seen, wanted, 0, 30)
     said = worth_of(Layers(layers, "relu"), seen)
-    assert np.sqrt(np.mean((said - wanted) ** 2)) < 0.25 * np.std(wanted - POINTS * seen[:, -1])
+    assert np.sqrt(np.mean((said - wanted) ** 2)) < 0.4 * np.std(wanted - POINTS * seen[:, -1])
 
 
 def test_the_chance_to_win_is_that_of_the_frames():
