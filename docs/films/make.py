@@ -46,15 +46,15 @@ class Film:
         What the episode must bring at least: points, or in a frame the agent's score when the film ends.
     title : str
         Shown in the first picture.
-    quiet : int
-        How many strokes without points the film must show at least: safeties.
+    quiet : float
+        Least share of strokes that score nothing: safeties.
     """
 
     agent: str
     options: Mapping[str, Any] = field(default_factory=dict)
     at_least: int = 0
     title: str = ""
-    quiet: int = 0
+    quiet: float = 0.0
 
 
 def _visit(agent, layout, at_least, noise="professional", **options):
@@ -83,7 +83,7 @@ FILMS = {
             "miss": "clear_path",
         },
         title="a frame: tactician against tactician",
-        quiet=5,
+        quiet=0.7,
     ),
     "break_off": _visit("planner_500", "break_off", 0),
     "random": _visit("planner_500", "random:6", 15),
@@ -104,7 +104,7 @@ def episode(film: Film, seed: int) -> Any:
         if terminated or truncated or len(env.history) >= MOST_STROKES:
             break
     points = film.at_least if film.options.get("reward") == "legal" else info.get("score", env.points)
-    quiet = sum(played.points == 0 for played in env.history)
+    quiet = float(np.mean([played.points == 0 for played in env.history]))
     return env if points >= film.at_least and quiet >= film.quiet and not info["foul"] else None
 
 
