@@ -12,7 +12,6 @@ from snooker_env import Options
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.sides import strikers_own
 from snooker_env.planning import Positions
-from snooker_env.planning.frame_trials import turned
 from snooker_env.planning.worth import lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
 from snooker_env.players import player as snooker_player
@@ -125,7 +124,8 @@ def _replies(player, decided, here, rng):
         rows += [j] * len(picks)
         best += [tried.strokes[pick] for pick in picks.tolist()]
     rows, errors = np.array(rows), rng.standard_normal((len(rows), 5))
-    left = turned(player.search.outcomes(decided.start, here[rows], np.array(best), errors))
+    left = player.search.outcomes(decided.start, here[rows], np.array(best), errors)
+    left.game[:] = strikers_own(left.game)
     on = np.flatnonzero(left.game[:, columns.OVER] == 0)
     _, played, row = _judged(player, left[on], rng.integers(2**31, size=len(on)), rng)
     return row, rows[on[played]]
