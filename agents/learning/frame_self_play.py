@@ -31,16 +31,17 @@ how many strokes."""
 def frames(shared, args, threads):
     """The task: play frames, and say what each position that one's own side met was worth.
 
-    ``shared``: "options" of the frames, "layers" of the worth (None: the value of the visit alone), "chance" (None or its numbers),
-    "budget", "explore" (share of strokes that are not the best), "replies" (whether cases that strokes may leave are judged,
-    too). ``args``: "scale" of the errors, "seed" of the first
-    table, "many" frames, "other": the name of who plays against it, or layers and chance of a past self; None: itself,
-    and both sides count. Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue
-    ball where it was played from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search,
-    "swing" (m,) points of the striker less the other's until the next stroke, "same" (m,): 1 if the striker plays
-    that, -1 the other, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead",
-    "left", "won" (m,): the striker's lead, the points on the table, whether the striker won; "decided": whether anybody
-    did; "frame" and "striker" (m,), -1 in the rows of positions beside the frames, that nothing followed."""
+    ``shared``: "options" of the frames, "layers" of the worth (None: the value of the visit alone), "chance" (None or
+    its numbers), "budget", "explore" (share of strokes that are not the best), "replies" (whether cases that strokes
+    may leave are judged, too). ``args``: "scale" of the errors, "seed" of the first table, "many" frames, "other": the
+    name of who plays against it, or layers and chance of a past self; None: itself, and both sides count.
+
+    Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue ball where it was played
+    from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search, "swing" (m,) points of the
+    striker less the other's until the next stroke, "same" (m,): 1 if the striker plays that, -1 the other, 0 if there
+    is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won" (m,): the striker's lead, the
+    points on the table, whether the striker won; "decided": whether anybody did; "frame" and "striker" (m,), -1 in the
+    rows of replies, which come last and which nothing followed."""
     noise = scaled(LEVELS["professional"], args["scale"])
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
     rules, many = options.rules, args["many"]
@@ -118,9 +119,8 @@ def _replies(player, decided, here, rng):
     for j, k in enumerate(here.tolist()):
         tried = decided.tried[k]
         many, hard = min(FINALISTS, max(1, int((tried.samples > 0).sum()))), bool((tried.kinds > 0).any())
-        picks = rng.integers(many, size=REPLIES[hard]) * (
-            rng.random(REPLIES[hard]) < 0.5
-        )  # each other the best
+        picks = rng.integers(many, size=REPLIES[hard])
+        picks[rng.random(len(picks)) < 0.5] = 0  # of half of them, what the best one leaves
         rows += [j] * len(picks)
         best += [tried.strokes[pick] for pick in picks.tolist()]
     rows, errors = np.array(rows), rng.standard_normal((len(rows), 5))
@@ -132,17 +132,16 @@ def _replies(player, decided, here, rng):
 
 
 def _joined(parts):
+    """Rows one after the other."""
     return {name: np.concatenate([one[name] for one in parts]) for name in parts[0]}
 
 
 def _with(rows, beside):
     """The rows of strokes that were played, and rows of positions that nothing followed."""
-    zeros = {
-        name: np.zeros((len(beside["worth"]), *part.shape[1:]), part.dtype) for name, part in rows.items()
-    }
-    nothing = {"next": zeros["next"] - 1, "explored": ~zeros["explored"], "striker": zeros["striker"] - 1}
-    more = zeros | nothing | beside
-    return _joined([rows, {name: more[name] for name in rows}])
+    n = len(beside["worth"])
+    empty = {name: np.zeros((n, *part.shape[1:]), part.dtype) for name, part in rows.items()}
+    more = empty | beside | {"next": np.full(n, -1), "striker": np.full(n, -1), "explored": np.ones(n, bool)}
+    return _joined([rows, more])
 
 
 def _seen_by_strikers(tables, which):

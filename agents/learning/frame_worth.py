@@ -48,8 +48,8 @@ class WorthNetwork(nn.Sequential):
 
 
 def fitted(seen, wanted, seed, passes):
-    """The layers of a network fitted to ``wanted`` (n,) points at ``seen`` (n, SIZE), from nothing: fitted on from those of
-    a round before it came to see less than the value alone."""
+    """The layers of a network fitted to ``wanted`` (n,) points at ``seen`` (n, SIZE), from nothing: going on from those of
+    the round before, it overfits."""
     torch.manual_seed(seed)
     network, rng = WorthNetwork(), np.random.default_rng(seed)
     x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS - seen[:, -1]).astype(np.float32))

@@ -93,9 +93,11 @@ def learned(rounds, seed):
             )
     chance = fitted_chance(*(part[used & ended] for part in (lead, both["left"], both["lead"], both["won"])))
     wins, won = chance(lead, both["left"], both["lead"])[held & ended], both["won"][held & ended]
+    rmse = lambda worth: float(np.sqrt(np.mean((worth - both["target"])[held] ** 2)))  # noqa: E731
     figures = {
         "positions": len(wanted),
-        "rmse": float(np.sqrt(np.mean((said - both["target"])[held] ** 2))),
+        "rmse": rmse(said),
+        "rmse_of_value": rmse(worth_of(None, both["seen"].astype(np.float32))),
         "correlation": float(np.corrcoef(said[held], both["target"][held])[0, 1]),
         "chance_error": calibration(wins, won)[1],
         "stopped": float(1.0 - ended[both["striker"] >= 0].mean()),
