@@ -5,10 +5,11 @@ squirt of a tip that is off to the side. No measurement of a snooker player's er
 are set by what players achieve, on the pockets of this package.
 
 * "professional", 0.063 deg in all: the first estimate of a professional's execution error from whole frames. Two
-  copies of the ``tactician``, with a real cue, play frames as professionals do in 37 matches (203 frames, half
-  of a set; the others are kept apart): scoring visits, strokes, breaks, shares of frames with a 50 and a century
-  (``python -m agents.calibrate``, docs/agents/tactician.md). It holds all that a person does not know, too: the
-  constants of the table, where exactly the balls lie.
+  copies of an earlier ``tactician``, with a real cue, played frames as professionals do in 37 matches (203 frames,
+  half of a set; the others are kept apart): scoring visits, breaks, shares of frames with a 50 and a century. For
+  the present one, which is stronger, 0.07 to 0.08 would fit (``python -m agents.calibrate``,
+  docs/agents/tactician.md). It holds all that a person does not know, too: the constants of the table, where
+  exactly the balls lie.
 * "amateur", 0.126, and "club", 0.252: twice and four times a professional's. The aim errors that secondary
   sources give, 0.02 to 0.03 deg for professionals, 0.05 for a good amateur, 0.08 to 0.12 for club players, are as
   1 to 2 to 4; their sizes, of players who know the table, are too small for frames as people play them.
