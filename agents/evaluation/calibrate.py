@@ -195,8 +195,8 @@ def chances_of(parts):
         name: np.concatenate([part[name] for part in parts])
         for name in ("seen", "lead", "left", "won", "decided")
     }
-    worth, ended = worth_of(None if layers is None else Layers(layers, "relu"), rows["seen"]), rows["decided"]
-    said = chance(rows["lead"] + worth, rows["left"], rows["lead"])
+    worth = worth_of(None if layers is None else Layers(layers, "relu"), rows["seen"]).astype(np.float64)
+    said, ended = chance(rows["lead"] + worth, rows["left"], rows["lead"]), rows["decided"]
     return calibration(said[ended], rows["won"][ended]) if ended.any() else None
 
 
