@@ -3,7 +3,7 @@ aim is solved for them, or is the straight line if none can be. Without a direct
 ``lines`` stand in the pots' places. ``action_masks`` says how many there are."""
 
 from collections.abc import Collection
-from math import atan2, cos, sin
+from math import atan2, cos, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from ..game.frame_columns import strikeable
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
-from ..physics.cue_room import EDGE, EDGE_AXIS, EDGE_LEVEL, EDGE_SIDE, STEEPEST, least_elevation
+from ..physics.cue_room import EDGE, EDGE_AXIS, EDGE_LEVEL, EDGE_SIDE, RAIL, STEEPEST, TIP, least_elevation
 from ..physics.parameters import Physics
 from . import declarations
 from .escapes import LINE_AIM
@@ -34,12 +34,13 @@ STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
 """Number of strokes at one pot: speeds x sides x tops."""
 SIZE = POTS * STROKES
 """Number of strokes to choose from: all choices without options of frames. Public as ``tasks.CHOICES``."""
-_NEAR_RAIL, _NEAR_BALL = 0.038, 0.064
+_NEAR_RAIL, _NEAR_BALL = 0.035, 0.061
 """A real cue need not be steeper than ``STEEPEST`` for what is farther from the cue ball's centre [m]: the nose of a
 rail; the centre of a ball."""
-_ABOUT = 0.1
-"""What is behind the cue ball by the sine of an angle, or ahead of it by less than this one, may be under the cue: more
-than the squirt of its side and the width of its tip turn it."""
+_TURN, _BESIDE = 0.03, 0.027
+"""More than the squirt of a side turns the cue [rad]; a ball farther from its line [m] is not under a steep one."""
+_LOW, _ASIDE = TIP - min(TOPS) * BALL_RADIUS + 1e-3, max(SIDES) * BALL_RADIUS
+"""The lowest tip's reach below the centre, with 1 mm for the taper, and the tips' reach to the side [m]."""
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
@@ -91,16 +92,21 @@ def chosen(index, positions, on_table, on, law, work):
 @kernel
 def _crowded(positions, on_table, rails, ax, ay):
     """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``: one that points about
-    along (ax, ay), or any cue if that is (0, 0). A free cue never."""
-    x, y, near = positions[0, 0], positions[0, 1], False
+    along (ax, ay), or any cue if that is (0, 0). A free cue never.
+
+    Over a rail: equations of ``cue_room`` at 45 degrees, tan(t) = 1 / sin(phi), solved for the largest D."""
+    x, y, near, every = positions[0, 0], positions[0, 1], False, ax == 0.0 and ay == 0.0
     for m in range(0, rails.shape[0], EDGE):
         across, along = (x, ax) if rails[m + EDGE_AXIS] == 0.0 else (y, ay)
-        if rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * across < _NEAR_RAIL:
-            near = near or rails[m + EDGE_SIDE] * along < _ABOUT
+        far = rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * across
+        if far < _NEAR_RAIL and not near:
+            s = 1.0 if every else min(1.0, _TURN - rails[m + EDGE_SIDE] * along)  # sin(phi)
+            reach = _LOW * sqrt(1.0 + s * s) + (RAIL - BALL_RADIUS) * s + _ASIDE * sqrt(1.0 - s * s)
+            near = s > 0.0 and (every or far < reach)
     for i in range(1, N_BALLS if rails.shape[0] else 1):
         dx, dy = positions[i, 0] - x, positions[i, 1] - y
         if on_table[i] and dx * dx + dy * dy < _NEAR_BALL * _NEAR_BALL:
-            near = near or dx * ax + dy * ay < _ABOUT * _NEAR_BALL
+            near = near or (dx * ax + dy * ay <= 0.0 and abs(dx * ay - dy * ax) < _BESIDE)
     return near
 
 

@@ -4,13 +4,12 @@ What decides a pot is the total error of the cue ball's direction (``Noise.direc
 squirt of a tip that is off to the side. No measurement of a snooker player's errors was found, so the levels
 are set by what players achieve, on the pockets of this package.
 
-* "professional", 0.063 deg in all: the first estimate of a professional's execution error from whole frames. Two
-  copies of an earlier ``tactician``, with a real cue, played frames as professionals do in 37 matches (203 frames,
-  half of a set; the others are kept apart): scoring visits, breaks, shares of frames with a 50 and a century. For
-  the present one, which is stronger, 0.07 to 0.08 would fit (``python -m agents.calibrate``,
-  docs/agents/tactician.md). It holds all that a person does not know, too: the constants of the table, where
-  exactly the balls lie.
-* "amateur", 0.126, and "club", 0.252: twice and four times a professional's. The aim errors that secondary
+* "professional", 0.060 deg in all at a cue speed of 1.5 m/s: the first estimate of a professional's execution error
+  from whole frames. Two copies of ``tactician``, with a real cue, play frames as professionals do in 37 matches (203
+  frames, half of a set; the others are kept apart): scoring visits, fouls, breaks, shares of frames with a 50 and a
+  century (``python -m agents.calibrate``, docs/agents/tactician.md). It holds all that a person does not know, too:
+  the constants of the table, where exactly the balls lie.
+* "amateur", 0.120, and "club", 0.239: twice and four times a professional's. The aim errors that secondary
   sources give, 0.02 to 0.03 deg for professionals, 0.05 for a good amateur, 0.08 to 0.12 for club players, are as
   1 to 2 to 4; their sizes, of players who know the table, are too small for frames as people play them.
 * "robot", 0.046: that of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and
@@ -25,9 +24,15 @@ levels make, with ``--fit`` the errors that give such rates), but two players wh
 every time that they come to it: 1.6 scoring visits a frame, breaks of 60 and more. We chose the frames, which were
 counted.
 
+The errors of direction of these three grow with the cue speed V as sqrt(1 + (0.6 V)^2): twice as large at 2.9 m/s as
+of the slowest stroke. A hand's spread grows with the force of its movement (signal-dependent noise: Harris & Wolpert,
+Nature 394, 1998, doi 10.1038/29528). Frames ask for it, too: with the same error at every speed, one that breaks off
+visits as often as theirs leaves too few fouls and large breaks, for what begins a visit is a firm stroke over a distance
+and what goes on is soft and near. 0.6 was chosen among 0, 0.6 and 1.5 on the frames that are not kept apart.
+
 Our choices: aim and squirt have half of the variance each. The errors are independent, so the tip error, as
 large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope
-(0.35 m) behind the ball squirt cancels the turn. Speed 2.6, 4.3 and 7 %, growing as the power 0.7 of the others:
+(0.35 m) behind the ball squirt cancels the turn. Speed 2.5, 4.1 and 6.6 %, growing as the power 0.7 of the others:
 a good pool player is said to roll a ball a table's length to within an inch or two, 0.5 to 1 % of the speed, a
 beginner to within a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009). Elevation hardly matters with a level cue.
 
@@ -49,11 +54,14 @@ from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics, PhysicsLike
 
 # Packed deviations: 1 if there are none, speed [m/s], speed (relative), tip offset / R, aim, elevation [rad];
-# the probability of a kick; by how much those of tip and aim grow with the elevation [1/rad], 0 for a free cue.
-(N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION, N_KICK, N_STEEPER) = range(8)
+# the probability of a kick; by how much those of tip and aim grow with the elevation [1/rad], 0 for a free cue, and
+# with the speed [s/m].
+(N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION, N_KICK, N_STEEPER, N_FASTER) = range(9)
 KICK = 0.2
 """Friction between balls in a kick: a stun shot's contact sticks with it up to a cut of 45 degrees, so that
 more would change nothing there (docs/physics/limits.md). Not measured."""
+POT_SPEED = 1.5
+"""The cue speed at which one number stands for a player's error of direction [m/s]: about that of a pot."""
 TWICE = radians(20.0)
 """The elevation of a real cue at which errors of tip and aim are twice those of a level one [rad]: an estimate."""
 
@@ -61,7 +69,7 @@ TWICE = radians(20.0)
 @kernel
 def with_errors(speed, side, top, aim, elevation, errors, noise):
     """The shot under the standard normal ``errors`` (5,): the only law of errors; see ``executed``."""
-    more = 1.0 + elevation * noise[N_STEEPER]
+    more = (1.0 + elevation * noise[N_STEEPER]) * sqrt(1.0 + (noise[N_FASTER] * speed) ** 2)
     return (
         max(0.0, speed + errors[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
         side + errors[1] * (noise[N_TIP] * more),
@@ -136,6 +144,8 @@ class Noise:
         Speed, as a fraction of the speed, and [m/s], combined as the root of the sum of squares.
     offset_mm : float, optional
         Tip offset [mm], for each of side and height.
+    growth : float, optional
+        How errors of aim and tip grow with the cue speed V: times sqrt(1 + (growth V)^2) [s/m].
     kick : float, optional
         Probability of a kick, in [0, 1]: chalk or dirt between the cue ball and the first ball that it meets,
         with a friction of ``KICK`` = 0.2 in that one impact. How often it happens is not known.
@@ -144,7 +154,7 @@ class Noise:
     --------
     >>> from snooker_env.tasks import LEVELS, Noise
     >>> LEVELS["club"].aim_deg, Noise(speed_rel=0.02).silent
-    (0.18, False)
+    (0.128, False)
     """
 
     aim_deg: float = 0.0
@@ -152,6 +162,7 @@ class Noise:
     speed_abs: float = 0.0
     offset_mm: float = 0.0
     elevation_deg: float = 0.0
+    growth: float = 0.0
     kick: float = 0.0
 
     def __post_init__(self) -> None:
@@ -178,10 +189,11 @@ class Noise:
     @property
     def silent(self) -> bool:
         """Whether all deviations are 0 and there are no kicks, a bool; then nothing is drawn."""
-        return not any(getattr(self, f.name) for f in fields(self))
+        return not any(getattr(self, f.name) for f in fields(self) if f.name != "growth")
 
-    def direction_deg(self, physics: PhysicsLike = None) -> float:
-        """Return the standard deviation [deg] of the cue ball's direction: aim and squirt together.
+    def direction_deg(self, physics: PhysicsLike = None, *, speed: float = POT_SPEED) -> float:
+        """Return the standard deviation [deg] of the cue ball's direction: aim and squirt together, for a cue speed
+        [m/s]; default 1.5, about that of a pot.
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
         small offset [TP A.31]: with the usual ratio of 30, 0.163 deg per mm. It holds for strokes without
@@ -189,24 +201,25 @@ class Noise:
         "paper"."""
         constants = Physics.of(physics)
         tip = self.offset_mm * 1e-3 / constants.R
-        return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))
+        slow = hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))
+        return slow * hypot(1.0, self.growth * speed)
 
     def pack(self, R: float, *, real: bool = False) -> Floats:
-        """Return float64 (8,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]; ``real``:
+        """Return float64 (9,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]; ``real``:
         whether the errors of tip and aim grow with the elevation."""
         tip, turns = self.offset_mm * 1e-3 / R, (radians(self.aim_deg), radians(self.elevation_deg))
-        steeper = 1.0 / TWICE if real else 0.0
+        grows = 1.0 / TWICE if real else 0.0, self.growth
         deviations = self.speed_abs, self.speed_rel, tip, *turns
-        return np.array([self.silent, *deviations, self.kick, steeper], np.float64)
+        return np.array([self.silent, *deviations, self.kick, *grows], np.float64)
 
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
 """The types that arguments called ``noise`` accept, see ``Noise.of``."""
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
-    "professional": Noise(aim_deg=0.045, speed_rel=0.026, offset_mm=0.27, elevation_deg=0.18),
-    "amateur": Noise(aim_deg=0.09, speed_rel=0.043, offset_mm=0.54, elevation_deg=0.36),
-    "club": Noise(aim_deg=0.18, speed_rel=0.07, offset_mm=1.08, elevation_deg=0.72),
+    "professional": Noise(aim_deg=0.032, speed_rel=0.025, offset_mm=0.19, elevation_deg=0.18, growth=0.6),
+    "amateur": Noise(aim_deg=0.064, speed_rel=0.041, offset_mm=0.38, elevation_deg=0.36, growth=0.6),
+    "club": Noise(aim_deg=0.128, speed_rel=0.066, offset_mm=0.76, elevation_deg=0.72, growth=0.6),
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
 }
