@@ -56,8 +56,10 @@ def stops(stroke, noise, n, seed):
     the ball is potted."""
     rng = np.random.default_rng(seed)
     speed = SPEED + rng.normal(size=n) * np.hypot(noise.speed_abs, noise.speed_rel * SPEED)
-    tips = np.array([stroke.side, stroke.top]) + rng.normal(size=(n, 2)) * noise.offset_mm / 1e3 / PHYSICS.R
-    aim = stroke.aim + rng.normal(size=n) * np.radians(noise.aim_deg)
+    more = np.hypot(1.0, noise.growth * SPEED)
+    tip, turn = more * noise.offset_mm / 1e3 / PHYSICS.R, more * np.radians(noise.aim_deg)
+    tips = np.array([stroke.side, stroke.top]) + rng.normal(size=(n, 2)) * tip
+    aim = stroke.aim + rng.normal(size=n) * turn
     places, there, _ = sn.Position(**PLACES).arrays()
     v, w = np.zeros((n, len(places), 2)), np.zeros((n, len(places), 3))
     for k in range(n):

@@ -40,8 +40,8 @@ def frames(shared, args, threads):
     from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search, "swing" (m,) points of the
     striker less the other's until the next stroke, "same" (m,): 1 if the striker plays that, -1 the other, 0 if there
     is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won" (m,): the striker's lead, the
-    points on the table, whether the striker won; "decided": whether anybody did; "frame" and "striker" (m,), -1 in the
-    rows of replies, which come last and which nothing followed."""
+    points on the table, whether the striker won; "decided": whether anybody did; "equals": whether it played against
+    itself; "frame" and "striker" (m,), -1 in the rows of replies, which come last and which nothing followed."""
     noise = scaled(LEVELS["professional"], args["scale"])
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
     rules, many = options.rules, args["many"]
@@ -97,6 +97,7 @@ def frames(shared, args, threads):
         tables.turn(lambda which, b, parts=parts: carry_out(tables, which, parts, b, 0), out, crew, going)
         step += 1
     rows = _followed(_joined(rows), tables)
+    rows["equals"] = np.full(len(rows["won"]), other is None)
     return _with(rows, _joined(beside)) if beside else rows
 
 

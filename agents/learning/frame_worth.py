@@ -8,7 +8,7 @@ import torch
 from torch import nn
 
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE
-from snooker_env.planning.worth import Chance
+from snooker_env.planning.worth import SPREAD, Chance
 
 WIDTHS = (32, 16)
 BATCH, RATE, DECAY = 512, 2e-3, 1.0
@@ -56,7 +56,7 @@ def fitted(seen, wanted, seed, passes):
     batch = min(BATCH, len(x))
     steps = passes * (len(x) // batch)
     optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=DECAY)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=max(2, steps), pct_start=0.1)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=max(20, steps), pct_start=0.1)
     for _ in range(passes):
         order = torch.from_numpy(rng.permutation(len(x)))
         for k in range(0, batch * (len(x) // batch), batch):
@@ -69,26 +69,28 @@ def fitted(seen, wanted, seed, passes):
     return network.layers()
 
 
-def fitted_chance(lead, left, now, won):
-    """The ``Chance`` that is likeliest, of expected final leads, points on the table, leads and who won: (n,) each."""
+def fitted_chance(lead, left, now, spread, won):
+    """The ``Chance`` that is likeliest, of expected final leads, points on the table, leads, errors of direction [rad]
+    and who won: (n,) each."""
     beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
-    lead, left, beyond, won = (
-        torch.from_numpy(np.asarray(one, np.float64)) for one in (lead, left, beyond, won)
+    lead, left, beyond, errors, won = (
+        torch.from_numpy(np.asarray(one, np.float64)) for one in (lead, left, beyond, spread / SPREAD, won)
     )
     raw = torch.tensor([1.0, 1.0, -2.0], dtype=torch.float64, requires_grad=True)
-    optimiser = torch.optim.LBFGS([raw], max_iter=200, line_search_fn="strong_wolfe")
+    power = torch.zeros((), dtype=torch.float64, requires_grad=True)
+    optimiser = torch.optim.LBFGS([raw, power], max_iter=200, line_search_fn="strong_wolfe")
 
     def loss():
         optimiser.zero_grad()
         near, far, snookers = nn.functional.softplus(raw)
-        logit = lead / (near + far * left.sqrt()) + snookers * beyond
+        logit = lead / ((near + far * left.sqrt()) * errors**power) + snookers * beyond
         value = nn.functional.binary_cross_entropy_with_logits(logit, won)
         value = value + 0.5 * (snookers / SNOOKERS) ** 2 * STROKES / len(won)
         value.backward()
         return value
 
     optimiser.step(loss)
-    return Chance(*nn.functional.softplus(raw).tolist())
+    return Chance(*nn.functional.softplus(raw).tolist(), power.item())
 
 
 def calibration(chance, won, groups=10):

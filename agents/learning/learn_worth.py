@@ -26,7 +26,9 @@ with needs("agents.learn_worth"):
     from snooker_env.checks import integer, refuse
     from snooker_env.planning.frame_search import LEAST
     from snooker_env.planning.learned.dense_layers import Layers
+    from snooker_env.planning.learned.frame_features import ERRORS
     from snooker_env.planning.learned.learned_worth import worth_of
+    from snooker_env.planning.worth import SPREAD
     from snooker_env.players.weights import FOLDER, WORTH, learned_worth
 
     from .frame_worth import calibration, fitted, fitted_chance, targets
@@ -67,7 +69,7 @@ def played(where, shared, many):
         part["target"] = targets(part)
         part["held"] = (part["frame"] + j) % HELD == 0
         part["unit"] = part.pop("frame") + TABLES * j
-    kept = "seen", "hand", "target", "held", "unit", "striker", "lead", "left", "won", "decided"
+    kept = "seen", "hand", "target", "held", "unit", "striker", "lead", "left", "won", "decided", "equals"
     rows = {name: np.concatenate([part[name] for part in parts]) for name in kept}
     for name in ("seen", "hand"):
         rows[name] = rows[name].astype(np.float16)
@@ -84,15 +86,18 @@ def learned(rounds, seed):
     layers = fitted(seen, wanted, seed, PASSES)
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
     lead = both["lead"] + said.astype(np.float64)
-    # a frame that was stopped was won by nobody; nor is it known what follows positions beside the frames
-    ended, held = both["decided"], both["held"]
+    spread = SPREAD * np.exp(both["seen"][:, ERRORS].astype(np.float64))
+    # a frame that was stopped was won by nobody; nor is it known what follows positions beside the frames, or what an
+    # equal would have made of it
+    ended, held = both["decided"] & both["equals"], both["held"]
     for some, what in ((used & ended, "fitted"), (held & ended, "kept from the fit")):
         if not some.any():
             raise refuse(
                 "frames", len(np.unique(both["unit"])), f"must be more: of those {what} none has ended"
             )
-    chance = fitted_chance(*(part[used & ended] for part in (lead, both["left"], both["lead"], both["won"])))
-    wins, won = chance(lead, both["left"], both["lead"])[held & ended], both["won"][held & ended]
+    known = lead, both["left"], both["lead"], spread
+    chance = fitted_chance(*(part[used & ended] for part in (*known, both["won"])))
+    wins, won = chance(*known)[held & ended], both["won"][held & ended]
     rmse = lambda worth: float(np.sqrt(np.mean((worth - both["target"])[held] ** 2)))  # noqa: E731
     figures = {
         "positions": len(wanted),
@@ -100,7 +105,7 @@ def learned(rounds, seed):
         "rmse_of_value": rmse(worth_of(None, both["seen"].astype(np.float32))),
         "correlation": float(np.corrcoef(said[held], both["target"][held])[0, 1]),
         "chance_error": calibration(wins, won)[1],
-        "stopped": float(1.0 - ended[both["striker"] >= 0].mean()),
+        "stopped": float(1.0 - both["decided"][both["striker"] >= 0].mean()),
     }
     return layers, chance, figures
 

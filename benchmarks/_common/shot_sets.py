@@ -7,7 +7,7 @@ errors (``tasks.noise``), so that some pots are centred, some rattle and some mi
 """
 
 from dataclasses import dataclass
-from math import radians, sqrt
+from math import hypot, radians, sqrt
 from typing import Any
 
 import numpy as np
@@ -59,10 +59,11 @@ def _executed(speed, side, top, aim, noise, rng):
     """A level stroke with the errors of a ``Noise``, five numbers of ``rng``; its elevation comes last."""
     if noise.silent:
         return speed, side, top, aim, 0.0
-    z, tip = rng.standard_normal(5), 1e-3 * noise.offset_mm / R
+    z, more = rng.standard_normal(5), hypot(1.0, noise.growth * speed)
+    tip, turn = more * 1e-3 * noise.offset_mm / R, more * radians(noise.aim_deg)
     speed = max(0.0, speed + z[0] * sqrt(noise.speed_abs**2 + (noise.speed_rel * speed) ** 2))
     elevation = min(MAX_ELEVATION, max(0.0, z[4] * radians(noise.elevation_deg)))
-    return speed, side + z[1] * tip, top + z[2] * tip, aim + z[3] * radians(noise.aim_deg), elevation
+    return speed, side + z[1] * tip, top + z[2] * tip, aim + z[3] * turn, elevation
 
 
 def _inside(place, margin=0.01):

@@ -10,7 +10,7 @@ import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, SPOTS
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.table import UNBOUNDED
-from snooker_env.tasks.noise import Noise
+from snooker_env.tasks.noise import POT_SPEED, Noise
 
 from .._common.shot_sets import R, Shots, _settled, _turned
 
@@ -184,7 +184,7 @@ def rolls(shot, level, n, seed, physics, table):
     return Rolls(made, np.column_stack([shift @ way, shift @ _turned(way, np.pi / 2)]))
 
 
-def directions(level, n, seed, physics, speed=2.0):
+def directions(level, n, seed, physics, speed=POT_SPEED):
     """Standard deviations [deg] of the cue ball's direction at a level stroke without spin: of aim, of
     squirt, of swerve, of all together.
 
@@ -192,8 +192,8 @@ def directions(level, n, seed, physics, speed=2.0):
     """
     errors = Noise.of(level)
     aim, tip = (
-        Noise(aim_deg=errors.aim_deg),
-        Noise(offset_mm=errors.offset_mm, elevation_deg=errors.elevation_deg),
+        Noise(aim_deg=errors.aim_deg, growth=errors.growth),
+        Noise(offset_mm=errors.offset_mm, elevation_deg=errors.elevation_deg, growth=errors.growth),
     )
     shots = Shots(np.zeros((n, 1, 2)), np.tile([speed, 0.0, 0.0, 0.0], (n, 1)), np.zeros(n, int), physics)
 
@@ -215,7 +215,9 @@ def wilson(share, n):
 
 
 def of_direction(deg, like, physics):
-    """The ``Noise`` ``like`` with a total direction error of ``deg``: half of its variance is aim, half the
-    squirt of the tip error."""
+    """The ``Noise`` ``like`` with a total direction error of ``deg``, whatever the speed: half of its variance is aim,
+    half the squirt of the tip error."""
     each, slope = deg / sqrt(2.0), 2.5 / (3.5 + physics.end_mass_ratio)
-    return replace(Noise.of(like), aim_deg=each, offset_mm=1e3 * physics.R * radians(each) / slope)
+    return replace(
+        Noise.of(like), aim_deg=each, offset_mm=1e3 * physics.R * radians(each) / slope, growth=0.0
+    )

@@ -160,7 +160,7 @@ class FrameSearch:
         if self.chance is not None:
             over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
             now = lead_of(after) if now is None else now
-            chance = np.where(over, won, self.chance(before + points, left_of(after), now))
+            chance = np.where(over, won, self.chance(before + points, left_of(after), now, self.spread))
         return np.column_stack([chance, points])
 
     def _score(self, both: Floats) -> Floats:

@@ -23,6 +23,8 @@ from ..tasks.stroke import place
 from .frame_trials import turned
 from .positions import Positions
 
+SPREAD = 1.2e-3
+"""An error of direction in the middle of those that are learned from [rad]."""
 Worth: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 PLACES = np.array(
     [
@@ -118,18 +120,21 @@ def follows(
 
 class Chance(NamedTuple):
     """The chance to win a frame, of the lead that is expected at its end: a logistic law, as wide as the luck that
-    is still to come: ``near`` + ``far`` sqrt(points on the table) [points]. Who leads by more than is on the table can
+    is still to come: ``near`` + ``far`` sqrt(points on the table) [points], times the players' errors of direction over
+    ``SPREAD`` to the power ``errors``: who errs less makes more of one visit. Who leads by more than is on the table can
     lose by fouls alone: each such point adds ``snookers`` to the logit."""
 
     near: float
     far: float
     snookers: float
+    errors: float = 0.0
 
-    def __call__(self, lead: Floats, left: Floats, now: Floats) -> Floats:
+    def __call__(self, lead: Floats, left: Floats, now: Floats, spread: float | Floats = SPREAD) -> Floats:
         """The chance (n,) of who leads by ``now`` (n,) and is expected to end with ``lead`` (n,) when ``left`` (n,) are
-        on the table."""
+        on the table, between players whose direction errs by ``spread`` [rad]."""
         beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
-        logit = lead / (self.near + self.far * np.sqrt(left)) + self.snookers * beyond
+        wide = (spread / SPREAD) ** self.errors
+        logit = lead / ((self.near + self.far * np.sqrt(left)) * wide) + self.snookers * beyond
         return 1.0 / (1.0 + np.exp(-np.clip(logit, -50.0, 50.0)))
 
 

@@ -37,11 +37,11 @@ def test_noise_has_the_deviations_that_it_says():
     assert (np.abs(normal) > 3).mean(axis=0) == pytest.approx([0.0027] * 5, abs=0.002)
 
 
-WIDTHS = {  # of the aim [deg] and of a speed of 3 m/s
+WIDTHS = {  # of the aim [deg] and of the speed [m/s] at 3 m/s; 2.059 = sqrt(1 + (0.6 * 3)^2)
     "none": (0.0, 0.0),
-    "professional": (0.045, 0.078),
-    "amateur": (0.09, 0.129),
-    "club": (0.18, 0.21),
+    "professional": (0.032 * 2.059, 0.075),
+    "amateur": (0.064 * 2.059, 0.123),
+    "club": (0.128 * 2.059, 0.198),
     "robot": (0.033, 0.24),
     "olympiad": (0.125, 0.075),
 }
@@ -64,7 +64,19 @@ def test_the_total_direction_error_is_that_of_the_balls_struck(name, physics):
     for speed, side, top, aim, elevation in drawn(LEVELS[name], 4000, 2.0, 0.0, 0.0, 0.0, 0.0).tolist():
         v, _ = strike(speed, aim, side, top, elevation, constants)
         ways.append(math.degrees(math.atan2(v[1], v[0])))
-    assert np.std(ways) == pytest.approx(LEVELS[name].direction_deg(physics), rel=0.045, abs=1e-12)
+    wanted = LEVELS[name].direction_deg(physics, speed=2.0)
+    assert np.std(ways) == pytest.approx(wanted, rel=0.045, abs=1e-12)
+
+
+def test_errors_of_aim_and_tip_grow_with_the_speed():
+    """sqrt(1 + (growth V)^2), of those alone: by 5/3 and 13/5, with 1 and 2.4 m/s of growth 4/3 and 1."""
+    wide = dict(aim_deg=0.1, offset_mm=0.3, elevation_deg=0.2, speed_abs=0.05)
+    for growth, speed, times in ((4.0 / 3.0, 1.0, 5.0 / 3.0), (1.0, 2.4, 2.6), (3.0, 0.0, 1.0)):
+        flat, grown = (drawn(Noise(**wide, growth=g), 300, speed, 0.0, 0.0, 0.0, 0.3) for g in (0.0, growth))
+        assert grown[:, 1:4] == pytest.approx(times * flat[:, 1:4], rel=1e-12)
+        assert (grown[:, [0, 4]] == flat[:, [0, 4]]).all()
+    assert Noise(growth=0.6).silent
+    assert Noise(aim_deg=0.1, growth=4.0 / 3.0).direction_deg(speed=1.0) == pytest.approx(0.5 / 3.0)
 
 
 def test_the_total_direction_error_in_figures():
@@ -78,7 +90,7 @@ def test_the_total_direction_error_in_figures():
     assert far == pytest.approx(300 * millimetre)  # off the ball: still a number
     assert LEVELS["olympiad"].direction_deg() == pytest.approx(0.149, abs=5e-4)
     errors = {name: LEVELS[name].direction_deg() for name in ("professional", "amateur", "club")}
-    assert errors == pytest.approx({"professional": 0.063, "amateur": 0.126, "club": 0.252}, abs=5e-4)
+    assert errors == pytest.approx({"professional": 0.060, "amateur": 0.120, "club": 0.240}, abs=5e-4)
 
 
 def test_speed_and_elevation_are_never_negative():
@@ -108,7 +120,9 @@ def test_no_noise_draws_nothing():
     noisy = begun(SnookerEnv(layout="random:3", noise={"offset_mm": 1e-9}))
     noisy.step(np.zeros(4))
     assert noisy.get_state()["stream"] == [before["stream"][0], before["stream"][1] + 3]
-    assert Noise().silent and not any(Noise(**{f: 1e-9}).silent for f in Noise.__dataclass_fields__)
+    assert Noise().silent and not any(
+        Noise(**{f: 1e-9}).silent for f in Noise.__dataclass_fields__ if f != "growth"
+    )
 
 
 def test_a_noisy_tip_is_drawn_back_too():

@@ -286,12 +286,12 @@ def test_masks_leave_out_what_must_be_steeper_than_a_player_can():
 
 
 def test_only_what_is_near_makes_a_cue_too_steep():
-    """Masks look no further: there is a margin at that distance, and none at 5 mm less."""
+    """Masks look no further: nothing is too steep at that distance, and something at 3 mm less."""
     least = from_python(least_elevation)
     rails = np.array(sn.Options(cue="real").rules.rails)
     for far, balls in ((_NEAR_RAIL, False), (_NEAR_BALL, True)):
         worst = []
-        for nearer in (0.0, 0.005):
+        for nearer in (0.0, 0.003):
             lie = (0.0, 0.2) if balls else (0.889 - far + nearer, 0.9)
             ball = [(far - nearer, 0.2)] if balls else []
             found = [
@@ -303,7 +303,7 @@ def test_only_what_is_near_makes_a_cue_too_steep():
                 for turn in np.linspace(-1.5, 1.5, 301)
             ]
             worst.append(max(found))
-        assert worst[0] < np.radians(42.0) and worst[1] > STEEPEST
+        assert worst[0] < np.radians(44.5) and worst[1] > STEEPEST
 
 
 def crowded(n, seed):
@@ -326,7 +326,7 @@ def crowded(n, seed):
 def test_masks_of_crowded_tables_are_those_of_every_stroke_asked_for_its_room():
     least, turned = from_python(least_elevation), from_python(squirt)
     rails = np.array(sn.Options(cue="real").rules.rails)
-    at, cleared = crowded(60, 3), 0
+    at, cleared = crowded(240, 3), 0
     free, real, direct = action_masks(at), action_masks(at, cue="real"), direct_pots(at)
     for k in np.flatnonzero(direct.ball[:, 0] >= 0).tolist():
         wanted = free[k].reshape(4, len(SPEEDS), len(SIDES), len(TOPS)).copy()

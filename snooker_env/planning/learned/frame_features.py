@@ -13,6 +13,7 @@ from ...geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ...tasks.windows import HIGH, LOW, MOST_EDGES, half_width, open_part, open_windows
 from ..positions import Positions
 from ..prospects import in_parts
+from ..worth import SPREAD
 from .value_features import SHARED as SHARED_OF_VISITS
 from .value_features import SIZE as VISIT_SIZE
 from .value_features import value_features
@@ -26,8 +27,8 @@ HIDDEN = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + 6
 """The entry that is 1 where no ball on can be struck along a straight line: the striker is snookered."""
 NARROWEST, WIDEST = 3.3e-4, 5e-3
 """Errors of direction beyond which the size of the errors is shown as these [rad]: none was learned from."""
-_SPREAD = log(1.2e-3)
-"""Logarithm of an error of direction in the middle of those learned from [rad]."""
+ERRORS = SIZE - 1
+"""The entry that holds the logarithm of the error of direction over ``SPREAD``."""
 
 
 @entry(what="the features of frames", seconds=4)
@@ -97,7 +98,7 @@ def _features(positions, on_table, game, spread, out):
         row[o + 15] = min(HALF_LENGTH - abs(cy), 0.1) * 10.0
         left = available(mask, game_row[columns.BALL_ON], game_row[columns.FREE_BALL])
         row[o + 16] = sqrt(max(0.0, left)) / 12.0
-        row[o + 17] = log(min(max(spread, NARROWEST), WIDEST)) - _SPREAD
+        row[o + 17] = log(min(max(spread, NARROWEST), WIDEST) / SPREAD)
 
 
 def frame_features(at: Positions, spread: float, threads: int = 1) -> np.ndarray:

@@ -13,6 +13,7 @@ from snooker_env.planning import Positions
 from snooker_env.planning.frame_trials import turned
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
+from snooker_env.planning.worth import SPREAD
 from snooker_env.players import FRAMES
 from snooker_env.players.tactician import Tactician
 
@@ -152,13 +153,16 @@ def test_the_chance_to_win_is_that_of_the_frames():
     lead, left = rng.normal(0.0, 40.0, n), rng.uniform(1.0, 147.0, n)
     now = lead - rng.normal(0.0, 10.0, n)
     beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
-    won = rng.random(n) < 1.0 / (1.0 + np.exp(-lead / (1.0 + 2.5 * np.sqrt(left)) - 0.2 * beyond))
-    chance = fitted_chance(lead, left, now, won)
+    spread = SPREAD * rng.choice([0.5, 1.0, 2.0], n)
+    wide = (1.0 + 2.5 * np.sqrt(left)) * np.sqrt(SPREAD / spread)
+    won = rng.random(n) < 1.0 / (1.0 + np.exp(-lead / wide - 0.2 * beyond))
+    chance = fitted_chance(lead, left, now, spread, won)
     assert chance.far == pytest.approx(2.5, rel=0.1) and chance.snookers == pytest.approx(0.2, rel=0.2)
-    table, error = calibration(chance(lead, left, now), won)
+    assert chance.errors == pytest.approx(-0.5, abs=0.05)
+    table, error = calibration(chance(lead, left, now, spread), won)
     assert error < 0.01 and len(table) == 10
     never = fitted_chance(
-        lead, left, now, np.where(beyond != 0.0, beyond > 0.0, won)
+        lead, left, now, spread, np.where(beyond != 0.0, beyond > 0.0, won)
     )  # needing snookers always loses
     assert 0.3 < never.snookers < 3.0  # the prior keeps it finite
     assert calibration(np.full(n, 0.9), won)[1] > 0.2
