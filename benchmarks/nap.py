@@ -8,8 +8,8 @@ drift was found published, in mm or otherwise. What bounds the nap: rolling dece
 0.124 to 0.126 m/s^2. If the nap alone made that range, rolling with it and against it, it would be 0.001
 m/s^2.
 
-The player is ``noise="professional"``: his direction errs by 0.063 deg in all (aim, and squirt of the tip's
-error), his speed by 2.6 %.
+The player is ``noise="professional"``: his direction errs by 0.060 deg in all at 1.5 m/s (aim, and squirt of the tip's
+error), his speed by 2.5 %.
 
 * Pots: a ball rolls from rest at the start to a pocket and arrives there at the speed given. ``drift``: how
   far to the side of its line it is at the pocket. ``scatter``: the standard deviation of the same by his
