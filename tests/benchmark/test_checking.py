@@ -81,7 +81,7 @@ WRONG = [
     ("date", "2026-13-01T00:00:00Z", "date = "),
     ("agent.simulated_shots", None, "agent.simulated_shots = None: must be 0.0"),
     ("agent.simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0"),
-    ("timing.simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
+    ("timing.simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.01"),
     ("agent.sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared'"),
     ("agent.sources", ["search_60"], BEGINS),
     ("agent.label", "random", f"agent.label = 'random': {OTHER}"),

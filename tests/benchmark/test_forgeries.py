@@ -347,7 +347,7 @@ def test_fresh_seeds_find_an_agent_that_knew_the_tables():
             return strokes
 
     peeking, player = sn.SnookerVectorEnv(100, HARD.judged(**VISITS)), Aims()
-    for seed in range(70):
+    for seed in range(150):
         peeking.reset(seed=HARD.seeds(100))
         at = sn.Positions.of(peeking)
         strokes = player.play(at, np.arange(100) + 100 * seed)
