@@ -8,8 +8,8 @@ drift was found published, in mm or otherwise. What bounds the nap: rolling dece
 0.124 to 0.126 m/s^2. If the nap alone made that range, rolling with it and against it, it would be 0.001
 m/s^2.
 
-The player is ``noise="professional"``: his direction errs by 0.060 deg in all at 1.5 m/s (aim, and squirt of the tip's
-error), his speed by 2.5 %.
+The player is ``noise="professional"``: the direction errs by 0.045 deg in all in slow strokes, by 0.060 at 1.5 m/s (aim,
+and squirt of the tip's error), the speed by 2.5 %. Each ball is taken to be struck at the speed that it has.
 
 * Pots: a ball rolls from rest at the start to a pocket and arrives there at the speed given. ``drift``: how
   far to the side of its line it is at the pocket. ``scatter``: the standard deviation of the same by his
@@ -34,7 +34,7 @@ NAPS = (0.0005, 0.001, 0.002, 0.005)
 BOUND = 0.001
 """The most [m/s^2] that the measured rolling decelerations allow."""
 PLAYER = LEVELS["professional"]
-DIRECTION, SPEED, CUE_BALL = radians(PLAYER.direction_deg()), PLAYER.speed_rel, 0.5
+SPEED, CUE_BALL = PLAYER.speed_rel, 0.5
 SEEN = 0.010
 """A drift [m] that players see."""
 R, SLOWS = sn.Physics().R, sn.Physics().mu_r * sn.Physics().g
@@ -47,6 +47,11 @@ POTS = {
     "brown spot to such a corner": ((0.0, -1.0475), _CORNER),
 }
 ARRIVALS = (0.1, 0.5, 1.0)
+
+
+def turned(speed):
+    """The player's error of direction in a stroke at that speed [rad]."""
+    return radians(PLAYER.direction_deg(speed=speed))
 
 
 def integrated(v, nap, length=np.inf):
@@ -99,7 +104,7 @@ def pots():
                 drifts.append(aside(place, v))
                 off = max(off, abs(engine - drifts[-1]))
             per_nap = drifts[NAPS.index(BOUND)] / BOUND
-            yield name, arrives, drifts, SEEN / per_nap, DIRECTION * CUE_BALL / (2 * R) * length, off
+            yield name, arrives, drifts, SEEN / per_nap, turned(speed) * CUE_BALL / (2 * R) * length, off
 
 
 def positions():
@@ -109,7 +114,7 @@ def positions():
             v = sqrt(2 * SLOWS * length) * np.array([cos(angle), sin(angle)])
             ends = [integrated(v, nap) for nap in NAPS]
             if name == "across":
-                yield name, length, [aside(end, v) for end in ends], DIRECTION * length
+                yield name, length, [aside(end, v) for end in ends], turned(hypot(*v)) * length
             else:
                 yield name, length, [hypot(*end) - length for end in ends], 2 * SPEED * length
 

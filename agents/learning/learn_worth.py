@@ -5,8 +5,9 @@
 Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds
 before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
 Each position, and what its best strokes may leave, is judged by search (``frame_self_play``). A network is then fitted to
-the last rounds, and with it the chance to win. After each round OUT holds its data and its weights: the same command
-goes on from there. The last round's weights are written to OUT/worth.npz, and with --export into the package.
+the last rounds, and the chance to win to their frames between equals. After each round OUT holds its data and its
+weights: the same command goes on from there. The last round's weights are written to OUT/worth.npz, and with --export
+into the package.
 """
 
 import io
@@ -155,8 +156,8 @@ def main(argv=None):
             shared, began = shared | {"budget": args.budget, "replies": True}, time.time()
             if rows_file.is_file():
                 rows = _kept_round(rows_file)
-                if rows.pop("asked").tolist() != asked:
-                    wanted = "must hold rounds of the same --frames, --budget and --seed"
+                if rows.pop("asked").tolist() != asked or "equals" not in rows:
+                    wanted = "must hold rounds of this version with the same --frames, --budget and --seed"
                     p.error(str(refuse("out", str(args.out), wanted)))
             else:
                 rows = played(where, shared, drawn_parts(args.seed, k, args.frames // TABLES, past))
@@ -178,7 +179,7 @@ def main(argv=None):
                 f"{time.time() - began:.0f} s, {(rows['striker'] >= 0).sum() / frames:.0f} strokes a frame"
             )
             print(
-                f"round {k}: {told}  chance {chance.near:.3g} {chance.far:.3g} {chance.snookers:.3g}  {spent}",
+                f"round {k}: {told}  chance {chance.near:.3g} {chance.far:.3g} {chance.snookers:.3g} {chance.errors:.3g}  {spent}",
                 flush=True,
             )
     content = packed(arrays_of(layers, chance))

@@ -109,7 +109,7 @@ class FrameSearch:
         )
         self._trials = FrameTrials(replace(rules, noise=self.noise), Threads(self.threads))
         self.spread: float = spread_of(self.noise, rules.physics)
-        self.dynamics: Dynamics = Dynamics.of(rules)
+        self.dynamics: Dynamics = Dynamics.of(replace(rules, noise=self.noise))
         self.worth: Worth = worth
         self.propose: Propose = propose
         self.chance: Chance | None = chance

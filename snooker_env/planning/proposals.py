@@ -28,6 +28,7 @@ from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
 from ..tasks.ghost_ball import break_off
 from ..tasks.lines import EASY, aim_at_met, new_work, racked
+from ..tasks.noise import POT_SPEED
 from ..tasks.pot_aim import solved_aim
 from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
@@ -120,8 +121,9 @@ def _aim(stroke, positions, on_table, pot, law, work):
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
-def _propose(balls, seeds, which, spread, law, strokes, chances):
-    """Fill strokes (n, m, 5) at the pots ``which`` (n, m), and their chances; without rows, spread them."""
+def _propose(balls, seeds, which, spread, growth, law, strokes, chances):
+    """Fill strokes (n, m, 5) at the pots ``which`` (n, m), and their chances; without rows, spread them. ``spread`` is
+    that of a stroke at ``POT_SPEED``."""
     lines, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
     (positions, on_table, game), work = balls, new_work()
     phys, ratios, fidelity, n_steps, most, rails = law
@@ -154,7 +156,8 @@ def _propose(balls, seeds, which, spread, law, strokes, chances):
             _aim(strokes[k, i], p, here, lines[j], its, work)
             side, top = strokes[k, i, SIDE], strokes[k, i, TOP]
             aim = strokes[k, i, AIM] - squirt(side, its.end_mass_ratio)
-            wide = raised_spread(spread, side, top, aim, p, here, rails)
+            own_spread = spread * hypot(1.0, growth * strokes[k, i, SPEED]) / hypot(1.0, growth * POT_SPEED)
+            wide = raised_spread(own_spread, side, top, aim, p, here, rails)
             chances[k, i] = pot_chance(p, lines[j], wide, LOST)
 
 
@@ -283,7 +286,7 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
     spread : float
         Standard deviation of the cue ball's direction [rad], see ``spread_of``.
     dynamics : tuple
-        Physics and fidelity with which the aims are solved: ``StrokeSearch.dynamics``.
+        What the aims are solved with, and how errors grow with the speed: ``StrokeSearch.dynamics``.
 
     Returns
     -------
@@ -337,7 +340,8 @@ def strokes_at(
 
 def _proposed(at, strokes, seeds, which, spread, dynamics):
     chances = np.empty(strokes.shape[:2])
-    _propose(_balls(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics, at), strokes, chances)
+    law, scrambles = law_of(dynamics, at), np.asarray(seeds, np.int64)
+    _propose(_balls(at), scrambles, which, spread, dynamics.growth, law, strokes, chances)
     return Proposals(strokes, chances)
 
 

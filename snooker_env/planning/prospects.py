@@ -91,7 +91,8 @@ def in_parts(n: int, threads: int, fill: Callable[[slice], None]) -> None:
 
 
 def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
-    """Return the standard deviation of the cue ball's direction, tip errors included; at least 1e-5 rad.
+    """Return the standard deviation of the cue ball's direction in a stroke at 1.5 m/s, tip errors included; at least
+    1e-5 rad.
 
     Parameters
     ----------
@@ -110,7 +111,7 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
     >>> from snooker_env.planning import spread_of
     >>> from snooker_env.tasks import LEVELS
     >>> round(spread_of(LEVELS["club"]) * 1e3, 2)
-    4.39
+    4.18
     """
     return max(1e-5, radians(noise.direction_deg(physics)))
 

@@ -181,22 +181,24 @@ NAMES = ("speed", "side", "top", "aim", "elevation")
 
 
 class Dynamics(NamedTuple):
-    """Physical constants, a fidelity as ``parse_fidelity`` returns it, and the rails of a real cue (``Rules.rails``)."""
+    """Physical constants, a fidelity as ``parse_fidelity`` returns it, the rails of a real cue (``Rules.rails``), and how
+    a player's errors of direction grow with the speed (``Noise.growth``) [s/m]."""
 
     physics: Physics
     fidelity: tuple[int, int]
     rails: Floats = NO_RAILS
+    growth: float = 0.0
 
     @classmethod
     def of(cls, rules: Rules) -> "Dynamics":
         """Those of a game."""
-        return cls(rules.physics, rules.fidelity, rules.rails)
+        return cls(rules.physics, rules.fidelity, rules.rails, rules.noise.growth)
 
 
 def law_of(dynamics: Dynamics, at: Positions) -> tuple[Floats, Floats, int, int, float, Floats]:
     """The fields of a ``CueLaw``: the first two in one row for all positions or, with constants of their own, in
     one for each."""
-    physics, fidelity, rails = dynamics
+    physics, fidelity, rails, _ = dynamics
     rails = np.array(rails)  # kernels are compiled for arrays that can be written
     if at.conditions is None:
         phys, ratios = physics.packed_for(fidelity)[None], np.array([physics.end_mass_ratio])

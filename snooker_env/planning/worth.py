@@ -23,8 +23,8 @@ from ..tasks.stroke import place
 from .frame_trials import turned
 from .positions import Positions
 
-SPREAD = 1.2e-3
-"""An error of direction in the middle of those that are learned from [rad]."""
+SPREAD, NARROWEST, WIDEST = 1.2e-3, 3.3e-4, 5e-3
+"""An error of direction in the middle of those that are learned from [rad]; those beyond the others count as these."""
 Worth: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 PLACES = np.array(
     [
@@ -133,7 +133,7 @@ class Chance(NamedTuple):
         """The chance (n,) of who leads by ``now`` (n,) and is expected to end with ``lead`` (n,) when ``left`` (n,) are
         on the table, between players whose direction errs by ``spread`` [rad]."""
         beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
-        wide = (spread / SPREAD) ** self.errors
+        wide = (np.clip(spread, NARROWEST, WIDEST) / SPREAD) ** self.errors
         logit = lead / ((self.near + self.far * np.sqrt(left)) * wide) + self.snookers * beyond
         return 1.0 / (1.0 + np.exp(-np.clip(logit, -50.0, 50.0)))
 

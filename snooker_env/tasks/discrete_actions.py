@@ -38,7 +38,8 @@ _NEAR_RAIL, _NEAR_BALL = 0.035, 0.061
 """A real cue need not be steeper than ``STEEPEST`` for what is farther from the cue ball's centre [m]: the nose of a
 rail; the centre of a ball."""
 _TURN, _BESIDE = 0.03, 0.036
-"""More than the squirt of a side turns the cue [rad]; a ball farther from its line [m] is not under a steep one."""
+"""More than the squirt of a side turns the cue [rad], with end masses as of cues; a ball farther from its line [m] is
+not under a steep one."""
 _LOW, _ASIDE = TIP - min(TOPS) * BALL_RADIUS + 1e-3, max(SIDES) * BALL_RADIUS
 """The lowest tip's reach below the centre, with 1 mm for the taper, and the tips' reach to the side [m]."""
 

@@ -9,7 +9,7 @@ are set by what players achieve, on the pockets of this package.
   frames, half of a set; the others are kept apart): scoring visits, fouls, breaks, shares of frames with a 50 and a
   century (``python -m agents.calibrate``, docs/agents/tactician.md). It holds all that a person does not know, too:
   the constants of the table, where exactly the balls lie.
-* "amateur", 0.120, and "club", 0.239: twice and four times a professional's. The aim errors that secondary
+* "amateur", 0.120, and "club", 0.240: twice and four times a professional's. The aim errors that secondary
   sources give, 0.02 to 0.03 deg for professionals, 0.05 for a good amateur, 0.08 to 0.12 for club players, are as
   1 to 2 to 4; their sizes, of players who know the table, are too small for frames as people play them.
 * "robot", 0.046: that of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and
@@ -24,11 +24,12 @@ levels make, with ``--fit`` the errors that give such rates), but two players wh
 every time that they come to it: 1.6 scoring visits a frame, breaks of 60 and more. We chose the frames, which were
 counted.
 
-The errors of direction of these three grow with the cue speed V as sqrt(1 + (0.6 V)^2): twice as large at 2.9 m/s as
-of the slowest stroke. A hand's spread grows with the force of its movement (signal-dependent noise: Harris & Wolpert,
-Nature 394, 1998, doi 10.1038/29528). Frames ask for it, too: with the same error at every speed, one that breaks off
-visits as often as theirs leaves too few fouls and large breaks, for what begins a visit is a firm stroke over a distance
-and what goes on is soft and near. 0.6 was chosen among 0, 0.6 and 1.5 on the frames that are not kept apart.
+The errors of direction of "professional", "amateur" and "club" grow with the cue speed V as sqrt(1 + (0.6 V)^2): twice
+as large at 2.9 m/s as in the slowest stroke. A hand's spread grows with the force of its movement (signal-dependent
+noise: Harris & Wolpert, Nature 394, 1998, doi 10.1038/29528). Frames ask for it, too: with the same error at every
+speed, two players who come to the table as often as professionals foul half as often and make fewer centuries, for what
+begins a visit is a firm stroke over a distance and what goes on is soft and near. 0.6 was chosen among 0, 0.6 and 1.5 on
+the frames that are not kept apart.
 
 Our choices: aim and squirt have half of the variance each. The errors are independent, so the tip error, as
 large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope
@@ -134,7 +135,8 @@ def errors_of(streams: Words) -> Floats:
 
 @dataclass(frozen=True, kw_only=True)
 class Noise:
-    """Execution errors: standard deviations of one shot, all at least 0 (the default), and bad contacts.
+    """Execution errors: standard deviations of one shot, their growth with the speed, and bad contacts; all at least 0,
+    the default.
 
     Parameters
     ----------

@@ -218,8 +218,11 @@ def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_dec
     played = play_episodes(easy, Counted(), seeds)
     rows = [dict(zip(COLUMNS, row, strict=True)) for row in played.rows]
     at_once = [row for row in rows if not row["strokes"]]
-    assert 4 <= len(at_once) <= 36
-    assert all(row["ended"] and (row["opponent_points"] > 0) == (row["score"] == 0) for row in at_once)
+    lost = [row for row in at_once if row["score"] == 0]
+    assert 4 <= len(lost) <= 36 and all(row["opponent_points"] > 0 for row in lost)
+    assert (
+        all(row["ended"] for row in at_once) and len(at_once) - len(lost) <= 3
+    )  # won by a foul of the opponent
     assert Counted.asked == played.decisions == sum(row["strokes"] for row in rows) > 0
     assert list(map(len, played.strokes)) == [row["strokes"] for row in rows]
     assert rows_of(easy, tables_for(easy, 40), seeds, Repeater(played.strokes, 8)) == played.rows

@@ -36,9 +36,7 @@ def errors(level, speed, n, seed):
     faster = math.sqrt(1.0 + (noise.growth * speed) ** 2)
     speeds = speed + rng.normal(size=n) * math.hypot(noise.speed_rel * speed, noise.speed_abs)
     side, top = rng.normal(size=(2, n)) * noise.offset_mm * faster / (1e3 * R)
-    aim, elevation = rng.normal(size=(2, n)) * np.radians(
-        [[noise.aim_deg * faster], [noise.elevation_deg]]
-    )
+    aim, elevation = rng.normal(size=(2, n)) * np.radians([[noise.aim_deg * faster], [noise.elevation_deg]])
     return speeds, aim, side, top, np.maximum(elevation, 0.0)
 
 

@@ -9,6 +9,8 @@ from snooker_env.planning import Position, Positions, at_pots, prospects_of, saf
 from snooker_env.planning.frame_search import AVERAGE, PLANS, FrameSearch
 from snooker_env.planning.proposals import EDGE
 from snooker_env.planning.worth import (
+    NARROWEST,
+    WIDEST,
     Chance,
     best_places,
     chosen,
@@ -18,6 +20,7 @@ from snooker_env.planning.worth import (
     left_of,
     passed,
 )
+from snooker_env.planning.worth import SPREAD as MIDDLE
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.windows import MOST_EDGES, open_windows
 from tests.kernels import from_python
@@ -106,10 +109,20 @@ def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
     assert chance(ten, left, now) == pytest.approx(1.0 / (1.0 + np.exp(-logits)), rel=1e-12)
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
+    errs = chance._replace(errors=-0.5)
+    assert errs(ten, left, now, 4.0 * MIDDLE) == pytest.approx(chance(2.0 * ten, left, now), rel=1e-12)
+    assert np.array_equal(
+        errs(ten, left, now, 1.0), errs(ten, left, now, WIDEST)
+    )  # none larger was learned from
+    assert np.array_equal(errs(ten, left, now, 0.0), errs(ten, left, now, NARROWEST))
     both = search(chance=chance).gains(
         at, np.arange(len(at)), np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5))
     )
     assert ((both[:, 0] > 0.0) & (both[:, 0] < 1.0)).all()
+    one = search(chance=errs, noise="professional")
+    ahead = one.valued(np.full(len(at), 5.0), at)
+    assert np.array_equal(ahead[:, 0], errs(5.0 + ahead[:, 1], left_of(at), lead_of(at), one.spread))
+    assert not np.array_equal(ahead, search(chance=errs).valued(np.full(len(at), 5.0), at))
     far, sign = at.copy(), np.where(np.arange(len(at)) % 2, 1, -1)
     far.game[:, columns.SCORE_0] += (
         np.maximum(sign, 0) * 200

@@ -102,17 +102,22 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
 
 def test_a_chance_is_what_errors_leave_of_the_pot():
     """Strokes that score without errors, under a professional's: by the chance that they have."""
-    spread, n, m, errors = planning.spread_of(LEVELS["professional"]), 40, 30, 12
+    n, m, errors = 40, 30, 12
     at = planning.Positions.of(tables(n, seed=9))
-    strokes, chances = spread_strokes(at, m, seeds(n), spread, DYNAMICS)
     tool = planning.StrokeSearch({"noise": "professional", "fidelity": "fast"}, threads=1)
+    strokes, chances = spread_strokes(at, m, seeds(n), tool.spread, tool.dynamics)
     rows = np.repeat(np.arange(n), m * errors)
     drawn = np.random.default_rng(0).standard_normal((len(rows), 5))
     flat, chances = strokes.reshape(-1, 5), chances.ravel()
     made = tool.outcomes(at, rows, np.repeat(flat, errors, 0), drawn).points > 0
     made = made.reshape(-1, errors).mean(axis=1)
     scores = tool.outcomes(at, np.repeat(np.arange(n), m), flat, np.zeros((n * m, 5))).points > 0
-    for some, exact in ((scores & (chances > 0.9), 0.05), (scores & (chances < 0.9), 0.1)):
+    firm = flat[:, 0] > 3.0
+    for some, exact in (
+        (scores & (chances > 0.9), 0.05),
+        (scores & (chances < 0.9), 0.1),
+        (scores & firm, 0.1),
+    ):
         assert some.sum() > 30 and made[some].mean() == pytest.approx(chances[some].mean(), abs=exact)
 
 

@@ -13,7 +13,7 @@ from ...geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ...tasks.windows import HIGH, LOW, MOST_EDGES, half_width, open_part, open_windows
 from ..positions import Positions
 from ..prospects import in_parts
-from ..worth import SPREAD
+from ..worth import NARROWEST, SPREAD, WIDEST
 from .value_features import SHARED as SHARED_OF_VISITS
 from .value_features import SIZE as VISIT_SIZE
 from .value_features import value_features
@@ -25,8 +25,6 @@ LIKELY = VISIT_SIZE - SHARED_OF_VISITS + 10
 """The entry that holds the chance of the likeliest direct pot."""
 HIDDEN = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + 6
 """The entry that is 1 where no ball on can be struck along a straight line: the striker is snookered."""
-NARROWEST, WIDEST = 3.3e-4, 5e-3
-"""Errors of direction beyond which the size of the errors is shown as these [rad]: none was learned from."""
 ERRORS = SIZE - 1
 """The entry that holds the logarithm of the error of direction over ``SPREAD``."""
 
