@@ -13,6 +13,11 @@ from snooker_env.tasks import CHOICES, POTS, SIDES, SPEEDS, STROKES, TOPS, choic
 SEARCH = StrokeSearch({"noise": "professional", "fidelity": "fast"}, 30, threads=1)
 
 
+def spread_at(speed):
+    """The player's error of direction in a stroke at that speed [rad]."""
+    return np.radians(SEARCH.noise.direction_deg(speed=speed))
+
+
 class Preferring:
     """A policy with given scores of all choices, the same in every position."""
 
@@ -56,8 +61,9 @@ def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():
     inside = np.hypot(strokes[..., SIDE], strokes[..., TOP]) < RIM - 1e-9  # a tip beyond the rim was drawn in
     for off in (side[inside], top[inside]):
         assert np.abs(off).max() <= 0.5 + 1e-9 and off.min() < -0.4 and off.max() > 0.4
-    expected = chances_by_width(at, SEARCH.spread)[:, 1]
-    assert chances == pytest.approx(np.tile(expected[:, None], m), rel=1e-9)
+    for k, i in zip(np.arange(m) % 6, np.arange(m), strict=True):
+        expected = chances_by_width(at[[k]], spread_at(strokes[k, i, SPEED]))[0, 1]
+        assert chances[k, i] == pytest.approx(expected, rel=1e-9)
     middle = as_actions(at, np.arange(6), np.full(6, choice_of(1, 4, 0, 1)))[:, 3] * np.pi
     apart = (strokes[..., AIM] - middle[:, None] + np.pi) % (2 * np.pi) - np.pi
     assert np.abs(apart).max() < 0.05  # throw depends on the stroke within the cell
@@ -93,9 +99,10 @@ def test_only_available_choices_are_proposed():
     policy = PolicyProposals(Preferring(scores))
     direct, masks = policy.scores(at)
     assert direct.shape == masks.shape == (1, CHOICES) and masks.sum() == many * STROKES
-    chances = chances_by_width(at, SEARCH.spread)[0, :many]
-    proposed = policy(SEARCH, at, 50, np.array([3])).chances[0]
-    assert all(np.isclose(chances, one, rtol=1e-9).any() for one in proposed)
+    strokes, proposed = policy(SEARCH, at, 50, np.array([3]))
+    for stroke, one in zip(strokes[0], proposed[0], strict=True):
+        chances = chances_by_width(at, spread_at(stroke[SPEED]))[0, :many]
+        assert np.isclose(chances, one, rtol=1e-9).any()
 
 
 def test_without_a_pot_the_policy_proposes_nothing(learned):
