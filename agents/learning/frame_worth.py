@@ -90,7 +90,8 @@ def fitted_chance(lead, left, now, spread, won):
         return value
 
     optimiser.step(loss)
-    return Chance(*nn.functional.softplus(raw).tolist(), power.item())
+    near, far, snookers = nn.functional.softplus(raw).tolist()
+    return Chance(near, far, snookers, power.item())
 
 
 def calibration(chance, won, groups=10):
