@@ -59,6 +59,8 @@ def stops(stroke, noise, n, seed):
     more = np.hypot(1.0, noise.growth * SPEED)
     tip, turn = more * noise.offset_mm / 1e3 / PHYSICS.R, more * np.radians(noise.aim_deg)
     tips = np.array([stroke.side, stroke.top]) + rng.normal(size=(n, 2)) * tip
+    far = np.hypot(*tips.T)[:, None]
+    tips *= np.minimum(1.0, PHYSICS.max_offset / np.maximum(far, 1e-12))  # beyond it is a miscue
     aim = stroke.aim + rng.normal(size=n) * turn
     places, there, _ = sn.Position(**PLACES).arrays()
     v, w = np.zeros((n, len(places), 2)), np.zeros((n, len(places), 3))

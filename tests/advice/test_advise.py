@@ -116,7 +116,7 @@ def test_every_built_in_agent_has_a_stroke_at_every_position(name, agent):
     assert (stroke.place is not None) == position.in_hand
     points, fouls, _ = played(position, stroke, 1, noise="none")
     (first, *_) = sn.advise(position, agent=agent, n=1, seed=3, **QUICK)
-    assert first.kind not in ("foul", "in-off") and first.foul < 0.5
+    assert first.kind not in ("foul", "in-off") and first.foul <= 0.5
     if not fouls[0] and played(position, stroke, 200, noise="professional")[1].mean() < 0.4:
         assert first.stroke == stroke and (first.kind == "pot") == bool(points[0] > 0)
     if agent == "planner_500":
@@ -148,7 +148,7 @@ def test_where_nothing_can_be_potted_a_ball_on_is_hit():
 
 def test_a_plant_is_advised_where_there_is_no_other_pot_and_a_short_pot_where_there_is():
     one = sn.advise(ALL["hidden"], n=1, agent="search_2000", **QUICK)[0]
-    assert one.kind == "pot" and " by a plant, " in one.words and one.chance > 0.6
+    assert one.kind == "pot" and " by a plant, " in one.words and one.chance > 0.4
     assert sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), n=1, **QUICK)[0].kind == "pot"
     assert sn.advise(RESPOTTED, n=1, noise="none", **QUICK)[0].kind == "pot"
 

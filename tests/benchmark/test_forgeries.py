@@ -356,11 +356,11 @@ def test_fresh_seeds_find_an_agent_that_knew_the_tables():
     peeks = agent(Remembers)
     record = judge(HARD, peeks, episodes=100)
     assert faults(record) == [] and record["figures"]["score"]["value"] > 0.85
-    mean, _, refused = afresh(record, peeks, 100, 5_000_000)
+    mean, _, refused = afresh(record, peeks, 100, 6_000_000)
     assert mean < 0.7 and refused[0].startswith("figures.score.value = ")
     assert refused[0].endswith("as on fresh seeds")
     honest = judge(HARD, agent(), episodes=100)
-    assert afresh(honest, agent(), 100, 5_000_000)[2] == []
+    assert afresh(honest, agent(), 100, 6_000_000)[2] == []
 
 
 def test_fresh_seeds_find_a_planner_that_calls_itself_model_free():

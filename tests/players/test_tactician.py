@@ -118,7 +118,9 @@ def test_the_chance_to_win_is_that_of_the_lead_to_come():
     )
     going = np.flatnonzero(~at.over)
     law, worth = player.search.chance, player.search.worth
-    wanted = law(lead_of(at)[going] + worth(at[going]), left_of(at)[going], lead_of(at)[going])
+    wanted = law(
+        lead_of(at)[going] + worth(at[going]), left_of(at)[going], lead_of(at)[going], player.search.spread
+    )
     np.testing.assert_allclose(chances[going], wanted, rtol=0, atol=1e-6)
     for k in range(12):
         assert player.chance_to_win(at[[k]])[0] == pytest.approx(chances[k], abs=1e-6)
