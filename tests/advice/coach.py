@@ -217,19 +217,19 @@ CASES = {
 
 
 UNLIKE = {
-    "break_off": "pot 0.60, foul 0.07, likely 0.18, baulk 0.70, first struck [2, 4, 11, 4, 4]. Three of five hit the exact rack "
-    "hard for a plant that goes in every second time: a simulator knows to the micrometre where the balls lie",
-    "thin_from_the_yellow_side": "foul 0.06, first struck [10, 11, 7, 10, 4]: thin contacts with other reds of the pack, as safe",
-    "frozen_to_the_baulk_cushion": "foul 0.28, baulk 0.28: thin contacts over the whole table that miss every third time. Of 1,100 "
-    "strokes one has 0.06 and 0.57; the chance to win takes fouls of 4 lightly",
-    "from_the_top_cushion": "pot 0.60: a plant to the middle, which goes in 88 to 100 %; a coach would have to see it",
-    "roll_up_to_the_brown": "hidden 0.77 (wanted 0.8), pot 0.20: one of five takes the brown on instead, at 49 %",
-    "roll_up_to_the_green": "hidden 0.18, first struck [18, 18, 17, 17, 18]: one of five finds it, and is then snookered in 80 %",
-    "last_red_on_the_top_cushion": "foul 0.26, baulk 0.58: too thin over the whole table, as above",
-    "reds_at_both_sides": "foul 0.10: one of five is too thin",
-    "yellow_on_a_side_cushion": "safe 0.35: the cue ball stays near, where no likely pot is left (0.00) but no distance either",
-    "needs_a_snooker": "hidden 0.05: it plays safe, not for a snooker; the best of 960 strokes has 0.24",
-    "black_on_the_baulk_cushion": "safe 0.53: the cue ball stays in the same half; strokes with 0.90 were among those tried",
+    "break_off": "baulk 0.57: firm enough that the cue ball comes back up the table in two of five; hardly a pot is left (0.01)",
+    "thin_from_the_yellow_side": "foul 0.06, baulk 0.40, first struck [15, 15, 7, 4, 11]: half-ball as often as thin, as safe",
+    "frozen_to_the_baulk_cushion": "foul 0.18, baulk 0.19: thin contacts over the whole table with a raised cue; the chance to win "
+    "takes fouls of 4 lightly",
+    "from_the_top_cushion": "pot 1.00: a plant to the middle, which goes in 86 %; a coach would have to see it",
+    "touching_the_pack": "baulk 0.55 (wanted 0.7): away from the touching red, behind the pack, where no pot is left (0.00)",
+    "from_the_corner_of_baulk": "foul 0.16: thin over the whole table",
+    "roll_up_to_the_brown": "pot 0.80, likely 0.07, hidden 0.33: four of five take the brown on at 55 %, by 1 % of the chance to win",
+    "roll_up_to_the_green": "pot 0.80, likely 0.19, hidden 0.29: four of five take the green on at 52 %",
+    "snookered_behind_the_black": "foul 0.39: over one cushion, fair in 50 to 58 %",
+    "last_red_on_the_top_cushion": "foul 0.32, baulk 0.38: too thin over the whole table, as above",
+    "two_reds_and_a_lead": "foul 0.07 (wanted 0.05): one of five is too thin",
+    "needs_a_snooker": "hidden 0.06: it plays safe, not for a snooker",
 }
 """Where the tactician's advice is not as a coach wants it: what was measured, and why, as far as is known."""
 
