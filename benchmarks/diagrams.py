@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 
 import snooker_env as sn
+from snooker_env.advice import destinations
 from snooker_env.render.diagrams import compare, density, fan
 from snooker_env.render.fan_diagram import Strokes, fan_options
-from snooker_env.tasks import LEVELS, Noise
+from snooker_env.tasks import LEVELS
 
 from ._common.command import Command, at_least, run, save_figure, save_json
 
@@ -51,30 +52,6 @@ def option(top, side):
     )[0]
 
 
-def stops(stroke, noise, n, seed):
-    """(n, 2): where the cue ball stops when a player plays the stroke, NaN where it is potted; and how often
-    the ball is potted."""
-    rng = np.random.default_rng(seed)
-    speed = SPEED + rng.normal(size=n) * np.hypot(noise.speed_abs, noise.speed_rel * SPEED)
-    more = np.hypot(1.0, noise.growth * SPEED)
-    tip, turn = more * noise.offset_mm / 1e3 / PHYSICS.R, more * np.radians(noise.aim_deg)
-    tips = np.array([stroke.side, stroke.top]) + rng.normal(size=(n, 2)) * tip
-    far = np.hypot(*tips.T)[:, None]
-    tips *= np.minimum(1.0, PHYSICS.max_offset / np.maximum(far, 1e-12))  # beyond it is a miscue
-    aim = stroke.aim + rng.normal(size=n) * turn
-    places, there, _ = sn.Position(**PLACES).arrays()
-    v, w = np.zeros((n, len(places), 2)), np.zeros((n, len(places), 3))
-    for k in range(n):
-        struck = sn.strike(max(0.0, speed[k]), aim[k], *tips[k], physics=PHYSICS)
-        v[k, 0], w[k, 0] = struck[0][:2], struck[1]
-    batch = sn.simulate_batch(
-        np.tile(places, (n, 1, 1)), v, w, TABLE, PHYSICS, on_table=np.tile(there, (n, 1))
-    )
-    return np.where(batch.on_table[:, :1], batch.positions[:, 0], np.nan), float(
-        (batch.potted[:, BALL] >= 0).mean()
-    )
-
-
 def main():
     """Command line."""
     command = Command("diagrams", __doc__, pictures=FILES, seed=0)
@@ -86,8 +63,19 @@ def main():
     )
     options = command.options()
     played, other = option(*PLAYED), option(*OTHER)
-    points, potted = stops(played, Noise.of(options.noise), options.shots, options.seed)
-    there = points[~np.isnan(points[:, 0])]
+    v = sn.strike(SPEED, played.aim, played.side, played.top, physics=PHYSICS)[
+        0
+    ]  # squirt turns it from the cue
+    stroke = {"speed": SPEED, "aim": float(np.arctan2(v[1], v[0])), "side": played.side, "top": played.top}
+    stops = destinations(
+        sn.Position(**PLACES),
+        stroke,
+        noise=options.noise,
+        samples=options.shots,
+        seed=options.seed,
+        options={"table": TABLE, "physics": PHYSICS},
+    )
+    there, potted = stops.cue, stops.potted
     spread = float(np.sqrt(there.var(axis=0).sum()))
     print(
         f"{options.shots} strokes of a player ({options.noise}): the red goes in {100 * potted:.1f} % of the time;"
@@ -117,7 +105,7 @@ def main():
                 physics=PHYSICS,
                 title="One pot, fifteen tips",
             ),
-            DENSITY: density(points, played.shot.plot(speeds=False, title=said)),
+            DENSITY: density(there, played.shot.plot(speeds=False, title=said)),
         }
         for name, ax in drawn.items():
             save_figure(ax.figure, options.folder / name, dpi=100)

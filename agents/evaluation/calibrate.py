@@ -26,9 +26,8 @@ with needs("agents.calibrate"):
     from snooker_env.checks import choice, integer, number, refuse
     from snooker_env.planning.frame_search import LEAST
     from snooker_env.planning.learned.dense_layers import Layers
-    from snooker_env.planning.learned.frame_features import ERRORS, HIDDEN, LIKELY
+    from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, errors_seen
     from snooker_env.planning.learned.learned_worth import worth_of
-    from snooker_env.planning.worth import SPREAD
     from snooker_env.players.weights import learned_worth
 
     from ..cluster.ray_cluster import add_ray, checked_ray, place
@@ -197,8 +196,10 @@ def chances_of(parts):
         for name in ("seen", "lead", "left", "won", "decided")
     }
     worth = worth_of(None if layers is None else Layers(layers, "relu"), rows["seen"]).astype(np.float64)
-    spread = SPREAD * np.exp(rows["seen"][:, ERRORS].astype(np.float64))
-    said, ended = chance(rows["lead"] + worth, rows["left"], rows["lead"], spread), rows["decided"]
+    said, ended = (
+        chance(rows["lead"] + worth, rows["left"], rows["lead"], errors_seen(rows["seen"])),
+        rows["decided"],
+    )
     return calibration(said[ended], rows["won"][ended]) if ended.any() else None
 
 

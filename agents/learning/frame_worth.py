@@ -54,9 +54,9 @@ def fitted(seen, wanted, seed, passes):
     network, rng = WorthNetwork(), np.random.default_rng(seed)
     x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS - seen[:, -1]).astype(np.float32))
     batch = min(BATCH, len(x))
-    steps = passes * (len(x) // batch)
+    steps = max(20, passes * (len(x) // batch))  # of 10, OneCycleLR's warm-up of a tenth ends where it begins
     optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=DECAY)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=max(20, steps), pct_start=0.1)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=steps, pct_start=0.1)
     for _ in range(passes):
         order = torch.from_numpy(rng.permutation(len(x)))
         for k in range(0, batch * (len(x) // batch), batch):

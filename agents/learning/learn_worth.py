@@ -27,9 +27,8 @@ with needs("agents.learn_worth"):
     from snooker_env.checks import integer, refuse
     from snooker_env.planning.frame_search import LEAST
     from snooker_env.planning.learned.dense_layers import Layers
-    from snooker_env.planning.learned.frame_features import ERRORS
+    from snooker_env.planning.learned.frame_features import errors_seen
     from snooker_env.planning.learned.learned_worth import worth_of
-    from snooker_env.planning.worth import SPREAD
     from snooker_env.players.weights import FOLDER, WORTH, learned_worth
 
     from .frame_worth import calibration, fitted, fitted_chance, targets
@@ -87,7 +86,6 @@ def learned(rounds, seed):
     layers = fitted(seen, wanted, seed, PASSES)
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
     lead = both["lead"] + said.astype(np.float64)
-    spread = SPREAD * np.exp(both["seen"][:, ERRORS].astype(np.float64))
     # a frame that was stopped was won by nobody; nor is it known what follows positions beside the frames, or what an
     # equal would have made of it
     ended, held = both["decided"] & both["equals"], both["held"]
@@ -96,7 +94,7 @@ def learned(rounds, seed):
             raise refuse(
                 "frames", len(np.unique(both["unit"])), f"must be more: of those {what} none has ended"
             )
-    known = lead, both["left"], both["lead"], spread
+    known = lead, both["left"], both["lead"], errors_seen(both["seen"])
     chance = fitted_chance(*(part[used & ended] for part in (*known, both["won"])))
     wins, won = chance(*known)[held & ended], both["won"][held & ended]
     rmse = lambda worth: float(np.sqrt(np.mean((worth - both["target"])[held] ** 2)))  # noqa: E731

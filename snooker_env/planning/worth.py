@@ -129,7 +129,7 @@ class Chance(NamedTuple):
     snookers: float
     errors: float = 0.0
 
-    def __call__(self, lead: Floats, left: Floats, now: Floats, spread: float | Floats = SPREAD) -> Floats:
+    def __call__(self, lead: Floats, left: Floats, now: Floats, spread: float | Floats) -> Floats:
         """The chance (n,) of who leads by ``now`` (n,) and is expected to end with ``lead`` (n,) when ``left`` (n,) are
         on the table, between players whose direction errs by ``spread`` [rad]."""
         beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)

@@ -37,11 +37,11 @@ SIZE = POTS * STROKES
 _NEAR_RAIL, _NEAR_BALL = 0.035, 0.061
 """A real cue need not be steeper than ``STEEPEST`` for what is farther from the cue ball's centre [m]: the nose of a
 rail; the centre of a ball."""
-_TURN, _BESIDE = 0.03, 0.036
-"""More than the squirt of a side turns the cue [rad], with end masses as of cues; a ball farther from its line [m] is
-not under a steep one."""
+_BESIDE = 0.036
+"""A ball farther from the cue's line is not under a steep cue [m]."""
 _LOW, _ASIDE = TIP - min(TOPS) * BALL_RADIUS + 1e-3, max(SIDES) * BALL_RADIUS
-"""The lowest tip's reach below the centre, with 1 mm for the taper, and the tips' reach to the side [m]."""
+"""The lowest tip's reach below the centre, with 1 mm for the taper and for squirt, which turns the cue, and the tips'
+reach to the side [m]."""
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
@@ -101,8 +101,8 @@ def _crowded(positions, on_table, rails, ax, ay):
         across, along = (x, ax) if rails[m + EDGE_AXIS] == 0.0 else (y, ay)
         far = rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * across
         if far < _NEAR_RAIL and not near:
-            s = 1.0 if every else min(1.0, _TURN - rails[m + EDGE_SIDE] * along)  # sin(phi)
-            reach = _LOW * sqrt(1.0 + s * s) + (RAIL - BALL_RADIUS) * s + _ASIDE * sqrt(1.0 - s * s)
+            s = 1.0 if every else -rails[m + EDGE_SIDE] * along  # sin(phi)
+            reach = _LOW * sqrt(1.0 + s * s) + (RAIL - BALL_RADIUS) * s + _ASIDE * sqrt(max(1.0 - s * s, 0.0))
             near = s > 0.0 and (every or far < reach)
     for i in range(1, N_BALLS if rails.shape[0] else 1):
         dx, dy = positions[i, 0] - x, positions[i, 1] - y

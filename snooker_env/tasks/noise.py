@@ -5,11 +5,10 @@ squirt of a tip that is off to the side. No measurement of a snooker player's er
 are set by what players achieve, on the pockets of this package.
 
 * "professional", 0.060 deg in all at a cue speed of 1.5 m/s: the first estimate of a professional's execution error
-  from whole frames. Two copies of ``tactician``, with a real cue, play frames as professionals do in 37 matches (203
-  frames, half of a set; the others are kept apart) at about this error: scoring visits, breaks, shares of frames with a
-  50 and a century. For the present player, which is stronger, a tenth more would fit (``python -m agents.calibrate``,
-  docs/agents/tactician.md). It holds all that a person does not know, too: the constants of the table, where exactly the
-  balls lie.
+  from whole frames. It is compared with 203 frames of 37 matches (half of a set; the others are kept apart): at 1.1
+  times this error two copies of ``tactician``, with a real cue, make breaks and frames with a 50 as professionals do, and
+  nearly their visits (``python -m agents.calibrate``, docs/agents/tactician.md). It holds all that a person does not
+  know, too: the constants of the table, where exactly the balls lie.
 * "amateur", 0.120, and "club", 0.240: twice and four times a professional's. The aim errors that secondary
   sources give, 0.02 to 0.03 deg for professionals, 0.05 for a good amateur, 0.08 to 0.12 for club players, are as
   1 to 2 to 4; their sizes, of players who know the table, are too small for frames as people play them.
@@ -28,7 +27,7 @@ counted.
 The errors of direction of "professional", "amateur" and "club" grow with the cue speed V as sqrt(1 + (0.6 V)^2): twice
 as large at 2.9 m/s as in the slowest stroke. A hand's spread grows with the force of its movement (signal-dependent
 noise: Harris & Wolpert, Nature 394, 1998, doi 10.1038/29528); how fast it does with a cue was not found, 0.6 is our
-choice. Frames agree with it no better than with errors that are the same at every speed.
+choice.
 
 Our choices: aim and squirt have half of the variance each. The errors are independent, so the tip error, as
 large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope

@@ -100,17 +100,19 @@ def test_the_score_is_what_the_stroke_brings_and_leaves():
 def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
     chance, level = Chance(1.0, 2.0, 0.3), np.zeros(5)
     leads = np.array([-60.0, -5.0, 0.0, 5.0, 60.0])
-    few, many = chance(leads, np.full(5, 7.0), level), chance(leads, np.full(5, 140.0), level)
+    few, many = (chance(leads, np.full(5, left), level, MIDDLE) for left in (7.0, 140.0))
     assert many[2] == 0.5 and (np.diff(few) > 0).all() and few[3] > many[3] and few[0] < many[0]
     assert np.allclose(few + few[::-1], 1.0)
     ten, left = np.full(5, 10.0), np.full(5, 49.0)
     logits = 10.0 / 15.0 + 0.3 * np.array([-11.0, 0.0, 0.0, 0.0, 2.0])  # points beyond those on the table
     now = np.array([-60.0, -49.0, 0.0, 49.0, 51.0])
-    assert chance(ten, left, now) == pytest.approx(1.0 / (1.0 + np.exp(-logits)), rel=1e-12)
+    assert chance(ten, left, now, MIDDLE) == pytest.approx(1.0 / (1.0 + np.exp(-logits)), rel=1e-12)
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
     errs = chance._replace(errors=-0.5)
-    assert errs(ten, left, now, 4.0 * MIDDLE) == pytest.approx(chance(2.0 * ten, left, now), rel=1e-12)
+    assert errs(ten, left, now, 4.0 * MIDDLE) == pytest.approx(
+        chance(2.0 * ten, left, now, MIDDLE), rel=1e-12
+    )
     assert np.array_equal(
         errs(ten, left, now, 1.0), errs(ten, left, now, WIDEST)
     )  # none larger was learned from

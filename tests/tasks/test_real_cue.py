@@ -28,7 +28,7 @@ from snooker_env.planning import pots as direct_pots
 from snooker_env.tasks import choice_of
 from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.declarations import A_RAILS
-from snooker_env.tasks.discrete_actions import _NEAR_BALL, _NEAR_RAIL, SIDES, SPEEDS, STROKES, TOPS
+from snooker_env.tasks.discrete_actions import _NEAR_BALL, _NEAR_RAIL, SIDES, SPEEDS, STROKES, TOPS, _crowded
 from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
 from snooker_env.tasks.pot_aim import _passes, stroke_in_room
@@ -306,6 +306,26 @@ def test_only_what_is_near_makes_a_cue_too_steep():
         assert worst[0] < np.radians(44.5) and worst[1] > STEEPEST
 
 
+def test_no_cue_that_must_be_steep_is_overlooked():
+    """Lies at a rail or a ball, cues of all directions: a reach or a distance that is 5 % too small would miss some."""
+    least, turned, near = (from_python(one) for one in (least_elevation, squirt, _crowded))
+    rails, rng, steep = np.array(sn.Options(cue="real").rules.rails), np.random.default_rng(4), 0
+    for k in range(8000):
+        places, here = np.zeros((22, 2)), np.zeros(22, bool)
+        places[0], here[0], here[1] = (0.0, 0.2), True, k % 2 == 0
+        aim, away, to = rng.uniform(0.0, 2.0 * np.pi, 3)
+        if k % 2:
+            places[0] = 0.889 - R - (0.036 - R) * away / (2.0 * np.pi), 0.9
+        else:
+            far = 2.0 * R + (0.062 - 2.0 * R) * away / (2.0 * np.pi)
+            places[1] = places[0] + far * np.array([np.cos(to), np.sin(to)])
+        cues = ((side, TOPS[0], aim - turned(side, sn.Physics().end_mass_ratio), 0.0) for side in SIDES)
+        if any(least(cue, places, here, rails, R) > STEEPEST for cue in cues):
+            steep += 1
+            assert near(places, here, rails, np.cos(aim), np.sin(aim)), k
+    assert steep > 800
+
+
 def crowded(n, seed):
     """Tables whose cue ball lies at a cushion, or at a ball."""
     env, rng = sn.SnookerVectorEnv(n, layout="opened", action="discrete"), np.random.default_rng(seed)
@@ -326,7 +346,7 @@ def crowded(n, seed):
 def test_masks_of_crowded_tables_are_those_of_every_stroke_asked_for_its_room():
     least, turned = from_python(least_elevation), from_python(squirt)
     rails = np.array(sn.Options(cue="real").rules.rails)
-    at, cleared = crowded(240, 3), 0
+    at, cleared = crowded(60, 3), 0
     free, real, direct = action_masks(at), action_masks(at, cue="real"), direct_pots(at)
     for k in np.flatnonzero(direct.ball[:, 0] >= 0).tolist():
         wanted = free[k].reshape(4, len(SPEEDS), len(SIDES), len(TOPS)).copy()

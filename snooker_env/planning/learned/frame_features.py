@@ -7,6 +7,7 @@ from math import log, sqrt
 import numpy as np
 
 from ..._jit import entry
+from ..._types import Floats
 from ...game import frame_columns as columns
 from ...game.balls import N_BALLS, available, bits, touching_balls
 from ...geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
@@ -25,8 +26,6 @@ LIKELY = VISIT_SIZE - SHARED_OF_VISITS + 10
 """The entry that holds the chance of the likeliest direct pot."""
 HIDDEN = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + 6
 """The entry that is 1 where no ball on can be struck along a straight line: the striker is snookered."""
-ERRORS = SIZE - 1
-"""The entry that holds the logarithm of the error of direction over ``SPREAD``."""
 
 
 @entry(what="the features of frames", seconds=4)
@@ -97,6 +96,11 @@ def _features(positions, on_table, game, spread, out):
         left = available(mask, game_row[columns.BALL_ON], game_row[columns.FREE_BALL])
         row[o + 16] = sqrt(max(0.0, left)) / 12.0
         row[o + 17] = log(min(max(spread, NARROWEST), WIDEST) / SPREAD)
+
+
+def errors_seen(seen: np.ndarray) -> Floats:
+    """The errors of direction [rad] under which features (n, ``SIZE`` or more) were seen: float64 (n,)."""
+    return SPREAD * np.exp(seen[:, SIZE - 1].astype(np.float64))
 
 
 def frame_features(at: Positions, spread: float, threads: int = 1) -> np.ndarray:

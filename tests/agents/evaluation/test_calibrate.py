@@ -70,10 +70,11 @@ def test_breaks_of_frames_played_are_counted():
 
 def test_the_chance_to_win_is_compared_with_who_won(monkeypatch, tmp_path):
     """A worth without a network is the value, the last entry of what is seen; a frame that nobody won does not count."""
-    monkeypatch.setattr(calibrate, "learned_worth", lambda: (None, Chance(40.0, 0.0, 0.0)))
+    monkeypatch.setattr(calibrate, "learned_worth", lambda: (None, Chance(80.0, 0.0, 0.0, -0.5)))
     n = 400
     seen = np.zeros((n, SIZE + 1), np.float32)
     seen[:, -1] = 1.0  # 40 points
+    seen[:, -2] = np.log(4.0)  # four times the errors: half the width
     lead = np.where(np.arange(n) % 2 == 0, 0.0, -80.0)  # expected to win by 40, to lose by 40
     won, decided = np.arange(n) % 4 != 1, np.arange(n) < 200
     rows = {"seen": seen, "lead": lead, "left": np.full(n, 100.0), "won": won, "decided": decided}
