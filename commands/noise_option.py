@@ -6,11 +6,12 @@ from snooker_env.checks import number, refuse
 from snooker_env.tasks import Noise
 
 
+ERRORS = "aim_deg", "speed_rel", "speed_abs", "offset_mm", "elevation_deg"
+
+
 def scaled(noise, scale):
-    """Errors times ``scale``, those of the speed times its power 0.7, as from a professional to a club player."""
-    turns = {name: getattr(noise, name) * scale for name in ("aim_deg", "offset_mm", "elevation_deg")}
-    speeds = {name: getattr(noise, name) * scale**0.7 for name in ("speed_rel", "speed_abs")}
-    return replace(noise, **turns, **speeds)
+    """Every error times ``scale``; how errors of direction grow with the speed is kept."""
+    return replace(noise, **{name: getattr(noise, name) * scale for name in ERRORS})
 
 
 def noise_option(text):

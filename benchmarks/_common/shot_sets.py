@@ -50,6 +50,8 @@ class Shots:
         noise, rng = Noise.of("none" if seed is None else errors), np.random.default_rng(seed)
         for k, (speed, line, side, top) in enumerate(self.stroke):
             speed, side, top, line, elevation = _executed(speed, side, top, line, noise, rng)
+            inside = max(1.0, hypot(side, top) / self.physics.max_offset)  # as in the environment, no miscues
+            side, top = side / inside, top / inside
             v3, w[k, 0] = sn.strike(speed, line + aim, side, top, elevation, self.physics)
             v[k, 0] = v3[:2]
         return v, w

@@ -4,12 +4,11 @@ What decides a pot is the total error of the cue ball's direction (``Noise.direc
 squirt of a tip that is off to the side. No measurement of a snooker player's errors was found, so the levels
 are set by what players achieve, on the pockets of this package.
 
-* "professional", 0.060 deg in all at a cue speed of 1.5 m/s: the first estimate of a professional's execution error
-  from whole frames. It is compared with 203 frames of 37 matches (half of a set; the others are kept apart): at 1.1
-  times this error two copies of ``tactician``, with a real cue, make breaks and frames with a 50 as professionals do, and
-  nearly their visits (``python -m agents.calibrate``, docs/agents/tactician.md). It holds all that a person does not
-  know, too: the constants of the table, where exactly the balls lie.
-* "amateur", 0.120, and "club", 0.240: twice and four times a professional's. The aim errors that secondary
+* "professional", 0.068 deg in all at a cue speed of 1.5 m/s: the first estimate of a professional's execution error
+  from whole frames. Two copies of ``tactician`` that err so, with a real cue, play frames like 203 frames of 37 matches
+  (half of a set; the others are kept apart; ``python -m agents.calibrate``, docs/agents/tactician.md). It holds all that
+  a person does not know, too: the constants of the table, where exactly the balls lie.
+* "amateur", 0.137, and "club", 0.274: twice and four times a professional's. The aim errors that secondary
   sources give, 0.02 to 0.03 deg for professionals, 0.05 for a good amateur, 0.08 to 0.12 for club players, are as
   1 to 2 to 4; their sizes, of players who know the table, are too small for frames as people play them.
 * "robot", 0.046: that of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and
@@ -24,19 +23,20 @@ levels make, with ``--fit`` the errors that give such rates), but two players wh
 every time that they come to it: 1.6 scoring visits a frame, breaks of 60 and more. We chose the frames, which were
 counted.
 
-The errors of direction of "professional", "amateur" and "club" grow with the cue speed V as sqrt(1 + (0.6 V)^2): twice
-as large at 2.9 m/s as in the slowest stroke. A hand's spread grows with the force of its movement (signal-dependent
-noise: Harris & Wolpert, Nature 394, 1998, doi 10.1038/29528); how fast it does with a cue was not found, 0.6 is our
-choice.
+The errors of direction of "professional", "amateur" and "club" grow with the cue speed V as sqrt(1 + V^2), V in m/s:
+from 1.3 times those of the slowest hand at 0.8 m/s to 3.2 times at 3. A hand's spread grows with the force of its
+movement (signal-dependent noise: Harris & Wolpert, Nature 394, 1998, doi 10.1038/29528); how fast it does with a cue
+was not found. Frames leave it open, too: with 0.6 or 1.5 V instead of V, and errors that fit, breaks and visits agree
+as well, fouls and centuries a little less.
 
 Our choices: aim and squirt have half of the variance each. The errors are independent, so the tip error, as
 large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope
-(0.35 m) behind the ball squirt cancels the turn. Speed 2.5, 4.1 and 6.6 %, growing as the power 0.7 of the others:
-a good pool player is said to roll a ball a table's length to within an inch or two, 0.5 to 1 % of the speed, a
-beginner to within a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009). Elevation hardly matters with a level cue.
+(0.35 m) behind the ball squirt cancels the turn. Speed 1, 2 and 4 %: a good pool player is said to roll a ball a table's
+length to within an inch or two, 0.5 to 1 % of the speed, a beginner to within a diamond, 6 % (Waldron, Pool Table
+Stimpmeter, 2009). Elevation hardly matters with a level cue.
 
 A real cue (the option ``cue="real"``) that must be raised is harder to deliver straight, over a rail or a ball the
-bridge is cramped. The errors of aim and tip then grow as 1 + elevation / 20 deg: twice as large at 20 deg. That is
+bridge is cramped. The errors of aim and tip then grow as 1 + elevation / 15 deg: twice as large at 15 deg. That is
 an estimate: players say so, nothing measured was found. With a free cue they do not grow."""
 
 from dataclasses import asdict, dataclass, fields
@@ -61,7 +61,7 @@ KICK = 0.2
 more would change nothing there (docs/physics/limits.md). Not measured."""
 POT_SPEED = 1.5
 """The cue speed at which one number stands for a player's error of direction [m/s]: about that of a pot."""
-TWICE = radians(20.0)
+TWICE = radians(15.0)
 """The elevation of a real cue at which errors of tip and aim are twice those of a level one [rad]: an estimate."""
 
 
@@ -154,7 +154,7 @@ class Noise:
     --------
     >>> from snooker_env.tasks import LEVELS, Noise
     >>> LEVELS["club"].aim_deg, Noise(speed_rel=0.02).silent
-    (0.128, False)
+    (0.108, False)
     """
 
     aim_deg: float = 0.0
@@ -217,9 +217,9 @@ NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
 """The types that arguments called ``noise`` accept, see ``Noise.of``."""
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
-    "professional": Noise(aim_deg=0.032, speed_rel=0.025, offset_mm=0.19, elevation_deg=0.18, growth=0.6),
-    "amateur": Noise(aim_deg=0.064, speed_rel=0.041, offset_mm=0.38, elevation_deg=0.36, growth=0.6),
-    "club": Noise(aim_deg=0.128, speed_rel=0.066, offset_mm=0.76, elevation_deg=0.72, growth=0.6),
+    "professional": Noise(aim_deg=0.027, speed_rel=0.01, offset_mm=0.164, elevation_deg=0.2, growth=1.0),
+    "amateur": Noise(aim_deg=0.054, speed_rel=0.02, offset_mm=0.328, elevation_deg=0.4, growth=1.0),
+    "club": Noise(aim_deg=0.108, speed_rel=0.04, offset_mm=0.656, elevation_deg=0.8, growth=1.0),
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
 }

@@ -9,12 +9,10 @@ from snooker_env.tasks import LEVELS, Noise
 def test_a_level_is_its_name_and_a_scale_multiplies_its_errors():
     assert noise_option("club") == "club"
     twice, one = Noise.of(noise_option("professional*2")), LEVELS["professional"]
-    assert (twice.aim_deg, twice.offset_mm, twice.elevation_deg) == (0.064, 0.38, 0.36)
-    assert twice.speed_rel == pytest.approx(0.025 * 2**0.7, rel=1e-12)
+    assert (twice.aim_deg, twice.offset_mm, twice.elevation_deg, twice.speed_rel) == (0.054, 0.328, 0.4, 0.02)
     assert (twice.growth, twice.kick) == (one.growth, one.kick)
     assert scaled(one, 1.0) == one
-    fast = scaled(Noise(speed_abs=0.1), 3.0)
-    assert fast.speed_abs == pytest.approx(0.1 * 3**0.7, rel=1e-12)
+    assert scaled(Noise(speed_abs=0.1), 3.0).speed_abs == pytest.approx(0.3, rel=1e-12)
 
 
 @pytest.mark.parametrize("wrong", ["loud", "club*", "club*x", "club*0", "club*nan"])

@@ -37,11 +37,11 @@ def test_noise_has_the_deviations_that_it_says():
     assert (np.abs(normal) > 3).mean(axis=0) == pytest.approx([0.0027] * 5, abs=0.002)
 
 
-WIDTHS = {  # of the aim [deg] and of the speed [m/s] at 3 m/s; 2.059 = sqrt(1 + (0.6 * 3)^2)
+WIDTHS = {  # of the aim [deg] and of the speed [m/s] at 3 m/s; 3.162 = sqrt(1 + 3^2)
     "none": (0.0, 0.0),
-    "professional": (0.032 * 2.059, 0.075),
-    "amateur": (0.064 * 2.059, 0.123),
-    "club": (0.128 * 2.059, 0.198),
+    "professional": (0.027 * 3.162, 0.03),
+    "amateur": (0.054 * 3.162, 0.06),
+    "club": (0.108 * 3.162, 0.12),
     "robot": (0.033, 0.24),
     "olympiad": (0.125, 0.075),
 }
@@ -90,7 +90,7 @@ def test_the_total_direction_error_in_figures():
     assert far == pytest.approx(300 * millimetre)  # off the ball: still a number
     assert LEVELS["olympiad"].direction_deg() == pytest.approx(0.149, abs=5e-4)
     errors = {name: LEVELS[name].direction_deg() for name in ("professional", "amateur", "club")}
-    assert errors == pytest.approx({"professional": 0.060, "amateur": 0.120, "club": 0.240}, abs=5e-4)
+    assert errors == pytest.approx({"professional": 0.068, "amateur": 0.137, "club": 0.274}, abs=5e-4)
 
 
 def test_speed_and_elevation_are_never_negative():
