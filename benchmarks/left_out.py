@@ -3,8 +3,8 @@
     python -m benchmarks.left_out [--json FILE] [--out FOLDER]
 
 Each is a closed form or one impact, with its inputs in the line above its figures. What these are set beside:
-the rolling resistance, and a professional whose direction errs by 0.060 deg in all at 1.5 m/s: with the cue ball 0.5 m
-from contact the object ball's direction errs by 0.57 deg, so much that whatever is below 0.06 deg there is
+the rolling resistance, and a professional whose direction errs by 0.068 deg in all at 1.5 m/s: with the cue ball 0.5 m
+from contact the object ball's direction errs by 0.65 deg, so much that whatever is below 0.06 deg there is
 below a tenth of it. The nap has a command of its own: ``python -m benchmarks.nap``.
 """
 
@@ -23,7 +23,7 @@ AIR, VISCOSITY, DRAG = 1.2, 1.5e-5, 0.45
 """Density [kg/m^3], kinematic viscosity [m^2/s]; drag coefficient of a sphere at Reynolds numbers of 1e3 to
 1e5: 0.4 to 0.5."""
 SEEN = 0.01
-"""A shift that is seen in play [m]; a professional's scatter of a ball that rolls a metre is 50 mm."""
+"""A shift that is seen in play [m]; a professional's scatter of a ball that rolls a metre is 20 mm."""
 CAROM = 0.0151
 """Growth of the rolling resistance measured on heated carom cloth [1/m] (docs/physics/limits.md)."""
 BOUNCE = 0.5

@@ -8,8 +8,8 @@ drift was found published, in mm or otherwise. What bounds the nap: rolling dece
 0.124 to 0.126 m/s^2. If the nap alone made that range, rolling with it and against it, it would be 0.001
 m/s^2.
 
-The player is ``noise="professional"``: the direction errs by 0.045 deg in all in slow strokes, by 0.060 at 1.5 m/s (aim,
-and squirt of the tip's error), the speed by 2.5 %. Each ball is taken to be struck at the speed that it has.
+The player is ``noise="professional"``: the direction errs by 0.038 deg in all in slow strokes, by 0.068 at 1.5 m/s (aim,
+and squirt of the tip's error), the speed by 1 %. Each ball is taken to be struck at the speed that it has.
 
 * Pots: a ball rolls from rest at the start to a pocket and arrives there at the speed given. ``drift``: how
   far to the side of its line it is at the pocket. ``scatter``: the standard deviation of the same by his

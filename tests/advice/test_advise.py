@@ -147,7 +147,7 @@ def test_where_nothing_can_be_potted_a_ball_on_is_hit():
 
 
 def test_a_plant_is_advised_where_there_is_no_other_pot_and_a_short_pot_where_there_is():
-    one = sn.advise(ALL["hidden"], n=1, agent="search_2000", **QUICK)[0]
+    one = sn.advise(ALL["hidden"], n=1, agent="search_2000", noise="robot", **QUICK)[0]
     assert one.kind == "pot" and " by a plant, " in one.words and one.chance > 0.4
     assert sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), n=1, **QUICK)[0].kind == "pot"
     assert sn.advise(RESPOTTED, n=1, noise="none", **QUICK)[0].kind == "pot"

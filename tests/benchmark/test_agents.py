@@ -27,7 +27,7 @@ def test_the_example_of_a_class_plays(tmp_path, capsys, monkeypatch):
     assert main([*arguments, "--episodes", "30", "--out", str(tmp_path)]) == 0
     result = read_result(tmp_path / "SnookerBreak-v0.Softly.json")
     assert faults(result) == [] and result["agent"]["class"] == "model_free"
-    assert result["figures"]["score"]["value"] > 4
+    assert result["figures"]["score"]["value"] > 1.5
     assert "SnookerBreak-v0  Softly: " in capsys.readouterr().out
 
 

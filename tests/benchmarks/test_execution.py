@@ -58,12 +58,12 @@ def test_without_errors_every_pot_goes_in_and_stays_so_just_within_its_window():
 
 
 def test_the_published_long_pots_take_about_half_of_a_professionals_errors():
-    """docs/validation/execution_errors.md: 0.034 deg makes them, the level 28 %."""
+    """docs/validation/execution_errors.md: 0.034 deg makes them, the level 23 %."""
     shots, (low, high) = shots_of(pot_shots.LONG), published.LONG_POTS
     usual = Noise.of("professional")
     rate = published.mean_rate(shots, pot_shots.of_direction(0.034, usual, PHYSICS), 2000, PHYSICS, TABLE)
     assert low + 0.03 < rate < high - 0.03
-    assert published.mean_rate(shots, usual, 2000, PHYSICS, TABLE) == pytest.approx(0.28, abs=0.02)
+    assert published.mean_rate(shots, usual, 2000, PHYSICS, TABLE) == pytest.approx(0.23, abs=0.02)
 
 
 @pytest.mark.parametrize(("level", "deg"), [("amateur", 0.049), ("club", 0.119)])
@@ -100,7 +100,7 @@ def test_placement_of_speed_errors_alone():
 def test_directions_by_cause():
     found = pot_shots.directions("professional", 3000, 1, PHYSICS)
     player = LEVELS["professional"]
-    aim, tip = Noise(aim_deg=player.aim_deg, growth=0.6), Noise(offset_mm=player.offset_mm, growth=0.6)
+    aim, tip = Noise(aim_deg=player.aim_deg, growth=player.growth), Noise(offset_mm=player.offset_mm, growth=player.growth)
     assert found["aim"] == pytest.approx(aim.direction_deg(), rel=0.05)
     assert found["squirt"] == pytest.approx(tip.direction_deg(), rel=0.05)
     assert found["all"] == pytest.approx(player.direction_deg(), rel=0.05)

@@ -59,7 +59,7 @@ def test_it_learns_and_its_file_is_played_by_our_protocol(tmp_path, capsys):
     player = load_player(tmp_path / "p.npz")
     assert player.model.num_timesteps == 57344 and player.model.recipe == "single file"
     assert player.model.seed == 1
-    assert summary(play_visits(player, 200))["points_a_visit"] > 4.2  # after 8,192 shots: 3.7
+    assert summary(play_visits(player, 200))["points_a_visit"] > 3.3  # after 8,192 shots: 2.4
     tables = SnookerVectorEnv(5, threads=1, action="discrete")
     rows, _ = tables.reset(seed=3)
     agent = example.mlp(121, 256, 256, 540)

@@ -34,7 +34,7 @@ class Judge:
 @pytest.fixture(scope="module")
 def frame():
     """A frame to its end, and the positions in which the agent was asked, by the strokes before them."""
-    env, player = keeping(6, **GAME), sn.player("ghost_ball").at(GAME)
+    env, player = keeping(1, **GAME), sn.player("ghost_ball").at(GAME)
     asked, ended = {}, False
     while not ended:
         at = Positions.of(env)
