@@ -87,4 +87,4 @@ def test_without_a_pot_the_nearest_ball_on_stands_first():
 
 def test_the_published_agent_is_an_opponent_that_a_constant_choice_does_not_beat():
     against = self_play.judge(self_play.Softly(), self_play.SelfPlayed(), 200, 1)
-    assert against["won"] < 0.6  # trained under smaller errors than those of today
+    assert against["won"] < 0.45
