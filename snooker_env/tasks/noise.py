@@ -26,8 +26,7 @@ counted.
 The errors of direction of "professional", "amateur" and "club" grow with the cue speed V as sqrt(1 + V^2), V in m/s:
 from 1.3 times those of the slowest hand at 0.8 m/s to 3.2 times at 3. A hand's spread grows with the force of its
 movement (signal-dependent noise: Harris & Wolpert, Nature 394, 1998, doi 10.1038/29528); how fast it does with a cue
-was not found. Frames leave it open, too: with 0.6 or 1.5 V instead of V, and errors that fit, breaks and visits agree
-as well, fouls and centuries a little less.
+was not found, it is our choice.
 
 Our choices: aim and squirt have half of the variance each. The errors are independent, so the tip error, as
 large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope
