@@ -5,7 +5,6 @@ from dataclasses import asdict, replace
 from snooker_env.checks import number, refuse
 from snooker_env.tasks import Noise
 
-
 ERRORS = "aim_deg", "speed_rel", "speed_abs", "offset_mm", "elevation_deg"
 
 

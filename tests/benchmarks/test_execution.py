@@ -100,7 +100,10 @@ def test_placement_of_speed_errors_alone():
 def test_directions_by_cause():
     found = pot_shots.directions("professional", 3000, 1, PHYSICS)
     player = LEVELS["professional"]
-    aim, tip = Noise(aim_deg=player.aim_deg, growth=player.growth), Noise(offset_mm=player.offset_mm, growth=player.growth)
+    aim, tip = (
+        Noise(aim_deg=player.aim_deg, growth=player.growth),
+        Noise(offset_mm=player.offset_mm, growth=player.growth),
+    )
     assert found["aim"] == pytest.approx(aim.direction_deg(), rel=0.05)
     assert found["squirt"] == pytest.approx(tip.direction_deg(), rel=0.05)
     assert found["all"] == pytest.approx(player.direction_deg(), rel=0.05)
