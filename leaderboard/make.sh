@@ -35,9 +35,9 @@ judge best_pot 0
 judge search 0
 judge search_2000 0
 judge planner 18415616
-# To those of planner, two rounds of 384 frames against itself and others: 191,451 positions, each with 120 shots of search and 8 that judge,
-# and some 12,300 strokes of the others, 120 shots each.
-judge tactician 44397344
+# To those of planner, two rounds of 384 frames against itself and others: 205,141 positions, each with 120 shots of search and 8 that judge,
+# and some 12,000 strokes of the others, 120 shots each.
+judge tactician 46113664
 judge ppo_value 18415616
 judge ppo_mask_finetuned 26443776
 
