@@ -111,7 +111,7 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
     >>> from snooker_env.planning import spread_of
     >>> from snooker_env.tasks import LEVELS
     >>> round(spread_of(LEVELS["club"]) * 1e3, 2)
-    4.18
+    4.78
     """
     return max(1e-5, radians(noise.direction_deg(physics)))
 

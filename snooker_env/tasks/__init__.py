@@ -2,7 +2,7 @@
 
 >>> from snooker_env.tasks import CHOICES, LEVELS, choice_of
 >>> CHOICES, choice_of(pot=0, speed=4, side=1, top=2), LEVELS["club"].aim_deg
-(540, 67, 0.128)
+(540, 67, 0.108)
 """
 
 from .box_actions import MAX_SPEED, MIN_SPEED

@@ -66,7 +66,7 @@ WEIGHTS = {
     "ppo_mask": "dfe17966c74afe0d4d1a8cce0d121d1ba2a4ebfbe5091edff517c4f3688fcc36",
     "ppo_mask_finetuned": "0a7876b29ed979493e44c36cb67cb9a8308a77a4b2b71bf4730ba8929f6b6fd8",
     "ppo_target": "a0d80caf6416d41fab71b6157ba3c380d2e128f98f993adf96ce37bbbe09ff7f",
-    "ppo_value": "f1965779f10c1565ac3c90a85aca4e654b018052dc290f84f44dddf3fc8ec5b6",
+    "ppo_value": "13ca8f8b324f42d39756c2e08f4fd37a13e743fe0b1d0dfdc01211e3c4b0947a",
     "ppo_value_amateur": "875ef60aee67518b1bb57acec8a940df7768909696cef61bef6b0f31fc120b9e",
     "ppo_value_club": "ff2c963f55559893458c50c85891b66a98bace1b3387e88f1926dfe2430d60bc",
     "ppo_value_none": "19d0e235bf97a17aaf7819bb78fba0001815ed168cff6fa9d381b6c697c22a5a",

@@ -22,7 +22,7 @@ def test_every_position_is_compared_with_what_followed(monkeypatch):
         return strokes
 
     monkeypatch.setattr(value_quality, "play_visits", watched)
-    found = value_quality.quality(player, 60, "colours", "professional")
+    found = value_quality.quality(player, 120, "colours", "professional")
     ((strokes, rows),) = seen
     assert found["positions"] == len(strokes.points) == len(rows)
     followed = []
