@@ -18,7 +18,7 @@ os.environ.setdefault("SNOOKER_ENV_QUIET", "1")
 @pytest.fixture
 def screen(monkeypatch):
     """A display that is none; shots are drawn without waiting for the clock."""
-    pytest.importorskip("pygame")
+    pygame = pytest.importorskip("pygame")
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     shown = []
 
@@ -27,4 +27,5 @@ def screen(monkeypatch):
         return True
 
     monkeypatch.setattr("snooker_env.render.window.Window.play", play)
-    return shown
+    yield shown
+    pygame.display.quit()  # Gymnasium's checks close no environment that they make
