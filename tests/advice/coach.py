@@ -219,10 +219,10 @@ CASES = {
 UNLIKE = {
     "break_off": "baulk 0.57: firm enough that the cue ball comes back up the table in two of five; hardly a pot is left (0.01)",
     "thin_from_the_yellow_side": "foul 0.06, baulk 0.40, first struck [15, 15, 7, 4, 11]: half-ball as often as thin, as safe",
+    "thin_from_the_green_side": "baulk 0.65 (wanted 0.7), first struck [11, 4, 4, 7, 4]: inside reds, as often as the end ones",
     "frozen_to_the_baulk_cushion": "foul 0.18, baulk 0.19: thin contacts over the whole table with a raised cue; the chance to win "
     "takes fouls of 4 lightly",
     "from_the_top_cushion": "pot 1.00: a plant to the middle, which goes in 86 %; a coach would have to see it",
-    "touching_the_pack": "baulk 0.55 (wanted 0.7): away from the touching red, behind the pack, where no pot is left (0.00)",
     "from_the_corner_of_baulk": "foul 0.16: thin over the whole table",
     "roll_up_to_the_brown": "pot 0.80, likely 0.07, hidden 0.33: four of five take the brown on at 55 %, by 1 % of the chance to win",
     "roll_up_to_the_green": "pot 0.80, likely 0.19, hidden 0.29: four of five take the green on at 52 %",
