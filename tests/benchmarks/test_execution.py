@@ -63,7 +63,7 @@ def test_the_published_long_pots_take_about_half_of_a_professionals_errors():
     usual = Noise.of("professional")
     rate = published.mean_rate(shots, pot_shots.of_direction(0.034, usual, PHYSICS), 2000, PHYSICS, TABLE)
     assert low + 0.03 < rate < high - 0.03
-    assert published.mean_rate(shots, usual, 2000, PHYSICS, TABLE) == pytest.approx(0.23, abs=0.02)
+    assert published.mean_rate(shots, usual, 2000, PHYSICS, TABLE) == pytest.approx(0.23, abs=0.01)
 
 
 @pytest.mark.parametrize(("level", "deg"), [("amateur", 0.049), ("club", 0.119)])
