@@ -217,21 +217,20 @@ CASES = {
 
 
 UNLIKE = {
-    "break_off": "baulk 0.57: firm enough that the cue ball comes back up the table in two of five; hardly a pot is left (0.01)",
-    "thin_from_the_yellow_side": "foul 0.06, baulk 0.40, first struck [15, 15, 7, 4, 11]: half-ball as often as thin, as safe",
-    "thin_from_the_green_side": "baulk 0.65 (wanted 0.7), first struck [11, 4, 4, 7, 4]: inside reds, as often as the end ones",
-    "frozen_to_the_baulk_cushion": "foul 0.18, baulk 0.19: thin contacts over the whole table with a raised cue; the chance to win "
-    "takes fouls of 4 lightly",
-    "from_the_top_cushion": "pot 1.00: a plant to the middle, which goes in 86 %; a coach would have to see it",
-    "from_the_corner_of_baulk": "foul 0.16: thin over the whole table",
-    "roll_up_to_the_brown": "pot 0.80, likely 0.07, hidden 0.33: four of five take the brown on at 55 %, by 1 % of the chance to win",
-    "roll_up_to_the_green": "pot 0.80, likely 0.19, hidden 0.29: four of five take the green on at 52 %",
-    "snookered_behind_the_black": "foul 0.39: over one cushion, fair in 50 to 58 %",
-    "last_red_on_the_top_cushion": "foul 0.32, baulk 0.38: too thin over the whole table, as above",
-    "two_reds_and_a_lead": "foul 0.07 (wanted 0.05): one of five is too thin",
-    "needs_a_snooker": "hidden 0.06: it plays safe, not for a snooker",
+    "break_off": "baulk 0.54: firm enough that the cue ball comes back up the table nearly every other time",
+    "thin_from_the_yellow_side": "foul 0.11, baulk 0.34, first struck [15, 15, 7, 11, 11]: inside reds and the far end red, too",
+    "thin_from_the_green_side": "baulk 0.65 (wanted 0.7), first struck [11, 4, 4, 7, 4]: inside reds more often than the end one",
+    "frozen_to_the_baulk_cushion": "foul 0.23, baulk 0.15: contacts over the whole table with a raised cue",
+    "from_the_top_cushion": "pot 1.00: it takes a pot on, where a coach would play safe",
+    "from_the_corner_of_baulk": "foul 0.11, baulk 0.56",
+    "roll_up_to_the_brown": "pot 0.80, hidden 0.09: four of five take the brown on",
+    "roll_up_to_the_green": "hidden 0.18, first struck [18, 18, 18, 17, 18]",
+    "snookered_behind_the_black": "foul 0.30 (wanted 0.25)",
+    "last_red_on_the_top_cushion": "baulk 0.33 (wanted 0.6)",
+    "two_reds_and_a_lead": "foul 0.06 (wanted 0.05), baulk 0.33",
+    "needs_a_snooker": "hidden 0.02: it plays safe, not for a snooker",
 }
-"""Where the tactician's advice is not as a coach wants it: what was measured, and why, as far as is known."""
+"""Where the tactician's advice is not as a coach wants it: what was measured."""
 
 
 class Measured(NamedTuple):
