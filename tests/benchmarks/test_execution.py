@@ -58,10 +58,10 @@ def test_without_errors_every_pot_goes_in_and_stays_so_just_within_its_window():
 
 
 def test_the_published_long_pots_take_about_half_of_a_professionals_errors():
-    """docs/validation/execution_errors.md: 0.034 deg makes them, the level 23 %."""
+    """docs/validation/execution_errors.md: 0.035 deg makes them, the level 23 %."""
     shots, (low, high) = shots_of(pot_shots.LONG), published.LONG_POTS
     usual = Noise.of("professional")
-    rate = published.mean_rate(shots, pot_shots.of_direction(0.034, usual, PHYSICS), 2000, PHYSICS, TABLE)
+    rate = published.mean_rate(shots, pot_shots.of_direction(0.035, usual, PHYSICS), 2000, PHYSICS, TABLE)
     assert low + 0.03 < rate < high - 0.03
     assert published.mean_rate(shots, usual, 2000, PHYSICS, TABLE) == pytest.approx(0.23, abs=0.01)
 
