@@ -18,5 +18,16 @@ def count(shots: int) -> None:
 
 
 def simulated() -> int:
-    """Number of shots that this process has simulated so far."""
+    """Number of shots that this process has simulated so far, an int.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> from snooker_env.benchmark import simulated
+    >>> before = simulated()
+    >>> _ = sn.simulate(np.zeros((1, 2)), np.array([[1.0, 0.0]]), np.zeros((1, 3)))
+    >>> simulated() - before
+    1
+    """
     return _SHOTS

@@ -44,6 +44,8 @@ with needs("agents.tournament"):
 
 ANCHOR = "ghost_ball"
 """The anchor if it plays; else the first player is."""
+SPENT = ("decisions", "seconds", "shots")
+"""What each player's decisions took."""
 SAVED = 60.0
 """Seconds between two files while it plays."""
 
@@ -155,10 +157,10 @@ class Tournament:
     def __init__(self, entrants, protocol, game, command, before=None):
         self.entrants, self.protocol, self.game, self.command = entrants, protocol, game, command
         self.labels, self.load = [entrant.label for entrant in entrants], machine()
-        self.rows, self.times = [], [[0, 0.0] for _ in entrants]
+        self.rows, self.spent = [], [dict.fromkeys(SPENT, 0) for _ in entrants]
         if before:
             self.rows = list(before["rows"])
-            self.times = [[player["decisions"], player["seconds"]] for player in before["players"]]
+            self.spent = [{name: player[name] for name in SPENT} for player in before["players"]]
 
     @property
     def parts(self):
@@ -192,8 +194,8 @@ class Tournament:
         for k, result in here if where.here else ended(parts, shared, where):
             self.rows = sorted([*self.rows, *result["rows"].tolist()], key=lambda row: row[:5])
             for side, player in enumerate(parts[k].args["pair"]):
-                self.times[player][0] += int(result["decisions"][side])
-                self.times[player][1] += float(result["seconds"][side])
+                for name in SPENT:
+                    self.spent[player][name] += result[name][side].item()
             tick(self.ended)
             saved()
 
@@ -207,8 +209,8 @@ class Tournament:
         """The content of the file; ``incomplete``: why frames are missing."""
         players = [
             {"label": entrant.label, "source": entrant.runs[0], "training": entrant.trained()[0]}
-            | {"decisions": decisions, "seconds": seconds}
-            for entrant, (decisions, seconds) in zip(self.entrants, self.times, strict=True)
+            | spent
+            for entrant, spent in zip(self.entrants, self.spent, strict=True)
         ]
         about = {"command": self.command, "load": self.load, "incomplete": incomplete}
         return result_of(self.protocol, self.game, players, self.rows, **about)

@@ -12,7 +12,7 @@ from snooker_env.checks import refuse
 from .tournament_figures import ANCHOR_ELO, COLUMNS, PRIOR, figures_of, schedule
 from .tournament_report import NAME
 
-VERSION = 2
+VERSION = 3
 NUMBER = (int, float)
 
 FIELDS = {
@@ -54,6 +54,7 @@ PLAYER = {
     "training": (dict, "how it was trained, as far as its file says"),
     "decisions": (int, "how often it decided, on tables that wait for others to end, too"),
     "seconds": (NUMBER, "what that took together"),
+    "shots": (int, "simulated for these decisions"),
 }
 """Fields of a player: type, meaning."""
 RANGES = {

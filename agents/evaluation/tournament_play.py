@@ -19,6 +19,7 @@ import numpy as np
 
 from commands.physics_option import physics_option
 from snooker_env import Options, SnookerVectorEnv
+from snooker_env.benchmark import simulated
 from snooker_env.players import FRAMES, decided, decision_seeds
 
 from .tournament_figures import COUNTED
@@ -31,11 +32,12 @@ CHUNK = 100
 
 
 class TimedPlayer:
-    """A player whose ``decisions`` are counted and timed, ``seconds`` together; ``seed``: of its draws."""
+    """A player whose ``decisions`` are counted and timed, ``seconds`` together, with the ``shots`` that it simulates;
+    ``seed``: of its draws."""
 
     def __init__(self, player, seed=0):
         self._player, self.seed = player, seed
-        self.count = {"decisions": 0, "seconds": 0.0}  # shared by all that are bound
+        self.count = {"decisions": 0, "seconds": 0.0, "shots": 0}  # shared by all that are bound
 
     def at(self, rules):
         bound = copy.copy(self)
@@ -43,9 +45,10 @@ class TimedPlayer:
         return bound
 
     def play(self, positions, seeds):
-        began = time.perf_counter()
+        began, before = time.perf_counter(), simulated()
         strokes = self._player.play(positions, np.asarray(seeds) ^ (self.seed & 0xFFFFFFFF))
         self.count["seconds"] += time.perf_counter() - began
+        self.count["shots"] += simulated() - before
         self.count["decisions"] += len(strokes)
         return strokes
 
@@ -174,7 +177,7 @@ def drawn(label, other, first):
 
 
 def play(shared, args, threads, tick=None):
-    """The task of a part, a pair on some seeds: the rows, and each player's decisions and their time [s].
+    """The task of a part, a pair on some seeds: the rows, and each player's decisions, their time [s] and simulated shots.
 
     ``shared``: "players", of ``travel.sent``. ``args``: "pair" (indices), "seeds" of the matches, "draws"
     (each player's ``drawn``), "game" as it stands in the file, "best_of"; ``tick`` is that of ``play_pair``.

@@ -31,12 +31,14 @@ def tables_of(content):
         shares = [shown(p[name], 100.0) for name in ("win_rate", "frame_rate")[: 2 if best_of > 1 else 1]]
         standing.append([str(rank), label, elo, *shares, f"{p['matches']:,}", f"{p['drawn']:,}"])
         average, fouls = (shown(p[name], form="{:.2f}") for name in ("average_break", "fouls_a_frame"))
-        time = f"{1e3 * one['seconds'] / one['decisions']:.3g}" if one["decisions"] else ""
+        asked = one["decisions"]
+        took = [f"{1e3 * one['seconds'] / asked:.3g}", f"{one['shots'] / asked:.0f}"] if asked else ["", ""]
         points, strokes = shown(p["points_a_frame"]), shown(p["strokes_a_frame"])
-        play.append([label, points, average, str(p["highest_break"]), fouls, strokes, time])
+        play.append([label, points, average, str(p["highest_break"]), fouls, strokes, *took])
     more = ["frames won [%]"] if best_of > 1 else []
     wins = ["", "player", "Elo", f"{won} won [%]", *more, won, "draws"]
-    does = ["points a frame", "average break", "highest", "fouls a frame", "strokes a frame", "ms a decision"]
+    does = ["points a frame", "average break", "highest", "fouls a frame", "strokes a frame"]
+    does += ["ms a decision", "shots a decision"]
     won_of = {}
     for pair in figures["pairs"]:
         first, second, share = pair["first"], pair["second"], 100 * pair["win_rate"]["value"]

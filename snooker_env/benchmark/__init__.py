@@ -1,5 +1,6 @@
 """The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, how agents are judged."""
 
+from .._shots import simulated
 from ..play.program import AgentError, ProgramPlayer
 from .agents import Agent
 from .checking import afresh, faults, replayed
@@ -49,6 +50,7 @@ __all__ = [
     "processor",
     "read_result",
     "replayed",
+    "simulated",
     "software",
     "summary",
     "tables_of",

@@ -40,6 +40,7 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
         own = sum(row[first if row[0] == k else second] for row in found["rows"] if k in row[:2])
         # an opponent also decides where nothing is counted any more
         assert 1.5 * own > player["decisions"] >= own > 0 and player["seconds"] > 0
+        assert player["shots"] == 0  # none of these three simulates
     text, printed = (tmp_path / "t.md").read_text(), capsys.readouterr()
     assert printed.err == "" and "Who wins" in printed.out and found["command"] in text
     for label in ("ghost_ball", "random", "Softly"):
@@ -55,6 +56,12 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
     assert capsys.readouterr().out == f"{file}: complete, 3 players, 10 frames\n"
     assert tournament.main(["--show", file, "--markdown", str(tmp_path / "again.md")]) == 0
     assert (tmp_path / "again.md").read_text() == text
+
+
+def test_the_simulated_shots_of_each_player_are_counted(tmp_path):
+    found = played(tmp_path, players=["ghost_ball", "search_8"])
+    plain, searches = found["players"]
+    assert plain["shots"] == 0 and 0.9 * 8 < searches["shots"] / searches["decisions"] <= 8
 
 
 def test_a_player_of_frames_says_all_that_an_opponent_may(tmp_path):
