@@ -18,7 +18,12 @@ def count(shots: int) -> None:
 
 
 def simulated() -> int:
-    """Number of shots that this process has simulated so far, an int.
+    """Count the shots that this process has simulated so far.
+
+    Returns
+    -------
+    int
+        Their number: read it before and after a decision. Single impacts are no shots.
 
     Examples
     --------

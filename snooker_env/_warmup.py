@@ -135,7 +135,7 @@ def warmup() -> None:
         both = Positions.of(match)
         player("ghost_ball").at({"task": "frame"}).play(both, [0])
         player(_Saying()).at({"task": "frame"}).play(both, [0])
-        for name in ("planner_30", "planner_policy"):
+        for name in ("planner_30", "planner_policy", "stroke_value"):
             player(name).at({"noise": "club"}).play(at, [0])
         player("tactician_30").at({"task": "frame", "noise": "club", "miss": "clear_path"}).play(both, [0])
         decide(lambda some: np.zeros(len(some)), both)

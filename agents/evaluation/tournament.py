@@ -208,8 +208,7 @@ class Tournament:
     def result(self, incomplete=None):
         """The content of the file; ``incomplete``: why frames are missing."""
         players = [
-            {"label": entrant.label, "source": entrant.runs[0], "training": entrant.trained()[0]}
-            | spent
+            {"label": entrant.label, "source": entrant.runs[0], "training": entrant.trained()[0]} | spent
             for entrant, spent in zip(self.entrants, self.spent, strict=True)
         ]
         about = {"command": self.command, "load": self.load, "incomplete": incomplete}

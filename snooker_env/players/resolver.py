@@ -13,6 +13,7 @@ from .._check import refuse, refuse_what, truth
 from .choices import GhostBall, Random
 from .player import Player
 from .search import BUDGET, LEAST, MOST, SearchPlayer
+from .stroke_value import StrokeValuePlayer
 from .tactician import Tactician
 
 GROUP = "snooker_env.players"
@@ -26,6 +27,7 @@ BUILT_IN = (
     "search",
     "planner",
     "tactician",
+    "stroke_value",
 )  # the players in the package
 RENAMED = {"lookahead": "search"}  # names of players of version 0.3 that are still understood
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
@@ -115,6 +117,8 @@ def _built_in(name: str) -> Player | None:
     """The player of the package with that name."""
     if name in (Random.name, GhostBall.name):
         return Random() if name == Random.name else GhostBall()
+    if name == StrokeValuePlayer.name:
+        return StrokeValuePlayer()
     form = _SEARCHING.fullmatch(name)
     if form is None:
         return None

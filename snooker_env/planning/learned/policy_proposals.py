@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..._types import Floats
+from ..._types import Floats, Ints
 from ...physics.cue_room import NO_RAILS
 from ...tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from ...tasks.discrete_actions import SIZE as CHOICES
@@ -40,19 +40,25 @@ class PolicyProposals:
     def __call__(self, search: Any, at: Positions, m: int, seeds: Any) -> Proposals:
         """m strokes for each position, as ``StrokeSearch`` wants them."""
         scores, masks = self.scores(at, search.dynamics.rails)
-        likely = np.where(masks, np.exp((scores - scores.max(axis=1, keepdims=True)) / TEMPERATURE), 0.0)
-        sums = np.cumsum(likely, axis=1)
-        points = np.stack([sobol_points(m, 4, seed ^ 0xBEEF) for seed in seeds.tolist()])
-        levels = (np.arange(m) + points[:, :1, 3]) / m  # systematic sampling: one random start a position
-        each = zip(sums, levels, strict=True)
-        picks = np.stack([np.searchsorted(row, level * row[-1], side="right") for row, level in each])
-        picks = np.minimum(picks, CHOICES - 1)
-        stroke = picks % STROKES
-        speed, side = stroke // (len(SIDES) * len(TOPS)), stroke // len(TOPS) % len(SIDES)
-        top = stroke % len(TOPS)
-        tips = np.empty((*picks.shape, 3))
-        tips[..., 0] = _SPEEDS[speed] * np.exp(_STEP[speed] * (points[..., 0] - 0.5))
-        plain = (side == SIDES.index(0.0)) & (points[..., 3] < 0.5)
-        tips[..., 1] = np.where(plain, 0.0, _SIDES[side] + _SIDE_STEP * (points[..., 1] - 0.5))
-        tips[..., 2] = _TOPS[top] + _TOP_STEP * (points[..., 2] - 0.5)
+        picks, tips = drawn(scores, masks, m, seeds)
         return strokes_at(at, picks // STROKES, tips, search.spread, search.dynamics)
+
+
+def drawn(scores: Any, masks: Any, m: int, seeds: Any) -> tuple[Ints, Floats]:
+    """m choices of each position, drawn by their scores (n, CHOICES), and speeds and tips near them: (n, m), (n, m, 3)."""
+    likely = np.where(masks, np.exp((scores - scores.max(axis=1, keepdims=True)) / TEMPERATURE), 0.0)
+    sums = np.cumsum(likely, axis=1)
+    points = np.stack([sobol_points(m, 4, seed ^ 0xBEEF) for seed in seeds.tolist()])
+    levels = (np.arange(m) + points[:, :1, 3]) / m  # systematic sampling: one random start a position
+    each = zip(sums, levels, strict=True)
+    picks = np.stack([np.searchsorted(row, level * row[-1], side="right") for row, level in each])
+    picks = np.minimum(picks, CHOICES - 1)
+    stroke = picks % STROKES
+    speed, side = stroke // (len(SIDES) * len(TOPS)), stroke // len(TOPS) % len(SIDES)
+    top = stroke % len(TOPS)
+    tips = np.empty((*picks.shape, 3))
+    tips[..., 0] = _SPEEDS[speed] * np.exp(_STEP[speed] * (points[..., 0] - 0.5))
+    plain = (side == SIDES.index(0.0)) & (points[..., 3] < 0.5)
+    tips[..., 1] = np.where(plain, 0.0, _SIDES[side] + _SIDE_STEP * (points[..., 1] - 0.5))
+    tips[..., 2] = _TOPS[top] + _TOP_STEP * (points[..., 2] - 0.5)
+    return picks, tips

@@ -90,8 +90,20 @@ def _open(balls, many, open_to):
 
 
 @kernel
-def _fill(positions, on_table, ball_on, spread, balls, open_to, best, row):
-    """One row of features. Work space: balls (22, 3), open_to (22, 6), best (POTS_SEEN,)."""
+def _same_balls(positions, on_table, before, on_before):
+    """Whether all balls but the cue ball lie as in another position."""
+    for b in range(1, N_BALLS):
+        if on_table[b] != on_before[b]:
+            return False
+        if on_table[b] and (positions[b, 0] != before[b, 0] or positions[b, 1] != before[b, 1]):
+            return False
+    return True
+
+
+@kernel
+def _fill(positions, on_table, ball_on, spread, opened, balls, open_to, best, row):
+    """One row of features; ``opened``: ``open_to`` is known. Work space: balls (22, 3), open_to (22, 6), best
+    (POTS_SEEN,)."""
     d = 2.0 * BALL_RADIUS
     for c in range(SIZE):
         row[c] = 0.0
@@ -103,7 +115,8 @@ def _fill(positions, on_table, ball_on, spread, balls, open_to, best, row):
         if on_table[b]:
             balls[many, 0], balls[many, 1], balls[many, 2] = b, positions[b, 0], positions[b, 1]
             many += 1
-    _open(balls, many, open_to)
+    if not opened:
+        _open(balls, many, open_to)
     shared = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES
     for j in range(POTS_SEEN):
         best[j] = 0.0
@@ -202,7 +215,9 @@ def _fill(positions, on_table, ball_on, spread, balls, open_to, best, row):
 def _features(positions, on_table, ball_on, spread, out):
     balls, open_to, best = np.empty((N_BALLS, 3)), np.empty((N_BALLS, 6)), np.empty(POTS_SEEN)
     for k in range(len(out)):
-        _fill(positions[k], on_table[k], ball_on[k], spread, balls, open_to, best, out[k])
+        # the windows of balls do not depend on the cue ball: other places of it need no others
+        same = k > 0 and _same_balls(positions[k], on_table[k], positions[k - 1], on_table[k - 1])
+        _fill(positions[k], on_table[k], ball_on[k], spread, same, balls, open_to, best, out[k])
 
 
 def value_features(at, spread, threads=1):

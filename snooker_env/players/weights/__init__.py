@@ -21,6 +21,8 @@ from ...tasks.noise import LEVELS, Noise
 FOLDER = Path(__file__).parent
 WORTH = "worth.npz"
 """The file of the ``tactician``'s worth of positions of frames (``python -m agents.learn_worth``)."""
+STROKES = "strokes.npz"
+"""The file of the network of ``stroke_value`` (``python -m agents.learn_strokes``)."""
 VALUE_LAYERS = 3  # layers of each network of a value
 
 
@@ -55,6 +57,13 @@ def learned_worth(path: Path = FOLDER / WORTH) -> tuple[list[tuple[Singles, Sing
     with np.load(path, allow_pickle=False) as arrays:
         layers = [(arrays[f"worth/{k}/weight"], arrays[f"worth/{k}/bias"]) for k in range(VALUE_LAYERS)]
         return layers, Chance(*arrays["chance"].tolist())
+
+
+@cache
+def learned_strokes(path: Path = FOLDER / STROKES) -> list[tuple[Singles, Singles]]:
+    """The layers of a ``StrokeValue``; by default the package's."""
+    with np.load(path, allow_pickle=False) as arrays:
+        return [(arrays[f"strokes/{k}/weight"], arrays[f"strokes/{k}/bias"]) for k in range(VALUE_LAYERS)]
 
 
 def levels() -> list[str]:

@@ -1,0 +1,213 @@
+"""Where will a pot leave the cue ball? As a player predicts it: the cue ball alone, past balls that stay where they
+are. No shot is simulated.
+
+The solved aim says where the cue ball meets the ball to be potted. From there it moves by the closed forms of ``cloth``;
+each meeting with a nose or another ball is a single impact. Its path is looked at in chords, three for the parabola of a
+sliding ball. A ball that it meets stays where it is, and the potted one is gone: the prediction ends where these would matter.
+"""
+
+from math import hypot, sqrt
+
+from ..._jit import entry, kernel
+from ...game.balls import N_BALLS, SPOTS, VALUES
+from ...geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from ...physics import cloth
+from ...physics.arrays import Law
+from ...physics.columns import P_E_B, P_G, P_MU_R, P_R
+from ...physics.detection import pair_time
+from ...physics.impact.contact import collide_balls, collide_cushion, cushion_restitution
+from ...tasks.arrays import CueLaw
+from ...tasks.lines import new_work
+from ...tasks.pot_aim import stroke_in_room, struck_by
+from ...tasks.stroke import row_of
+
+X, Y, NOSES, BALLS, LENGTH, LOST, HIT, NEAR, MISSED, REACH, OBJECT, ASIDE = range(12)
+SEEN = 12
+"""What is predicted of a stroke: where the cue ball stops [m]; how many noses and balls it meets; how far it runs [m]; 1 if
+a pocket takes it; how fast it meets the first other ball [m/s]; how near it passes to a pocket [m]; 1 if it does not
+reach the ball, 2 if it passes it; how far the ball to be potted would roll, over the distance to the pocket; its speed
+[m/s], and the sine of the angle by which it leaves off the line to the pocket."""
+NONE = 8  # no ball is on: the visit has cleared the table
+MEETINGS, PARTS = 12, 3
+"""Phases and meetings of a cue ball that are predicted, and chords of a sliding phase."""
+TAKEN = 0.055
+"""A cue ball that reaches the line of the noses so near to a pocket's aim point is taken [m]."""
+FAREST = 3.0  # largest ``REACH``
+_LONGEST = 60.0  # longest phase that is looked at [s]
+
+
+@kernel
+def _moment(motion, state, t0, t1, share, x, y, normal, phys):
+    """When within (t0, t1) the cue ball has passed the line through (x, y) with this normal: the share of the chord, and
+    one step of Newton's method."""
+    t = t0 + (t1 - t0) * share
+    (px, py), v, _ = cloth.evaluate(motion, state, 0, t, phys)
+    speed = v[0] * normal[0] + v[1] * normal[1]
+    if speed > 1e-3:
+        t -= ((px - x) * normal[0] + (py - y) * normal[1]) / speed
+    return min(max(t, t0), t1)
+
+
+@kernel(seconds=3, uses=(collide_balls, collide_cushion))
+def _run(positions, on_table, skip, law, work, out):
+    """Follow the cue ball of ``work.motion``, which has just met ball ``skip``, to where it stops; fills ``out``."""
+    phys, motion, state = law.phys, work.motion, work.state
+    R, d = phys[P_R], 2.0 * phys[P_R]
+    right, top = HALF_WIDTH - R, HALF_LENGTH - R
+    still, last, near = (0.0, 0.0, 0.0), skip, out[NEAR] * out[NEAR]
+    for _ in range(MEETINGS):
+        if state[0] <= cloth.REST:
+            break
+        begin, end = motion[0, cloth.T0], motion[0, cloth.T_END]
+        end = min(end, begin + _LONGEST)
+        met, who, t, parts = 0, 0, end, PARTS if state[0] == cloth.SLIDE else 1
+        nx = ny = 0.0
+        for part in range(parts):
+            t0, t1 = begin + (end - begin) * part / parts, begin + (end - begin) * (part + 1) / parts
+            (ax, ay), va, _ = cloth.evaluate(motion, state, 0, t0, phys)
+            (bx, by), _, _ = cloth.evaluate(motion, state, 0, t1, phys)
+            length = hypot(bx - ax, by - ay)
+            if length < 1e-6:
+                continue
+            ux, uy, far = (bx - ax) / length, (by - ay) / length, length
+            if ux * ux > 1e-12:
+                run = ((right if ux > 0.0 else -right) - ax) / ux
+                if run < far:
+                    far, met, nx, ny = max(0.0, run), 1, 1.0 if ux > 0.0 else -1.0, 0.0
+            if uy * uy > 1e-12:
+                run = ((top if uy > 0.0 else -top) - ay) / uy
+                if run < far:
+                    far, met, nx, ny = max(0.0, run), 1, 0.0, 1.0 if uy > 0.0 else -1.0
+            for i in range(1, N_BALLS):
+                if on_table[i] and i != last:
+                    px, py = positions[i, 0] - ax, positions[i, 1] - ay
+                    along, across = px * ux + py * uy, px * uy - py * ux
+                    if along > 0.0 and across * across < d * d:
+                        run = along - sqrt(d * d - across * across)
+                        if run < far:
+                            far, met, who = max(0.0, run), 2, i
+            ex, ey = ax + far * ux, ay + far * uy
+            for k in range(POCKET_AIMS.shape[0]):
+                px, py = POCKET_AIMS[k, AIM_X] - ax, POCKET_AIMS[k, AIM_Y] - ay
+                along = min(max(px * ux + py * uy, 0.0), far)
+                dx, dy = px - along * ux, py - along * uy
+                near = min(near, dx * dx + dy * dy)
+                dx, dy = POCKET_AIMS[k, AIM_X] - ex, POCKET_AIMS[k, AIM_Y] - ey
+                if met == 1 and dx * dx + dy * dy < TAKEN * TAKEN:
+                    out[X], out[Y], out[LOST] = ex, ey, 1.0
+            out[LENGTH] += far
+            out[NEAR] = sqrt(near)
+            if out[LOST] > 0.0:
+                return
+            if met:
+                share = far / length
+                if met == 2:
+                    nx, ny = (positions[who, 0] - ex) / d, (positions[who, 1] - ey) / d
+                if parts == 1:  # it slows down along the chord
+                    v = hypot(va[0], va[1])
+                    slowing = 2.0 * (v * (t1 - t0) - length) / ((t1 - t0) * (t1 - t0))
+                    root = sqrt(max(0.0, v * v - 2.0 * slowing * far))
+                    share = min(1.0, 2.0 * far / max(1e-9, v + root) / (t1 - t0))
+                t = _moment(motion, state, t0, t1, share, ex, ey, (nx, ny), phys)
+                break
+        if met == 0:
+            cloth.next_phase(motion, state, 0, phys)
+            continue
+        (x, y), v, w = cloth.evaluate(motion, state, 0, t, phys)
+        ball = v[0], v[1], 0.0
+        if met == 1:
+            x, y = min(max(x, -right), right), min(max(y, -top), top)
+            closing = v[0] * nx + v[1] * ny
+            v, w, _ok = collide_cushion(
+                ball, w, (nx, ny), law, cushion_restitution(closing, phys), work.series
+            )
+            out[NOSES] += 1.0
+            last = 0
+        else:
+            nx, ny = positions[who, 0] - x, positions[who, 1] - y
+            away = hypot(nx, ny)
+            nx, ny = nx / away, ny / away
+            if out[BALLS] == 0.0:
+                out[HIT] = max(0.0, v[0] * nx + v[1] * ny)
+            v, w, _v, _w, _ok = collide_balls(ball, w, still, still, (nx, ny), law, phys[P_E_B], work.series)
+            out[BALLS] += 1.0
+            last = who
+        cloth.begin(motion, state, 0, t, (x, y), (v[0], v[1]), w, phys)
+    (x, y), _v, _w = cloth.evaluate(motion, state, 0, motion[0, cloth.T0], phys)
+    out[X], out[Y] = x, y
+
+
+@kernel(seconds=1, uses=(_run,))
+def _predicted(stroke, ball, pocket, positions, on_table, cue_law, work, out):
+    """What is predicted of a stroke (5,) at a pot; fills ``out`` (SEEN,)."""
+    phys, motion, state = cue_law.phys, work.motion, work.state
+    R, law = phys[P_R], Law(phys, cue_law.fidelity, cue_law.n_steps)
+    bx, by = positions[ball, 0], positions[ball, 1]
+    px, py = POCKET_AIMS[pocket, AIM_X] - bx, POCKET_AIMS[pocket, AIM_Y] - by
+    run = hypot(px, py)
+    for c in range(SEEN):
+        out[c] = 0.0
+    out[X], out[Y], out[NEAR] = positions[0, 0], positions[0, 1], 9.0
+    meant = stroke[0], stroke[1], stroke[2], stroke[4]
+    played = stroke_in_room(stroke[3], meant, positions, on_table, cue_law)
+    (vx, vy, _), w = struck_by(played, cue_law)
+    cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
+    cloth.begin(motion, state, 1, 0.0, (bx, by), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
+    t, now = 1e300, 0.0
+    while state[0] > cloth.REST:
+        t = pair_time(motion, state, 0, 1, now, 2.0 * R)
+        now = motion[0, cloth.T_END]
+        if t <= now:
+            break
+        cloth.next_phase(motion, state, 0, phys)
+    (x, y), v, w = cloth.evaluate(motion, state, 0, motion[0, cloth.T0] if t > now else t, phys)
+    if t > now:
+        out[X], out[Y] = x, y
+        out[MISSED] = (
+            1.0
+            if hypot(x - positions[0, 0], y - positions[0, 1])
+            < hypot(bx - positions[0, 0], by - positions[0, 1])
+            else 2.0
+        )
+        return
+    nx, ny = bx - x, by - y
+    away, still = hypot(nx, ny), (0.0, 0.0, 0.0)
+    own, w, other, _w, _ok = collide_balls(
+        (v[0], v[1], 0.0), w, still, still, (nx / away, ny / away), law, phys[P_E_B], work.series
+    )
+    speed = hypot(other[0], other[1])
+    out[OBJECT], out[ASIDE] = speed, (px * other[1] - py * other[0]) / (run * max(speed, 1e-9))
+    # it slides, and rolls on with 5/7 of its speed
+    rolls = (25.0 / 49.0) * speed * speed / (2.0 * phys[P_MU_R] * phys[P_G])
+    out[REACH] = min(FAREST, rolls / run)
+    cloth.begin(motion, state, 0, t, (x, y), (own[0], own[1]), w, phys)
+    _run(positions, on_table, ball, law, work, out)
+
+
+@entry(what="the paths of cue balls", seconds=2, uses=(_predicted,))
+def predict(balls, rows, strokes, pots, law, out, left):
+    """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,): fills ``out`` (n, SEEN), and
+    with what they leave if the ball is potted ``left``: positions, on_table, and the ball on or ``NONE``."""
+    (positions, on_table, ball_on), (after, there, on) = balls, left
+    phys, ratios, fidelity, n_steps, most, rails = law
+    work = new_work()
+    for j in range(rows.shape[0]):
+        k = rows[j]
+        own, ball, p, here = row_of(k, phys), pots[j, 0], positions[k], on_table[k]
+        its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
+        _predicted(strokes[j], ball, pots[j, 1], p, here, its, work, out[j])
+        reds = False
+        for i in range(N_BALLS):
+            after[j, i, 0], after[j, i, 1], there[j, i] = p[i, 0], p[i, 1], here[i]
+            reds = reds or (0 < i < 16 and here[i] and i != ball)
+        after[j, 0, 0], after[j, 0, 1] = out[j, X], out[j, Y]
+        if VALUES[ball] > 1 and ball_on[k] == 0:
+            after[j, ball, 0], after[j, ball, 1] = SPOTS[ball, 0], SPOTS[ball, 1]
+        else:
+            there[j, ball] = False
+        on[j] = 0 if VALUES[ball] == 1 else 1
+        if VALUES[ball] > 1 and not reds:
+            on[j] = NONE
+            for i in range(N_BALLS - 1, 15, -1):
+                if there[j, i]:
+                    on[j] = VALUES[i]

@@ -1,0 +1,169 @@
+"""What is a stroke worth, without playing it? A policy proposes strokes at the pots; of each it predicts where it
+leaves the cue ball (``cue_ball_path``), under no error and under some, and a learned value says what such positions are worth.
+A small network weighs this against how sure the pot is: the points that the stroke, and the visit after it, bring.
+``agents.learn_strokes`` trains it."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..._types import Floats, Ints
+from ...game.balls import N_BALLS, VALUES
+from ...game.frame_columns import BALL_ON, VISIT_COLUMNS
+from ...geometry import AIM_X, AIM_Y, IS_MIDDLE, POCKET_AIMS
+from ...tasks.discrete_actions import STROKES
+from ...tasks.noise import Noise
+from ..geometry import Pots, pots
+from ..positions import Positions
+from ..proposals import strokes_at
+from ..prospects import in_parts
+from ..sobol import normal_points
+from ..strokes import SIDE, SPEED, TOP, Dynamics, law_of
+from . import cue_ball_path as path
+from .dense_layers import Layers
+from .learned_value import LearnedValue
+from .policy_proposals import PolicyProposals, drawn
+
+SIZE = 32
+POINTS = 10.0  # unit of the network's results [points]
+LOOKS, SAMPLES = 60, 3
+"""Strokes that are looked at, and errors under which each is predicted; the first is none."""
+_SEED = 7  # of the errors, which are the same for all
+_LEAST_SPEED = 0.03
+"""The errors of speed that are predicted are at least this: else all would come to the same place."""
+
+
+class Candidates(NamedTuple):
+    """m strokes of each of n positions that have a pot, and what is seen of them.
+
+    ``rows`` (n,): the positions; ``strokes`` (n, m, 5); ``seen`` float32 (n, m, SIZE)."""
+
+    rows: Ints
+    strokes: Floats
+    seen: NDArray[np.float32]
+
+
+class StrokeValue:
+    """Proposes strokes at pots and says what they are worth [points]; ``layers``: of the network, empty before it has
+    learned: then the policy's scores are all."""
+
+    def __init__(
+        self,
+        value: LearnedValue,
+        policy: Any,
+        dynamics: Dynamics,
+        noise: Noise,
+        layers: Sequence[tuple[NDArray, NDArray]],
+    ):
+        self.value, self.proposals, self.dynamics = value, PolicyProposals(policy), dynamics
+        self._layers = Layers(layers, "relu") if layers else None
+        tip = noise.offset_mm * 1e-3 / dynamics.physics.R
+        self._errors = normal_points(SAMPLES, _SEED) * (
+            *(max(noise.speed_rel, _LEAST_SPEED), tip, tip),
+            *(0.0, 0.0),
+        )
+        self._errors[0] = 0.0
+
+    def candidates(self, at: Positions, m: int, seeds: Ints) -> Candidates:
+        """The strokes that are looked at in visits whose cue ball is on the table."""
+        direct = pots(at)
+        rows = np.flatnonzero(direct.ball[:, 0] >= 0)
+        if not len(rows):
+            return Candidates(rows, np.zeros((0, m, 5)), np.zeros((0, m, SIZE), np.float32))
+        some: Any = [part[rows] for part in direct]
+        at, direct = at[rows], Pots(*some)
+        scores, masks = self.proposals.scores(at, self.dynamics.rails)
+        picks, tips = drawn(scores, masks, m, seeds[rows])
+        strokes, chances = strokes_at(at, picks // STROKES, tips, self.value.spread, self.dynamics)
+        every = np.arange(len(at))[:, None]
+        which = np.minimum(picks // STROKES, (direct.ball >= 0).sum(axis=1)[:, None] - 1)
+        pot = Pots(*(part[every, which] for part in some))
+        likely = scores[every, picks]
+        columns = [
+            np.maximum(likely, -50.0) / 20.0,  # what the policy says of it, and beside its best
+            np.maximum(likely - scores.max(axis=1, keepdims=True), -40.0) / 10.0,
+            *self._pots(at, strokes, chances, pot),
+            *self._ahead(at, strokes, pot),
+        ]
+        return Candidates(rows, strokes, np.stack(columns, axis=-1).astype(np.float32))
+
+    def scores(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
+        """What the strokes seen (n, m, SIZE) are worth [points]: float32 (n, m)."""
+        if self._layers is None:
+            return seen[..., 0]
+        return POINTS * self._layers(seen.reshape(-1, SIZE)).reshape(seen.shape[:2])
+
+    def _pots(self, at: Positions, strokes: Floats, chances: Floats, pot: Pots) -> list[Floats]:
+        """What is seen of the pots and of the strokes: columns (n, m)."""
+        lies = at.positions[np.arange(len(at))[:, None], pot.ball]
+        target, cue = POCKET_AIMS[pot.pocket][..., [AIM_X, AIM_Y]], at.positions[:, None, 0]
+        return [
+            chances,
+            np.log(chances + 1e-3) - np.log(1.0 - chances + 1e-3),
+            pot.cut,
+            np.log10(pot.tolerance + 1e-6) + 2.0,
+            np.log(strokes[..., SPEED]),
+            strokes[..., TOP],
+            strokes[..., SIDE],
+            np.abs(strokes[..., SIDE]),
+            np.hypot(*np.moveaxis(target - lies, -1, 0)),  # the paths of both balls [m]
+            np.hypot(*np.moveaxis(lies - cue, -1, 0)),
+            POCKET_AIMS[pot.pocket, IS_MIDDLE],
+            VALUES[pot.ball] / 7.0,
+        ]
+
+    def _ahead(self, at: Positions, strokes: Floats, pot: Pots) -> list[Floats]:
+        """What is predicted: columns (n, m)."""
+        out, values = self._predicted(at, strokes, pot)
+        first, mean = out[:, :, 0], out.mean(axis=2)
+        values = values / 20.0
+        return [
+            values[..., 0],
+            values.mean(axis=2),
+            values.min(axis=2),
+            values.max(axis=2),
+            values.std(axis=2),
+            mean[..., path.NOSES] / 3.0,
+            mean[..., path.BALLS] / 2.0,
+            mean[..., path.LENGTH] / 3.0,
+            mean[..., path.LOST],
+            first[..., path.HIT],
+            mean[..., path.MISSED],
+            5.0 * np.minimum(out[..., path.NEAR].min(axis=2), 0.3),
+            first[..., path.REACH],
+            out[..., path.REACH].min(axis=2),
+            np.log(first[..., path.OBJECT] + 0.05),
+            np.log10(np.abs(first[..., path.ASIDE]) + 1e-5) + 3.0,
+            np.hypot(
+                out[..., path.X].std(axis=2), out[..., path.Y].std(axis=2)
+            ),  # how far the places are apart [m]
+            strokes[..., SPEED] * np.cos(pot.cut),  # what a stun shot gives the object ball [m/s]
+        ]
+
+    def _predicted(self, at: Positions, strokes: Floats, pot: Pots) -> tuple[Floats, Floats]:
+        """What ``cue_ball_path`` predicts of strokes (n, m, 5) under each error, (n, m, k, SEEN), and the values of what
+        they leave (n, m, k) [points]; 0 where the visit ends."""
+        n, m = strokes.shape[:2]
+        k = len(self._errors)
+        tried = np.repeat(strokes.reshape(-1, 5), k, axis=0)
+        tried[:, SPEED] *= 1.0 + np.tile(self._errors[:, SPEED], n * m)
+        for column in (SIDE, TOP):
+            tried[:, column] += np.tile(self._errors[:, column], n * m)
+        rows = np.repeat(np.arange(n), m * k)
+        at_pots = np.repeat(np.stack([pot.ball.reshape(-1), pot.pocket.reshape(-1)], axis=1), k, axis=0)
+        out, on = np.empty((len(rows), path.SEEN)), np.empty(len(rows), np.int64)
+        places, there = np.empty((len(rows), N_BALLS, 2)), np.empty((len(rows), N_BALLS), np.bool_)
+        balls, law = (at.positions, at.on_table, at.ball_on.copy()), law_of(self.dynamics, at)
+
+        def predict(part: slice) -> None:
+            left = places[part], there[part], on[part]
+            path.predict(balls, rows[part], tried[part], at_pots[part], law, out[part], left)
+
+        in_parts(len(rows), self.value.threads, predict)
+        game, values = np.zeros((len(rows), VISIT_COLUMNS), np.int64), np.zeros(len(rows))
+        game[:, BALL_ON] = on
+        live = np.flatnonzero((on < path.NONE) & (out[:, path.LOST] == 0.0) & (out[:, path.MISSED] == 0.0))
+        values[live] = self.value(Positions(places[live], there[live], game[live]))
+        return out.reshape(n, m, k, -1), values.reshape(n, m, k)

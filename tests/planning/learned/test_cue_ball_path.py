@@ -1,0 +1,92 @@
+"""Is the cue ball where it is predicted to be, as far as no other ball moves in its way? Judged by simulated shots."""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.planning import Planner, Position, Positions, pots
+from snooker_env.planning.learned import cue_ball_path
+from snooker_env.planning.strokes import AIM, Dynamics, law_of
+from snooker_env.players import VISITS
+from snooker_env.tasks import STROKES
+
+
+def predicted(at, rows, strokes, options):
+    """What is predicted of strokes at the widest pots of ``at[rows]``, and the positions after them."""
+    direct, n = pots(at, most=1), len(rows)
+    at_pots = np.stack([direct.ball[rows, 0], direct.pocket[rows, 0]], axis=1)
+    out, on = np.empty((n, cue_ball_path.SEEN)), np.empty(n, np.int64)
+    places, there = np.empty((n, 22, 2)), np.empty((n, 22), np.bool_)
+    balls = at.positions, at.on_table, at.ball_on.copy()
+    law = law_of(Dynamics.of(sn.Options(**options).rules), at)
+    cue_ball_path.predict(balls, rows, strokes, at_pots, law, out, (places, there, on))
+    return out, Positions(places, there, np.column_stack([on, np.zeros((n, 4), np.int64)]))
+
+
+@pytest.fixture(scope="module", params=["free", "real"])
+def pots_of_600(request):
+    """Choices at the widest pots of random tables: positions, rows, strokes, what follows, and what is predicted."""
+    options = {"cue": request.param, "noise": "none"}
+    tables = sn.SnookerVectorEnv(600, **options, **VISITS)
+    tables.reset(seed=4)
+    at, rng = Positions.of(tables), np.random.default_rng(5)
+    rows = np.flatnonzero(pots(at).ball[:, 0] >= 0)
+    planner, choices = Planner({"action": "discrete", **options}), rng.integers(STROKES, size=len(rows))
+    strokes, _ = planner.strokes_of(at, rows, choices)
+    return at, rows, strokes, planner.stops(at, rows, choices), predicted(at, rows, strokes, options)
+
+
+def test_the_path_is_the_engines_as_long_as_nothing_else_is_met(pots_of_600):
+    at, rows, _, stops, (out, _) = pots_of_600
+    direct = pots(at, most=1).ball[rows, 0]
+    moved = np.abs(stops.places - at.positions[rows]).max(axis=2) > 1e-9
+    moved[np.arange(len(rows)), direct] = False
+    alone = (stops.points > 0) & ~moved[:, 1:].any(axis=1) & (stops.potted[:, 0] < 0)
+    off = np.hypot(*(stops.places[:, 0] - out[:, [cue_ball_path.X, cue_ball_path.Y]]).T)
+    none, some = (alone & (out[:, cue_ball_path.NOSES] == k) for k in (0, 1))
+    assert none.sum() > 20 and some.sum() > 20
+    assert np.median(off[none]) < 0.005 and np.quantile(off[none], 0.9) < 0.06
+    assert np.median(off[some]) < 0.05
+    assert (out[alone, cue_ball_path.BALLS] == 0.0).mean() > 0.9
+    assert (out[alone, cue_ball_path.MISSED] == 0.0).all()
+
+
+def test_a_cue_ball_that_will_be_lost_is_told(pots_of_600):
+    _, _, _, stops, (out, _) = pots_of_600
+    lost, told = stops.potted[:, 0] >= 0, out[:, cue_ball_path.LOST] > 0.0
+    assert lost[told].mean() > 5.0 * lost.mean() and told.sum() > 3
+
+
+def test_what_is_left_is_what_the_referee_leaves(pots_of_600):
+    at, rows, _, stops, (_, left) = pots_of_600
+    meant = stops.potted[np.arange(len(rows)), pots(at, most=1).ball[rows, 0]] >= 0
+    good = meant & (stops.points > 0) & stops.goes_on & ((stops.potted[:, 1:] >= 0).sum(axis=1) == 1)
+    assert good.sum() > 100
+    assert np.array_equal(left.ball_on[good], stops.afterstates.ball_on[good])
+    assert np.array_equal(left.on_table[good], stops.afterstates.on_table[good])
+
+
+@pytest.mark.parametrize(
+    ("position", "after", "on"),
+    [
+        (Position(cue=(0.0, 0.9), black=(0.4, 1.3), on="black"), 0, 8),  # nothing is left
+        (Position(cue=(0.0, 0.9), pink=(0.4, 1.3), black=(0.0, -0.5), on="pink"), 1, 7),
+        (Position(cue=(0.0, 0.9), black=(0.4, 1.3), yellow=(-0.2, -1.0), on="any_colour"), 2, 2),
+        (Position(cue=(0.0, 0.9), black=(0.4, 1.3), reds=[(0.4, -1.0)], on="any_colour"), 2, 1),
+        (Position(cue=(0.0, 0.9), reds=[(0.4, 1.3)], black=(0.0, -0.5), on="red"), 1, 0),
+    ],
+)
+def test_which_ball_is_on_next(position, after, on):
+    at = Positions.of(position)
+    strokes = np.zeros((1, 5))
+    strokes[0, 0], strokes[0, AIM] = 2.0, 0.3
+    out, left = predicted(at, np.array([0]), strokes, {})
+    assert left.ball_on.tolist() == [on] and left.on_table[0, 1:].sum() == after
+    assert out[0, cue_ball_path.MISSED] == 2.0 and out[0, cue_ball_path.NOSES] == 0.0
+
+
+def test_a_cue_ball_that_stops_short_is_told():
+    at, strokes = Positions.of(Position(cue=(0.0, -1.0), black=(0.4, 1.3))), np.zeros((1, 5))
+    strokes[0, 0], strokes[0, AIM] = 0.3, np.arctan2(2.3, 0.4)
+    out, _ = predicted(at, np.array([0]), strokes, {})
+    assert out[0, cue_ball_path.MISSED] == 1.0 and -1.0 < out[0, cue_ball_path.Y] < 1.0
