@@ -58,5 +58,5 @@ evaluate() { # name of the output, then the options of agents.evaluate
 module agents.curves "ppo_value=$folder/ppo_value-0"
 # the published models, by their names
 evaluate visits --layouts held_out=500 --noise professional --against search best_pot --picture agents/pictures/destinations.png --agent \
-    planner best_pot ghost_ball search ppo_mask_finetuned ppo_value ppo_mask random
+    planner best_pot ghost_ball search stroke_value ppo_mask_finetuned ppo_value ppo_mask random
 module agents.value_quality --visits 500 --layouts held_out --noise professional --markdown agents/results/value_quality.md

@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 file=${1:-agents/results/ladder.json}
 export OMP_NUM_THREADS=1 # the networks are small: more threads than one make them slower
-command=(python -m agents.tournament random ghost_ball best_pot search planner tactician
+command=(python -m agents.tournament random ghost_ball best_pot stroke_value search planner tactician
     --cue real --miss clear_path --frames 40 --threads 1 --resume --out "$file" --markdown "${file%.json}.md")
 if [[ -n ${LIST:-} ]]; then
     printf '%q ' "${command[@]}"

@@ -2,7 +2,8 @@
 
     python -m agents.learn_strokes --out runs/strokes [--rounds 8]
 
-Each round plays visits with what the rounds before have learned (the first one half with the planner), and in each
+Each round plays visits, under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds before
+have learned (the first one half with the planner), and in each
 position that comes about tries some of the strokes that the player looks at, each under ``ERRORS`` execution errors. What
 they bring and what the planner's value says of what they leave is their worth: a network is fitted to it, on the
 positions of its own visits (DAgger; Ross, Gordon & Bagnell 2011). After each round OUT holds its data and its weights:
@@ -36,8 +37,10 @@ with needs("agents.learn_strokes"):
     from snooker_env.players.stroke_value import StrokeValuePlayer
     from snooker_env.players.weights import FOLDER, STROKES, learned_strokes
 
-TABLES, STROKES_EACH = 1024, 8
-"""Tables of a round, side by side, and strokes that are played on each."""
+TABLES, STROKES_EACH, PARTS = 1024, 8, 8
+"""Tables of a round, strokes that are played on each, and parts with errors of their own."""
+SCALES = 0.7, 4.5
+"""Errors of the visits, times those of a professional: half of them below 1.12."""
 BEST, OTHERS, ERRORS = 10, 10, 4
 """Strokes of a position that are tried: those that seem best, others at random; and execution errors of each."""
 EXPLORE, AMONG = 0.1, 8
@@ -181,21 +184,19 @@ def main(argv=None):
     p.add_argument("--out", type=Path, required=True, help="folder of rounds and weights")
     p.add_argument("--rounds", type=int, default=8, help="[8]")
     p.add_argument("--tables", type=int, default=TABLES, help=f"tables of a round [{TABLES}]")
-    p.add_argument("--noise", default="professional", help="errors: LEVEL or LEVEL*SCALE [professional]")
     p.add_argument("--cue", default="real", choices=("real", "free"), help="[real]")
     p.add_argument("--seed", type=int, default=0, help="[0]")
     p.add_argument("--export", action="store_true", help="write the weights into the package, too")
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
         integer("rounds", args.rounds, 1, 99)
-        integer("tables", args.tables, 16, 100_000)
+        integer("tables", args.tables, PARTS, 100_000)
         integer("seed", args.seed, 0, 80)
-        noise = noise_option(args.noise)
         writable("out", args.out / STROKES)
     except ValueError as error:
         p.error(str(error))
     sn.warmup()
-    layers, rounds, asked = None, [], [args.tables, args.seed, args.cue, repr(noise)]
+    layers, rounds, asked = None, [], [args.tables, args.seed, args.cue]
     for k in range(args.rounds):
         data, weights, began = args.out / f"round-{k}.npz", args.out / f"strokes-{k}.npz", time.time()
         if data.is_file():
@@ -206,17 +207,23 @@ def main(argv=None):
                         refuse(
                             "out",
                             str(args.out),
-                            "must hold rounds with the same --tables, --seed, --cue and --noise",
+                            "must hold rounds with the same --tables, --seed and --cue",
                         )
                     )
                 )
         else:
             first = FIRST_SEED + 10_000_000 * args.seed + 100_000 * k
-            rng = np.random.default_rng([args.seed, k])
-            seen, worth = played(
-                layers, {"noise": noise, "cue": args.cue}, list(range(first, first + args.tables)), rng
-            )
-            rows = {"seen": seen, "worth": worth}
+            rng, parts = np.random.default_rng([args.seed, k]), []
+            shares = (np.arange(PARTS) + rng.random(PARTS)) / PARTS
+            for share, seeds in zip(
+                shares, np.array_split(np.arange(first, first + args.tables), PARTS), strict=True
+            ):
+                scale = SCALES[0] * (SCALES[1] / SCALES[0]) ** share**2
+                options = {"noise": noise_option(f"professional*{scale}"), "cue": args.cue}
+                parts.append(played(layers, options, seeds.tolist(), rng))
+            seen, worth = map(np.concatenate, zip(*parts, strict=True))
+            order = rng.permutation(len(seen))  # one in so many is kept from the fit
+            rows = {"seen": seen[order], "worth": worth[order]}
             write_atomic(data, packed(rows | {"asked": np.array(list(map(str, asked)))}))
         rounds.append(rows)
         if weights.is_file():

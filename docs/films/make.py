@@ -60,16 +60,16 @@ class Film:
 def _visit(agent, layout, at_least, noise="professional", **options):
     return Film(
         agent,
-        {"layout": layout, "noise": noise, **options},
+        {"layout": layout, "noise": noise, "cue": "real", **options},
         at_least,
         f"{agent}, layout {layout}, {noise}'s execution errors",
     )
 
 
 FILMS = {
-    "break": _visit("ppo_foresight", "held_out", 20),
-    "break_club": _visit("ppo_foresight", "held_out", 8, noise="club"),
-    "line_up": _visit("ppo_foresight", "line_up", 20),
+    "break": _visit("stroke_value", "held_out", 20),
+    "break_club": _visit("planner", "held_out", 8, noise="club"),
+    "line_up": _visit("stroke_value", "line_up", 20),
     "colours": _visit("planner_500", "colours", 27),
     "pot_hard": _visit("planner_500", "pots:hard", 1),
     "escape": _visit("geometric", "snookered", 0, reward="legal", one_stroke=True),

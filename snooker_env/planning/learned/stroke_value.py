@@ -21,15 +21,17 @@ from ..proposals import strokes_at
 from ..prospects import in_parts
 from ..sobol import normal_points
 from ..strokes import SIDE, SPEED, TOP, Dynamics, law_of
+from ..worth import SPREAD
 from . import cue_ball_path as path
 from .dense_layers import Layers
 from .learned_value import LearnedValue
 from .policy_proposals import PolicyProposals, drawn
 
-SIZE = 32
+SIZE = 33
 POINTS = 10.0  # unit of the network's results [points]
 LOOKS, SAMPLES = 60, 3
 """Strokes that are looked at, and errors under which each is predicted; the first is none."""
+_LEAST_SPREAD = 1e-4  # the error of direction of a player who makes none counts as this [rad]
 _SEED = 7  # of the errors, which are the same for all
 _LEAST_SPEED = 0.03
 """The errors of speed that are predicted are at least this: else all would come to the same place."""
@@ -86,6 +88,7 @@ class StrokeValue:
             np.maximum(likely - scores.max(axis=1, keepdims=True), -40.0) / 10.0,
             *self._pots(at, strokes, chances, pot),
             *self._ahead(at, strokes, pot),
+            np.full(picks.shape, np.log(max(self.value.spread, _LEAST_SPREAD) / SPREAD)),
         ]
         return Candidates(rows, strokes, np.stack(columns, axis=-1).astype(np.float32))
 
