@@ -42,7 +42,10 @@ def tree_of(commit):
     def make(folder):
         archive = subprocess.run(["git", "archive", name], cwd=ROOT, capture_output=True, check=True).stdout
         with tarfile.open(fileobj=BytesIO(archive)) as files:
-            files.extractall(folder, filter="data")
+            safe = (
+                {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
+            )  # not in Python before 3.11.4
+            files.extractall(folder, **safe)
 
     return kept_folder(f"commit_{name[:16]}", make)
 

@@ -30,8 +30,8 @@ with needs("agents.learn_strokes"):
     from commands.noise_option import noise_option
     from snooker_env.checks import integer, refuse
     from snooker_env.planning import Planner, Positions
-    from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SIZE, StrokeValue
-    from snooker_env.players import VISITS
+    from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SAMPLES, SIZE, StrokeValue
+    from snooker_env.players import VISITS, Strokes
     from snooker_env.players.player import placed
     from snooker_env.players.search import SearchPlayer
     from snooker_env.players.stroke_value import StrokeValuePlayer
@@ -51,7 +51,7 @@ PASSES, LAST_PASSES = 15, 60
 COMPARED = 2.0
 """Weight of what the strokes of a position are worth beside each other; that of the worth itself is 1."""
 HELD = 10
-"""One position in so many is kept from the fit, to say how good it is."""
+"""One table in so many is kept from the fit, to say how good it is."""
 FIRST_SEED = 30_000_000
 """The seed of the first table."""
 
@@ -73,11 +73,11 @@ class StrokeNetwork(nn.Sequential):
         return made
 
 
-def fitted(seen, worth, seed, passes):
-    """The layers of a network fitted to ``worth`` (n, k) points of strokes seen as (n, k, SIZE), and figures of the
-    positions kept from the fit."""
+def fitted(seen, worth, table, seed, passes):
+    """The layers of a network fitted to ``worth`` (n, k) points of strokes seen as (n, k, SIZE) on the tables with these
+    seeds (n,), and figures of the tables kept from the fit."""
     torch.manual_seed(seed)
-    rng, held = np.random.default_rng(seed), np.arange(len(seen)) % HELD == HELD - 1
+    rng, held = np.random.default_rng(seed), table % HELD == HELD - 1
     mean, deviation = seen[~held].mean((0, 1), np.float64), seen[~held].std((0, 1), np.float64) + 1e-3
     scaled = torch.from_numpy(((seen - mean) / deviation).astype(np.float32))
     wanted, network = torch.from_numpy((worth / POINTS).astype(np.float32)), StrokeNetwork()
@@ -113,16 +113,16 @@ def fitted(seen, worth, seed, passes):
 
 
 def played(layers, options, seeds, rng):
-    """Visits from the tables ``seeds``: what is seen of the strokes tried, float16 (n, k, SIZE), and their worth [points],
-    float32 (n, k)."""
+    """Visits from the tables ``seeds``: what is seen of the strokes tried, float16 (n, k, SIZE), their worth [points],
+    float32 (n, k), and the seeds of the tables on which the visits began (n,)."""
     n, env = len(seeds), sn.SnookerVectorEnv(len(seeds), layout="opened", **VISITS, **options)
     env.reset(seed=seeds)
-    player, planner = StrokeValuePlayer(layers or ()).at(env), Planner(env)
-    values: StrokeValue = player.values
+    values: StrokeValue = StrokeValuePlayer(layers or ()).at(env).values
+    plain, planner = sn.player("ghost_ball").at(env), Planner(env)
     expert: SearchPlayer = sn.player("planner_60").at(env)  # type: ignore[assignment]
     values.value.threads = planner.threads
     judge = expert.search.value
-    kept_seen, kept_worth, tried = [], [], BEST + OTHERS
+    kept_seen, kept_worth, kept_table, tried = [], [], [], BEST + OTHERS
     for _ in range(STROKES_EACH):
         at, keys = Positions.of(env), rng.integers(2**32, size=n)
         live = np.flatnonzero(~at.over)
@@ -133,26 +133,26 @@ def played(layers, options, seeds, rng):
         rest = rng.permuted(order[:, BEST:], axis=1)[:, :OTHERS]
         picks = np.concatenate([order[:, :BEST], rest], axis=1)
         rows = np.repeat(found.rows, tried * ERRORS)
-        strokes = np.repeat(found.strokes[every, picks].reshape(-1, 5), ERRORS, axis=0)
+        trials = np.repeat(found.strokes[every, picks].reshape(-1, 5), ERRORS, axis=0)
         points, goes_on, left, _ = planner.play(
-            visits, rows, strokes=strokes, errors=rng.standard_normal((len(rows), 5))
+            visits, rows, strokes=trials, errors=rng.standard_normal((len(rows), 5))
         )
         worth, on = points.astype(np.float64), np.flatnonzero(goes_on)
         worth[on] += judge(left[on])
         kept_seen.append(found.seen[every, picks].astype(np.float16))
         kept_worth.append(worth.reshape(-1, tried, ERRORS).mean(axis=2).astype(np.float32))
+        kept_table.append(np.asarray(seeds)[live[found.rows]])
         chosen = np.where(rng.random(len(scores)) < EXPLORE, rng.integers(AMONG, size=len(scores)), 0)
-        played_now = player.play(visits, keys[live])
-        played_now.values[found.rows] = found.strokes[every[:, 0], order[every[:, 0], chosen]]
+        strokes = plain.play(visits, keys[live]).values
+        strokes[found.rows] = found.strokes[every[:, 0], order[every[:, 0], chosen]]
         if layers is None:  # nothing is learned yet: half of the tables show where a good player comes
             half = np.flatnonzero(np.arange(len(live)) % 2)
-            played_now.values[half] = expert.play(visits[half], keys[live][half]).values
-        played_now = sn.players.Strokes(played_now.values, places)
+            strokes[half] = expert.play(visits[half], keys[live][half]).values
         actions = np.zeros((n, env.options.rules.actions.size))
-        actions[live] = played_now.actions(env.options, at[live])
+        actions[live] = Strokes(strokes, places).actions(env.options, at[live])
         env.step(actions)
     env.close()
-    return np.concatenate(kept_seen), np.concatenate(kept_worth)
+    return tuple(map(np.concatenate, (kept_seen, kept_worth, kept_table)))
 
 
 def arrays_of(layers):
@@ -167,8 +167,8 @@ def _kept_round(file):
 
 
 def _fitted_to(rounds, seed, passes):
-    both = {name: np.concatenate([one[name] for one in rounds]) for name in ("seen", "worth")}
-    return fitted(both["seen"].astype(np.float32), both["worth"], seed, passes)
+    both = {name: np.concatenate([one[name] for one in rounds]) for name in ("seen", "worth", "table")}
+    return fitted(both["seen"].astype(np.float32), both["worth"], both["table"], seed, passes)
 
 
 def told(what, figures, began):
@@ -196,7 +196,8 @@ def main(argv=None):
     except ValueError as error:
         p.error(str(error))
     sn.warmup()
-    layers, rounds, asked = None, [], [args.tables, args.seed, args.cue]
+    torch.set_num_threads(1)  # sums do not depend on the number of cores
+    layers, rounds, asked = None, [], [args.tables, args.seed, args.cue, LOOKS, SAMPLES, SIZE, SCALES]
     for k in range(args.rounds):
         data, weights, began = args.out / f"round-{k}.npz", args.out / f"strokes-{k}.npz", time.time()
         if data.is_file():
@@ -207,7 +208,7 @@ def main(argv=None):
                         refuse(
                             "out",
                             str(args.out),
-                            "must hold rounds with the same --tables, --seed and --cue",
+                            "must hold rounds of this version with the same --tables, --seed and --cue",
                         )
                     )
                 )
@@ -221,9 +222,8 @@ def main(argv=None):
                 scale = SCALES[0] * (SCALES[1] / SCALES[0]) ** share**2
                 options = {"noise": noise_option(f"professional*{scale}"), "cue": args.cue}
                 parts.append(played(layers, options, seeds.tolist(), rng))
-            seen, worth = map(np.concatenate, zip(*parts, strict=True))
-            order = rng.permutation(len(seen))  # one in so many is kept from the fit
-            rows = {"seen": seen[order], "worth": worth[order]}
+            seen, worth, table = map(np.concatenate, zip(*parts, strict=True))
+            rows = {"seen": seen, "worth": worth, "table": table}
             write_atomic(data, packed(rows | {"asked": np.array(list(map(str, asked)))}))
         rounds.append(rows)
         if weights.is_file():

@@ -10,7 +10,7 @@ from ..planning import Positions, spread_of
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.stroke_value import LOOKS, Candidates, StrokeValue
 from ..planning.positions import seeds_of
-from ..planning.strokes import Dynamics
+from ..planning.strokes import COLUMNS, Dynamics
 from ..tasks.options import Options
 from .choices import GhostBall
 from .player import BoundPlayer, Ranked, Strokes, placed
@@ -35,19 +35,23 @@ class StrokeValuePlayer(BoundPlayer):
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
-        visits, places, found, scores = self._scored(positions, seeds)
-        strokes = (
-            self._plain.play(visits, seeds).values
-            if len(found.rows) < len(visits)
-            else np.zeros((len(visits), 5))
-        )
-        strokes[found.rows] = found.strokes[np.arange(len(scores)), scores.argmax(axis=1)]
-        return Strokes(strokes, places)
+        at, places, found, scores = self._scored(positions, seeds)
+        values = np.zeros((len(at), COLUMNS))
+        values[found.rows] = found.strokes[np.arange(len(scores)), scores.argmax(axis=1)]
+        others = np.setdiff1d(np.arange(len(at)), found.rows)
+        if not len(others):
+            return Strokes(values, places)
+        plain = self._plain.play(at[others], np.asarray(seeds)[others])
+        values[others] = plain.values
+        chosen = Strokes(values, places)
+        for part, its in zip(chosen.parts[1:], plain.parts[1:], strict=True):
+            part[others] = its
+        return chosen
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """Its strokes, best first, with what they are worth [points]."""
-        visits, places, found, scores = self._scored(positions, seeds)
-        ranked: list[Ranked] = self._plain.rank(visits, seeds)
+        at, places, found, scores = self._scored(positions, seeds)
+        ranked: list[Ranked] = self._plain.rank(at, seeds)
         for j, k in enumerate(found.rows.tolist()):
             order = np.argsort(-scores[j], kind="stable")
             where = np.repeat(places[k : k + 1], len(order), axis=0)
@@ -55,11 +59,11 @@ class StrokeValuePlayer(BoundPlayer):
         return ranked
 
     def _scored(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Candidates, Any]:
-        """The visits with placed cue balls, their places, the strokes that are looked at, and their values."""
+        """The positions, the places of cue balls in hand, the strokes that are looked at, and their values."""
         options, values = self.options, self.values  # it must be bound
         assert values is not None, options
         at = Positions.of(positions).known_to(options.rules)
         keys = seeds_of(seeds, len(at))
         visits, places = placed(at, keys)
         found = values.candidates(visits, LOOKS, keys)
-        return visits, places, found, values.scores(found.seen)
+        return at, places, found, values.scores(found.seen)

@@ -54,6 +54,7 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path):
     asked = ["--tables", "16", "--seed", "3"]
     assert learn_strokes.main(["--out", str(whole), "--rounds", "2", *asked]) == 0
     assert learn_strokes.main(["--out", str(parts), "--rounds", "1", *asked]) == 0
+    (parts / "strokes-0.npz").unlink()  # as if it had been interrupted between the round and the fit
     assert learn_strokes.main(["--out", str(parts), "--rounds", "2", *asked]) == 0
     assert (whole / "strokes.npz").read_bytes() == (parts / "strokes.npz").read_bytes()
     layers = learned_strokes(whole / "strokes.npz")
@@ -66,20 +67,55 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path):
 
 def test_the_network_is_fitted_to_what_strokes_are_worth():
     rng = np.random.default_rng(1)
-    seen = rng.normal(2.0, 3.0, (300, 6, SIZE)).astype(np.float32)
+    seen = rng.normal(2.0, 3.0, (600, 6, SIZE)).astype(np.float32)
     worth = 4.0 * seen[..., 3] - 6.0 * np.maximum(seen[..., 5], 0.0)
-    layers, figures = learn_strokes.fitted(seen, worth, 0, 60)
-    assert figures["explained"] > 0.9 and figures["positions"] == 300
+    layers, figures = learn_strokes.fitted(seen, worth, np.arange(600), 0, 60)
+    assert figures["explained"] > 0.9 and figures["positions"] == 600
     from snooker_env.planning.learned.dense_layers import Layers
 
     said = learn_strokes.POINTS * Layers(layers, "relu")(seen.reshape(-1, SIZE))[:, 0]
     assert np.corrcoef(said, worth.reshape(-1))[0, 1] > 0.95
 
 
-def test_it_plays_frames():
-    frame = sn.SnookerVectorEnv(4, task="frame", noise="professional", **sn.players.FRAMES)
+def test_it_plays_frames_from_where_it_places_the_cue_ball():
+    """A pot is taken from the D; where there is none, all is as ``ghost_ball`` says, its break-off too."""
+    frame = sn.SnookerVectorEnv(40, task="frame", noise="professional", **sn.players.FRAMES)
     frame.reset(seed=3)
-    player = sn.player("stroke_value").at(frame)
-    for k in range(4):
-        at = Positions.of(frame)
-        frame.step(player.play(at, np.arange(4) + k).actions(frame.options, at))
+    player, plain, hands = sn.player("stroke_value").at(frame), sn.player("ghost_ball").at(frame), 0
+    for k in range(12):
+        at, keys = Positions.of(frame), np.arange(40) + 100 * k
+        strokes, other = player.play(at, keys), plain.play(at, keys)
+        ranked = player.rank(at, keys)
+        same = np.flatnonzero((strokes.values == other.values).all(axis=1))
+        assert k or len(same) == 40
+        assert all(
+            np.array_equal(a[same], b[same], equal_nan=True)
+            for a, b in zip(strokes.parts, other.parts, strict=True)
+        )
+        for j, one in enumerate(ranked):
+            assert np.array_equal(one.strokes.values[0], strokes.values[j])
+            assert np.array_equal(one.strokes.place[0], strokes.place[j], equal_nan=True)
+        hands += int((at.in_hand & np.isfinite(strokes.place[:, 0])).sum())
+        frame.step(strokes.actions(frame.options, at))
+    assert hands > 40
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"noise": "none"},
+        {"conditions": "drawn"},
+        {"table": "tight"},
+        {"physics": {"roll_drag": 0.0136}},
+        {"cue": "real"},
+    ],
+    ids=str,
+)
+def test_it_pots_under_all_options(options):
+    visits = summary(play_visits("stroke_value", 60, layout="opened", **{"noise": "professional"} | options))
+    assert visits["pots_a_visit"] > (8.0 if options.get("noise") == "none" else 2.5)
+
+
+def test_nothing_is_asked_of_no_position():
+    player = sn.player("stroke_value").at({})
+    assert len(player.play(Positions.of(opened(2))[[]], [])) == 0

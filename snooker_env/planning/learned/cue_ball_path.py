@@ -8,6 +8,8 @@ sliding ball. A ball that it meets stays where it is, and the potted one is gone
 
 from math import hypot, sqrt
 
+import numpy as np
+
 from ..._jit import entry, kernel
 from ...game.balls import N_BALLS, SPOTS, VALUES
 from ...geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
@@ -17,7 +19,9 @@ from ...physics.columns import P_E_B, P_G, P_MU_R, P_R
 from ...physics.detection import pair_time
 from ...physics.impact.contact import collide_balls, collide_cushion, cushion_restitution
 from ...tasks.arrays import CueLaw
+from ...tasks.box_actions import tip_on_disc
 from ...tasks.lines import new_work
+from ...tasks.noise import with_errors
 from ...tasks.pot_aim import stroke_in_room, struck_by
 from ...tasks.stroke import row_of
 
@@ -28,8 +32,8 @@ a pocket takes it; how fast it meets the first other ball [m/s]; how near it pas
 reach the ball, 2 if it passes it; how far the ball to be potted would roll, over the distance to the pocket; its speed
 [m/s], and the sine of the angle by which it leaves off the line to the pocket."""
 NONE = 8  # no ball is on: the visit has cleared the table
-MEETINGS, PARTS = 12, 3
-"""Phases and meetings of a cue ball that are predicted, and chords of a sliding phase."""
+MEETINGS, PHASES, PARTS = 12, 60, 3
+"""Meetings of a cue ball that are predicted, phases of its motion, and chords of a sliding phase."""
 TAKEN = 0.055
 """A cue ball that reaches the line of the noses so near to a pocket's aim point is taken [m]."""
 FAREST = 3.0  # largest ``REACH``
@@ -54,9 +58,9 @@ def _run(positions, on_table, skip, law, work, out):
     phys, motion, state = law.phys, work.motion, work.state
     R, d = phys[P_R], 2.0 * phys[P_R]
     right, top = HALF_WIDTH - R, HALF_LENGTH - R
-    still, last, near = (0.0, 0.0, 0.0), skip, out[NEAR] * out[NEAR]
-    for _ in range(MEETINGS):
-        if state[0] <= cloth.REST:
+    still, gone, near = (0.0, 0.0, 0.0), 1 << skip, out[NEAR] * out[NEAR]
+    for _ in range(PHASES):
+        if state[0] <= cloth.REST or out[NOSES] + out[BALLS] > MEETINGS:
             break
         begin, end = motion[0, cloth.T0], motion[0, cloth.T_END]
         end = min(end, begin + _LONGEST)
@@ -79,7 +83,7 @@ def _run(positions, on_table, skip, law, work, out):
                 if run < far:
                     far, met, nx, ny = max(0.0, run), 1, 0.0, 1.0 if uy > 0.0 else -1.0
             for i in range(1, N_BALLS):
-                if on_table[i] and i != last:
+                if on_table[i] and not (gone >> i) & 1:
                     px, py = positions[i, 0] - ax, positions[i, 1] - ay
                     along, across = px * ux + py * uy, px * uy - py * ux
                     if along > 0.0 and across * across < d * d:
@@ -122,7 +126,6 @@ def _run(positions, on_table, skip, law, work, out):
                 ball, w, (nx, ny), law, cushion_restitution(closing, phys), work.series
             )
             out[NOSES] += 1.0
-            last = 0
         else:
             nx, ny = positions[who, 0] - x, positions[who, 1] - y
             away = hypot(nx, ny)
@@ -131,7 +134,7 @@ def _run(positions, on_table, skip, law, work, out):
                 out[HIT] = max(0.0, v[0] * nx + v[1] * ny)
             v, w, _v, _w, _ok = collide_balls(ball, w, still, still, (nx, ny), law, phys[P_E_B], work.series)
             out[BALLS] += 1.0
-            last = who
+            gone |= 1 << who
         cloth.begin(motion, state, 0, t, (x, y), (v[0], v[1]), w, phys)
     (x, y), _v, _w = cloth.evaluate(motion, state, 0, motion[0, cloth.T0], phys)
     out[X], out[Y] = x, y
@@ -185,17 +188,22 @@ def _predicted(stroke, ball, pocket, positions, on_table, cue_law, work, out):
 
 
 @entry(what="the paths of cue balls", seconds=2, uses=(_predicted,))
-def predict(balls, rows, strokes, pots, law, out, left):
-    """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,): fills ``out`` (n, SEEN), and
-    with what they leave if the ball is potted ``left``: positions, on_table, and the ball on or ``NONE``."""
+def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
+    """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,), each under standard normal
+    ``errors`` (k, 5): fills ``out`` (n k, SEEN), and with what they leave if the ball is potted ``left``: positions,
+    on_table, and the ball on or ``NONE``."""
     (positions, on_table, ball_on), (after, there, on) = balls, left
     phys, ratios, fidelity, n_steps, most, rails = law
-    work = new_work()
-    for j in range(rows.shape[0]):
-        k = rows[j]
-        own, ball, p, here = row_of(k, phys), pots[j, 0], positions[k], on_table[k]
+    work, tried = new_work(), np.empty(5)
+    for j in range(out.shape[0]):
+        i = j // errors.shape[0]
+        k = rows[i]
+        own, ball, p, here = row_of(k, phys), pots[i, 0], positions[k], on_table[k]
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
-        _predicted(strokes[j], ball, pots[j, 1], p, here, its, work, out[j])
+        meant = strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3], strokes[i, 4]
+        tried[:] = with_errors(*meant, errors[j % errors.shape[0]], noise)
+        tried[1], tried[2] = tip_on_disc(tried[1], tried[2], most)
+        _predicted(tried, ball, pots[i, 1], p, here, its, work, out[j])
         reds = False
         for i in range(N_BALLS):
             after[j, i, 0], after[j, i, 1], there[j, i] = p[i, 0], p[i, 1], here[i]

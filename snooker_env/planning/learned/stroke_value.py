@@ -4,6 +4,7 @@ A small network weighs this against how sure the pot is: the points that the str
 ``agents.learn_strokes`` trains it."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ from ..positions import Positions
 from ..proposals import strokes_at
 from ..prospects import in_parts
 from ..sobol import normal_points
-from ..strokes import SIDE, SPEED, TOP, Dynamics, law_of
+from ..strokes import COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
 from ..worth import SPREAD
 from . import cue_ball_path as path
 from .dense_layers import Layers
@@ -31,7 +32,7 @@ SIZE = 33
 POINTS = 10.0  # unit of the network's results [points]
 LOOKS, SAMPLES = 60, 3
 """Strokes that are looked at, and errors under which each is predicted; the first is none."""
-_LEAST_SPREAD = 1e-4  # the error of direction of a player who makes none counts as this [rad]
+_LEARNED = 8.4e-4, 5e-3  # other errors of direction than it has learned from count as these [rad]
 _SEED = 7  # of the errors, which are the same for all
 _LEAST_SPEED = 0.03
 """The errors of speed that are predicted are at least this: else all would come to the same place."""
@@ -61,11 +62,16 @@ class StrokeValue:
     ):
         self.value, self.proposals, self.dynamics = value, PolicyProposals(policy), dynamics
         self._layers = Layers(layers, "relu") if layers else None
-        tip = noise.offset_mm * 1e-3 / dynamics.physics.R
-        self._errors = normal_points(SAMPLES, _SEED) * (
-            *(max(noise.speed_rel, _LEAST_SPEED), tip, tip),
-            *(0.0, 0.0),
+        self._noise = replace(noise, speed_rel=max(noise.speed_rel, _LEAST_SPEED)).pack(
+            dynamics.physics.R, real=len(dynamics.rails) > 0
         )
+        self._errors = normal_points(SAMPLES, _SEED) * (
+            1.0,
+            1.0,
+            1.0,
+            0.0,
+            0.0,
+        )  # the pot's chance knows those of the aim
         self._errors[0] = 0.0
 
     def candidates(self, at: Positions, m: int, seeds: Ints) -> Candidates:
@@ -88,7 +94,7 @@ class StrokeValue:
             np.maximum(likely - scores.max(axis=1, keepdims=True), -40.0) / 10.0,
             *self._pots(at, strokes, chances, pot),
             *self._ahead(at, strokes, pot),
-            np.full(picks.shape, np.log(max(self.value.spread, _LEAST_SPREAD) / SPREAD)),
+            np.full(picks.shape, np.log(np.clip(self.value.spread, *_LEARNED) / SPREAD)),
         ]
         return Candidates(rows, strokes, np.stack(columns, axis=-1).astype(np.float32))
 
@@ -149,23 +155,21 @@ class StrokeValue:
         """What ``cue_ball_path`` predicts of strokes (n, m, 5) under each error, (n, m, k, SEEN), and the values of what
         they leave (n, m, k) [points]; 0 where the visit ends."""
         n, m = strokes.shape[:2]
-        k = len(self._errors)
-        tried = np.repeat(strokes.reshape(-1, 5), k, axis=0)
-        tried[:, SPEED] *= 1.0 + np.tile(self._errors[:, SPEED], n * m)
-        for column in (SIDE, TOP):
-            tried[:, column] += np.tile(self._errors[:, column], n * m)
-        rows = np.repeat(np.arange(n), m * k)
-        at_pots = np.repeat(np.stack([pot.ball.reshape(-1), pot.pocket.reshape(-1)], axis=1), k, axis=0)
-        out, on = np.empty((len(rows), path.SEEN)), np.empty(len(rows), np.int64)
-        places, there = np.empty((len(rows), N_BALLS, 2)), np.empty((len(rows), N_BALLS), np.bool_)
+        k, rows = len(self._errors), np.repeat(np.arange(n), m)
+        at_pots = np.stack([pot.ball.reshape(-1), pot.pocket.reshape(-1)], axis=1)
+        flat, each = strokes.reshape(-1, COLUMNS), n * m * k
+        out, on = np.empty((each, path.SEEN)), np.empty(each, np.int64)
+        places, there = np.empty((each, N_BALLS, 2)), np.empty((each, N_BALLS), np.bool_)
         balls, law = (at.positions, at.on_table, at.ball_on.copy()), law_of(self.dynamics, at)
 
         def predict(part: slice) -> None:
-            left = places[part], there[part], on[part]
-            path.predict(balls, rows[part], tried[part], at_pots[part], law, out[part], left)
+            all_of = slice(k * part.start, k * part.stop)
+            left = places[all_of], there[all_of], on[all_of]
+            some = rows[part], flat[part], at_pots[part]
+            path.predict(balls, *some, self._errors, self._noise, law, out[all_of], left)
 
         in_parts(len(rows), self.value.threads, predict)
-        game, values = np.zeros((len(rows), VISIT_COLUMNS), np.int64), np.zeros(len(rows))
+        game, values = np.zeros((each, VISIT_COLUMNS), np.int64), np.zeros(each)
         game[:, BALL_ON] = on
         live = np.flatnonzero((on < path.NONE) & (out[:, path.LOST] == 0.0) & (out[:, path.MISSED] == 0.0))
         values[live] = self.value(Positions(places[live], there[live], game[live]))

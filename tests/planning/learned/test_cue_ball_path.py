@@ -6,20 +6,24 @@ import pytest
 import snooker_env as sn
 from snooker_env.planning import Planner, Position, Positions, pots
 from snooker_env.planning.learned import cue_ball_path
+from snooker_env.planning.learned.value_features import value_features
 from snooker_env.planning.strokes import AIM, Dynamics, law_of
 from snooker_env.players import VISITS
-from snooker_env.tasks import STROKES
+from snooker_env.tasks import STROKES, Noise
 
 
-def predicted(at, rows, strokes, options):
-    """What is predicted of strokes at the widest pots of ``at[rows]``, and the positions after them."""
+def predicted(at, rows, strokes, options, pot=None):
+    """What is predicted of strokes at the widest pots of ``at[rows]``, or at ``pot``, and the positions after them."""
     direct, n = pots(at, most=1), len(rows)
     at_pots = np.stack([direct.ball[rows, 0], direct.pocket[rows, 0]], axis=1)
+    if pot is not None:
+        at_pots[:] = pot
     out, on = np.empty((n, cue_ball_path.SEEN)), np.empty(n, np.int64)
     places, there = np.empty((n, 22, 2)), np.empty((n, 22), np.bool_)
     balls = at.positions, at.on_table, at.ball_on.copy()
     law = law_of(Dynamics.of(sn.Options(**options).rules), at)
-    cue_ball_path.predict(balls, rows, strokes, at_pots, law, out, (places, there, on))
+    none = np.zeros((1, 5)), Noise().pack(0.02625)
+    cue_ball_path.predict(balls, rows, strokes, at_pots, *none, law, out, (places, there, on))
     return out, Positions(places, there, np.column_stack([on, np.zeros((n, 4), np.int64)]))
 
 
@@ -45,16 +49,16 @@ def test_the_path_is_the_engines_as_long_as_nothing_else_is_met(pots_of_600):
     off = np.hypot(*(stops.places[:, 0] - out[:, [cue_ball_path.X, cue_ball_path.Y]]).T)
     none, some = (alone & (out[:, cue_ball_path.NOSES] == k) for k in (0, 1))
     assert none.sum() > 20 and some.sum() > 20
-    assert np.median(off[none]) < 0.005 and np.quantile(off[none], 0.9) < 0.06
-    assert np.median(off[some]) < 0.05
-    assert (out[alone, cue_ball_path.BALLS] == 0.0).mean() > 0.9
+    assert np.median(off[none]) < 0.003 and np.quantile(off[none], 0.95) < 0.03
+    assert np.median(off[some]) < 0.01 and np.quantile(off[some], 0.9) < 0.1
+    assert (out[alone, cue_ball_path.BALLS] == 0.0).mean() > 0.97
     assert (out[alone, cue_ball_path.MISSED] == 0.0).all()
 
 
 def test_a_cue_ball_that_will_be_lost_is_told(pots_of_600):
     _, _, _, stops, (out, _) = pots_of_600
     lost, told = stops.potted[:, 0] >= 0, out[:, cue_ball_path.LOST] > 0.0
-    assert lost[told].mean() > 5.0 * lost.mean() and told.sum() > 3
+    assert lost[told].mean() > 5.0 * lost.mean() and told[lost].mean() > 0.4 and told.sum() > 3
 
 
 def test_what_is_left_is_what_the_referee_leaves(pots_of_600):
@@ -90,3 +94,24 @@ def test_a_cue_ball_that_stops_short_is_told():
     strokes[0, 0], strokes[0, AIM] = 0.3, np.arctan2(2.3, 0.4)
     out, _ = predicted(at, np.array([0]), strokes, {})
     assert out[0, cue_ball_path.MISSED] == 1.0 and -1.0 < out[0, cue_ball_path.Y] < 1.0
+
+
+def test_balls_that_were_met_and_the_potted_one_are_met_no_more():
+    """It pots the black, comes back off the cushion through its place, and meets a red
+    that it follows once."""
+    strokes = np.zeros((1, 5))
+    strokes[0, 0], strokes[0, 2], strokes[0, AIM] = 5.0, 0.3, np.pi / 2.0
+    straight = Position(cue=(0.0, 0.5), black=(0.0, 1.4605), reds=[(0.0, 1.3)], on="any_colour")
+    out, _ = predicted(Positions.of(straight), np.array([0]), strokes, {}, (21, 3))
+    assert out[0, cue_ball_path.BALLS] == 1.0 and out[0, cue_ball_path.NOSES] >= 1.0
+
+
+def test_a_batch_is_as_each_row_where_only_the_cue_ball_lies_elsewhere():
+    """The windows of balls are kept for such rows: the features must not depend on their neighbours."""
+    tables = sn.SnookerVectorEnv(6)
+    tables.reset(seed=2)
+    at = Positions.of(tables)[np.repeat(np.arange(6), 4)]
+    at.positions[:, 0] += np.random.default_rng(0).uniform(-0.02, 0.02, (24, 2))
+    at.on_table[9:11, 21] = False
+    together = value_features(at, 1e-3)
+    assert all(np.array_equal(value_features(at[[k]], 1e-3)[0], together[k]) for k in range(24))
