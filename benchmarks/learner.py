@@ -18,6 +18,7 @@ import tarfile
 from contextlib import ExitStack
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -42,9 +43,7 @@ def tree_of(commit):
     def make(folder):
         archive = subprocess.run(["git", "archive", name], cwd=ROOT, capture_output=True, check=True).stdout
         with tarfile.open(fileobj=BytesIO(archive)) as files:
-            safe = (
-                {"filter": "data"} if hasattr(tarfile, "data_filter") else {}
-            )  # not in Python before 3.11.4
+            safe: Any = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}  # not before 3.11.4
             files.extractall(folder, **safe)
 
     return kept_folder(f"commit_{name[:16]}", make)
