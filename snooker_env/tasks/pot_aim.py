@@ -42,23 +42,31 @@ def struck_by(played, law):
 
 
 @kernel
+def meets(played, positions, b, law, work):
+    """Follow the cue ball of a stroke of ``stroke_in_room`` until it meets the ball at b, past all others: whether it
+    does, and when [s]. Both balls are then in ``work.motion``."""
+    phys, motion, state = law.phys, work.motion, work.state
+    (vx, vy, _), w = struck_by(played, law)
+    cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
+    cloth.begin(motion, state, 1, 0.0, b, (0.0, 0.0), (0.0, 0.0, 0.0), phys)
+    t, now = 1e300, 0.0
+    while state[0] > cloth.REST:
+        t = pair_time(motion, state, 0, 1, now, 2.0 * phys[P_R])
+        now = motion[0, cloth.T_END]
+        if t <= now:
+            return True, t
+        cloth.next_phase(motion, state, 0, phys)
+    return False, t
+
+
+@kernel
 def _passes(played, positions, b, p, law, work):
     """Angle [rad] by which the ball at b, hit by the cue ball of a stroke of ``stroke_in_room``, passes p on the
     left; 9: missed."""
-    (cx, cy), (bx, by), (px, py) = (positions[0, 0], positions[0, 1]), b, p
+    (bx, by), (px, py) = b, p
     phys, motion, state = law.phys, work.motion, work.state
-    R = phys[P_R]
-    (vx, vy, _), w = struck_by(played, law)
-    cloth.begin(motion, state, 0, 0.0, (cx, cy), (vx, vy), w, phys)
-    cloth.begin(motion, state, 1, 0.0, (bx, by), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
-    t, now = 1e300, 0.0
-    while state[0] > cloth.REST:
-        t = pair_time(motion, state, 0, 1, now, 2.0 * R)
-        now = motion[0, cloth.T_END]
-        if t <= now:
-            break
-        cloth.next_phase(motion, state, 0, phys)
-    if state[0] <= cloth.REST:
+    met, t = meets(played, positions, b, law, work)
+    if not met:
         return 9.0
     (x, y), v, w = cloth.evaluate(motion, state, 0, t, phys)
     nx, ny = bx - x, by - y

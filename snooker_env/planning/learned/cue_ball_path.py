@@ -16,13 +16,12 @@ from ...geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ...physics import cloth
 from ...physics.arrays import Law
 from ...physics.columns import P_E_B, P_G, P_MU_R, P_R
-from ...physics.detection import pair_time
 from ...physics.impact.contact import collide_balls, collide_cushion, cushion_restitution
 from ...tasks.arrays import CueLaw
 from ...tasks.box_actions import tip_on_disc
 from ...tasks.lines import new_work
 from ...tasks.noise import with_errors
-from ...tasks.pot_aim import stroke_in_room, struck_by
+from ...tasks.pot_aim import meets, stroke_in_room
 from ...tasks.stroke import row_of
 
 X, Y, NOSES, BALLS, LENGTH, LOST, HIT, NEAR, MISSED, REACH, OBJECT, ASIDE = range(12)
@@ -144,7 +143,7 @@ def _run(positions, on_table, skip, law, work, out):
 def _predicted(stroke, ball, pocket, positions, on_table, cue_law, work, out):
     """What is predicted of a stroke (5,) at a pot; fills ``out`` (SEEN,)."""
     phys, motion, state = cue_law.phys, work.motion, work.state
-    R, law = phys[P_R], Law(phys, cue_law.fidelity, cue_law.n_steps)
+    law = Law(phys, cue_law.fidelity, cue_law.n_steps)
     bx, by = positions[ball, 0], positions[ball, 1]
     px, py = POCKET_AIMS[pocket, AIM_X] - bx, POCKET_AIMS[pocket, AIM_Y] - by
     run = hypot(px, py)
@@ -153,18 +152,9 @@ def _predicted(stroke, ball, pocket, positions, on_table, cue_law, work, out):
     out[X], out[Y], out[NEAR] = positions[0, 0], positions[0, 1], 9.0
     meant = stroke[0], stroke[1], stroke[2], stroke[4]
     played = stroke_in_room(stroke[3], meant, positions, on_table, cue_law)
-    (vx, vy, _), w = struck_by(played, cue_law)
-    cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
-    cloth.begin(motion, state, 1, 0.0, (bx, by), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
-    t, now = 1e300, 0.0
-    while state[0] > cloth.REST:
-        t = pair_time(motion, state, 0, 1, now, 2.0 * R)
-        now = motion[0, cloth.T_END]
-        if t <= now:
-            break
-        cloth.next_phase(motion, state, 0, phys)
-    (x, y), v, w = cloth.evaluate(motion, state, 0, motion[0, cloth.T0] if t > now else t, phys)
-    if t > now:
+    met, t = meets(played, positions, (bx, by), cue_law, work)
+    (x, y), v, w = cloth.evaluate(motion, state, 0, t if met else motion[0, cloth.T0], phys)
+    if not met:
         out[X], out[Y] = x, y
         out[MISSED] = (
             1.0
