@@ -82,7 +82,9 @@ class Entrant:
         if is_name(run):
             _ = player(run)  # a player of one's own may be missing
             run = run.partition("@")[2]
-            if not run or not Path(run).exists():
+            if (
+                not run or not Path(run).exists() or run.endswith(".npz")
+            ):  # the network of stroke_value keeps no record
                 return {}
         model, path = _model(run, self.trust, self.options).model, Path(run)
         card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"

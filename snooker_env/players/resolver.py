@@ -34,7 +34,7 @@ OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
 PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
 """How names of programs begin, and their player, which is loaded as an entry point is."""
 _SEARCHING = re.compile(
-    r"(best_pot|search|lookahead|tactician|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?"
+    r"(best_pot|search|lookahead|tactician|stroke_value|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?"
 )
 
 
@@ -64,7 +64,8 @@ def player(name: Any, *, trust: bool = False) -> Player:
         One of:
 
         * a name of ``players()``, for players that search optionally with a number of simulated shots
-          ("planner_500") and for a planner with a model ("planner@runs/ppo_value-0");
+          ("planner_500") and for a planner with a model ("planner@runs/ppo_value-0"); for ``stroke_value`` with a network of
+          ``agents.learn_strokes`` ("stroke_value@runs/strokes/strokes.npz");
         * "MODULE:CLASS" of a player of your own, made without arguments; its module is imported;
         * a ``.zip`` of Stable-Baselines3 or sb3-contrib, or a run's folder or files of ``train.py``;
         * "program:COMMAND", an external program (docs/play/protocol.md);
@@ -117,8 +118,6 @@ def _built_in(name: str) -> Player | None:
     """The player of the package with that name."""
     if name in (Random.name, GhostBall.name):
         return Random() if name == Random.name else GhostBall()
-    if name == StrokeValuePlayer.name:
-        return StrokeValuePlayer()
     form = _SEARCHING.fullmatch(name)
     if form is None:
         return None
@@ -126,6 +125,10 @@ def _built_in(name: str) -> Player | None:
     if kind in RENAMED:
         kind, old = RENAMED[kind], kind
         warnings.warn(f"the player {old!r} is called {kind!r} now", DeprecationWarning, stacklevel=3)
+    if kind == StrokeValuePlayer.name:
+        if budget:
+            raise refuse("player", name, "must not name a number of shots: stroke_value simulates none")
+        return StrokeValuePlayer(None if model is None else _strokes(name, Path(model)))
     if model is not None and not kind.startswith("planner"):
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
     if budget and not LEAST <= int(budget) <= MOST:
@@ -186,6 +189,16 @@ def _of_file(path: Path, trust: bool) -> Player:
     from .saved import saved_player
 
     return saved_player(path, {}, trust)
+
+
+def _strokes(name: str, path: Path) -> Any:
+    """The layers of a network that ``agents.learn_strokes`` has written."""
+    from .weights import learned_strokes
+
+    try:
+        return learned_strokes(path)
+    except (OSError, KeyError, ValueError):
+        raise refuse("player", name, "must name a file that agents.learn_strokes has written") from None
 
 
 def _learned(model: str) -> Any:

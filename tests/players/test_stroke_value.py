@@ -58,6 +58,9 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path):
     assert learn_strokes.main(["--out", str(parts), "--rounds", "2", *asked]) == 0
     assert (whole / "strokes.npz").read_bytes() == (parts / "strokes.npz").read_bytes()
     layers = learned_strokes(whole / "strokes.npz")
+    at = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    named = sn.player(f"stroke_value@{whole / 'strokes.npz'}").at({}).play(at, [3]).values
+    assert np.array_equal(named, StrokeValuePlayer(layers).at({}).play(at, [3]).values)
     assert layers[0][0].shape == (128, SIZE) and layers[-1][0].shape == (1, 64)
     tables = opened(8)
     assert len(StrokeValuePlayer(layers).at(tables).play(tables, np.arange(8))) == 8
@@ -119,3 +122,9 @@ def test_it_pots_under_all_options(options):
 def test_nothing_is_asked_of_no_position():
     player = sn.player("stroke_value").at({})
     assert len(player.play(Positions.of(opened(2))[[]], [])) == 0
+
+
+@pytest.mark.parametrize("name", ["stroke_value@missing.npz", "stroke_value@README.md", "stroke_value_500"])
+def test_a_network_that_is_not_there_is_refused(name):
+    with pytest.raises(ValueError, match=rf"player = '{name}': must (name a file|not name a number)"):
+        sn.player(name)
