@@ -15,7 +15,7 @@ def physics_option(text):
         if not equals:
             raise refuse("physics", text, "must be PRESET or PRESET,FIELD=VALUE,...")
         try:
-            fields[name] = float(value)
+            fields[name] = value == "True" if value in ("True", "False") else float(value)
         except ValueError:
             fields[name] = value
     made = Physics.of(fields)

@@ -14,6 +14,8 @@ from .physics.table import Table
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
 """Data type of a logged event: ``time`` [s], ``kind`` (an ``EventKind``, which explains ``i``, ``j``)."""
+EVENT_IN_SPACE = np.dtype([*EVENT.descr, ("z", np.float64)])
+"""The same with the height of ball ``i`` above the bed [m]: of shots with ``Physics.flight`` that have their path."""
 
 
 class SimulationError(RuntimeError):
@@ -29,13 +31,15 @@ class Shot:
     positions : float64 (n, 2)
         Centres of the balls at rest [m]; of a potted ball where it crossed the fall, or its flight ended.
     potted : int64 (n,)
-        Pocket of each ball, an index of ``snooker_env.POCKETS``; -1 if it was not potted in this shot.
+        Pocket of each ball, an index of ``snooker_env.POCKETS``; -1 if it was not potted in this shot, -2 if it was
+        forced off the table (only with ``Physics.flight``).
     on_table : bool (n,)
         True for the balls that are still in play.
     duration : float
         Time until everything is at rest, spin included [s]; with ``Physics.spin_decel`` 0, without spin.
     events : structured array (k,)
-        Events in order: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained there).
+        Events in order: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained there); with
+        ``Physics.flight`` also ``z``, the height of ball i [m].
     segments : float64 (s, columns)
         The paths in pieces, which ``at`` evaluates.
     physics : Physics
@@ -62,10 +66,19 @@ class Shot:
     physics: Physics = field(repr=False)
     table: Table | None = field(default=None, repr=False)
 
+    def __post_init__(self) -> None:
+        if self.physics.flight and len(self.segments) and self.events.dtype == EVENT:
+            events = np.empty(len(self.events), EVENT_IN_SPACE)
+            for name in EVENT.names or ():
+                events[name] = self.events[name]
+            events["z"] = self.at(events["time"])[0][np.arange(len(events)), events["i"], 2]
+            object.__setattr__(self, "events", events)
+
     def at(self, t: Real | Vector) -> tuple[Floats, Floats, Floats]:
         """Positions, velocities and spins of all balls at one time [s], or at m times.
 
-        Returns float64 (n, 2) [m], (n, 2) [m/s] and (n, 3) [rad/s], or (m, n, ...). An impact counts as over
+        Returns float64 (n, 2) [m], (n, 2) [m/s] and (n, 3) [rad/s], or (m, n, ...); with ``Physics.flight`` places and
+        velocities are (n, 3), the height of a ball's centre above its height on the bed last. An impact counts as over
         at its time. From ``duration`` on all is at rest (with ``spin_decel`` 0 a spin about the vertical
         stays). A potted ball lies in its place of ``positions`` from its pot on, a ball off the table where
         it was put; one in the air has its mean velocity from event to event. ValueError if a time is negative
@@ -77,7 +90,8 @@ class Shot:
             raise refuse("t", float(times.min()), "must not be negative")
         check_path(self)
         n, m = len(self.positions), len(times)
-        out = np.zeros((m, n, 2)), np.zeros((m, n, 2)), np.zeros((m, n, 3))
+        space = 3 if self.physics.flight else 2
+        out = np.zeros((m, n, space)), np.zeros((m, n, space)), np.zeros((m, n, 3))
         # the compiled type; an unpickled shot may be read-only
         segments = np.require(self.segments, np.float64, ["C", "W"])
         trajectory.states_at(segments, n, times, self.physics.pack(), *out)

@@ -4,12 +4,13 @@ import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ._check import array, flags, integer, refuse_what
+from ._check import array, flags, integer, refuse, refuse_what
 from ._shots import count
-from ._types import Batches, Bools, Fidelity, FlagRows, Flags, Floats, Solver, Vectors
+from ._types import Batches, Fidelity, FlagRows, Flags, Solver, Vectors
 from .physics import cloth, engine
 from .physics.arrays import Ends, Log
 from .physics.events import LOG_FULL, OK, UNSOUND, EventKind, Status
@@ -25,25 +26,42 @@ MAX_BALLS = 4096
 _FIRST_LOG = 512
 
 
-def _balls(positions, velocities, spins, on_table, batch, checked=False):
-    """The four arrays of a shot, new; ``checked`` too: within the limits, else the engine says so."""
+def _balls(positions, velocities, spins, on_table, flies, batch, checked=False):
+    """The arrays of a shot, new: positions, velocities, spins, on_table; where balls fly also their heights and the rates of
+    these. ``checked``: within the limits, too, else the engine says so."""
     lead = (-1,) if batch else ()
     farthest, fastest, most_spin = (FARTHEST, FASTEST, MOST_SPIN) if checked else (None, None, None)
-    r = array("positions", positions, (*lead, -1, 2), farthest, "m")
+    r = array("positions", positions, (*lead, -1, _columns(positions, flies)), farthest, "m")
     shape = r.shape[:-1]
-    v = array("velocities", velocities, (*shape, 2), fastest, "m/s")
+    v = array("velocities", velocities, (*shape, _columns(velocities, flies)), fastest, "m/s")
     w = array("spins", spins, (*shape, 3), most_spin, "rad/s")
     if not 1 <= shape[-1] <= MAX_BALLS:
         raise refuse_what(
             "positions", f"array of shape {r.shape}", f"must hold at least one ball and at most {MAX_BALLS}"
         )
     here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
-    return r, v, w, here
+    if not flies:
+        return r, v, w, here
+    aloft = np.zeros((*shape, 2))
+    for c, part in enumerate((r, v)):
+        if part.shape[-1] == 3:
+            aloft[..., c] = part[..., 2]
+    if (low := aloft[..., 0].min()) < 0.0:
+        raise refuse("positions z", float(low), "must be a height above the bed: at least 0 m")
+    return r[..., :2].copy(), v[..., :2].copy(), w, here, aloft
+
+
+def _columns(value, flies):
+    """How many columns positions or velocities have."""
+    return 3 if flies and np.shape(value)[-1:] == (3,) else 2
 
 
 def _refuse(balls, physics, table):
     """Raise the ValueError of a shot, or of a batch of shots, that the engine found ``UNSOUND``."""
-    r, _, _, here = _balls(*balls, batch=balls[0].ndim == 3, checked=True)
+    r, v, w, here, *aloft = balls
+    if aloft:
+        r, v = (np.concatenate([part, aloft[0][..., c, None]], axis=-1) for c, part in enumerate((r, v)))
+    r, _, _, here, *_ = _balls(r, v, w, here, bool(aloft), batch=r.ndim == 3, checked=True)
     table.check(r, physics.R, "positions", here)
     raise AssertionError("a sound shot was refused")  # the two checks are the same
 
@@ -68,9 +86,9 @@ def simulate(
     positions : array_like, float (n, 2)
         Centres of the balls [m]: origin at the table's centre, +x to the yellow side, +y to the black end.
         Balls may touch balls and cushions, and overlap by at most 1e-6 m. All balls are equal; n is 1 to
-        4096.
+        4096. With ``physics.flight`` (n, 3), too: the third column is the height of the centre above its height on the bed.
     velocities : array_like, float (n, 2)
-        Velocities [m/s], each component within 1,000 of zero.
+        Velocities [m/s], each component within 1,000 of zero. With ``physics.flight`` (n, 3), too.
     spins : array_like, float (n, 3)
         Angular velocities [rad/s], each component within 100,000 of zero.
     table : str, Table or None
@@ -106,7 +124,7 @@ def simulate(
     ((2, 2), [True, True])
     """
     physics, table, solver = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
-    balls = _balls(positions, velocities, spins, on_table, batch=False)
+    balls = _balls(positions, velocities, spins, on_table, physics.flight, batch=False)
     physics.check_stopping()
     table.check_ball(physics.R)
     max_events = integer("max_events", max_events, 1, 2**31)
@@ -120,7 +138,7 @@ def simulate(
 
 
 def play(
-    balls: tuple[Floats, Floats, Floats, Bools],
+    balls: tuple[Any, ...],
     physics: Physics,
     table: Table,
     fidelity: Solver,
@@ -129,7 +147,7 @@ def play(
     path: bool = True,
     doubt: bool = False,
 ) -> Shot:
-    """``simulate`` of a layout, not counted; ``balls``, the four arrays, are not changed.
+    """``simulate`` of a layout, not counted; ``balls``, its arrays (see ``_balls``), are not changed.
 
     ``fidelity``: as of ``parse_fidelity``. ``path`` False leaves out the paths that ``Shot.at`` needs. ``doubt``: the
     numbers are checked first.
@@ -214,14 +232,15 @@ def simulate_batch(
     ((2, 1, 2), True)
     """
     physics, table, solver = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
-    r, v, w, here = _balls(positions, velocities, spins, on_table, batch=True)
+    state = _balls(positions, velocities, spins, on_table, physics.flight, batch=True)
+    r, here = state[0], state[3]
     physics.check_stopping()
     table.check_ball(physics.R)
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
-    start = r.copy(), v.copy(), w.copy(), here.copy()
+    start = tuple(a.copy() for a in state)
     out = _run(
-        (r, v, w, here),
+        state,
         physics,
         table,
         solver,
@@ -297,7 +316,7 @@ def _take_log(log_size, path_size):
 
 
 def _run(state, physics, table, fidelity, max_events, log=None, threads=1, doubt=False):
-    """Run the engine on positions, velocities, spins, on_table: batched, in place, maybe with a ``Log``."""
+    """Run the engine on the arrays of ``_balls``: batched, in place, maybe with a ``Log``."""
     b, n = state[0].shape[:2]
     log = log or log_space(b, 0, 0)
     ends = Ends(np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b))
@@ -312,7 +331,8 @@ def _run(state, physics, table, fidelity, max_events, log=None, threads=1, doubt
         *fidelity,
         doubt,
     )
-    arguments = (*state, out.potted), setup, max_events, tuple(log), tuple(ends)
+    balls, aloft = (*state[:4], out.potted), state[4] if physics.flight else None
+    arguments = balls, aloft, setup, max_events, tuple(log), tuple(ends)
 
     def run(first, last):
         engine.run_batch(*arguments, first, last)

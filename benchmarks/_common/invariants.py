@@ -3,7 +3,7 @@ of every invariant.
 
 The log holds each ball's motion as closed forms, so what lies between two events is checked as well as the
 events: for every pair the gap is followed by steps no longer than the gap allows (at least ``LEAST``, which
-can hide 2e-10 m at the most), and so are jaws. Energies are kinetic, of translation and rotation, per unit
+can hide 2e-10 m at the most), and so are jaws. Energies are of translation, rotation and height, per unit
 mass. A ball in the air over a pocket is judged by what it brings back: it may return with no more energy than
 it had at the edge. And all balls together may at no event have more than they had, those in the air no more
 than that and what a fall by R gives.
@@ -15,16 +15,29 @@ from math import hypot, inf, isfinite, sqrt
 import numba
 import numpy as np
 
-from snooker_env.physics import cloth
+from snooker_env.physics import flight
 from snooker_env.physics.arrays import Boundaries, Ends
-from snooker_env.physics.cloth import AX, AY, COLUMNS, FALLING, GONE, REST, T0, T_END, VX, VY, X, Y
+from snooker_env.physics.cloth import AIR, AX, AY, COLUMNS, FALLING, GONE, REST, T0, T_END, VX, VY, X, Y
 from snooker_env.physics.columns import P_G, P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_S, P_R, P_SPIN
 from snooker_env.physics.engine import EventKind, Status
 from snooker_env.simulation import MAX_EVENTS, _run, log_space
 
-FINITE, CLOCK, JUMP, ENERGY, PHASE, ALL, MOMENTUM, PARTING, OVERLAP, CUSHION, OUTSIDE, REST_TIME, ACCOUNT = (
-    range(13)
-)
+(
+    FINITE,
+    CLOCK,
+    JUMP,
+    ENERGY,
+    PHASE,
+    ALL,
+    MOMENTUM,
+    PARTING,
+    OVERLAP,
+    CUSHION,
+    OUTSIDE,
+    BELOW,
+    REST_TIME,
+    ACCOUNT,
+) = range(14)
 NAMES = (
     "finite",
     "clock",
@@ -37,6 +50,7 @@ NAMES = (
     "overlap",
     "in cushion",
     "off the table",
+    "below the bed",
     "rest",
     "account",
 )
@@ -52,10 +66,13 @@ WHAT = {
     "overlap": "overlap of two balls, at events and between [m]",
     "in cushion": "overlap with a nose or jaw, at events and between [m]",
     "off the table": "place of a ball on the bed beyond all noses and falls [m]",
+    "below the bed": "depth of a ball in the air below its height on the bed [m]",
     "rest": "speed (v + R w) left at the reported time of rest [m/s]",
     "account": "balls whose place, fate or log does not add up",
 }
 LEAST = 1e-5
+LEAST_ENERGY = 1e-18
+"""Balls with a smaller part of the shot's energy are at rest, up to rounding."""
 _BALL_BALL, _CUSHION, _JAW, _POT = (
     int(EventKind.BALL_BALL),
     int(EventKind.CUSHION),
@@ -68,6 +85,15 @@ _DROP, _RETURN = int(EventKind.DROP), int(EventKind.RETURN)
 @numba.njit(nogil=True, error_model="numpy")
 def _energy(v, w, R):
     return 0.5 * (v[0] * v[0] + v[1] * v[1]) + 0.2 * R * R * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _aloft(rows, state, i, t, phys):
+    """Height of ball i above the bed, its rate, and their energy per unit mass; 0 but for one that flies."""
+    if state[i] != AIR:
+        return 0.0, 0.0, 0.0
+    z, u = flight.height(rows, state, i, t, phys)
+    return z, u, phys[P_G] * z + 0.5 * u * u
 
 
 @numba.njit(nogil=True, error_model="numpy")
@@ -89,15 +115,18 @@ def _step(gap, speed, accel, left):
 def _follow(rows, state, a, b, start, stop, d, phys):
     """The deepest overlap of balls a and b (at distance d) in [start, stop]."""
     ax, ay = rows[a, AX] - rows[b, AX], rows[a, AY] - rows[b, AY]
-    accel, t, deepest = hypot(ax, ay), start, -inf
+    falls = (state[a] == AIR) != (state[b] == AIR)
+    accel, t, deepest = hypot(ax, ay) + (phys[P_G] if falls else 0.0), start, -inf
     while True:
-        r1, v1, _ = cloth.evaluate(rows, state, a, t, phys)
-        r2, v2, _ = cloth.evaluate(rows, state, b, t, phys)
-        gap = hypot(r2[0] - r1[0], r2[1] - r1[1]) - d
+        r1, v1, _ = flight.evaluate(rows, state, a, t, phys)
+        r2, v2, _ = flight.evaluate(rows, state, b, t, phys)
+        z1, u1, _ = _aloft(rows, state, a, t, phys)
+        z2, u2, _ = _aloft(rows, state, b, t, phys)
+        gap = hypot(hypot(r2[0] - r1[0], r2[1] - r1[1]), z2 - z1) - d
         deepest = max(deepest, -gap)
         if not t < stop:
             return deepest
-        step = _step(gap, hypot(v1[0] - v2[0], v1[1] - v2[1]), accel, stop - t)
+        step = _step(gap, hypot(hypot(v1[0] - v2[0], v1[1] - v2[1]), u1 - u2), accel, stop - t)
         t = stop if not t + step < stop else t + step
 
 
@@ -107,8 +136,8 @@ def _all_energy(rows, state, t, phys):
     total, air = 0.0, 0
     for i in range(len(rows)):
         if state[i] != GONE:
-            _, v, w = cloth.evaluate(rows, state, i, t, phys)
-            total += _energy(v, w, phys[P_R])
+            _, v, w = flight.evaluate(rows, state, i, t, phys)
+            total += _energy(v, w, phys[P_R]) + _aloft(rows, state, i, t, phys)[2]
             if state[i] == FALLING:
                 total -= phys[P_G] * phys[P_R]
                 air += 1
@@ -177,10 +206,10 @@ def _along_boundary(rows, state, i, stop, noses, jaws, R, phys):
         turn = rows[i, T0] - rows[i, VX + c] / a if a != 0.0 else inf
         if rows[i, T0] < turn < stop:
             deepest = max(
-                deepest, _in_boundary(cloth.evaluate(rows, state, i, turn, phys)[0], noses, jaws, R)[0]
+                deepest, _in_boundary(flight.evaluate(rows, state, i, turn, phys)[0], noses, jaws, R)[0]
             )
     while True:
-        r, v, _ = cloth.evaluate(rows, state, i, t, phys)
+        r, v, _ = flight.evaluate(rows, state, i, t, phys)
         deep, clear = _in_boundary(r, noses, jaws, R)
         deepest = max(deepest, deep)
         if not t < stop:
@@ -223,14 +252,19 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
                 if not (isfinite(new[c]) or (c == T_END and new[c] > 0.0)):
                     _note(worst, FINITE, 1.0)
                     return
-            r, v, w = cloth.evaluate(rows, state, b, t, phys)
-            _, v0, w0 = cloth.evaluate(rows, state, b, rows[b, T0], phys)
-            begun, ended = _energy(v0, w0, R), _energy(v, w, R)
+            r, v, w = flight.evaluate(rows, state, b, t, phys)
+            _, v0, w0 = flight.evaluate(rows, state, b, rows[b, T0], phys)
+            z, _, own = _aloft(rows, state, b, t, phys)
+            begun, ended = (
+                _energy(v0, w0, R) + _aloft(rows, state, b, rows[b, T0], phys)[2],
+                _energy(v, w, R) + own,
+            )
             if begun > 0.0:
                 _note(worst, PHASE, (ended - begun) / begun)
             before += ended
             _note(worst, JUMP, hypot(r[0] - new[X], r[1] - new[Y]))
-            if state[b] != FALLING:
+            _note(worst, BELOW, -z)
+            if state[b] != FALLING and state[b] != AIR:
                 _note(worst, CUSHION, _along_boundary(rows, state, b, t, noses, jaws, R, phys))
             for other in range(n):
                 if other != b and state[other] != GONE and not (state[other] == REST and state[b] == REST):
@@ -244,8 +278,11 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
             rows[b] = segments[at + k, :COLUMNS]
             state[b] = int(segments[at + k, COLUMNS + 1])
             if state[b] != GONE:
-                _, v, w = cloth.evaluate(rows, state, b, t, phys)
-                after += _energy(v, w, R)
+                _, v, w = flight.evaluate(rows, state, b, t, phys)
+                z_new, _, own = _aloft(rows, state, b, t, phys)
+                after += _energy(v, w, R) + own
+                if old_state[b] == AIR or state[b] == AIR:
+                    _note(worst, JUMP, abs(z_new - _aloft(old, old_state, b, t, phys)[0]))
         at += balls
         total, air = _all_energy(rows, state, t, phys)
         flown += 1
@@ -255,9 +292,14 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
             had, flown = total, 0
         for k in range(balls):
             b = i if k == 0 else j
-            if state[b] != FALLING and state[b] != GONE:
+            if state[b] != FALLING and state[b] != GONE and state[b] != AIR:
                 _note(worst, OUTSIDE, _beyond((rows[b, X], rows[b, Y]), noses, falls))
         in_air = old_state[i] == FALLING or (balls == 2 and old_state[j] == FALLING)
+        flies = (
+            state[i] == AIR
+            or old_state[i] == AIR
+            or (balls == 2 and (state[j] == AIR or old_state[j] == AIR))
+        )
         if kind == _DROP:
             brought[i] = before
         elif balls == 2 and in_air:  # no ball can take more than both have
@@ -265,11 +307,11 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
             brought[j] += before
         elif kind == _RETURN:
             _note(worst, ENERGY, (after - brought[i]) / brought[i])
-        elif before > 0.0 and not in_air:
+        elif before > LEAST_ENERGY * shot and not in_air:
             _note(worst, ENERGY, (after - before) / before)
-        if kind == _BALL_BALL:
-            r1, v1, _ = cloth.evaluate(old, old_state, i, t, phys)
-            r2, v2, _ = cloth.evaluate(old, old_state, j, t, phys)
+        if kind == _BALL_BALL and not flies:
+            r1, v1, _ = flight.evaluate(old, old_state, i, t, phys)
+            r2, v2, _ = flight.evaluate(old, old_state, j, t, phys)
             nx, ny = (
                 (r2[0] - r1[0]) / hypot(r2[0] - r1[0], r2[1] - r1[1]),
                 (r2[1] - r1[1]) / hypot(r2[0] - r1[0], r2[1] - r1[1]),
@@ -281,19 +323,19 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
             impulse = max(hypot(a1, a2), hypot(b1, b2))
             size = hypot(v1[0], v1[1]) + hypot(v2[0], v2[1])
             share = phys[P_MU_S] * (phys[P_MU_BB_LEAST] + phys[P_MU_BB_EXTRA])
-            if impulse > 0.0 and not in_air:
+            if impulse > 0.0 and not in_air and before > LEAST_ENERGY * shot:
                 _note(worst, MOMENTUM, (push - share * (impulse + push) - 1e-14 * size) / impulse)
             still = (rows[i, VX] - rows[j, VX]) * nx + (rows[i, VY] - rows[j, VY]) * ny
             if closing > 0.0 and not in_air:
                 _note(worst, PARTING, (still - 1e-14 * size) / closing)
-        elif (kind == _CUSHION or kind == _JAW) and not in_air:
+        elif (kind == _CUSHION or kind == _JAW) and not in_air and not flies:
             if kind == _CUSHION:
                 nx, ny = (noses[j, 1], 0.0) if noses[j, 0] == 0.0 else (0.0, noses[j, 1])
             else:
                 nx, ny = jaws[j, 0] - rows[i, X], jaws[j, 1] - rows[i, Y]
                 far = hypot(nx, ny)
                 nx, ny = nx / far, ny / far
-            _, v, _ = cloth.evaluate(old, old_state, i, t, phys)
+            _, v, _ = flight.evaluate(old, old_state, i, t, phys)
             closing = v[0] * nx + v[1] * ny
             if closing > 0.0:
                 _note(
@@ -301,7 +343,7 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
                     PARTING,
                     (rows[i, VX] * nx + rows[i, VY] * ny - 1e-14 * hypot(v[0], v[1])) / closing,
                 )
-        elif kind == _DROP or (kind == _POT and not in_air):
+        elif (kind == _DROP or (kind == _POT and not in_air)) and not flies:
             far = hypot(rows[i, X] - falls[j, 0], rows[i, Y] - falls[j, 1])
             _note(worst, JUMP, abs(far - falls[j, 2]))
     if at != len(segments):
@@ -309,7 +351,7 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
     for i in range(n):
         if state[i] == GONE:
             continue
-        r, v, w = cloth.evaluate(rows, state, i, duration, phys)
+        r, v, w = flight.evaluate(rows, state, i, duration, phys)
         left = hypot(v[0], v[1]) + R * (hypot(w[0], w[1]) + (abs(w[2]) if phys[P_SPIN] > 0.0 else 0.0))
         _note(worst, REST_TIME, left)
         if state[i] != REST:
@@ -344,8 +386,8 @@ class Checked:
 
 
 def play(balls, physics, table, fidelity, max_events=MAX_EVENTS, log_size=512):
-    """Play b shots and check each; balls: positions, velocities, spins and on_table; fidelity as
-    ``parse_fidelity`` gives it."""
+    """Play b shots and check each; balls: positions, velocities, spins and on_table, and where balls fly heights and their
+    rates; fidelity as ``parse_fidelity`` gives it."""
     state = [np.array(a) for a in balls]
     b, n = state[0].shape[:2]
     log = log_space(b, log_size, 2 * log_size + n + 2)

@@ -13,12 +13,8 @@ compiles a copy of the package (``_common/variants.py``). Two rows give the scal
 errors (the stroke again with others) and the aim turned by 1e-9 rad, which shows how much of an effect is
 chaos.
 
-The hop is not modelled, so its effect is computed. Friction at an impact throws the upper ball up at v_z. In
-the air nothing slows it; where it lands the cloth stops v_z, and friction comes all at once. However often it
-bounces, the cloth's normal impulse falls short of the ball's weight by M v_z in all, so friction falls short
-by mu_s M v_z: the ball slides v_z / g longer, and all its later path is shifted by v v_z / g (twice that, v
-times the time of flight, if landing had no friction). Left out: a ball that meets another ball or a cushion
-in the air, the speed lost in rolling, and what the shift changes later.
+Balls that fly are off by default: there the row says what adding them changes, and its cost is the time with them over
+the time without.
 """
 
 import json
@@ -34,14 +30,13 @@ import snooker_env as sn
 from commands import provenance
 from snooker_env import simulation
 from snooker_env.physics.engine import EventKind, Status
-from snooker_env.physics.meetings import PART
 
 from .._common import variants
 from .._common.command import Command, at_least, save_json
 from ..speed.clock import Way, time_ways
 from .models import MODELS, SCENES, STANDARD, head_on_stun
 from .picture import draw
-from .verdicts import CHAOS, ERRORS, FULL, HOP, reasons, verdict
+from .verdicts import CHAOS, ERRORS, FULL, reasons, verdict
 
 FILE = "scene.png"
 
@@ -51,7 +46,7 @@ def played(way, start):
 
     Between the points of the table without jaw arcs a ball can leave it: that shot ends otherwise than any.
     """
-    state = [a.copy() for a in start]
+    state = [a.copy() for a in (*start, np.zeros(start[0].shape))]
     out = way.simulation._run(state, way.physics, way.table, way.solver, 100_000)
     astray = out.status == Status.ASTRAY
     out.potted[astray], state[3][astray] = 0, False
@@ -74,35 +69,11 @@ def effect(end, truth, start, ball):
     return found
 
 
-def hops(shots, v, w, constants):
-    """Shift of the cue ball and of the ball aimed at [mm] by the hops of each shot: v v_z / g, summed over
-    its ball-ball impacts."""
-    shifts = np.zeros((len(v), 2))
-    for k in range(len(v)):
-        shot = sn.simulate(shots.positions[k], v[k], w[k], physics=constants)
-        for event in shot.events[shot.events["kind"] == EventKind.BALL_BALL]:
-            balls = [event["i"], event["j"]]
-            r, v0, w0 = (a[balls] for a in shot.at(max(0.0, event["time"] - 1e-9)))
-            n = (r[1] - r[0]) / np.hypot(*(r[1] - r[0]))
-            if (v0[0] - v0[1]) @ n <= PART:
-                continue
-            after = sn.collide_balls((*v0[0], 0.0), w0[0], (*v0[1], 0.0), w0[1], (*n, 0.0), constants)
-            for i, u in zip(balls, after[::2], strict=True):
-                for column, of in enumerate((0, shots.ball[k])):
-                    if i == of and shot.on_table[i]:
-                        shifts[k, column] += 1e3 * np.hypot(u[0], u[1]) * u[2] / constants.g
-    found = {
-        name: np.quantile(shifts[:, c], [0.5, 0.95, 1.0]).tolist()
-        for c, name in enumerate(("cue_mm", "ball_mm"))
-    }
-    return {**found, "cue_shots": len(v), "ball_shots": len(v)}
-
-
 def counts(starts, physics, most=40):
     """What runs in the first shots of each scene, by ``_common.counts`` in a process without numba."""
     with tempfile.TemporaryDirectory() as folder:
         files = [Path(folder) / f"{k}.npz" for k in range(len(starts))]
-        for file, (positions, velocities, spins, _here) in zip(files, starts, strict=True):
+        for file, (positions, velocities, spins, *_) in zip(files, starts, strict=True):
             np.savez(file, positions=positions[:most], velocities=velocities[:most], spins=spins[:most])
         command = [
             sys.executable,
@@ -151,8 +122,7 @@ def study(make, n, repeats, physics, chosen, seed):
     times = time_ways(ways, start[:3], repeats)
     took = {name: float(of.min(0).mean()) for name, of in times.items()}
     for name in chosen:
-        rows[name]["cost"] = took[FULL] / took[name]
-    rows[HOP] = hops(shots, start[1], start[2], constants)
+        rows[name]["cost"] = took[name] / took[FULL] if MODELS[name].added else took[FULL] / took[name]
     log = sn.simulate_batch(start[0], start[1], start[2], physics=constants, events=True).events
     assert log is not None
     kinds = np.concatenate([events["kind"] for events in log])
@@ -213,7 +183,7 @@ def measure(options):
     lines = [
         f"A head-on stun shot far from every jaw integrates {solved:.2g} ball-ball impacts and tests {tested:.3g} jaw arcs: {paid}."
     ]
-    lines += [verdict(name, scenes) for name in (*options.models, HOP)]
+    lines += [verdict(name, scenes) for name in options.models]
     print("\nWhat follows")
     for sentence in lines:
         print(f"* {sentence}")

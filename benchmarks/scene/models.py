@@ -77,6 +77,8 @@ class LeftOut:
     code: int = STANDARD
     physics: dict | None = None
     table: sn.Table | None = None
+    added: bool = False
+    """Whether the model is off by default, and is added here instead of left out."""
 
 
 EVERY, ALWAYS = "snooker_env has it at standard and reference", "snooker_env has it at every fidelity"
@@ -98,5 +100,8 @@ MODELS = {
     ),
     "spin decay": LeftOut(
         "spin about the vertical stays", "snooker_env has it everywhere", physics={"spin_decel": 0.0}
+    ),
+    "balls that fly": LeftOut(
+        "balls that fly", "snooker_env has it with Physics(flight=True)", physics={"flight": True}, added=True
     ),
 }

@@ -9,7 +9,7 @@ import numpy as np
 from commands import picture_style, provenance
 
 from .models import MODELS
-from .verdicts import CHAOS, ERRORS, HOP, reasons
+from .verdicts import CHAOS, ERRORS, reasons
 
 
 class Panel(NamedTuple):
@@ -33,8 +33,8 @@ def draw(figures, out):
     costs."""
     scenes = figures["scenes"]
     rows = list(next(iter(scenes.values()))["rows"])
-    names = [name for name in rows if name not in (ERRORS, CHAOS, HOP)]
-    mixed = [*names, HOP, ERRORS, CHAOS]
+    names = [name for name in rows if name not in (ERRORS, CHAOS)]
+    mixed = [*names, ERRORS, CHAOS]
     note = (
         "Rows: the model left out. Columns: kinds of shots. Bold: it matters, which means more than a tenth of what a\n"
         "professional's execution errors do. For scale, below the line: those errors, and the same shots aimed 1e-9 rad aside."

@@ -4,16 +4,9 @@ sentence that follows.
 Used by ``python -m benchmarks.scene``.
 """
 
-from snooker_env.physics.engine import EventKind
-
 from .models import MODELS
 
-FULL, ERRORS, CHAOS, HOP = (
-    "everything",
-    "a professional's errors",
-    "aim turned by 1e-9 rad",
-    "hop of the lifted ball",
-)
+FULL, ERRORS, CHAOS = "everything", "a professional's errors", "aim turned by 1e-9 rad"
 SHARE = 0.1
 """A model matters in a scene if it moves balls or changes outcomes by more than this share of what a
 professional's errors do."""
@@ -63,16 +56,6 @@ def verdict(name, scenes):
         f"the {'ball aimed at' if ball == 'ball' else 'cue ball'} stops {mm[0]:.3g} mm off in the middle case, 95 % within {mm[1]:.0f}"
         f" (a professional's errors: {by_errors[f'{ball}_mm'][0]:.3g})"
     )
-    if name == HOP:
-        events = scenes["full tables"]["ran"] if "full tables" in scenes else scenes[worst]["ran"]
-        share = events["ball-ball"] / sum(events[k.name.lower().replace("_", "-")] for k in EventKind)
-        verb = "is worth modelling" if where else "need not be modelled"
-        in_scenes = f" It matters in: {', '.join(where)}." if where else ""
-        return (
-            f"{name} (not modelled today): {verb} by the {SHARE:.0%} rule. In its worst scene, {worst}, without it {figures}; twice that"
-            f" if landing had no friction.{in_scenes} It shifts a ball along its own path: whether the ball aimed at drops, it does not"
-            f" decide. It would add one event to each impact, {share:.0%} of events on full tables."
-        )
     model = MODELS[name]
     costs = {scene: r["cost"] for scene, r in rows.items()}
     dearest = max(costs, key=lambda s: costs[s])
@@ -87,6 +70,13 @@ def verdict(name, scenes):
     idle = f" It does nothing in: {', '.join(paid)}." if paid else ""
     still = [s for s in none if costs[s] > 1 + FREE]
     idle += f" It costs time without effect in: {', '.join(still)}." if still else ""
+    if model.added:
+        matters = (
+            f"it matters in {len(where)} of {len(rows)} scenes"
+            if where
+            else f"not needed by the {SHARE:.0%} rule"
+        )
+        return f"{name}: off by default, {matters}. With them, in {worst}, {figures} and {changed}. {cost}.{idle} ({model.product}.)"
     if where:
         return (
             f"{name}: on by default. With {model.instead} instead, in {worst} {figures} and {changed}; it matters in {len(where)} of"

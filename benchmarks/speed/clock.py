@@ -117,6 +117,8 @@ def kernel_arguments(start, way):
     velocities, spins), but for the range at the end."""
     caught = []
     state = [np.array(a) for a in (*start, np.ones(start[0].shape[:2], bool))]
+    if getattr(way.physics, "flight", False):  # another version may not have it
+        state.append(np.zeros(start[0].shape))
     engine = way.simulation.engine
     with mock.patch.object(engine, "run_batch", lambda *arguments: caught.append(arguments[:-2])):
         way.simulation._run(state, way.physics, way.table, way.solver, MAX_EVENTS)

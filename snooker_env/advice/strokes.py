@@ -14,7 +14,7 @@ from ..physics.parameters import Physics
 from ..planning import Position, Positions
 from ..planning.strokes import FARTHEST, encoded
 from ..players import Strokes
-from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
+from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, Actions
 from .room import Room
 
 
@@ -60,7 +60,7 @@ class CueStroke:
         if hypot(self.side, self.top) > FARTHEST + 1e-9:
             allowed = f"must lie within the disc of radius {FARTHEST}"
             raise refuse_what("side, top", f"({self.side:g}, {self.top:g})", allowed)
-        put("elevation", number("elevation", self.elevation, 0.0, MAX_ELEVATION))
+        put("elevation", number("elevation", self.elevation, 0.0, STEEPEST))
         if self.place is not None:
             put("place", tuple(array("place", self.place, (2,)).tolist()))
             if not within_d(*self.place):

@@ -26,12 +26,12 @@ def _put_in_order(positions, on_table, result, gone, radius):
 
 
 @kernel
-def settle_visit(positions, on_table, ball_on, lead, seen, radius):
-    """``settle`` for a visit, where no free ball follows a foul; seen: (first, touching, moved, potted)."""
-    first, touching, moved, potted = seen
-    facts = Facts(first, touching, moved, potted, 0, AUTO)
-    result = ruling(Before(bits(on_table), ball_on, 0, lead), facts, 0)
-    _put_in_order(positions, on_table, result, potted, radius)
+def settle_visit(positions, on_table, ball_on, lead, seen, flags, radius):
+    """``settle`` for a visit, where no free ball follows a foul; seen: (first, touching, moved, potted, off)."""
+    first, touching, moved, potted, off = seen
+    facts = Facts(first, touching, moved, potted, off, AUTO)
+    result = ruling(Before(bits(on_table), ball_on, 0, lead), facts, flags)
+    _put_in_order(positions, on_table, result, potted | off, radius)
     return result
 
 

@@ -9,12 +9,11 @@ import numpy as np
 
 from .._jit import kernel
 from ..geometry import BALL_RADIUS
+from ..physics.cloth import AX, AY, SEGMENT_BALL, T0, T_END, VX, VY, X, Y
 from .balls import CUE, N_BALLS
 
 ATTEMPT_GAP = 2.0 * BALL_RADIUS
 """A gap up to this counts as the best effort [m]: one ball would just fit between cue ball and ball on."""
-X, Y, VX, VY, AX, AY, START, END, BALL = 0, 1, 2, 3, 4, 5, 9, 10, 15
-"""Columns of a piece of a path, as in ``physics.cloth``."""
 _HALVINGS = 60
 
 
@@ -67,16 +66,16 @@ def closest_approach(segments, n_segments, until, positions, on_table, on, radiu
     """The smallest gap [m] to a ball of the mask ``on`` up to the time ``until`` [s], or inf."""
     best, k = np.inf, 0
     while k < n_segments:
-        if segments[k, BALL] != CUE:
+        if segments[k, SEGMENT_BALL] != CUE:
             k += 1
             continue
         following = k + 1
-        while following < n_segments and segments[following, BALL] != CUE:
+        while following < n_segments and segments[following, SEGMENT_BALL] != CUE:
             following += 1
-        end = min(until, segments[k, END])
+        end = min(until, segments[k, T_END])
         if following < n_segments:
-            end = min(end, segments[following, START])
-        T = end - segments[k, START]
+            end = min(end, segments[following, T0])
+        T = end - segments[k, T0]
         if T >= 0.0:
             for i in range(1, N_BALLS):
                 if on_table[i] and (on >> i) & 1:

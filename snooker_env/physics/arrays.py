@@ -9,7 +9,7 @@ class Law(NamedTuple):
     """What decides an impact: the constants, and how it is solved."""
 
     phys: np.ndarray
-    """(21 + m,) ``Physics.pack``."""
+    """(22 + m,) ``Physics.pack``."""
     fidelity: int
     """As ``contact.parse_fidelity`` returns it, together with n_steps."""
     n_steps: int
@@ -50,7 +50,7 @@ class Balls(NamedTuple):
     on_table: np.ndarray
     """(n,) bool."""
     potted: np.ndarray
-    """(n,) int64: the pocket into which the ball was potted in this shot, or -1."""
+    """(n,) int64: the pocket into which the ball was potted in this shot; ``events.OFF_TABLE``; or -1."""
 
 
 class Log(NamedTuple):
@@ -82,7 +82,7 @@ class Motions(NamedTuple):
     state: np.ndarray
     """(n,) int64: a state of ``cloth.py``."""
     flight: np.ndarray
-    """(n, FLIGHT): the rest of the state of a falling ball, columns of ``pocket.py``."""
+    """(n, flight.COLUMNS): the rest of the state of a falling ball, columns of ``pocket.py``; of ball 0, of ``flight.py``."""
 
 
 class Forecast(NamedTuple):

@@ -16,7 +16,8 @@ last speed. This leaves the first speed no choice: it is below the speed at the 
 that slides has no drag: the air's is 5 % of its friction at 5 m/s.
 
 A row of ``motion`` (columns below) with a ``state`` holds from T0 to T_END; LO_X to HI_Y bound the path. A
-ball over a pocket (``FALLING``) moves at constant velocity (``pocket.py``).
+ball over a pocket (``FALLING``, ``pocket.py``) or in the air (``AIR``, ``flight.py``) moves at constant velocity in the plane;
+Z is its height above the bed and UZ the rate of that, at T0.
 """
 
 from math import atan, copysign, exp, expm1, inf, log1p, sqrt
@@ -24,10 +25,10 @@ from math import atan, copysign, exp, expm1, inf, log1p, sqrt
 from .._jit import kernel
 from .columns import P_G, P_MU_R, P_MU_S, P_NAP, P_R, P_ROLL_DRAG, P_SPIN
 
-GONE, REST, ROLL, SLIDE, FALLING, BEND = range(6)
+GONE, REST, ROLL, SLIDE, FALLING, BEND, AIR = range(7)
 # ROLL: straight, to rest; BEND: a piece of a roll with nap or drag; FALLING: over a pocket
-X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END, LO_X, HI_X, LO_Y, HI_Y = range(15)
-COLUMNS = 15
+X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END, LO_X, HI_X, LO_Y, HI_Y, Z, UZ = range(17)
+COLUMNS = 17
 SEGMENT_BALL, SEGMENT_STATE = COLUMNS, COLUMNS + 1
 SEGMENT = COLUMNS + 2
 """Columns of a segment, a row of the path log: those of ``motion``, then the ball and its state."""
@@ -186,7 +187,7 @@ def spin_after(wz, dt, decel):
 
 @kernel
 def evaluate(motion, state, i, t, phys):
-    """Ball i at time t [s] within its present phase: (x, y) [m], (vx, vy) [m/s], (wx, wy, wz) [rad/s]."""
+    """Ball i at time t [s] within its present phase: (x, y) [m], (vx, vy) [m/s], (wx, wy, wz) [rad/s]; not in the air."""
     dt = t - motion[i, T0]
     ax, ay = motion[i, AX], motion[i, AY]
     vx, vy = motion[i, VX] + ax * dt, motion[i, VY] + ay * dt

@@ -27,9 +27,11 @@ FALL_X, FALL_Y, FALL_RADIUS = range(3)
     P_E_J,
     P_NAP,
     P_ROLL_DRAG,
+    P_E_T,
     P_RAIL,
     P_JAW,
     P_BALLS,
-) = range(21)
-"""Places in ``Physics.pack()``. P_RAIL, P_JAW, P_BALLS: where the tables of rolling impacts begin behind these (``tables.py``); 0: none."""
+) = range(22)
+"""Places in ``Physics.pack()``. P_E_T: 0 where no ball flies.
+P_RAIL, P_JAW, P_BALLS: where the tables of rolling impacts begin behind these (``tables.py``); 0: none."""
 CONSTANTS = P_BALLS + 1

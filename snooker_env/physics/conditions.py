@@ -77,7 +77,7 @@ def _physics_with(base: "Physics", values: tuple[float, ...]) -> "Physics":
 
 
 def pack_into(rows: Floats, which: Ints, values: Floats, base: "Physics") -> None:
-    """Write the constants (len(which), 8) into rows (n, 21), each ``Physics.pack`` of ``physics_with``."""
+    """Write the constants (len(which), 8) into rows (n, 22), each ``Physics.pack`` of ``physics_with``."""
     law, scale = base.friction_law, values[:, MU_BB_SCALE]
     rows[which, P_MU_S], rows[which, P_MU_R] = values[:, MU_S], values[:, MU_R]
     rows[which, P_SPIN], rows[which, P_E_B] = values[:, SPIN_DECEL], values[:, E_B]

@@ -1,6 +1,7 @@
 """How does the cue move the ball? Speed, aim, offset, elevation -> velocity and spin; squirt, miscue.
 
-A raised cue presses the ball into the bed while it pushes, and the cloth rubs: ``rubbed``.
+A raised cue presses the ball into the bed while it pushes, and the cloth rubs: ``flight.rubbed``. Where balls fly, the
+bed throws it up.
 """
 
 from math import atan, cos, hypot, pi, sin, sqrt
@@ -8,6 +9,7 @@ from math import atan, cos, hypot, pi, sin, sqrt
 from .._check import number, refuse
 from .._jit import entry, kernel
 from .._types import Real
+from .flight import SETTLE, rubbed
 from .parameters import FASTEST, Physics
 
 MAX_ELEVATION = 1.5
@@ -25,25 +27,12 @@ def squirt(side, end_mass_ratio):
 
 
 @kernel
-def rubbed(v, w, press, mu_s, R):
-    """(vx, vy) [m/s] and (wx, wy) [rad/s] of a ball after the bed has given it ``press`` [m/s], the upward
-    impulse over the mass: friction mu_s ``press`` against the slip, or 2/7 of the slip, and the ball rolls."""
-    (vx, vy), (wx, wy) = v, w
-    ux, uy = vx - R * wy, vy + R * wx
-    slip, friction = hypot(ux, uy), mu_s * press
-    if 3.5 * friction >= slip:
-        vx, vy = vx - ux / 3.5, vy - uy / 3.5
-        return (vx, vy), (-vy / R, vx / R)
-    dx, dy = -friction * ux / slip, -friction * uy / slip
-    return (vx + dx, vy + dy), (wx + 2.5 * dy / R, wy - 2.5 * dx / R)
-
-
-@kernel
-def struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio):
+def struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
     """The cue ball's (vx, vy, vz) [m/s] and (wx, wy, wz) [rad/s] after a strike that is no miscue.
 
     Spin [TP A.30]: w = (5/2) (speed / R) b x d; b: tip offset over R, d: unit vector along the cue; (5/2) v
-    |b| / R if level. The bed takes the downward part of the speed, and the cloth rubs by as much.
+    |b| / R if level. The bed takes the downward part of the speed, and the cloth rubs by as much; it gives back e_t of it,
+    as in any landing (``flight.thrown``); 0: no ball flies.
     """
     aim += squirt(side, end_mass_ratio)
     c, s, ce, se = cos(aim), sin(aim), cos(elevation), sin(elevation)
@@ -51,14 +40,16 @@ def struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio):
     # offset = side right + top up: right (s, -c, 0), up (se c, se s, ce), the cue along (ce c, ce s, -se)
     wx, wy, wz = q * (side * se * c - top * s), q * (side * se * s + top * c), q * side * ce
     vx, vy = speed * ce * c, speed * ce * s
+    up = 0.0
     if elevation > 0.0:
-        (vx, vy), (wx, wy) = rubbed((vx, vy), (wx, wy), speed * se, mu_s, R)
-    return (vx, vy, 0.0), (wx, wy, wz)
+        up = e_t * speed * se if e_t * speed * se >= SETTLE else 0.0
+        (vx, vy), (wx, wy) = rubbed((vx, vy), (wx, wy), speed * se + up, mu_s, R)
+    return (vx, vy, up), (wx, wy, wz)
 
 
 @entry
-def _struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio):
-    return struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio)
+def _struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
+    return struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t)
 
 
 def strike(
@@ -74,5 +65,5 @@ def strike(
     if hypot(side, top) > physics.max_offset * (1 + 1e-12):
         allowed = f"tip offset {hypot(side, top):.4g} R is a miscue, must be within {physics.max_offset} R of the ball's centre"
         raise refuse("(side, top)", (side, top), allowed)
-    constants = physics.R, physics.mu_s, physics.end_mass_ratio
+    constants = physics.R, physics.mu_s, physics.end_mass_ratio, physics.thrown
     return _struck(speed, aim, side, top, elevation, *constants)

@@ -85,6 +85,36 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
 
 
 @kernel
+def space_crossing(c0, c1, c2, d, T):
+    """``distance_crossing`` in three dimensions."""
+    far2 = c0[0] * c0[0] + c0[1] * c0[1] + c0[2] * c0[2]
+    dot1 = c0[0] * c1[0] + c0[1] * c1[1] + c0[2] * c1[2]
+    dot2 = c0[0] * c2[0] + c0[1] * c2[1] + c0[2] * c2[2]
+    if dot1 >= 0.0 and dot2 >= 0.0 and far2 > d * d:
+        return inf
+    far = sqrt(far2)
+    gap = far - d
+    if gap < TOUCH:
+        if -dot1 > CREEP * far or (gap <= -_DEEP and -dot1 > STILL * far):
+            return 0.0
+        d = d - SKIN if gap > -1.5 * SKIN else far - SKIN
+    else:
+        reach = dot1 * T + dot2 * T * T
+        if dot2 > 0.0 and dot1 < 0.0 and -dot1 < 2.0 * dot2 * T:
+            reach = -0.25 * dot1 * dot1 / dot2
+        if far2 + min(0.0, reach) > d * far:
+            return inf
+    return quartic_crossing(
+        c2[0] * c2[0] + c2[1] * c2[1] + c2[2] * c2[2],
+        2.0 * (c1[0] * c2[0] + c1[1] * c2[1] + c1[2] * c2[2]),
+        c1[0] * c1[0] + c1[1] * c1[1] + c1[2] * c1[2] + 2.0 * dot2,
+        2.0 * dot1,
+        far2 - d * d,
+        T,
+    )
+
+
+@kernel
 def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
     """Time until a ball rolling at v, deceleration a, meets one at rest at (dx, dy) from it [s], or inf."""
     speed2 = vx * vx + vy * vy

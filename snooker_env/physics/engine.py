@@ -10,12 +10,13 @@ import numpy as np
 
 from .._jit import entry, inlined, kernel
 from .._lanes import LANES, lane, lanes, lanes_at, lesser, no_more
-from . import cloth, events, pocket
+from . import cloth, events, flight, pocket
 from .arrays import Balls, Boundaries, Forecast, Law, Log, Motions, Setup
-from .cloth import FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, WZ, X, Y
+from .cloth import AIR, FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, UZ, VX, VY, WZ, X, Y, Z
 from .columns import (
     AXIS_X,
     CONSTANTS,
+    FALL_RADIUS,
     FALL_X,
     FALL_Y,
     JAW_X,
@@ -23,8 +24,10 @@ from .columns import (
     NOSE_AXIS,
     NOSE_SIDE,
     P_BALLS,
+    P_E_J,
     P_MU_BB_EXTRA,
     P_MU_BB_LEAST,
+    P_MU_C,
     P_R,
     P_SIN,
     P_SPIN,
@@ -32,33 +35,138 @@ from .columns import (
 from .detection import HELD, TOUCH, boundary_event, clear_box, pair_time
 from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
-from .impact.contact import collide_balls, collide_cushion
+from .impact import free
+from .impact.contact import collide_balls, collide_cushion, collide_tilted
 from .impact.polynomial import WORK
-from .meetings import meet, rebound
+from .meetings import lost, meet, meet_in_air, rebound, rebound_in_air
 from .parameters import FARTHEST, FASTEST, MOST_SPIN
 from .placement import SOUND, layout_fault, place_fault
 
+NOT_IN_AIR, SOLVED, UNSOLVED = range(3)
 _LATEST = 1.7e308
 """Every time of a meeting is below."""
 
 
 @kernel
 def _begin_again(paths, i, t, r, v, w, boundaries, phys):
-    """Ball i met a ball at time t: write its next phase, on the bed or in the air."""
-    motion, state, flight = paths
+    """Ball i met a ball at time t: write its next phase, on the bed or over a pocket."""
+    motion, state, falls = paths
     if state[i] == FALLING:
         pocket.next_leg(
             paths,
             i,
             t,
-            (r[0], r[1], flight[i, pocket.Z0]),
-            (v[0], v[1], flight[i, pocket.U0]),
+            (r[0], r[1], falls[i, pocket.Z0]),
+            (v[0], v[1], falls[i, pocket.U0]),
             w,
             boundaries,
             phys,
         )
     else:
-        cloth.begin(motion, state, i, t, r, v, w, phys)
+        cloth.begin(motion, state, i, t, (r[0], r[1]), (v[0], v[1]), w, phys)
+
+
+@kernel
+def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
+    """Two balls on the bed, or one over a pocket, have met, and balls fly: one is lifted, the other pressed, which gives
+    back no more than the impact has lost. ``before``: v1, w1, v2, w2."""
+    motion, state, _falls = paths
+    if t < 0.0:  # never, as in ``_watch``
+        _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys)
+    impulse = max(ball_i[1][2], ball_j[1][2])
+    if impulse > 0.0:
+        after = ball_i[1], ball_i[2], ball_j[1], ball_j[2]
+        impulse = min(impulse, sqrt(2.0 * lost(before, after, phys[P_R])))
+    for k, (r, v, w) in ((i, ball_i), (j, ball_j)):
+        if state[k] == FALLING:
+            _begin_again(paths, k, t, r, v, w, boundaries, phys)
+        elif v[2] > 0.0:
+            flight.leave(motion, state, k, t, r, v, w, v[2], phys)
+        else:
+            u, spin, up = flight.pressed(v, w, impulse, phys)
+            flight.leave(motion, state, k, t, r, u, spin, up, phys)
+
+
+@kernel
+def _meet_in_air(paths, i, j, t, law, boundaries, series):
+    """Balls i and j meet, one or both in the air: write their next phases; whether the impact was solved."""
+    motion, state, falls = paths
+    phys = law.phys
+    zi, ui = flight.height(motion, state, i, t, phys)
+    zj, uj = flight.height(motion, state, j, t, phys)
+    if state[j] == AIR and (state[i] != AIR or zj > zi):
+        i, j, zi, ui, zj, uj = j, i, zj, uj, zi, ui  # i is in the air, and not below j
+    (x1, y1), v1, w1 = flight.evaluate(motion, state, i, t, phys)
+    (x2, y2), v2, w2 = flight.evaluate(motion, state, j, t, phys)
+    other = state[j]
+    if other == FALLING:
+        v2 = pocket.aloft(motion, falls, j, t, v2, phys)
+    if other != AIR:
+        zj, uj = 0.0, 0.0
+    nx, ny, nz = x2 - x1, y2 - y1, zj - zi
+    d = sqrt(nx * nx + ny * ny + nz * nz)
+    lies = other != AIR and other != FALLING
+    a, wa, b, wb, press, solved = meet_in_air(
+        (v1[0], v1[1], ui), w1, (v2[0], v2[1], uj), w2, (nx / d, ny / d, nz / d), lies, law, series
+    )
+    flight.take_off(motion, state, i, t, (x1, y1, zi), a, wa, phys)
+    if other == AIR:
+        flight.take_off(motion, state, j, t, (x2, y2, zj), b, wb, phys)
+    elif other == FALLING:
+        _begin_again(paths, j, t, (x2, y2), b, wb, boundaries, phys)
+    elif b[2] > 0.0:
+        flight.leave(motion, state, j, t, (x2, y2), b, wb, b[2], phys)
+    else:
+        u, spin, up = flight.pressed(b, wb, press, phys)
+        flight.leave(motion, state, j, t, (x2, y2), u, spin, up, phys)
+    return solved
+
+
+@kernel
+def _in_air(paths, i, kind, j, t, law, boundaries, series):
+    """Balls meet, one of them in the air; or ball i in the air meets a nose, a jaw, the bed, a rail or a fall at t: write the
+    next phases, and say whether it was solved. ``NOT_IN_AIR``: it is another event, or the ball is lost."""
+    motion, state, falls = paths
+    phys = law.phys
+    if t < 0.0:  # never, as in ``_watch``
+        return _in_air(paths, i, kind, j, t, law, boundaries, series)
+    if kind == events.BALL_BALL:
+        return SOLVED if _meet_in_air(paths, i, j, t, law, boundaries, series) else UNSOLVED
+    if kind == events.POT or kind == events.OFF:
+        return NOT_IN_AIR
+    (x, y), (vx, vy), w = flight.evaluate(motion, state, i, t, phys)
+    z, u = flight.height(motion, state, i, t, phys)
+    if kind == events.CUSHION or kind == events.JAW:
+        normal = flight.edge_normal(motion, state, i, t, kind, j, boundaries, phys)
+        v, w = rebound_in_air((vx, vy, u), w, normal, kind == events.JAW, phys)
+        flight.take_off(motion, state, i, t, (x, y, z), v, w, phys)
+    elif kind == events.LAND:
+        v, w, up = flight.thrown((vx, vy), w, -u, phys)
+        flight.leave(motion, state, i, t, (x, y), v, w, up, phys)
+    elif kind == events.RAIL:
+        v, w, up = flight.thrown((vx, vy), w, -u, phys)
+        flight.take_off(motion, state, i, t, (x, y, z), (v[0], v[1], up), w, phys)
+    else:
+        # it came over the pocket where its path enters the circle
+        fx, fy, radius = (
+            boundaries.falls[j, FALL_X],
+            boundaries.falls[j, FALL_Y],
+            boundaries.falls[j, FALL_RADIUS],
+        )
+        dx, dy, speed2 = x - fx, y - fy, vx * vx + vy * vy
+        back = 0.0
+        if speed2 > 0.0:
+            along = dx * vx + dy * vy
+            back = (
+                along + sqrt(max(0.0, along * along + (radius * radius - dx * dx - dy * dy) * speed2))
+            ) / speed2
+        falls[i, pocket.IN_X], falls[i, pocket.IN_Y], falls[i, pocket.POCKET] = (
+            dx - vx * back,
+            dy - vy * back,
+            j,
+        )
+        pocket.next_leg(paths, i, t, (x, y, 0.0), (vx, vy, -u), w, boundaries, phys)
+    return SOLVED
 
 
 @kernel
@@ -94,11 +202,11 @@ def _bound(bounds, i, lo_x, hi_x, lo_y, hi_y):
 
 
 @kernel
-def _predict(paths, i, t, boundaries, clear, forecast):
+def _predict(paths, i, t, boundaries, clear, forecast, phys, aloft):
     """Ball i has a new motion at time t: predict all its events, and correct its partners' rows."""
-    motion, state, flight = paths
+    motion, state, falls = paths
     bounds, pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
-    still, m = state[i] == REST, pair.shape[1]
+    still, flies, m = state[i] == REST, state[i] == AIR, pair.shape[1]
     d = 2.0 * boundaries.R + TOUCH
     lo_x, hi_x, lo_y, hi_y = motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y]
     _bound(bounds, i, lo_x, hi_x, lo_y, hi_y)
@@ -131,7 +239,10 @@ def _predict(paths, i, t, boundaries, clear, forecast):
                         _rescan(pair, best_time, best_ball, j)
                 continue
             a, b = (i, j) if i < j else (j, i)
-            s = pair_time(motion, state, a, b, t, 2.0 * boundaries.R)
+            if aloft is not None and (flies or state[j] == AIR):
+                s = flight.pair_time(motion, state, a, b, t, 2.0 * boundaries.R, phys)
+            else:
+                s = pair_time(motion, state, a, b, t, 2.0 * boundaries.R)
             pair[i, j] = pair[j, i] = s
             if s < time:
                 time, ball = s, j
@@ -144,9 +255,14 @@ def _predict(paths, i, t, boundaries, clear, forecast):
     if state[i] == FALLING:
         alone_time[i], alone_kind[i], alone_index[i] = (
             motion[i, T_END],
-            int(flight[i, pocket.KIND]),
-            int(flight[i, pocket.INDEX]),
+            int(falls[i, pocket.KIND]),
+            int(falls[i, pocket.INDEX]),
         )
+    elif state[i] == AIR:
+        if aloft is not None:
+            alone_time[i], alone_kind[i], alone_index[i] = flight.next_event(
+                motion, i, boundaries, clear, phys
+            )
     elif not still:
         s, kind, index = boundary_event(motion, state, i, boundaries, clear)
         if s > motion[i, T_END] or kind == events.NONE:
@@ -174,8 +290,50 @@ def _is_astray(motion, state, i, reach, boundaries):
     """Whether ball i is on the bed deeper than ``HELD`` in a cushion, over a pocket, or off the table."""
     return (
         state[i] != FALLING
+        and state[i] != AIR
         and place_fault(motion[i, X], motion[i, Y], reach, boundaries, HELD, HELD)[0] != SOUND
     )
+
+
+@kernel
+def _watch(paths, kind, j, t, phys):
+    """Ball 0 has an event at t: is its stroke a jump shot? In columns of ``flight``, until that is certain."""
+    motion, state, seen = paths
+    if (
+        t < 0.0
+    ):  # never: a kernel that calls itself is not inlined, and does not slow down the loop of other shots
+        _watch(paths, kind, j, t, phys)
+    d, other = 2.0 * phys[P_R], j if kind == events.BALL_BALL else -1
+    flies, struck = state[0] == AIR, int(seen[0, flight.STRUCK])
+    (x, y), _v, _w = flight.evaluate(motion, state, 0, t, phys)
+    if struck < 0:
+        if flies and flight.passes_over(motion, state, 0, t, other, d):
+            seen[0, flight.JUMPED] = 1.0
+        if other >= 0:
+            (a, b), _v, _w = flight.evaluate(motion, state, other, t, phys)
+            least = d - flight.OVER
+            above = flies and (a - x) * (a - x) + (b - y) * (b - y) < least * least
+            seen[0, flight.STRUCK], seen[0, flight.WATCHED] = other, 0.0 if above else -1.0
+            seen[0, flight.WAY_X], seen[0, flight.WAY_Y] = motion[0, VX], motion[0, VY]
+        return
+    # it met that ball from above: where does it come down?
+    seen[0, flight.WATCHED] = -1.0
+    if state[struck] == GONE:
+        seen[0, flight.JUMPED] = 1.0
+        return
+    (a, b), _v, _w = flight.evaluate(motion, state, struck, t, phys)
+    if (x - a) * seen[0, flight.WAY_X] + (y - b) * seen[0, flight.WAY_Y] > 0.0:
+        seen[0, flight.JUMPED] = 1.0
+
+
+@kernel
+def _lands_off(motion, state, i, t, clear, reach, boundaries):
+    """Whether ball i comes down, or out of a pocket, where no bed is: behind jaws."""
+    dt = t - motion[i, T0]
+    x, y = motion[i, X] + motion[i, VX] * dt, motion[i, Y] + motion[i, VY] * dt
+    if clear[0] <= x <= clear[1] and clear[2] <= y <= clear[3]:
+        return False
+    return place_fault(x, y, reach, boundaries, HELD, HELD)[0] != SOUND
 
 
 @kernel
@@ -229,9 +387,12 @@ def _next_event(best_time, best_ball, alone_time, alone_kind, alone_index):
 
 
 @kernel
-def run(balls, setup, max_events, log, paths, forecast, series):
+def run(balls, aloft, setup, max_events, log, paths, forecast, series):
     """Simulate one shot to rest, in place -> status, number of events and of segments, duration [s].
 
+    ``aloft``: None where no ball flies (numba then compiles nothing of it); else (n, 2), the height of each ball above the
+    bed [m] and its rate [m/s], and after the shot in the first place 1 for a jump shot of ball 0: it flew over a part of
+    a ball before it met one, or came down behind the one that it met from above.
     ``paths``, ``forecast`` and ``series``: work space. Not inlined into ``run_batch``, which makes arrays:
     numba would count references to the arrays of a tuple at every use (4 % of a shot of two balls).
     """
@@ -239,7 +400,7 @@ def run(balls, setup, max_events, log, paths, forecast, series):
     law, first, boundaries, reach, clear = setup
     phys, (noses, jaws, falls, R) = law.phys, boundaries
     time, what, segments = log
-    motion, state, flight = paths
+    motion, state, over = paths
     bounds, pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
     n = positions.shape[0]
     n_segments = n_events = np.int64(0)  # (typed: with a literal numba would compile every callee twice)
@@ -250,7 +411,12 @@ def run(balls, setup, max_events, log, paths, forecast, series):
             pair[i, j] = inf
         if on_table[i]:
             r, v = (positions[i, 0], positions[i, 1]), (velocities[i, 0], velocities[i, 1])
-            cloth.begin(motion, state, i, 0.0, r, v, (spins[i, 0], spins[i, 1], spins[i, 2]), phys)
+            w = spins[i, 0], spins[i, 1], spins[i, 2]
+            motion[i, Z] = motion[i, UZ] = 0.0
+            cloth.begin(motion, state, i, 0.0, r, v, w, phys)
+            if aloft is not None and (aloft[i, 0] > 0.0 or aloft[i, 1] > 0.0):
+                r3, v3 = (r[0], r[1], aloft[i, 0]), (v[0], v[1], aloft[i, 1])
+                flight.take_off(motion, state, i, 0.0, r3, v3, w, phys)
             _bound(bounds, i, motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y])
         else:
             state[i] = GONE
@@ -259,17 +425,25 @@ def run(balls, setup, max_events, log, paths, forecast, series):
         n_segments = _record(segments, n_segments, motion, state, i)
     for i in range(n):
         if state[i] > REST:
-            _predict(paths, i, 0.0, boundaries, clear, forecast)
+            _predict(paths, i, 0.0, boundaries, clear, forecast, phys, aloft)
+    if aloft is not None:
+        over[0, flight.STRUCK], over[0, flight.WATCHED], over[0, flight.JUMPED] = -1.0, 0.0, 0.0
     status = events.OK
     end, met = 0.0, False
     while True:
         t, kind, i, j = _next_event(best_time, best_ball, alone_time, alone_kind, alone_index)
         if t == inf:
             break
-        if kind == events.POT and state[i] != FALLING:
+        if kind == events.POT and state[i] != FALLING and state[i] != AIR:
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
             if pocket.ahead(r[0], r[1], v[0], v[1], falls, j, jaws, phys)[0] < inf:
                 kind = np.int64(events.DROP)
+        if (
+            aloft is not None
+            and (kind == events.LAND or kind == events.RETURN)
+            and _lands_off(motion, state, i, t, clear, reach, boundaries)
+        ):
+            kind = np.int64(events.OFF if kind == events.LAND else events.POT)
         if n_events == max_events:
             status = events.TOO_MANY_EVENTS
             break
@@ -285,49 +459,69 @@ def run(balls, setup, max_events, log, paths, forecast, series):
             )
         n_events += 1
         end = t
-        if kind == events.BALL_BALL:
+        in_air = NOT_IN_AIR
+        if aloft is not None:
+            if i == 0 and over[0, flight.WATCHED] >= 0.0:
+                _watch(paths, kind, j, t, phys)
+            if state[i] == AIR or (kind == events.BALL_BALL and state[j] == AIR):
+                in_air = _in_air(paths, i, kind, j, t, law if met else first, boundaries, series)
+        if in_air != NOT_IN_AIR:
+            solved, met = in_air == SOLVED, met or kind == events.BALL_BALL
+        elif kind == events.BALL_BALL:
             r1, v1, w1 = cloth.evaluate(motion, state, i, t, phys)
             r2, v2, w2 = cloth.evaluate(motion, state, j, t, phys)
             if state[i] == FALLING:
-                v1 = pocket.aloft(motion, flight, i, t, v1, phys)
+                v1 = pocket.aloft(motion, over, i, t, v1, phys)
             if state[j] == FALLING:
-                v2 = pocket.aloft(motion, flight, j, t, v2, phys)
+                v2 = pocket.aloft(motion, over, j, t, v2, phys)
             nx, ny = r2[0] - r1[0], r2[1] - r1[1]
             d = sqrt(nx * nx + ny * ny)
-            v1, w1, v2, w2, solved = meet(v1, w1, v2, w2, (nx / d, ny / d), law if met else first, series)
+            u1, s1, u2, s2, solved = meet(v1, w1, v2, w2, (nx / d, ny / d), law if met else first, series)
             met = True
-            _begin_again(paths, i, t, r1, v1, w1, boundaries, phys)
-            _begin_again(paths, j, t, r2, v2, w2, boundaries, phys)
+            lifts = False
+            if aloft is not None:
+                lifts = max(u1[2], u2[2]) >= flight.SETTLE
+                if lifts:
+                    before = (v1[0], v1[1], 0.0), w1, (v2[0], v2[1], 0.0), w2
+                    _part(paths, i, j, t, (r1, u1, s1), (r2, u2, s2), before, boundaries, phys)
+            if not lifts:
+                _begin_again(paths, i, t, r1, u1, s1, boundaries, phys)
+                _begin_again(paths, j, t, r2, u2, s2, boundaries, phys)
         elif kind == events.ROLL or kind == events.STOP or kind == events.BEND:
             cloth.next_phase(motion, state, i, phys)
             solved = True
-        elif kind == events.POT:
+        elif kind == events.POT or kind == events.OFF:
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
             _lie(motion, i, r[0], r[1])
             if _is_astray(motion, state, i, reach, boundaries):
                 status = events.ASTRAY
                 break
-            potted[i] = j
+            potted[i] = j if kind == events.POT else events.OFF_TABLE
             _leave(state, i, forecast)
             motion[i, T0], motion[i, T_END] = t, inf
             n_segments = _record(segments, n_segments, motion, state, i)
             continue
         elif kind == events.DROP:
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
-            flight[i, pocket.IN_X], flight[i, pocket.IN_Y] = r[0] - falls[j, FALL_X], r[1] - falls[j, FALL_Y]
-            flight[i, pocket.POCKET] = j
+            over[i, pocket.IN_X], over[i, pocket.IN_Y] = r[0] - falls[j, FALL_X], r[1] - falls[j, FALL_Y]
+            over[i, pocket.POCKET] = j
             pocket.next_leg(paths, i, t, (r[0], r[1], 0.0), (v[0], v[1], 0.0), w, boundaries, phys)
             solved = True
         elif state[i] == FALLING:
             r, _, w = cloth.evaluate(motion, state, i, t, phys)
-            v = flight[i, pocket.END_VX], flight[i, pocket.END_VY]
+            v = over[i, pocket.END_VX], over[i, pocket.END_VY]
             if kind == events.JAW:
-                at = r[0], r[1], flight[i, pocket.Z1]
+                at = r[0], r[1], over[i, pocket.Z1]
                 _, nx, ny, sin_phi, _ = pocket.jaw_gap(at, jaws, j, R, phys[P_SIN])
-                falling, w = pocket.strike_jaw((v[0], v[1], flight[i, pocket.U1]), w, nx, ny, sin_phi, phys)
-                pocket.next_leg(paths, i, t, at, falling, w, boundaries, phys)
+                cos_phi = sqrt(1.0 - sin_phi * sin_phi)
+                normal = nx * cos_phi, ny * cos_phi, sin_phi
+                u, w = free.against(
+                    (v[0], v[1], -over[i, pocket.U1]), w, normal, phys[P_MU_C], phys[P_E_J], R
+                )
+                pocket.next_leg(paths, i, t, at, (u[0], u[1], -u[2]), w, boundaries, phys)
             else:  # back on the bed, which stops the vertical motion
                 cloth.begin(motion, state, i, t, r, v, w, phys)
+                motion[i, Z] = motion[i, UZ] = 0.0
             solved = True
         else:
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
@@ -341,8 +535,14 @@ def run(balls, setup, max_events, log, paths, forecast, series):
                 nx, ny = jaws[j, JAW_X] - r[0], jaws[j, JAW_Y] - r[1]
                 d = sqrt(nx * nx + ny * ny)
                 nx, ny = nx / d, ny / d
-            v, w, solved = rebound(v, w, (nx, ny), kind == events.JAW, law, series)
-            cloth.begin(motion, state, i, t, r, v, w, phys)
+            u, w, solved = rebound(v, w, (nx, ny), kind == events.JAW, law, series)
+            lifts = False
+            if aloft is not None:
+                lifts = u[2] >= flight.SETTLE
+                if lifts:
+                    flight.take_off(motion, state, i, t, (r[0], r[1], 0.0), u, w, phys)
+            if not lifts:
+                cloth.begin(motion, state, i, t, r, (u[0], u[1]), w, phys)
         if not solved:
             status = events.IMPACT_UNSOLVED
             break
@@ -350,10 +550,10 @@ def run(balls, setup, max_events, log, paths, forecast, series):
             status = events.ASTRAY
             break
         n_segments = _record(segments, n_segments, motion, state, i)
-        _predict(paths, i, t, boundaries, clear, forecast)
+        _predict(paths, i, t, boundaries, clear, forecast, phys, aloft)
         if kind == events.BALL_BALL:
             n_segments = _record(segments, n_segments, motion, state, j)
-            _predict(paths, j, t, boundaries, clear, forecast)
+            _predict(paths, j, t, boundaries, clear, forecast, phys, aloft)
     for i in range(n):
         if state[i] == GONE:
             positions[i, 0], positions[i, 1] = motion[i, X], motion[i, Y]
@@ -365,17 +565,21 @@ def run(balls, setup, max_events, log, paths, forecast, series):
             spins[i, 0], spins[i, 1], spins[i, 2] = w[0], w[1], w[2]
             if status == events.OK and phys[P_SPIN] > 0.0:  # at rest a ball may still spin on the spot
                 end = max(end, motion[i, T0] + abs(motion[i, WZ]) / phys[P_SPIN])
+    if aloft is not None:
+        aloft[0, 0] = over[0, flight.JUMPED]
     return status, n_events, n_segments, end
 
 
 @kernel
-def _is_sound(balls, reach, boundaries):
+def _is_sound(balls, aloft, reach, boundaries):
     """Whether a shot may begin with these places, speeds and spins."""
     positions, velocities, spins, on_table, _potted = balls
     for i in range(positions.shape[0]):
         for c in range(2):
             if not (abs(positions[i, c]) <= FARTHEST and abs(velocities[i, c]) <= FASTEST):
                 return False
+        if aloft is not None and not (0.0 <= aloft[i, 0] <= FARTHEST and abs(aloft[i, 1]) <= FASTEST):
+            return False
         for c in range(3):
             if not abs(spins[i, c]) <= MOST_SPIN:
                 return False
@@ -390,12 +594,12 @@ def _kick(phys, friction, to):
     to[P_MU_BB_LEAST], to[P_MU_BB_EXTRA], to[P_BALLS] = friction, 0.0, 0.0
 
 
-@entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion))
-def run_batch(balls, setup, max_events, log, ends, start, stop):
+@entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion, collide_tilted))
+def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
     """Simulate shots ``start`` to ``stop`` of a batch; arrays of balls, log and ends have a batch axis.
 
-    Takes plain tuples: the fields of ``Balls``, ``Log`` and ``Ends``, and (phys, kicks, noses, jaws, falls,
-    reach, fidelity, n_steps, doubt). That costs 0.3 us a call, named tuples 3 us (a shot of two balls: 2 us).
+    ``aloft``: as of ``run``, with a batch axis. Takes plain tuples: the fields of ``Balls``, ``Log`` and ``Ends``, and (phys,
+    kicks, noses, jaws, falls, reach, fidelity, n_steps, doubt). That costs 0.3 us a call, named tuples 3 us (a shot of two balls: 2 us).
     ``phys``: one row of constants for all shots, or one for each. ``kicks``: none, or for each shot the
     friction of its first impact of two balls where it is above 0. With ``doubt`` shots are checked first; what
     may not begin is ``UNSOUND`` and stays.
@@ -409,7 +613,7 @@ def run_batch(balls, setup, max_events, log, ends, start, stop):
     bad = np.empty(CONSTANTS)
     n = positions.shape[1]
     m = (n + LANES - 1) // LANES * LANES
-    paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, pocket.FLIGHT)))
+    paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, flight.COLUMNS)))
     forecast = Forecast(
         np.empty((4, m)),
         np.empty((n, m)),
@@ -424,9 +628,16 @@ def run_batch(balls, setup, max_events, log, ends, start, stop):
     series = np.zeros(WORK)
     for k in range(start, stop):
         shot = Balls(positions[k], velocities[k], spins[k], on_table[k], potted[k])
-        if doubt and not _is_sound(shot, reach, boundaries):
-            status[k] = events.UNSOUND
-            continue
+        if doubt:
+            sound = (
+                _is_sound(shot, None, reach, boundaries)
+                if aloft
+                is None  # (no variable holds aloft[k], or None: numba then leaves out what does not apply)
+                else _is_sound(shot, aloft[k], reach, boundaries)
+            )
+            if not sound:
+                status[k] = events.UNSOUND
+                continue
         law = Law(phys[min(k, phys.shape[0] - 1)], fidelity, n_steps)
         first = law
         if kicks.shape[0] and kicks[k] > 0.0:
@@ -434,6 +645,8 @@ def run_batch(balls, setup, max_events, log, ends, start, stop):
             first = Law(bad, fidelity, n_steps)
         setting = Setup(law, first, boundaries, reach, clear)
         shot_log = Log(time[k], what[k], segments[k])
-        status[k], n_events[k], n_segments[k], duration[k] = run(
-            shot, setting, max_events, shot_log, paths, forecast, series
-        )
+        if aloft is None:
+            found = run(shot, None, setting, max_events, shot_log, paths, forecast, series)
+        else:
+            found = run(shot, aloft[k], setting, max_events, shot_log, paths, forecast, series)
+        status[k], n_events[k], n_segments[k], duration[k] = found

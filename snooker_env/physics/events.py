@@ -18,6 +18,9 @@ class EventKind(IntEnum):
     DROP      6      Ball i flies over the edge of pocket j towards a jaw: a POT or RETURN follows.
     RETURN    7      Ball i came back on to the bed, over the edge of pocket j.
     BEND      8      Ball i rolls on: its path's next piece. Only with ``Physics.nap`` or ``roll_drag``.
+    LAND      9      Ball i comes down on the bed. This and the next two only with ``Physics.flight``.
+    RAIL      10     Ball i comes down on the top of a cushion and bounces there.
+    OFF       11     Ball i is forced off the table.
     ========= ====== ================================================================================
 
     Examples
@@ -36,6 +39,9 @@ class EventKind(IntEnum):
     DROP = 6
     RETURN = 7
     BEND = 8
+    LAND = 9
+    RAIL = 10
+    OFF = 11
 
 
 class Status(IntEnum):
@@ -60,11 +66,16 @@ class Status(IntEnum):
 
 
 # The same as plain integers, because kernels compare them with numbers in integer arrays.
-BALL_BALL, CUSHION, JAW, POT, ROLL, STOP, DROP, RETURN, BEND = (int(kind) for kind in EventKind)
+BALL_BALL, CUSHION, JAW, POT, ROLL, STOP, DROP, RETURN, BEND, LAND, RAIL, OFF = (
+    int(kind) for kind in EventKind
+)
 OK, TOO_MANY_EVENTS, LOG_FULL, IMPACT_UNSOLVED, ASTRAY, UNSOUND = (int(status) for status in Status)
 
 NONE = len(EventKind)
 """No event; its number is higher than that of every kind."""
+
+OFF_TABLE = -2
+"""In place of a pocket: the ball was forced off the table."""
 
 LOG_KIND, LOG_I, LOG_J = range(3)
 """Columns of the event log."""

@@ -9,8 +9,10 @@ then a series of hops of about a micrometre and a millisecond. Energy never rise
 from math import sqrt
 
 from .._jit import inlined, kernel
-from .columns import P_E_B, P_E_J, P_R
-from .impact.contact import collide_balls, collide_cushion, cushion_restitution
+from .columns import P_E_B, P_E_J, P_MU_BB_EXTRA, P_MU_BB_FADE, P_MU_BB_LEAST, P_MU_C, P_R
+from .impact import free
+from .impact.contact import collide_balls, collide_cushion, collide_tilted, cushion_restitution
+from .impact.coulomb import Friction
 
 PART = 2e-3  # m/s; too slow to matter in a shot: a ball at this speed rolls 16 micrometres
 
@@ -42,7 +44,8 @@ def _scaled(w, k):
 
 @inlined
 def meet(v1, w1, v2, w2, normal, law, series):
-    """Ball-ball impact: as ``collide_balls`` or, below ``PART``, a hop; in the plane, as in the paper."""
+    """Two balls on the bed meet: as ``collide_balls`` or, below ``PART``, a hop. The vertical velocities are what they would
+    have off the bed; the paper drops them."""
     (nx, ny), phys = normal, law.phys
     closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
     if closing <= PART:
@@ -50,16 +53,65 @@ def meet(v1, w1, v2, w2, normal, law, series):
         parting, k = _hop(closing, 2.0 * (_spin_energy(w1, phys[P_R]) + _spin_energy(w2, phys[P_R])))
         dv = 0.5 * (closing + parting)
         return (
-            (v1[0] - dv * nx, v1[1] - dv * ny),
+            (v1[0] - dv * nx, v1[1] - dv * ny, 0.0),
             _scaled(w1, k),
-            (v2[0] + dv * nx, v2[1] + dv * ny),
+            (v2[0] + dv * nx, v2[1] + dv * ny, 0.0),
             _scaled(w2, k),
             True,
         )
     e = max(phys[P_E_B], PART / closing)
     v1, v2 = (v1[0], v1[1], 0.0), (v2[0], v2[1], 0.0)
-    a, wa, b, wb, solved = collide_balls(v1, w1, v2, w2, normal, law, e, series)
-    return (a[0], a[1]), wa, (b[0], b[1]), wb, solved
+    return collide_balls(v1, w1, v2, w2, normal, law, e, series)
+
+
+@kernel
+def lost(before, after, R):
+    """The energy per unit mass that two balls lose in an impact [m^2/s^2]; before and after: v1, w1, v2, w2."""
+    energy = 0.0
+    for k in (0, 2):
+        v, w, u, s = before[k], before[k + 1], after[k], after[k + 1]
+        energy += 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] - u[0] * u[0] - u[1] * u[1] - u[2] * u[2])
+        energy += _spin_energy(w, R) - _spin_energy(s, R)
+    return max(0.0, energy)
+
+
+@kernel
+def meet_in_air(vc, wc, vo, wo, normal, lies, law, series):
+    """Two balls meet, C in the air, O lower or as high; ``lies``: O is on the bed -> v and w of C and O, the impulse of
+    friction that presses O into the bed (no more than gives back what the impact has lost), solved. ``normal``: from C to
+    O, in three dimensions."""
+    (x, y, z), phys = normal, law.phys
+    dz = vc[2] - (0.0 if lies else vo[2])
+    closing = (vc[0] - vo[0]) * x + (vc[1] - vo[1]) * y + dz * z
+    if closing <= PART:
+        give = 1.0 - z * z if lies else 1.0  # the bed holds one that lies
+        parting, k = _hop(closing, (1.0 + give) * (_spin_energy(wc, phys[P_R]) + _spin_energy(wo, phys[P_R])))
+        dv = (closing + parting) / (1.0 + give)
+        vc = (vc[0] - dv * x, vc[1] - dv * y, vc[2] - dv * z)
+        vo = (vo[0] + dv * x, vo[1] + dv * y, 0.0 if lies else vo[2] + dv * z)
+        return vc, _scaled(wc, k), vo, _scaled(wo, k), 0.0, True
+    e = max(phys[P_E_B], PART / closing)
+    if lies:
+        flat = vo[0], vo[1], 0.0
+        a, wa, b, wb, press, solved = collide_tilted(vc, wc, flat, wo, normal, law, e, series)
+        press = min(press, sqrt(2.0 * lost((vc, wc, flat, wo), (a, wa, b, wb), phys[P_R])))
+        return a, wa, b, wb, press, solved
+    friction = Friction(phys[P_MU_BB_LEAST], phys[P_MU_BB_EXTRA], phys[P_MU_BB_FADE])
+    vc, wc, vo, wo = free.between(vc, wc, vo, wo, normal, friction, e, phys[P_R])
+    return vc, wc, vo, wo, 0.0, True
+
+
+@kernel
+def rebound_in_air(v, w, normal, jaw, phys):
+    """A ball in the air meets a nose or a jaw; ``normal``: to its edge, in three dimensions."""
+    x, y, z = normal
+    closing = v[0] * x + v[1] * y + v[2] * z
+    if closing <= PART:
+        parting, k = _hop(closing, _spin_energy(w, phys[P_R]))
+        dv = closing + parting
+        return (v[0] - dv * x, v[1] - dv * y, v[2] - dv * z), _scaled(w, k)
+    e = max(phys[P_E_J] if jaw else cushion_restitution(closing, phys), PART / closing)
+    return free.against(v, w, normal, phys[P_MU_C], e, phys[P_R])
 
 
 @inlined
@@ -70,7 +122,6 @@ def rebound(v, w, normal, jaw, law, series):
     if closing <= PART:
         parting, k = _hop(closing, _spin_energy(w, phys[P_R]))
         dv = closing + parting
-        return (v[0] - dv * nx, v[1] - dv * ny), _scaled(w, k), True
+        return (v[0] - dv * nx, v[1] - dv * ny, 0.0), _scaled(w, k), True
     e = max(phys[P_E_J] if jaw else cushion_restitution(closing, phys), PART / closing)
-    a, wa, solved = collide_cushion((v[0], v[1], 0.0), w, normal, law, e, series)
-    return (a[0], a[1]), wa, solved
+    return collide_cushion((v[0], v[1], 0.0), w, normal, law, e, series)

@@ -33,6 +33,7 @@ FARTHEST = 1e6
 FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
 """The same for one impact alone: its outcome scales with its speeds (but for laws that contain one)."""
 _LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
+_FLIES = 1e-300  # in place of a restitution of 0 of the bed, which says that no ball flies
 _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
 """Bounds of ``e_c_knee`` and ``e_c_power``. The rebound varies with at most the power 1.25 of e
 (tests/physics/test_cushion_law.py): with a power up to 0.8 it never falls with the speed."""
@@ -94,6 +95,11 @@ class Physics:
         Ball mass over the cue's effective end mass, >= 0; it determines the squirt [TP A.31].
     max_offset : float
         Tip offset over R beyond which the tip slips (miscue), in (0, 0.999] [TP A.30].
+    flight : bool
+        Whether balls leave the bed: struck down upon, thrown up by impacts, off a cushion, over other balls, off the
+        table. False: they stay on it, as in the paper. Positions and velocities have a third column where it is True.
+    e_t : float
+        Restitution of the bed, in [0, 0.95], where balls fly. Measured nowhere: 0.5 is what is commonly taken.
     tables : bool
         Whether impacts of rolling balls come from tables, but for "reference" and "euler:N": faster and more
         accurate. Those of the presets are stored; other constants make theirs at their first use, in 5 to 200
@@ -129,6 +135,8 @@ class Physics:
     sin_theta: float = 0.4
     end_mass_ratio: float = 30.0
     max_offset: float = 0.5
+    flight: bool = False
+    e_t: float = 0.5
     tables: bool = True
 
     def __post_init__(self) -> None:
@@ -149,6 +157,7 @@ class Physics:
             "sin_theta": (0, 0.95),
             "end_mass_ratio": (0, np.inf),
             "max_offset": (0, 0.999),
+            "e_t": (0, 0.95),
         }
         for field in ("R", "M"):
             value = getattr(self, field)
@@ -167,6 +176,7 @@ class Physics:
             object.__setattr__(self, "e_j", number("physics.e_j", self.e_j, 0, 1))
         object.__setattr__(self, "mu_bb", _mu_bb(self.mu_bb))
         object.__setattr__(self, "tables", truth("physics.tables", self.tables))
+        object.__setattr__(self, "flight", truth("physics.flight", self.flight))
         if self.e_c_power > 0 and self.e_c_knee < _LEAST_KNEE:
             allowed = f"must be at least {_LEAST_KNEE:g} m/s where e_c_power > 0: above it e(v) = e_c (v / e_c_knee)^(-e_c_power)"
             raise refuse("physics.e_c_knee", self.e_c_knee, allowed)
@@ -290,8 +300,13 @@ class Physics:
             return MARLOW
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
+    @property
+    def thrown(self) -> float:
+        """The restitution of the bed where balls fly, else 0."""
+        return max(self.e_t, _FLIES) if self.flight else 0.0
+
     def pack(self) -> Floats:
-        """The constants for the kernels: float64 (21,), at the places ``P_*`` of ``columns.py``, SI units."""
+        """The constants for the kernels: float64 (22,), at the places ``P_*`` of ``columns.py``, SI units."""
         return self._constants.copy()
 
     def packed_for(self, solver: Solver) -> Floats:
@@ -322,6 +337,7 @@ class Physics:
                 self.e_c if self.e_j is None else self.e_j,
                 self.nap,
                 self.roll_drag,
+                self.thrown,
                 *(0.0, 0.0, 0.0),
             ]
         )

@@ -9,9 +9,8 @@ cloth.
   d^2 + (R - z)^2 = R^2, its normal from edge to centre. Restitution ``EDGE``, frictionless; below ``SOFT`` it
   tips over.
 * A jaw's nose is an arc at height (1 + sin_theta) R: a ball touches it at the angle phi above its equator,
-  sin(phi) = sin_theta + z/R. A free sphere and a fixed body, in closed form: p = (1 + e_j) times the closing
-  speed, friction min(mu_c p, 2/7 of the slip) against the slip. The nose is above the centre and drives the
-  ball down.
+  sin(phi) = sin_theta + z/R, as a free sphere touches a fixed body (``free.against``). The nose is above the centre and
+  drives the ball down.
 * Lost: no arc ahead and its line leaves the fall on the far side from where it came in; or below the noses,
   z = (1 - sin_theta) R, where the edge pushes it inwards too; or it touches the throat behind an arc.
 
@@ -25,7 +24,7 @@ from math import inf, sqrt
 
 from .._jit import kernel
 from . import events
-from .cloth import AX, AY, FALLING, HI_X, HI_Y, LO_X, LO_Y, T0, T_END, VX, VY, WX, WY, WZ, X, Y
+from .cloth import AX, AY, FALLING, HI_X, HI_Y, LO_X, LO_Y, T0, T_END, UZ, VX, VY, WX, WY, WZ, X, Y, Z
 from .columns import (
     FALL_RADIUS,
     FALL_X,
@@ -36,9 +35,7 @@ from .columns import (
     JAW_UY,
     JAW_X,
     JAW_Y,
-    P_E_J,
     P_G,
-    P_MU_C,
     P_R,
     P_SIN,
 )
@@ -156,30 +153,6 @@ def jaw_gap(r, jaws, k, R, sin_theta):
 
 
 @kernel
-def strike_jaw(v, w, nx, ny, sin_phi, phys):
-    """Impact of a free ball with a nose, (nx, ny) the unit vector to it -> v = (vx, vy, u) [m/s], w [rad/s].
-
-    Unchanged if it falls away faster than it moves towards the nose, which does not pull.
-    """
-    cos_phi, R = sqrt(1.0 - sin_phi * sin_phi), phys[P_R]
-    vx, vy, u = v
-    x, y, z = nx * cos_phi, ny * cos_phi, sin_phi  # from the centre to the contact, z up
-    closing = vx * x + vy * y - u * z
-    if not closing > 0.0:
-        return v, w
-    sx = vx + R * (w[1] * z - w[2] * y) - closing * x
-    sy = vy + R * (w[2] * x - w[0] * z) - closing * y
-    sz = -u + R * (w[0] * y - w[1] * x) - closing * z
-    slip = sqrt(sx * sx + sy * sy + sz * sz)
-    p = (1.0 + phys[P_E_J]) * closing
-    f = min(phys[P_MU_C] * p, slip / 3.5) / slip if slip > 0.0 else 0.0
-    fx, fy, fz = -f * sx, -f * sy, -f * sz
-    q = 2.5 / R
-    w = (w[0] + q * (y * fz - z * fy), w[1] + q * (z * fx - x * fz), w[2] + q * (x * fy - y * fx))
-    return (vx - p * x + fx, vy - p * y + fy, u + p * z - fz), w
-
-
-@kernel
 def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
     """Of the jaws that a ball moves into, the deepest: index (or -1), gap [m], closing [m/s], normal.
 
@@ -294,6 +267,8 @@ def next_leg(paths, i, t, r, v, w, boundaries, phys):
         min(y, y1),
         max(y, y1),
     )
+    # a free fall between the heights at both ends
+    motion[i, Z], motion[i, UZ] = -z, (z - z1) / T + 0.5 * phys[P_G] * T
     flight[i, HAD] = 0.5 * (vx * vx + vy * vy + u * u) - phys[P_G] * z
     flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1], flight[i, END_VX], flight[i, END_VY] = (
         z,

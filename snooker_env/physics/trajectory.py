@@ -3,12 +3,12 @@
 import numpy as np
 
 from .._jit import entry
-from . import cloth
+from . import cloth, flight
 
 
 @entry
 def states_at(segments, n_balls, times, phys, positions, velocities, spins):
-    """Fill positions (m, n, 2) [m], velocities [m/s] and spins (m, n, 3) [rad/s] at ``times`` (m,) [s].
+    """Fill positions (m, n, 2) or (m, n, 3) [m], velocities [m/s] and spins (m, n, 3) [rad/s] at ``times`` (m,) [s].
 
     ``segments`` (k, cloth.SEGMENT) in order of time: one holds until the ball's next; of several at one time
     the last counts (after the impact).
@@ -25,7 +25,9 @@ def states_at(segments, n_balls, times, phys, positions, velocities, spins):
                 break
             current[int(segments[s, cloth.SEGMENT_BALL])] = s
         for i in range(n_balls):
-            r, v, w = cloth.evaluate(segments, state, current[i], t, phys)
+            r, v, w = flight.evaluate(segments, state, current[i], t, phys)
             positions[m, i, 0], positions[m, i, 1] = r
             velocities[m, i, 0], velocities[m, i, 1] = v
+            if positions.shape[2] == 3:
+                positions[m, i, 2], velocities[m, i, 2] = flight.height(segments, state, current[i], t, phys)
             spins[m, i, 0], spins[m, i, 1], spins[m, i, 2] = w

@@ -21,7 +21,7 @@ from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
 from ..tasks import stroke
 from ..tasks.arrays import CueLaw, StruckArrays, TableArrays
-from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions, tip_on_disc
+from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, TARGET_SPAN, Actions, tip_on_disc
 from ..tasks.declarations import A_END_MASS, A_MAX_OFFSET
 from ..tasks.discrete_actions import SIZE, masks
 from ..tasks.lines import new_work
@@ -208,7 +208,7 @@ def law_of(dynamics: Dynamics, at: Positions) -> tuple[Floats, Floats, int, int,
 
 
 def rows_under(conditions: Floats, physics: Physics) -> Floats:
-    """The packed constants (n, 21) of tables with these conditions (n, 8)."""
+    """The packed constants (n, 22) of tables with these conditions (n, 8)."""
     rows = np.tile(physics.pack(), (len(conditions), 1))
     pack_into(rows, np.arange(len(conditions)), conditions, physics)
     return rows
@@ -299,7 +299,7 @@ def check_strokes(strokes: Any, n: int | None = None) -> Floats:
         allowed = f"must be real numbers of shape ({'n' if n is None else n}, 5)"
         raise refuse_what("strokes", f"{a.dtype} array of shape {a.shape}", allowed)
     a = np.ascontiguousarray(a, np.float64)
-    most = (MAX_SPEED, FARTHEST, FARTHEST, np.inf, MAX_ELEVATION)
+    most = (MAX_SPEED, FARTHEST, FARTHEST, np.inf, STEEPEST)
     _check_columns(a, (MIN_SPEED, -FARTHEST, -FARTHEST, -np.inf, 0.0), most)
     return a
 
@@ -329,7 +329,13 @@ def encoded(
         allowed = f"must be within 3 degrees of the target line, {line[k]:.6g} rad"
         raise refuse(f"strokes[{k}], aim", float(strokes[k, AIM]), allowed)
     if actions.elevation:
-        out[:, 4] = 2.0 * strokes[:, ELEVATION] / MAX_ELEVATION - 1.0
+        if (steep := strokes[:, ELEVATION].max(initial=0.0)) > actions.steepest + 1e-9:
+            raise refuse(
+                "elevation",
+                float(steep),
+                f"must be at most {actions.steepest:.3g} rad, as the option elevation says",
+            )
+        out[:, 4] = 2.0 * strokes[:, ELEVATION] / actions.steepest - 1.0
     elif strokes[:, ELEVATION].any():
         allowed = "must be 0: actions without elevation=True have a level cue"
         raise refuse("elevation", float(strokes[:, ELEVATION].max()), allowed)

@@ -36,6 +36,7 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
         default="real",
         help="whether rails and balls are in its way (default: %(default)s)",
     )
+    add("--flight", action="store_true", help="balls fly, and the cue can be raised to 70 degrees")
     add("--seed", type=int, help="seed of all random numbers (default: a new one each time)")
     return parser.parse_args(argv)
 
@@ -50,7 +51,7 @@ def service_of(args: argparse.Namespace) -> Any:
     from .session import Session
 
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
-    session = Session(layout=args.layout, seed=seed, cue=args.cue)
+    session = Session(layout=args.layout, seed=seed, cue=args.cue, flight=args.flight)
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
     players = [player(name, trust=args.trust) for name in args.agent]
     agents = dict(zip(shown, players, strict=True))

@@ -15,7 +15,7 @@ from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
 from ..planning.strokes import FARTHEST
 from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
-from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
+from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
@@ -28,7 +28,8 @@ def scene(service: Service) -> dict[str, Any]:
     """The constant part: the table as it is drawn, limits of strokes, available players."""
     with service.reading() as session:
         rules = session.options_with("none").rules
-    limits = {"speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, MAX_ELEVATION]}
+    assert isinstance(rules.actions, Actions)
+    limits = {"speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, rules.actions.steepest]}
     pockets = zip(POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
     return {
         "scene": scene_data(rules.table),

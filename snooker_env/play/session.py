@@ -50,15 +50,20 @@ class Act:
 
 
 class Session:
-    """A frame to play, set up, undo, save and load; ``seed``: of all random numbers; ``cue``: "real" or "free"."""
+    """A frame to play, set up, undo, save and load; ``seed``: of all random numbers; ``cue``: "real" or "free"; ``flight``:
+    balls fly, and the cue can be raised to 70 degrees."""
 
     noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
     acts: list[Act]
     at: int  # number of acts that count; the following ones were undone
 
-    def __init__(self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real"):
+    def __init__(
+        self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
+    ):
         box: Any = {"placement": True, "decision": True, "elevation": True, "max_strokes": None}
+        if flight:
+            box |= {"elevation": 70, "physics": {"flight": True}}
         self._options = Options(task="frame", miss="clear_path", layout=layout, cue=cue, **box)
         self.noise, self.practice = ["none", "none"], False
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it

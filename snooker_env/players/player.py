@@ -21,7 +21,7 @@ from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..planning.planner import options_in
 from ..planning.positions import Positions, PositionsLike, seeds_of
 from ..planning.strokes import AIM, ELEVATION, NAMES, SIDE, SPEED, TOP
-from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
+from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
@@ -80,7 +80,7 @@ class Strokes:
             allowed = "must be (n, 5): speed, side, top, aim, elevation"
             raise refuse_what("values", f"array of shape {values.shape}", allowed)
         n = len(values)
-        most = np.array([MAX_SPEED, 0.5, 0.5, np.inf, MAX_ELEVATION]) + 1e-9
+        most = np.array([MAX_SPEED, 0.5, 0.5, np.inf, STEEPEST]) + 1e-9
         least = np.array([MIN_SPEED, -0.5, -0.5, -np.inf, 0.0]) - 1e-9
         fine = np.isfinite(values) & (values >= least) & (values <= most)
         if not fine.all():
@@ -176,7 +176,13 @@ class Strokes:
             if not holds and ((part := getattr(self, name)) > least).any():
                 raise refuse(name, part.max().item(), "must be left out: the actions do not hold it")
         if box.elevation:
-            parts.append(2.0 * self.elevation / MAX_ELEVATION - 1.0)
+            if (steep := self.elevation.max(initial=0.0)) > box.steepest + 1e-9:
+                raise refuse(
+                    "elevation",
+                    float(steep),
+                    f"must be at most {box.steepest:.3g} rad, as the option elevation says",
+                )
+            parts.append(2.0 * self.elevation / box.steepest - 1.0)
         if box.placement:
             parts += self._placed(at)
         if box.nominate:

@@ -232,7 +232,7 @@ def _ends(shots):
     places = []
     for shot in shots:
         met = _met(shot)
-        places.append(shot.at(0.0)[0][CUE])
+        places.append(shot.at(0.0)[0][CUE, :2])
         if met is not None:
             places += [met.centre, shot.positions[met.other]]
     return np.array(places)

@@ -119,6 +119,7 @@ _FADED = 0.42
 _SPOT = np.cos(np.radians(17.0))
 _SPOTS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=np.float64)
 _ALL_DARK = 0.62
+EYE = 2.0  # how far the eye is above the bed [m]: a ball that flies looks larger
 
 
 def draw_balls(surface: Any, scene: Scene, view: View) -> None:
@@ -130,13 +131,14 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
         for place in view(places):
             images.append(_at(place, _body, tuple(COLOURS[ball].tolist()), round(radius, 2), _FADED))
     where = view(scene.positions)
-    images += _shadows(scene.positions, over, where, radius)
-    for ball, place in zip(scene.ids.tolist(), where, strict=True):
+    images += _shadows(scene.positions, scene.heights / scene.ball_radius, over, where, radius)
+    for k in np.argsort(scene.heights, kind="stable").tolist():
+        ball, place, size = int(scene.ids[k]), where[k], radius * (1.0 + float(scene.heights[k]) / EYE)
         colour = tuple(COLOURS[ball].tolist())
         if ball in scene.turns:
-            images.append(_spotted(place, colour, radius, scene.turns[ball]))
+            images.append(_spotted(place, colour, size, scene.turns[ball]))
         else:
-            images.append(_at(place, _body, colour, round(radius, 2), 1.0))
+            images.append(_at(place, _body, colour, round(size, 2), 1.0))
     lettered = (scene.ids >= YELLOW) & scene.lettered
     images += _mirrored(scene.positions[~lettered], over, where[~lettered], radius)
     for ball, place in zip(scene.ids[lettered].tolist(), where[lettered], strict=True):
@@ -233,18 +235,20 @@ def _lamp(half, radius, fx, fy):
     return surface_of(image)
 
 
-def _shadows(positions, over, where, radius):
-    """A soft shadow from each lamp, fainter for a lower light, and the dark place where the ball touches."""
+def _shadows(positions, heights, over, where, radius):
+    """A soft shadow from each lamp, fainter for a lower light, and the dark place where the ball touches, which is
+    fainter under a ball that flies; ``heights`` in radii."""
     images = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3
     strength *= _ALL_DARK / strength.sum(axis=1, keepdims=True)
-    centre = where[:, None] - (radius * across / LAMP_HEIGHT)[..., ::-1]
-    for place, places, alphas in zip(where, centre, strength.tolist(), strict=True):
+    centre = where[:, None] - (radius * (1.0 + heights[:, None, None]) * across / LAMP_HEIGHT)[..., ::-1]
+    for place, places, alphas, high in zip(where, centre, strength.tolist(), heights.tolist(), strict=True):
         for one, alpha in zip(places, alphas, strict=True):
             if alpha > 0.03:
                 images.append(_at(one, _shadow, round(radius, 2), round(24 * alpha), 0.45))
-        images.append(_at(place, _shadow, round(radius * 1.04, 2), 11, 0.30))
+        if high < 1.0:
+            images.append(_at(place, _shadow, round(radius * 1.04, 2), round(11 * (1.0 - high)), 0.30))
     return images
 
 

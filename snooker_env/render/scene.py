@@ -98,6 +98,7 @@ class Scene:
     table: Table
     ids: Ints  # (k,): 0 the cue ball, 1 to 15 reds, 16 to 21 yellow to black
     positions: Floats  # (k, 2) [m]
+    heights: Floats  # (k,) above the bed [m]
     ball_radius: float
     paths: dict[int, Floats]  # ball -> (m, 2) points [m]
     aim: Floats | None  # (m, 2) points of the line of aim [m]
@@ -130,8 +131,10 @@ def scene(
     lettered: bool = False,
     **overlays: Any,
 ) -> Scene:
-    """One picture: n <= 22 balls, ids 0 to n-1, and ``_Overlays`` as in ``Scene``. Arrays are copied."""
-    r = array("positions", positions, (-1, 2))
+    """One picture: n <= 22 balls, ids 0 to n-1, positions (n, 2) or with heights (n, 3), and ``_Overlays`` as in ``Scene``.
+    Arrays are copied."""
+    r = array("positions", positions, (-1, 3 if np.shape(np.asarray(positions))[-1:] == (3,) else 2))
+    heights, r = r[:, 2] if r.shape[1] == 3 else np.zeros(len(r)), r[:, :2]
     if len(r) > N_BALLS:
         raise refuse("positions", f"array of shape {r.shape}", f"must hold at most {N_BALLS} balls")
     here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
@@ -148,7 +151,9 @@ def scene(
     ghost = None if over.ghost is None else array("ghost", over.ghost, (2,))
     paths, ghosts = (_by_ball(name, getattr(over, name), (-1, 2)) for name in ("paths", "ghosts"))
     drawn = (paths, aim, ghost, ghosts, _by_ball("turns", over.turns, (4,)))
-    return Scene(table, ids, r[ids], radius, *drawn, str(text), bar, bool(lettered))
+    return Scene(
+        table, ids, r[ids], np.maximum(heights[ids], 0.0), radius, *drawn, str(text), bar, bool(lettered)
+    )
 
 
 def _by_ball(field, values, shape):
@@ -171,7 +176,7 @@ def _timed_paths(shot, balls, until, step=0.02):
     times = np.append(np.arange(0.0, until, number("step", step, 0.0, open_low=True)), until)
     impacts = shot.events["time"][shot.events["kind"] <= EventKind.POT]
     times = np.union1d(times, impacts[impacts < until])
-    r = shot.at(times)[0]
+    r = shot.at(times)[0][..., :2]
     paths = {}
     for ball in balls:
         points = r[:, ball]
@@ -190,7 +195,7 @@ def _timed_contacts(shot, ball):
     """``contacts`` and their times (m,) [s]."""
     met = shot.events[shot.events["kind"] == EventKind.BALL_BALL]
     met = met[(met["i"] == ball) | (met["j"] == ball)]
-    places, kept = shot.at(met["time"])[0][:, ball].reshape(-1, 2), []
+    places, kept = shot.at(met["time"])[0][:, ball, :2].reshape(-1, 2), []
     for k, place in enumerate(places):
         if not kept or np.hypot(*(place - places[kept[-1]])) > shot.physics.R:
             kept.append(k)
@@ -216,7 +221,7 @@ class Film:
         self._paths = _timed_paths(shot, trail, shot.duration)
         self._turning = {int(ball): Turning(shot, ball) for ball in spots}
         self._contacts = {int(ball): _timed_contacts(shot, ball) for ball in faded}
-        drops = shot.events[shot.events["kind"] == EventKind.POT]
+        drops = shot.events[np.isin(shot.events["kind"], (EventKind.POT, EventKind.OFF))]
         self._gone_at = np.where(shot.on_table, np.inf, -1.0)  # -1: not on the table when the shot began
         self._gone_at[drops["i"]] = drops["time"]
 
@@ -227,8 +232,8 @@ class Film:
         for ball, (points, times) in self._paths.items():
             so_far = int(np.searchsorted(times, t, side="right"))
             done = points[:so_far]
-            if np.any(np.abs(done[-1] - r[ball]) > 1e-5):
-                done = np.concatenate([done, r[ball : ball + 1]])
+            if np.any(np.abs(done[-1] - r[ball, :2]) > 1e-5):
+                done = np.concatenate([done, r[ball : ball + 1, :2]])
             if len(done) > 1:
                 paths[ball] = done
         turns = {ball: turning.at(t) for ball, turning in self._turning.items()}

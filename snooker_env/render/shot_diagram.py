@@ -114,7 +114,7 @@ def plot(
     tip = _tip(cue, shot, first)
     sketch = Sketch(table, shot.physics.R, region_of(view, area(shot), table), ax, strip=CAPTIONS[caption])
     sketch.title(title)
-    start, present = shot.at(0.0)[0], shot.on_table | (shot.potted >= 0)
+    start, present = shot.at(0.0)[0][:, :2], shot.on_table | (shot.potted != -1)
     for ball in np.flatnonzero(present).tolist():
         sketch.ball(ball, start[ball], label=labels)
     main = principals(shot, moved, first) if balls is None else chosen
@@ -165,14 +165,14 @@ def principals(shot: Shot, moved: Mapping[int, Any], first: int | None) -> set[i
 
 
 def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = None) -> None:
-    """A ball's path in its colour: striped while it slides, plain while it rolls, dotted while it falls."""
+    """A ball's path in its colour: striped while it slides, plain while it rolls, dotted while it falls or flies."""
     colour = PALE[ball] if colour is None else colour
     for piece in path:
         style: dict[str, Any] = {"gid": f"{piece.kind}-{ball}"}
         if piece.kind == "slide":
             style |= {"ls": DASHES, "gapcolor": rgb(SLIDES)}
             style |= {"dash_capstyle": "butt", "solid_capstyle": "butt"}
-        elif piece.kind == "fall":
+        elif piece.kind in ("fall", "fly"):
             style |= {"ls": ":"}
         sketch.line(piece.points, colour, level=5.0 + 0.3 * (ball == 0), **style)
     points = np.concatenate([piece.points for piece in path])
@@ -192,7 +192,7 @@ def _draw_impacts(sketch, shot, ball, start):
 
 def _write_speeds(sketch, shot, first, start):
     """The cue ball's speeds at the start and at its impacts, and the cut."""
-    v, _ = (part[first] for part in shot.at(0.0)[1:])
+    v = shot.at(0.0)[1][first, :2]
     sketch.label(start[first], f"{np.hypot(*v):.2f} m/s")
     for k, contact in enumerate(contacts(shot, first)):
         if k < 6 and contact.kind != EventKind.POT and contact.speed > 0.02:
@@ -233,14 +233,14 @@ def _tip(cue: Mapping[str, float] | None, shot: Shot, first: int | None) -> Tip 
         for key in ("side", "top"):
             if key not in cue:
                 raise refuse("keys of cue", list(cue), f"must hold {key!r}")
-        speed = cue.get("speed", 0.0 if first is None else float(np.hypot(*shot.at(0.0)[1][first])))
+        speed = cue.get("speed", 0.0 if first is None else float(np.hypot(*shot.at(0.0)[1][first, :2])))
         side, top = number("cue.side", cue["side"], -1, 1), number("cue.top", cue["top"], -1, 1)
         elevation = number("cue.elevation", cue.get("elevation", 0.0), 0, 1.5)
         return Tip(side, top, number("cue.speed", speed, 0), elevation)
     if first is None:
         return None
     _, v, w = shot.at(0.0)
-    tip = tip_of(v[first], w[first], shot.physics)
+    tip = tip_of(v[first, :2], w[first], shot.physics)
     return tip if np.hypot(tip.side, tip.top) <= 1.0 else None
 
 

@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from .._types import Floats
-from ..physics.cloth import AX, AY, BEND, FALLING, ROLL, SEGMENT_BALL, SEGMENT_STATE, SLIDE, T0, VX, VY
+from ..physics.cloth import AIR, AX, AY, BEND, FALLING, ROLL, SEGMENT_BALL, SEGMENT_STATE, SLIDE, T0, VX, VY
 from ..physics.columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 from ..physics.engine import EventKind
 from ..physics.parameters import Physics
@@ -15,12 +15,12 @@ from ..simulation import Shot, check_path
 STRAY = 1e-4  # the largest distance of a path from the lines that are drawn [m]
 STILL = 1e-3  # A ball that moved less than this is drawn as one that did not move [m]
 
-Kind = Literal["slide", "roll", "fall"]
-_KINDS: dict[int, Kind] = {SLIDE: "slide", ROLL: "roll", BEND: "roll", FALLING: "fall"}
+Kind = Literal["slide", "roll", "fall", "fly"]
+_KINDS: dict[int, Kind] = {SLIDE: "slide", ROLL: "roll", BEND: "roll", FALLING: "fall", AIR: "fly"}
 
 
 class Piece(NamedTuple):
-    """A part of a ball's path in which it does one thing: slides, rolls, or falls into a pocket."""
+    """A part of a ball's path in which it does one thing: slides, rolls, flies, or falls into a pocket."""
 
     kind: Kind
     times: Floats  # (m,) times [s]
@@ -59,7 +59,7 @@ def pieces(shot: Shot, ball: int) -> list[Piece]:
             phases.append((kind, times))
     if not phases:
         return []
-    at = shot.at(np.concatenate([times for _, times in phases]))[0][:, ball]
+    at = shot.at(np.concatenate([times for _, times in phases]))[0][:, ball, :2]
     parts = np.split(at, np.cumsum([len(times) for _, times in phases])[:-1])
     return [Piece(kind, np.array(t), points) for (kind, t), points in zip(phases, parts, strict=True)]
 
@@ -70,7 +70,7 @@ def _steps(row, duration):
     drags = row[SEGMENT_STATE] == BEND and abs(vx * ay - vy * ax) <= 1e-12 * np.hypot(vx, vy) * np.hypot(
         ax, ay
     )
-    if drags or row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, without a turning point
+    if drags or row[SEGMENT_STATE] in (ROLL, FALLING, AIR):  # straight, without a turning point
         return 1
     return int(np.clip(np.ceil(duration * np.sqrt(np.hypot(row[AX], row[AY]) / (8 * STRAY))), 1, 256))
 
@@ -89,7 +89,7 @@ def paths(shot: Shot) -> dict[int, list[Piece]]:
 
 def cue_ball(shot: Shot) -> int | None:
     """The ball that is fastest at the start; None if none moves."""
-    v = np.hypot(*shot.at(0.0)[1].T)
+    v = np.hypot(*shot.at(0.0)[1][:, :2].T)
     return int(v.argmax()) if v.max() > 0 else None
 
 
@@ -97,7 +97,7 @@ def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
     """Velocity of a ball just before its event at that time: (2,) [m/s]."""
     rows = shot.segments[(shot.segments[:, SEGMENT_BALL] == ball) & (shot.segments[:, T0] < time)]
     if not len(rows):  # it happens at the start
-        return shot.at(0.0)[1][ball]
+        return shot.at(0.0)[1][ball, :2]
     row = rows[-1]
     return row[[VX, VY]] + row[[AX, AY]] * (time - row[T0])
 
@@ -105,12 +105,12 @@ def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
 def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
     """A ball's meetings in order of time; it is ``Meeting.ball`` even where the other struck it."""
     R = shot.physics.R
-    for time, number, i, j in shot.events[_is_impact(shot)].tolist():
+    for time, number, i, j, *_ in shot.events[_is_impact(shot)].tolist():
         kind = EventKind(number)
         if ball != i and not (kind == EventKind.BALL_BALL and ball == j):
             continue
         other = int(j if ball == i else i)
-        r, v, _ = shot.at(time)
+        r, v = (part[:, :2] for part in shot.at(time)[:2])
         centre, place = r[ball], r[ball]
         if kind == EventKind.BALL_BALL:
             place = (r[ball] + r[other]) / 2

@@ -17,7 +17,9 @@ from ..tasks.played import Played
 from .words import foul_words, on_words, pots_of, sentence
 
 _PLACES = [cloth.T0, cloth.X, cloth.Y, cloth.VX, cloth.VY, cloth.AX, cloth.AY]
+_HEIGHTS = [cloth.Z, cloth.UZ]
 _SPINS = [cloth.WX, cloth.WY, cloth.WZ]
+_EVENT = ["time", "kind", "i", "j"]
 _WHICH = [cloth.SEGMENT_BALL, cloth.SEGMENT_STATE]
 
 
@@ -40,6 +42,8 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
     # at rest from the start: its place is in ``start``
     waits = (np.arange(len(states)) < n) & idle & (shot.segments[:, cloth.WZ] == 0.0)
     moves = shot.segments[~waits]
+    flies = bool((states == cloth.AIR).any())
+    heights = {"height": packed(moves[:, _HEIGHTS], "f8"), "g": shot.physics.g} if flies else {}
     return {
         "n": n,
         "start": packed(first[:, [cloth.X, cloth.Y]], "f8"),
@@ -49,8 +53,9 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
             "f8": packed(moves[:, _PLACES], "f8"),
             "f4": packed(moves[:, _SPINS], "f4"),
             "u1": packed(moves[:, _WHICH], "u1"),
+            **heights,
         },
-        "events": [[round(float(t), 9), int(kind), int(i), int(j)] for t, kind, i, j in shot.events.tolist()],
+        "events": [[round(float(t), 9), *map(int, what)] for t, *what in shot.events[_EVENT].tolist()],
         "duration": shot.duration,
         "pots": pots_of(shot),
     }

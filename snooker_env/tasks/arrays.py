@@ -26,6 +26,7 @@ class StruckArrays(NamedTuple):
     r: Floats
     v: Floats
     w: Floats
+    aloft: Floats
     here: Bools
     shots: Floats
     kicks: Floats
@@ -35,6 +36,7 @@ class PlayedArrays(NamedTuple):
     """Shots that came to rest, as ``ShotBuffers`` has them."""
 
     r: Floats
+    aloft: Floats
     shots: Floats
     seen: Ints
     potted: Ints

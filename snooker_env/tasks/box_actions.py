@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from .._check import choice, refuse, refuse_what, truth
+from .._check import choice, number, refuse, refuse_what, truth
 from .._jit import entry, kernel
 from .._types import Action, Flags, Floats, Vectors
 from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, find_pots
@@ -24,7 +24,8 @@ MIN_SPEED, MAX_SPEED = 0.2, 7.0
 """Cue speeds [m/s] for -1 and +1 of an action: from a ball just rolled to the hardest power shot."""
 TARGET_SPAN = radians(3.0)
 """With ``aim="target"``: angle off the target line for +-1 [rad], more than any throw or error."""
-MAX_ELEVATION = radians(30.0)
+MAX_ELEVATION, STEEPEST = radians(30.0), radians(70.0)
+"""The highest elevation of an action, by default and at the most that a person can do [rad]."""
 
 
 @kernel
@@ -65,7 +66,7 @@ def shot_of(a, positions, on_table, on, options, law, work):
     """(speed, side, top, aim of the cue, elevation) of an action (k,); ``options``: of ``Actions.pack``."""
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], options[A_MAX_OFFSET])
-    elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if options[A_ELEVATION] else 0.0
+    elevation = 0.5 * (a[4] + 1.0) * options[A_ELEVATION] if options[A_ELEVATION] else 0.0
     direction = pi * a[3]
     if options[A_TARGET]:
         # without rails a line is aimed as for a level cue
@@ -93,6 +94,7 @@ class Actions:
 
     aim: str
     elevation: bool
+    steepest: float  # the elevation that 1 means [rad]
     placement: bool
     decision: bool
     nominate: bool
@@ -104,10 +106,18 @@ class Actions:
     size: int  # components of an action
 
     def __init__(
-        self, aim: str, elevation: bool, placement: bool, physics: Physics, says: Collection[str] = ()
+        self, aim: str, elevation: bool | float, placement: bool, physics: Physics, says: Collection[str] = ()
     ):
         self.aim = choice("aim", aim, AIMS)
-        self.elevation, self.placement = truth("elevation", elevation), truth("placement", placement)
+        self.placement = truth("placement", placement)
+        if isinstance(elevation, (bool, np.bool_)):
+            self.steepest = MAX_ELEVATION if elevation else 0.0
+        else:
+            try:
+                self.steepest = radians(number("elevation", elevation, 5.0, 70.0))
+            except ValueError:
+                raise refuse("elevation", elevation, "must be True or False, or degrees in [5, 70]") from None
+        self.elevation = self.steepest > 0.0
         self.nominate, self.decision, self.concede, self.claim, self.lot = (name in says for name in SAYS)
         self.physics = physics
         self.size = 4 + self.elevation + 2 * self.placement + self.nominate + self.decision + self.declares
@@ -147,11 +157,11 @@ class Actions:
 
     def pack(self) -> Floats:
         """The options for the kernels: float64, in the columns ``A_*`` of ``declarations``."""
-        strike = self.physics.end_mass_ratio, self.physics.max_offset, self.physics.mu_s
+        strike = self.physics.end_mass_ratio, self.physics.max_offset, self.physics.mu_s, self.physics.thrown
         last = self.size - self.declares  # the components before the declaration
         nominated = last - 1 - self.decision if self.nominate else -1
         where = nominated, last - 1 if self.decision else -1, last if self.declares else -1
-        kind = self.aim == "target", self.elevation, self.placement
+        kind = self.aim == "target", self.steepest, self.placement
         spoken = self.concede, self.claim, self.lot
         return np.array([*kind, *strike, False, *where, *spoken], np.float64)
 

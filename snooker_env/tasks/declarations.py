@@ -8,9 +8,9 @@ from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
 from ..game.ruling import AUTO
 
 # Columns of the packed options of an action space.
-A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_DISCRETE = range(7)
-A_NOMINATE, A_DECISION, A_DECLARATION, A_CONCEDE, A_CLAIM, A_LOT = range(7, 13)
-A_RAILS = 13  # from here on, the rails that a real cue passes over (``cue_room.rails_of``); none: it is free
+A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_E_T, A_DISCRETE = range(8)
+A_NOMINATE, A_DECISION, A_DECLARATION, A_CONCEDE, A_CLAIM, A_LOT = range(8, 14)
+A_RAILS = 14  # from here on, the rails that a real cue passes over (``cue_room.rails_of``); none: it is free
 SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
 (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)  # declarations
 COLOURS = 6

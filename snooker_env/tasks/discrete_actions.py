@@ -219,7 +219,7 @@ class Choices:
 
     def pack(self) -> Floats:
         """The options for the kernels, in the columns ``A_*`` of ``declarations``."""
-        strike = self.physics.end_mass_ratio, self.physics.max_offset, self.physics.mu_s
+        strike = self.physics.end_mass_ratio, self.physics.max_offset, self.physics.mu_s, self.physics.thrown
         spoken = self.concede, self.claim, self.lot
         where = 0 if self.nominate else -1, -1, -1
         return np.array([False, False, False, *strike, True, *where, *spoken], np.float64)

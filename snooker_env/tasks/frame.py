@@ -207,7 +207,9 @@ class Frames(Tables):
         """With a shot clock: shots that would not be begun within it are not played."""
         if self.rules.rule_set.clock:
             b, code = buffers, self.rules.rule_set.code
-            frame_kernels.hold_late(which, self.game, code, self.rules.time_to_play, b.v, b.w, b.shots)
+            frame_kernels.hold_late(
+                which, self.game, code, self.rules.time_to_play, b.v, b.w, b.aloft, b.shots
+            )
 
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
         """What the strikers say before their strokes; returns which of the tables ``which`` play one."""

@@ -118,11 +118,12 @@ def _leave_the_black(positions, on_table):
 
 
 @entry
-def hold_late(which, game, rules, time_to_play, v, w, shots):
+def hold_late(which, game, rules, time_to_play, v, w, aloft, shots):
     """Shots that would not be begun within the shot clock are not played: the cue ball is not struck."""
     for j in range(which.shape[0]):
         if columns.is_late(game[which[j]], rules, time_to_play):
-            v[j, CUE, 0] = v[j, CUE, 1] = w[j, CUE, 0] = w[j, CUE, 1] = w[j, CUE, 2] = 0.0
+            v[j, CUE, 0] = v[j, CUE, 1] = aloft[j, CUE, 1] = 0.0
+            w[j, CUE, 0] = w[j, CUE, 1] = w[j, CUE, 2] = 0.0
             for c in range(stroke.VX, stroke.WZ + 1):
                 shots[j, c] = 0.0
 
@@ -138,20 +139,20 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
             continue
         k = which[j]
         p, on, row, seen = tables.positions[k], tables.on_table[k], tables.game[k], shots.seen[j]
-        first, touching, moved, potted = stroke.see(j, shots, p, on)
+        first, touching, moved, potted, off = stroke.see(j, shots, p, on)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = shots.r[j, i, 0], shots.r[j, i, 1]
-        ball_on, flags = row[columns.BALL_ON], 0
+        ball_on, flags = row[columns.BALL_ON], FLAG.JUMP if seen[stroke.JUMPED] else 0
         if rules == SIX_RED:
-            flags = FLAG.SIX_RED
+            flags |= FLAG.SIX_RED
         elif rules == SHOOT_OUT:
-            flags = FLAG.SHOOT_OUT
+            flags |= FLAG.SHOOT_OUT
             if columns.is_late(row, rules, setting.time_to_play):
                 flags |= FLAG.LATE
             if not stroke.reached_cushion(shots.event_what[j], shots.n_events[j]):
                 flags |= FLAG.NO_CUSHION
         situation = ball_on, row[columns.FREE_BALL], columns.lead_of(row, row[columns.STRIKER])
-        facts = Facts(first, touching, moved, potted, 0, tables.nominated[k])
+        facts = Facts(first, touching, moved, potted, off, tables.nominated[k])
         result = settle(p, on, situation, facts, flags, setting.jaws, BALL_RADIUS)
         tables.nominated[k] = AUTO
         striker, free, points = row[columns.STRIKER], row[columns.FREE_BALL], row[columns.POINTS]
@@ -169,7 +170,7 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
             if alone or not setting.options[declarations.A_LOT]:
                 columns.draw(row, row[columns.STRIKER])  # who begins
         if row[columns.IN_HAND] and not row[columns.OVER]:
-            lies = row[columns.ANYWHERE] and not potted & 1  # it stays where it came to rest
+            lies = row[columns.ANYWHERE] and not (potted | off) & 1  # it stays where it came to rest
             x, y = (p[CUE, 0], p[CUE, 1]) if lies else (SPOTS[CUE, 0], SPOTS[CUE, 1])
             stroke.place(p, on, x, y, row[columns.ANYWHERE] != 0)
         played[k] += 1
@@ -344,10 +345,10 @@ def remember(which, tables, saved, shots, noses, jaws):
         k = which[j]
         positions, on_table, row = tables.positions[k], tables.on_table[k], tables.game[k]
         mask, seen = bits(on_table), shots.seen[j]
-        first, touching, moved, potted = stroke.see(j, shots, positions, on_table)
+        first, touching, moved, potted, off = stroke.see(j, shots, positions, on_table)
         seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH] = True, False
         before = Before(mask, row[columns.BALL_ON], row[columns.FREE_BALL], 0)
-        facts = Facts(first, touching, moved, potted, 0, tables.nominated[k])
+        facts = Facts(first, touching, moved, potted, off, tables.nominated[k])
         if ruling(before, facts, 0).fouls & columns.MISSED:
             in_hand, on = row[columns.IN_HAND] + row[columns.ANYWHERE], columns.strikeable(row, mask & ~1)
             clear, full = best_paths(positions, on_table, on, in_hand, noses, jaws, BALL_RADIUS)

@@ -118,7 +118,11 @@ _ABOUT: dict[str, tuple[str, str | None, str]] = {
         None,
         '"points"; of a visit "points_and_fouls", "pots", "legal"; of a frame "win"; of a match "frames", too',
     ),
-    "elevation": ("action", None, "whether box actions hold the elevation of the cue"),
+    "elevation": (
+        "action",
+        None,
+        "whether box actions hold the elevation of the cue: up to 30 degrees, or a number of degrees from 5 to 70",
+    ),
     "placement": ("action", None, "whether box actions hold the place of a cue ball in hand"),
     "physics": ("shot", None, '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
     "table": ("shot", None, '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
@@ -191,8 +195,10 @@ class Options:
         Execution errors: the name of a level, or standard deviations, see ``Noise``. Default "none".
     reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
         Default "points". The first four are of a visit, "points" and "win" of a frame, "frames" also of a match.
-    elevation, placement : bool, optional
-        Whether a box action holds the elevation of the cue, and the place of a cue ball in hand. Default False.
+    elevation : bool or float, optional
+        Whether a box action holds the elevation of the cue; True: up to 30 degrees; or up to so many degrees, 5 to 70.
+    placement : bool, optional
+        Whether it holds the place of a cue ball in hand. Default False.
     physics : str, dict, Physics or None, optional
         As ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
     table : str or Table, optional
@@ -259,7 +265,7 @@ class Options:
     observation: ObservationKind = "flat"
     noise: NoiseLike = "none"
     reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = "points"
-    elevation: bool = False
+    elevation: bool | float = False
     placement: bool = False
     physics: PhysicsLike = "paper"
     table: TableLike = "match"

@@ -18,13 +18,14 @@ from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.cue_room import in_room, raised
 from ..physics.engine import EventKind, Status
+from ..physics.events import OFF_TABLE
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
 from .arrays import CueLaw, StruckArrays
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
-from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_PLACEMENT, A_RAILS, playable
+from .declarations import A_DISCRETE, A_E_T, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_PLACEMENT, A_RAILS, playable
 from .lines import new_work
 from .noise import executed, kick_of
 from .options import Rules
@@ -32,14 +33,14 @@ from .options import Rules
 AT_ONCE = 1e-9  # contacts within this time [s] are simultaneous
 # Columns of a strike: the cue ball's velocity and spin after it, intended speed, the strike with errors; what its
 # room did to it (``cue_room.in_room``), and what was meant before.
-(VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION, ROOM) = range(12)
-MEANT = 12
+(VX, VY, UZ, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION, ROOM) = range(13)
+MEANT = 13
 STRIKE_COLUMNS = MEANT + 5
 # Columns of the referee's facts: masks of balls, clear paths before a stroke that failed (where misses are
 # called), whether it was an attempt (``miss="attempt"``); and of the ruling (``BREAK``: with this stroke).
-FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, ATTEMPT = range(7)
-PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(7, 14)
-SEEN_COLUMNS = 14
+FIRST, TOUCHING, MOVED, DOWN, OFF, JUMPED, CLEAR_PATH, FULL_PATH, ATTEMPT = range(9)
+PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(9, 16)
+SEEN_COLUMNS = 16
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
 _WHY = {
     Status.TOO_MANY_EVENTS: f"did not come to rest within {MAX_EVENTS} events: a ball may be held against another; try other physics",
@@ -120,16 +121,16 @@ def strike_with(intended, struck, positions, on_table, options, j, shots):
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
     if side != intended[1] or top != intended[2] or aim != intended[3] or elevation != intended[4]:
         elevation = raised((side, top, aim, elevation), positions, on_table, options[A_RAILS:], BALL_RADIUS)
-    shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
+    shot, r, v, w, aloft, here = shots.shots[j], shots.r, shots.v, shots.w, shots.aloft, shots.here
     mu_s, m = options[A_MU_S], options[A_END_MASS]
-    after = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m)
-    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = after
+    after = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m, options[A_E_T])
+    (shot[VX], shot[VY], shot[UZ]), (shot[WX], shot[WY], shot[WZ]) = after
     shot[SPEED] = intended[0]
     shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
     for i in range(N_BALLS):
         r[j, i, 0], r[j, i, 1], here[j, i] = positions[i, 0], positions[i, 1], on_table[i]
-        v[j, i, 0] = v[j, i, 1] = w[j, i, 0] = w[j, i, 1] = w[j, i, 2] = 0.0
-    v[j, CUE, 0], v[j, CUE, 1] = shot[VX], shot[VY]
+        v[j, i, 0] = v[j, i, 1] = w[j, i, 0] = w[j, i, 1] = w[j, i, 2] = aloft[j, i, 0] = aloft[j, i, 1] = 0.0
+    v[j, CUE, 0], v[j, CUE, 1], aloft[j, CUE, 1] = shot[VX], shot[VY], shot[UZ]
     w[j, CUE, 0], w[j, CUE, 1], w[j, CUE, 2] = shot[WX], shot[WY], shot[WZ]
 
 
@@ -201,17 +202,21 @@ def address(which, actions, tables, shots, packed, fidelity):
 
 @kernel
 def see(j, shots, positions, on_table):
-    """The facts (first, touching, moved, potted) of shot j, from the table before it; also in ``seen``."""
+    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; also in ``seen``,
+    with whether it was a jump shot."""
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
     log = shots.event_time[j], shots.event_what[j], shots.n_events[j]
     first, moved = first_struck(*log, touching, positions, shot[VX], shot[VY])
-    down = 0
+    down = off = 0
     for i in range(N_BALLS):
         if shots.potted[j, i] >= 0:
             down |= 1 << i
-    seen[FIRST], seen[TOUCHING], seen[MOVED], seen[DOWN] = first, touching, moved, down
-    return first, touching, moved, down
+        elif shots.potted[j, i] == OFF_TABLE:
+            off |= 1 << i
+    seen[FIRST], seen[TOUCHING], seen[MOVED], seen[DOWN], seen[OFF] = first, touching, moved, down, off
+    seen[JUMPED] = shots.aloft[j, CUE, 0] != 0.0
+    return first, touching, moved, down, off
 
 
 @kernel
@@ -230,6 +235,7 @@ class ShotBuffers:
         self.r: Floats = np.zeros((m, N_BALLS, 2))
         self.v: Floats = np.zeros((m, N_BALLS, 2))
         self.w: Floats = np.zeros((m, N_BALLS, 3))
+        self.aloft: Floats = np.zeros((m, N_BALLS, 2))
         self.here: Bools = np.zeros((m, N_BALLS), np.bool_)
         self.potted: Ints = np.zeros((m, N_BALLS), np.int64)
         self.kicks: Floats = np.zeros(m)  # the friction of the first contact in a kick, else 0
@@ -246,10 +252,10 @@ class ShotBuffers:
         self.n_segments: Ints = np.zeros(m, np.int64)
         self.duration: Floats = np.zeros(m)
         # for kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples
-        self.struck: tuple[Any, ...] = (self.r, self.v, self.w, self.here, self.shots, self.kicks)
+        self.struck: tuple[Any, ...] = (self.r, self.v, self.w, self.aloft, self.here, self.shots, self.kicks)
         ends = self.seen, self.potted, self.status, self.duration
         events = self.event_time, self.event_what, self.n_events
-        self.played: tuple[Any, ...] = (self.r, self.shots, *ends, *events)
+        self.played: tuple[Any, ...] = (self.r, self.aloft, self.shots, *ends, *events)
         self.enlarged: dict[int, ShotBuffers] = {}  # shots of the last run with a longer log of their own
 
     def __len__(self) -> int:
@@ -259,7 +265,7 @@ class ShotBuffers:
         """Work space for shot j alone, with that log: struck as before, ``r`` and ``here`` to be filled."""
         one = ShotBuffers(1, log, path=path or self.segments.shape[1] > 0)
         one.shots[0], one.seen[0], one.kicks[0] = shot, _, _ = self.shots[j], self.seen[j], self.kicks[j]
-        one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
+        one.v[0, CUE], one.w[0, CUE], one.aloft[0, CUE, 1] = shot[[VX, VY]], shot[[WX, WY, WZ]], shot[UZ]
         return one
 
     def shot(self, j: int, table: Table, physics: Physics) -> Shot:
@@ -285,11 +291,12 @@ def _simulated(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None
     table = rules.table
     buffers.enlarged = {}
     balls = buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted
+    aloft = buffers.aloft if rules.physics.flight else None
     reach = table._reach(rules.physics.R)
     setup = phys, buffers.kicks, table.noses, table.jaws, table.falls, reach, *rules.fidelity, False
     log = buffers.event_time, buffers.event_what, buffers.segments
     ends = buffers.status, buffers.n_events, buffers.n_segments, buffers.duration
-    engine.run_batch(balls, setup, MAX_EVENTS, log, ends, 0, m)
+    engine.run_batch(balls, aloft, setup, MAX_EVENTS, log, ends, 0, m)
 
 
 def run_again(

@@ -11,7 +11,7 @@ from ..game.apply_ruling import settle_visit
 from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
 from ..game.layouts import deal_tables
-from ..game.ruling import VISIT
+from ..game.ruling import FLAG, VISIT
 from ..geometry import BALL_RADIUS
 from ..physics.conditions import normalised
 from ..physics.engine import Status
@@ -19,7 +19,7 @@ from .arrays import OutputArrays, PlayedArrays
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
 from .states import State, checked
-from .stroke import ShotBuffers, see, write_ruling
+from .stroke import JUMPED, ShotBuffers, see, write_ruling
 from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_info, write_stroke_info
 
 _OK = int(Status.OK)
@@ -44,8 +44,8 @@ def _conclude(which, positions, on_table, game, shots, rules, output):
         facts = see(j, shots, p, on)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = shots.r[j, i, 0], shots.r[j, i, 1]
-        ball_on = state[BALL_ON]
-        ruling = settle_visit(p, on, ball_on, state[POINTS], facts, BALL_RADIUS)
+        ball_on, flags = state[BALL_ON], FLAG.JUMP if shots.seen[j, JUMPED] else 0
+        ruling = settle_visit(p, on, ball_on, state[POINTS], facts, flags, BALL_RADIUS)
         write_ruling(shots.seen[j], 0, ball_on, False, state[POINTS], ruling)
         state[BALL_ON], state[IN_HAND] = ruling.ball_on, ruling.in_hand
         state[POINTS] += ruling.points

@@ -437,6 +437,7 @@ class Page {
       moving.start ??= now;
       const t = Math.max(0, (now - moving.start) / 1000 - 0.4), { stroke } = moving, frame = stroke.at(t);
       frame.labels = labels;
+      frame.side = stroke.flies(t);
       frame.turns = Array.from({ length: stroke.n }, (_, ball) => (frame.on[ball] ? stroke.turn(ball, t) : undefined));
       if (t < 0.3 && stroke.cue) {
         const lead = Math.min(1, (now - moving.start) / 400), { cue } = stroke;

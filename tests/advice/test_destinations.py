@@ -90,7 +90,7 @@ def test_wrong_strokes_are_refused():
         ({"speed": 2.0}, "stroke", "without 'aim'", "must be a CueStroke"),
         (soft | {"spin": 1}, "field of the stroke", "spin", "'speed'"),
         (soft | {"side": 0.4, "top": 0.4}, "side, top", "(0.4, 0.4)", "within the disc"),
-        (soft | {"elevation": 1.0}, "elevation", "1.0", "must be"),
+        (soft | {"elevation": 1.3}, "elevation", "1.3", "must be"),
         (soft | {"place": (0.0, -1.1)}, "place", "(0.0, -1.1)", "must be None: the cue ball is not in hand"),
     ):
         refused(lambda stroke=stroke: destinations(OPEN, stroke), *said)

@@ -36,6 +36,7 @@ SHORT = {
     "benchmarks.temperature": "--visits 2 --temperatures 4 8",
     "benchmarks.conditions": "--visits 2 --players best_pot_8",
     "benchmarks.fuzz": "--shots 300 --threads 1",
+    "benchmarks.flight": "--tables 2 --shots 20",
     "benchmarks.vector": "--seconds 0.1 --repeats 1 --tables 64 --ppo-steps 2048",
     "agents.value_quality": "--agent planner_30 --visits 3",
     "agents.watch": "--agent ghost_ball --out {tmp}/visit.html",

@@ -15,7 +15,7 @@ ROWS = [
     [cell.strip() for cell in line.strip("|").split("|")] for line in PAGE.splitlines() if line[:3] == "| `"
 ]
 KNOWN = re.findall(r"^\* \*\*(\w+)\*\*:", PAGE, re.MULTILINE)
-FIELDS = [field.name for field in dataclasses.fields(sn.Physics) if field.name != "tables"]
+FIELDS = [field.name for field in dataclasses.fields(sn.Physics) if field.name not in ("tables", "flight")]
 
 
 def values(text):

@@ -7,6 +7,7 @@ imports them.
 ``march``            how the float oracles pass an impact's changes of slip and stick; ``vectors`` is their arithmetic.
 ``paper_tables``     the rows of the paper's tables.
 ``tiny_steps``       a whole shot on an unbounded cloth by small fixed steps of the forces.
+``flight_3d``        a whole shot in three dimensions, on a table, by small fixed steps of the forces.
 ``cue_clearance``    how near a cue comes to rails and balls, by spheres along its axis.
 ``bouncing_ball``    one ball that a raised cue drives into the bed: its bounces, to rest.
 ``pocket_3d``        one ball in a pocket in three dimensions, by small fixed steps of the forces.

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env.physics.columns import CONSTANTS
 from snooker_env.physics.impact import tables
 from snooker_env.physics.impact.tables import CELL, NEAR, PRESETS, Rolling, make
 
@@ -152,8 +153,8 @@ def test_cells_with_a_kink_are_empty_and_their_impacts_solved():
 
 def test_no_table_where_the_cloth_may_hold_the_ball():
     assert make(Rolling(0.4, 0.3, 0.3, 0.9)) is None
-    assert len(sn.Physics(mu_c=0.3, mu_s=0.3).packed_for((1, 0))) == 21 + tables.SIZE  # of the balls
-    assert len(sn.Physics(mu_c=0.3, mu_s=0.4, mu_bb=0.9).packed_for((1, 0))) == 21
+    assert len(sn.Physics(mu_c=0.3, mu_s=0.3).packed_for((1, 0))) == CONSTANTS + tables.SIZE  # of the balls
+    assert len(sn.Physics(mu_c=0.3, mu_s=0.4, mu_bb=0.9).packed_for((1, 0))) == CONSTANTS
 
 
 def test_a_physics_is_sent_without_its_tables():
@@ -167,11 +168,11 @@ def test_a_physics_is_sent_without_its_tables():
 
 
 def test_no_tables_where_none_are_wanted():
-    assert len(SOLVED.packed_for((1, 0))) == len(PAPER.pack()) == len(PAPER.packed_for((2, 0))) == 21
-    assert len(PAPER.packed_for((1, 0))) == 21 + 2 * tables.SIZE  # rails and jaws have the same
-    assert len(sn.Physics(e_j=0.5).packed_for((1, 0))) == 21 + 3 * tables.SIZE
+    assert len(SOLVED.packed_for((1, 0))) == len(PAPER.pack()) == len(PAPER.packed_for((2, 0))) == CONSTANTS
+    assert len(PAPER.packed_for((1, 0))) == CONSTANTS + 2 * tables.SIZE  # rails and jaws have the same
+    assert len(sn.Physics(e_j=0.5).packed_for((1, 0))) == CONSTANTS + 3 * tables.SIZE
     assert (
-        len(sn.Physics.preset("match").packed_for((1, 0))) == 21 + tables.SIZE
+        len(sn.Physics.preset("match").packed_for((1, 0))) == CONSTANTS + tables.SIZE
     )  # friction between balls varies
     with pytest.raises(ValueError, match=r"physics\.tables = 1: must be True or False"):
         sn.Physics(tables=1)

@@ -70,9 +70,8 @@ SLOW = {
 
 def one_shot(p, v, w, physics, fidelity="standard"):
     """A batch of one shot on the match table."""
-    return fuzz.Batch(
-        "one shot", "", fidelity, physics, sn.Table.preset("match"), *(np.array([a]) for a in (p, v, w))
-    )
+    arrays = (np.array([a]) for a in (p, v, w, np.zeros_like(p)))
+    return fuzz.Batch("one shot", "", fidelity, physics, sn.Table.preset("match"), *arrays)
 
 
 def test_shots_that_once_differed():

@@ -48,9 +48,9 @@ def test_constants_that_rooms_share_agree():
 def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
     """Each field changed alone moves exactly its own place of the vector."""
     others = {"spin_decel": p.P_SPIN, "e_c_knee": p.P_E_KNEE, "e_c_power": p.P_E_POWER, "sin_theta": p.P_SIN}
-    # where the power may be changed, and a jaw has a restitution of its own
-    base = Physics(e_c_knee=1.0, e_j=0.9, tables=False)
-    for name in {field.name for field in dataclasses.fields(Physics)} - {"mu_bb", "tables"}:
+    # where the power may be changed, a jaw has a restitution of its own, and balls fly
+    base = Physics(e_c_knee=1.0, e_j=0.9, flight=True, tables=False)
+    for name in {field.name for field in dataclasses.fields(Physics)} - {"mu_bb", "flight", "tables"}:
         value = getattr(base, name) + 1e-3
         changed = dataclasses.replace(base, **{name: value}).pack()
         if name in ("end_mass_ratio", "max_offset"):
@@ -59,6 +59,8 @@ def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
         place = others[name] if name in others else getattr(p, f"P_{name.upper()}")
         assert np.flatnonzero(changed != base.pack()).tolist() == [place] and changed[place] == value, name
     assert Physics(e_c=0.7).pack()[p.P_E_J] == 0.7
+    assert np.array_equal(Physics(e_t=0.7).pack(), Physics().pack()) and Physics().pack()[p.P_E_T] == 0.0
+    assert 0.0 < Physics(flight=True, e_t=0.0).pack()[p.P_E_T] < 1e-200  # above 0: balls fly
     law = [p.P_MU_BB_LEAST, p.P_MU_BB_EXTRA, p.P_MU_BB_FADE]
     packed = {(0.01, 0.1, 2.0): [0.01, 0.1, 2.0], 0.07: [0.07, 0.0, 0.0], "marlow": list(MARLOW)}
     assert {mu_bb: Physics(mu_bb=mu_bb).pack()[law].tolist() for mu_bb in packed} == packed

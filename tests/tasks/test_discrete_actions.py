@@ -15,6 +15,7 @@ from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.kernels import LINE_ROWS, entry
 from snooker_env.tasks import CHOICES, choice_of, lines, windows
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
+from snooker_env.tasks.stroke import VX, VY, WX, WY, WZ
 from tests.tables import begun, table_state
 
 
@@ -43,7 +44,7 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         env.step(choice_of(0, speed, side, top))
         v, w = env._record.buffers.v[0, 0], env._record.buffers.w[0, 0]
         start = env._record.buffers.shots[0]
-        v1, w1 = [start[:2], (0, 0)], [start[2:5], (0, 0, 0)]
+        v1, w1 = [start[[VX, VY]], (0, 0)], [start[[WX, WY, WZ]], (0, 0, 0)]
         shot = sn.simulate([cue, ball], v1, w1, table=None, physics=constants)
         hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]
         rolls = shot.events[(shot.events["kind"] == sn.EventKind.ROLL) & (shot.events["i"] == 1)]

@@ -354,7 +354,7 @@ def solve(problem, accuracy, series):
         now, located = end, False
         if next_mode != mode or (next_cloth != cloth and (next_cloth == GRIPS or cloth == GRIPS)):
             mode, cloth = next_mode, next_cloth
-            if mode == STICK and cloth == GRIPS and problem.contact.l_a != 0.0:
+            if mode == STICK and cloth == GRIPS and problem.contact.k1 == K_CLOTH:  # one ball, at a nose
                 if wedged(problem):
                     return stopped(x, slip, problem.contact), OK
                 cloth = STARTS

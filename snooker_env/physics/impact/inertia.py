@@ -44,7 +44,22 @@ stays zero while N = p sin t - F2 cos t is positive; a negative load lifts the b
     db2 = dv_Y + R dw_X                              =          -p cos t + (5/2 - sin t) F2 + 7/2 G2
     d(closing) = dv_Y cos t + dv_Z sin t             =        -p cos^2 t - F2 sin t cos t + G2 cos t + Z sin t
 
-Both have the form of ``Contact``. The effect of F2 and G2 on the closing speed is that of p on a2 and b2 with
+**A ball in the air on one that lies on the bed**: C is higher, Y points from C down to O by the angle t, so Y = (0, cos t,
+-sin t) in axes X, h (horizontal), z; the second tangent at A is (0, sin t, cos t). C is free. O's vertical velocity Z stays
+zero while N = p sin t + F2 cos t is positive. With (1), and with G along X and h
+
+    C:  dv = F1 X + F2 (0, sin t, cos t) - p Y                  R dw = 5/2 (F2 X - F1 (0, sin t, cos t))
+    O:  dv = (G1 - F1, p cos t - F2 sin t + G2, Z)              R dw = 5/2 (F2 + G2, -F1 sin t - G1, -F1 cos t)
+
+    da1         =  7 F1 + (5/2 sin t - 1) G1
+    da2         =  -p sin t cos t + (6 + sin^2 t) F2 + (5/2 - sin t) G2 - Z cos t
+    db1         =  (5/2 sin t - 1) F1 + 7/2 G1
+    db2         =  p cos t + (5/2 - sin t) F2 + 7/2 G2
+    d(closing)  =  -(1 + cos^2 t) p + F2 sin t cos t - G2 cos t + Z sin t
+
+t = 0 gives the constants of two balls.
+
+All have the form of ``Contact``. The effect of F2 and G2 on the closing speed is that of p on a2 and b2 with
 the opposite sign: this is the symmetry of the inverse inertia. ``tests/physics/test_inertia.py`` derives it
 again, symbolically, from the laws of Newton and Euler.
 """
@@ -115,7 +130,25 @@ class Contact(NamedTuple):
 BALLS = Contact(
     k1=7.0, k2=6.0, c1=-1.0, c2=2.5, d_a=0.0, d_b=1.0, d_n=-2.0, n_p=0.0, n_f=1.0, l_a=0.0, l_n=0.0
 )
-"""Two balls. The pressed one is never lifted: the load is the friction that presses it."""
+"""Two balls on the bed. The pressed one is never lifted: the load is the friction that presses it."""
+
+
+@kernel
+def tilted(sin_t, cos_t):
+    """The constants of an impact of a ball in the air with one that lies, lower by 2R sin(t)."""
+    return Contact(
+        7.0,
+        6.0 + sin_t * sin_t,
+        2.5 * sin_t - 1.0,
+        2.5 - sin_t,  # k1, k2, c1, c2
+        -sin_t * cos_t,
+        cos_t,
+        sin_t * sin_t - 2.0,  # d_a, d_b, d_n
+        sin_t,
+        cos_t,  # n_p, n_f
+        -cos_t,
+        sin_t,  # l_a, l_n
+    )
 
 
 @kernel

@@ -17,10 +17,13 @@ const ROLL = 2;
 const SLIDE = 3;
 const FALLING = 4;
 const BEND = 5;
+const AIR = 6;
 const BALL_BALL = 0;
 
 /** Step [s] of a ball's orientation where its axis turns. */
 const STEP = 1 / 120;
+/** A flight that is higher is shown from the side [m]. */
+const HIGH = 0.01;
 /** Time [s] in which a ball falls out of sight. */
 const FALL = 0.2;
 
@@ -57,11 +60,13 @@ class Stroke {
     const rows = numbers(paths.f8, Float64Array);
     const spins = numbers(paths.f4, Float32Array);
     const codes = numbers(paths.u1, Uint8Array);
+    const heights = paths.height && numbers(paths.height, Float64Array); // where balls fly
     for (let s = 0; s < paths.count; s++) {
       const [t0, x, y, vx, vy, ax, ay] = rows.subarray(7 * s);
       const [wx, wy, wz] = spins.subarray(3 * s);
       const [ball, state] = codes.subarray(2 * s);
-      this.logs[ball].push({ t0, x, y, vx, vy, ax, ay, wx, wy, wz, state });
+      const [z, uz] = heights?.subarray(2 * s) ?? [0, 0];
+      this.logs[ball].push({ t0, x, y, vx, vy, ax, ay, wx, wy, wz, state, z, uz });
     }
     if (!after) return;
     const places = numbers(after.places, Float64Array);
@@ -83,7 +88,7 @@ class Stroke {
     const dt = t - t0;
     const u = vx + ax * dt;
     const v = vy + ay * dt;
-    const slips = state === SLIDE || state === FALLING;
+    const slips = state === SLIDE || state === FALLING || state === AIR;
     return [
       x + (vx + 0.5 * ax * dt) * dt,
       y + (vy + 0.5 * ay * dt) * dt,
@@ -91,15 +96,28 @@ class Stroke {
       v,
       slips ? wx + 2.5 * ay * dt / R : -v / R,
       slips ? wy - 2.5 * ax * dt / R : u / R,
-      sign(wz) * max(0, abs(wz) - this.decel * dt),
+      state === AIR ? wz : sign(wz) * max(0, abs(wz) - this.decel * dt),
     ];
   }
 
-  /** All balls at time t [s]: x, y, vx, vy, wx, wy, wz, `on` the table (1 or 0), `depth` in a pocket. */
+  /** Height of a ball in the air above the bed, at time t of a segment [m]; else 0. */
+  height({ t0, z, uz, state }, t) {
+    const dt = t - t0;
+    return state === AIR ? max(0, z + (uz - 0.5 * this.paths.g * dt) * dt) : 0;
+  }
+
+  /** Whether a ball flies higher than `HIGH` at about time t. */
+  flies(t) {
+    const high = ({ z, uz, state }) => state === AIR && z + max(0, uz) ** 2 / (2 * this.paths.g) > HIGH;
+    this.flights ??= this.logs.flatMap(log => log.flatMap((one, k) => high(one) ? [[one.t0, log[k + 1]?.t0]] : []));
+    return this.flights.some(([from, until]) => t > from - 0.5 && t < until + 0.5);
+  }
+
+  /** All balls at time t [s]: x, y, vx, vy, wx, wy, wz, height `z`, `on` the table (1 or 0), `depth` in a pocket. */
   at(t) {
     const names = ["x", "y", "vx", "vy", "wx", "wy", "wz"];
     const out = { on: this.here.slice(), depth: Float64Array.from(this.here, here => 1 - here) };
-    for (const name of names) out[name] = new Float64Array(this.n);
+    for (const name of [...names, "z"]) out[name] = new Float64Array(this.n);
     const still = this.decel > 0 && t >= this.duration;
     this.logs.forEach((log, i) => {
       const k = this.find(i, t);
@@ -108,6 +126,7 @@ class Stroke {
         out[names[c]][i] = still && c > 3 ? 0 : value;
       });
       if (k < 0 || !this.here[i]) return;
+      out.z[i] = this.height(log[k], t);
       if (log[k].state === GONE) out.on[i] = 0;
       let fell = k + 1; // with this segment it went over the edge
       while (fell && [GONE, FALLING].includes(log[fell - 1].state)) fell--;

@@ -1,13 +1,17 @@
 /**
  * How is a table drawn with its balls? By a `TableView` on a canvas, from its scene; each frame says where the balls are.
  *
- * On screen +y goes right and +x down. A frame has `x`, `y`, `on` of all balls; and, as it likes, `depth` (0 on the
- * cloth, 1 gone into a pocket), `turns`, `labels`, `lines` (each with `points`, or a `path`, a Path2D in metres),
+ * On screen +y goes right and +x down. A frame has `x`, `y`, `on` of all balls; and, as it likes, `z` (the height of balls that
+ * fly), `side` (a view from the side), `depth` (0 on the cloth, 1 gone into a pocket), `turns`, `labels`, `lines` (each with `points`, or a `path`, a Path2D in metres),
  * `rings`, `heat`, `highlight` and `cue`.
  */
 
 /** How far a lamp is above the balls [m]. */
 const LAMP_HEIGHT = 0.95;
+/** How far the eye is above the bed [m]: a ball that flies looks larger. */
+const EYE = 2;
+/** The view from the side: how much is seen above the bed [m], and how far it lies inside the upper edge [m]. */
+const SIDE = [0.3, 0.04];
 
 /** Draws a table; its constant parts once for each size. */
 export class TableView {
@@ -78,6 +82,7 @@ export class TableView {
     const radius = this.R * this.scale + 3 * ratio;
     for (const i of frame.highlight ?? []) disc(pen, ...this.pixel(frame.x[i], frame.y[i]), radius);
     if (frame.cue) this.cue(frame.cue);
+    if (frame.side) this.side(frame);
   }
 
   /** All balls that can be seen, the deepest first. */
@@ -86,15 +91,40 @@ export class TableView {
     const [[x0, x1], [y0, y1]] = scene.extent;
     const radius = this.R * this.scale;
     const depth = i => frame.depth?.[i] ?? 1 - frame.on[i];
-    const seen = [...frame.x.keys()].filter(i => depth(i) < 1).sort((a, b) => depth(b) - depth(a));
+    const z = i => frame.z?.[i] ?? 0;
+    const seen = [...frame.x.keys()].filter(i => depth(i) < 1).sort((a, b) => depth(b) - depth(a) || z(a) - z(b));
     for (const i of seen.filter(i => !depth(i))) { // shadows fall away from the lamps
       const [px, py] = this.pixel(frame.x[i], frame.y[i]);
-      const away = [frame.y[i] / (y1 - y0) / 2, 0.14 + frame.x[i] / (x1 - x0) / 2];
+      const away = [frame.y[i] / (y1 - y0) / 2, 0.14 + frame.x[i] / (x1 - x0) / 2].map(part => part * (1 + 2 * z(i) / this.R));
       this.stamp(null, px + radius * away[0], py + radius * away[1], radius);
     }
     for (const i of seen) {
       if (depth(i)) this.falling(frame.x[i], frame.y[i], depth(i), scene.balls[i].rgb);
-      else this.ball(frame, i, radius);
+      else this.ball(frame, i, radius * (1 + z(i) / EYE));
+    }
+  }
+
+  /** The table from its yellow side, over the upper edge of the picture: how high the balls are. */
+  side(frame) {
+    const { pen, scene, scale, R, ink } = this;
+    const [[x0], [y0, y1]] = scene.extent;
+    const [high, inside] = SIDE;
+    const [left, floor] = this.pixel(x0 + inside + high, y0);
+    const wide = (y1 - y0) * scale;
+    pen.globalAlpha = 0.7;
+    pen.fillStyle = ink.bar;
+    pen.fillRect(left, floor - high * scale, wide, (high + 0.02) * scale);
+    pen.globalAlpha = 1;
+    pen.fillStyle = ink.cloth;
+    pen.fillRect(left, floor, wide, 0.02 * scale);
+    if (scene.cushions.length) {
+      pen.fillStyle = ink.cushion;
+      for (const at of [left, left + wide - 0.02 * scale]) pen.fillRect(at, floor - 1.4 * R * scale, 0.02 * scale, 1.4 * R * scale);
+    }
+    const seen = [...frame.x.keys()].filter(i => frame.on[i]).sort((a, b) => frame.x[a] - frame.x[b]);
+    for (const i of seen) {
+      const z = frame.z[i];
+      if (z < high) this.stamp(scene.balls[i].rgb, left + (frame.y[i] - y0) * scale, floor - (R + z) * scale, R * scale);
     }
   }
 

@@ -307,6 +307,7 @@ export class Player {
     const over = t > stroke.duration + PAUSE / 2 && stroke.later; // balls are where the referee has put them
     const frame = over ? { ...stroke.later } : stroke.at(t);
     frame.labels = show.labels;
+    frame.side = !over && stroke.flies(t);
     if (show.spin !== "off") {
       const length = show.spin === "cue" ? 1 : stroke.n;
       frame.turns = Array.from({ length }, (_, ball) => stroke.turn(ball, t));

@@ -156,7 +156,7 @@ KEYS = ": must be KEY=VALUE, KEY once each of action, aim, elevation, placement"
         (["noise=club"], "options = 'noise=club'" + KEYS),
         (["aim=target", "aim=target"], "options = 'aim=target'" + KEYS),
         (["aim=up"], "aim = 'up': must be one of 'absolute', 'target'"),
-        (["elevation=1"], "elevation = 1: must be True or False"),
+        (["elevation=1"], "elevation = 1: must be True or False, or degrees in [5, 70]"),
     ],
 )
 def test_options_are_checked_before_anything_is_played(options, says, refused):

@@ -67,8 +67,8 @@ WEIGHTS = {
     "ppo_mask_finetuned": "0a7876b29ed979493e44c36cb67cb9a8308a77a4b2b71bf4730ba8929f6b6fd8",
     "ppo_target": "a0d80caf6416d41fab71b6157ba3c380d2e128f98f993adf96ce37bbbe09ff7f",
     "ppo_value": "13ca8f8b324f42d39756c2e08f4fd37a13e743fe0b1d0dfdc01211e3c4b0947a",
-    "ppo_value_amateur": "875ef60aee67518b1bb57acec8a940df7768909696cef61bef6b0f31fc120b9e",
-    "ppo_value_club": "ff2c963f55559893458c50c85891b66a98bace1b3387e88f1926dfe2430d60bc",
+    "ppo_value_amateur": "81b63d740602f4ec12de1ee6a4d65c30061abd0c3711a4e72dcf02a70c6246e5",
+    "ppo_value_club": "e1f4d04c626b212c1f4bdbedff07a0a9802619907fa2c4f8a6a26d52010ede6f",
     "ppo_value_none": "19d0e235bf97a17aaf7819bb78fba0001815ed168cff6fa9d381b6c697c22a5a",
 }
 """SHA-256 of the weights that the published figures were played with, whatever file holds them."""

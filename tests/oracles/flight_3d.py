@@ -1,0 +1,634 @@
+"""Where does a shot end whose balls may leave the bed? An integrator with small fixed steps in three dimensions.
+
+An oracle for the engine's flight. As in ``tiny_steps`` each step moves every ball under the forces of the moment,
+nothing is predicted, and a contact is found in the step in which it happens, by bisection of the motion itself.
+
+State of a ball: centre (x, y, z), z above its height on the bed; velocity v; spin w. It is on the bed (z = 0,
+v_z = 0: ``tiny_steps`` moves it), in the air, or gone.
+
+* Air: dv_z/dt = -g; v_x, v_y and w are constant.
+* Bed (z = 0): from the downward speed d the normal impulse is p = (1 + e_t) d, and v_z = e_t d; below ``SETTLE``
+  p = d, v_z = 0. The impulse rubs: at most mu_s p against the slip u = v + w x (-R z), at most what ends it (2/7).
+* Noses and jaws: for a ball on the bed the impact of ``ball_cushion``. For one in the air the nose is a sharp edge
+  at height H = R sin_theta, R cos_theta in front of the centre of a ball on the bed that touches: a free sphere
+  meets a fixed body, e from the speed along the normal.
+* Two balls: both on the bed, ``ball_ball``, and the bed throws the pressed one up with e_t; both in the air, free
+  spheres; one on the bed, ``tilted`` (below).
+* The rail's top, beyond an edge line, is a bed at the height H + R. A ball ``RAIL`` beyond an edge line is off.
+  A ball that comes to z = 0 in a fall circle is potted, and one that flies out of it at the back at z <= H.
+
+Slow contacts on the bed part as the package's text says (``meetings``): at ``PART`` or more, below it without
+friction, with energy from the spins.
+
+SI units, mass 1. Table frame: right-handed, z up.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from snooker_env.physics.columns import (
+    FALL_RADIUS,
+    FALL_X,
+    FALL_Y,
+    JAW_COS,
+    JAW_RADIUS,
+    JAW_UX,
+    JAW_UY,
+    JAW_X,
+    JAW_Y,
+    NOSE_AXIS,
+    NOSE_HIGH,
+    NOSE_LEVEL,
+    NOSE_LOW,
+    NOSE_SIDE,
+)
+
+from . import tiny_steps
+from .ball_ball import ball_ball
+from .ball_cushion import ball_cushion
+
+SETTLE = 0.03  # [m/s] a ball that would leave the bed more slowly stays on it
+RAIL = 0.127  # [m] how far beyond a nose's edge a ball is off the table
+PART = 2e-3  # [m/s] bodies on the bed part at least so fast
+DEEP = 1e-6  # [m] a ball so far past a nose, jaw or plane did not come to it from the front
+MARLOW = (9.951e-3, 0.108, 1.088)  # the law of friction between balls called "marlow"
+Law = tuple[float, float, float]  # (a, b, c) of the friction between balls, mu = a + b exp(-c s), s [m/s]
+UP = np.array([0.0, 0.0, 1.0])
+
+X, Y, VX, VY, WX, WY, WZ, Z, VZ, MODE = range(10)  # the first seven as in ``tiny_steps``
+BED, AIR, POTTED, OFF_TABLE = range(4)
+BALL, CUSHION, JAW, LAND, RAIL_TOP, POT, OFF = range(7)
+KINDS = ("ball", "cushion", "jaw", "land", "rail", "pot", "off")
+
+
+class Model(NamedTuple):
+    """What the stepping needs: lengths [m], decelerations [m/s^2], ``spin`` [rad/s^2], ``drag`` [1/m].
+
+    ``height``: of the nose above the centre of a ball on the bed. ``ahead``: the edge's distance from it.
+    """
+
+    R: float
+    g: float
+    slides: float
+    rolls: float
+    spin: float
+    drag: float
+    height: float
+    ahead: float
+
+
+# ---------------------------------------------------------------- motion and contacts
+
+
+@numba.njit
+def _advance(ball, t, m):
+    """Move one ball by t under the forces of the moment, in place."""
+    if ball[MODE] == AIR:
+        ball[X] += ball[VX] * t
+        ball[Y] += ball[VY] * t
+        ball[Z] += ball[VZ] * t - 0.5 * m.g * t * t
+        ball[VZ] -= m.g * t
+    elif ball[MODE] == BED:
+        tiny_steps._move(ball[:7], t, m.R, m.slides, m.rolls, m.spin, m.drag)
+
+
+@numba.njit
+def _edge_line(nose, m):
+    """Coordinate, along the side of a nose, of its edge."""
+    return nose[NOSE_LEVEL] - m.R + m.ahead
+
+
+@numba.njit
+def _gap(kind, a, b, part, m):
+    """How far [m] ball a is from a contact, and the rate [m/s]. ``b``: the other ball; ``part``: the table's row."""
+    if kind == BALL:
+        dx, dy, dz = b[X] - a[X], b[Y] - a[Y], b[Z] - a[Z]
+        d = math.sqrt(dx * dx + dy * dy + dz * dz)
+        rate = ((b[VX] - a[VX]) * dx + (b[VY] - a[VY]) * dy + (b[VZ] - a[VZ]) * dz) / d
+        return d - 2.0 * m.R, rate
+    if kind == LAND:
+        return a[Z], a[VZ]
+    if kind == RAIL_TOP:
+        return a[Z] - m.height - m.R, a[VZ]
+    if kind == POT:  # a ball on the bed comes to the fall, one in the air leaves it
+        dx, dy = a[X] - part[FALL_X], a[Y] - part[FALL_Y]
+        d = max(math.sqrt(dx * dx + dy * dy), 1e-300)
+        way = 1.0 if a[MODE] == BED else -1.0
+        return way * (d - part[FALL_RADIUS]), way * (dx * a[VX] + dy * a[VY]) / d
+    if kind == JAW:
+        dx, dy = a[X] - part[JAW_X], a[Y] - part[JAW_Y]
+        far = max(math.sqrt(dx * dx + dy * dy), 1e-300)
+        off, away = far - part[JAW_RADIUS] - m.R + m.ahead, (dx * a[VX] + dy * a[VY]) / far
+    else:
+        side, x = part[NOSE_SIDE], int(part[NOSE_AXIS])
+        off, away = _edge_line(part, m) - side * a[X + x], -side * a[VX + x]
+        if kind == OFF:
+            return off + RAIL, away
+    if a[MODE] == BED:
+        return off - m.ahead, away
+    up = a[Z] - m.height
+    d = max(math.sqrt(off * off + up * up), 1e-300)
+    return d - m.R, (off * away + up * a[VZ]) / d
+
+
+@numba.njit
+def _outside(ball, noses, m):
+    """Is the centre beyond the edge line of a nose, wherever that nose ends?"""
+    outside = False
+    for nose in noses:
+        outside = outside or nose[NOSE_SIDE] * ball[X + int(nose[NOSE_AXIS])] > _edge_line(nose, m)
+    return outside
+
+
+@numba.njit
+def _over(ball, falls):
+    """The fall circle that the centre is in; -1: none."""
+    for k in range(falls.shape[0]):
+        if math.hypot(ball[X] - falls[k, FALL_X], ball[Y] - falls[k, FALL_Y]) < falls[k, FALL_RADIUS]:
+            return k
+    return -1
+
+
+@numba.njit
+def _counts(kind, ball, part, noses, falls, m):
+    """Is there something to meet at this place, where the gap is zero?"""
+    if kind == CUSHION:
+        along = ball[Y - int(part[NOSE_AXIS])]
+        return part[NOSE_LOW] <= along <= part[NOSE_HIGH]
+    if kind == JAW:
+        dx, dy = ball[X] - part[JAW_X], ball[Y] - part[JAW_Y]
+        far = math.sqrt(dx * dx + dy * dy)
+        in_sector = dx * part[JAW_UX] + dy * part[JAW_UY] >= part[JAW_COS] * far
+        return in_sector and far > part[JAW_RADIUS] + m.R - m.ahead
+    if kind == RAIL_TOP:
+        return _outside(ball, noses, m) and _over(ball, falls) < 0
+    if kind == POT and ball[MODE] == AIR:
+        return ball[Z] <= m.height and _outside(ball, noses, m)
+    return True
+
+
+@numba.njit
+def _gap_after(kind, a, b, part, t, m):
+    p = a.copy()
+    _advance(p, t, m)
+    if kind != BALL:
+        return _gap(kind, p, p, part, m)
+    q = b.copy()
+    _advance(q, t, m)
+    return _gap(kind, p, q, part, m)
+
+
+@numba.njit
+def _turn(kind, a, b, part, h, m, sign):
+    """The moment in [0, h] where the rate of the gap, of this sign at first, changes it: the two sides of it."""
+    near, far = 0.0, h
+    for _ in range(60):
+        middle = 0.5 * (near + far)
+        if sign * _gap_after(kind, a, b, part, middle, m)[1] > 0.0:
+            near = middle
+        else:
+            far = middle
+    return near, far
+
+
+@numba.njit
+def _contact(kind, a, b, part, h, m):
+    """When, within h, does the gap close? Bisection on the motion itself; infinity if it does not."""
+    gap0, rate0 = _gap(kind, a, b, part, m)
+    if kind != BALL and gap0 < -DEEP:
+        return np.inf
+    if gap0 <= tiny_steps.TOUCH and rate0 < -tiny_steps.APPROACH:
+        return 0.0
+    gap1, rate1 = _gap_after(kind, a, b, part, h, m)
+    lo, hi = 0.0, h
+    if rate0 < 0.0:
+        if rate1 > 0.0 and gap1 > 0.0:  # it came and went
+            hi = _turn(kind, a, b, part, h, m, -1.0)[0]
+            gap1 = _gap_after(kind, a, b, part, hi, m)[0]
+    else:
+        if rate1 >= -tiny_steps.APPROACH:
+            return np.inf
+        lo = _turn(kind, a, b, part, h, m, 1.0)[1]  # it went and came back
+        if gap1 <= 0.0 and _gap_after(kind, a, b, part, lo, m)[0] <= 0.0:
+            return h  # pressed together throughout: one impact per step
+    if gap1 > 0.0:
+        return np.inf
+    for _ in range(60):
+        middle = 0.5 * (lo + hi)
+        if middle <= lo or middle >= hi:
+            break
+        if _gap_after(kind, a, b, part, middle, m)[0] > 0.0:
+            lo = middle
+        else:
+            hi = middle
+    return hi
+
+
+@numba.njit
+def _first(balls, h, reach, noses, jaws, falls, m):
+    """The first contact within h: (time, kind, ball, other ball or row of the table); kind -1: none.
+
+    ``reach``: a larger gap cannot close within h.
+    """
+    best = (np.inf, -1, -1, -1)
+    for i in range(balls.shape[0]):
+        a = balls[i]
+        if a[MODE] > AIR:
+            continue
+        for kind in range(7):
+            if kind in (LAND, RAIL_TOP, OFF) and a[MODE] == BED:
+                continue
+            rows, start = noses, 0  # of planes one row of any kind is enough
+            if kind == BALL:
+                rows, start = balls, i + 1
+            elif kind == JAW:
+                rows = jaws
+            elif kind == POT:
+                rows = falls
+            many = 1 if kind in (LAND, RAIL_TOP) else rows.shape[0]
+            for k in range(start, many):
+                if kind == BALL and balls[k, MODE] > AIR:
+                    continue
+                part = a if kind in (BALL, LAND, RAIL_TOP) else rows[k]
+                b = balls[k] if kind == BALL else a
+                gap = _gap(kind, a, b, part, m)[0]
+                if gap > reach or (kind != BALL and gap < -DEEP):
+                    continue
+                t = _contact(kind, a, b, part, h, m)
+                if t < best[0]:
+                    there = a.copy()
+                    _advance(there, t, m)
+                    if _counts(kind, there, part, noses, falls, m):
+                        best = (t, kind, i, k)
+    return best
+
+
+@numba.njit
+def _run_to_contact(balls, time, into_step, dt, max_time, noses, jaws, falls, m):
+    """Step all balls, in place, to the next contact. Returns (time, into_step, kind, i, k); kind -1: all rest,
+    -2: max_time is past. ``into_step``: how much of the current step has passed."""
+    while time < max_time:
+        h = dt - into_step
+        fastest, moving = 0.0, False
+        for ball in balls:
+            if ball[MODE] > AIR:
+                continue
+            speed = math.sqrt(ball[VX] ** 2 + ball[VY] ** 2 + ball[VZ] ** 2)
+            slip = math.hypot(ball[VX] - m.R * ball[WY], ball[VY] + m.R * ball[WX])
+            fastest = max(fastest, speed)
+            moving = moving or ball[MODE] == AIR or speed > 0.0 or slip > tiny_steps.ZERO_SLIP
+        if not moving:
+            return time, 0.0, -1, -1, -1
+        reach = 2.0 * (fastest + (m.slides + m.g) * h) * h + 1e-9
+        t, kind, i, k = _first(balls, h, reach, noses, jaws, falls, m)
+        t = min(t, h)
+        if t > 0.0:
+            for ball in balls:
+                _advance(ball, t, m)
+        time += t
+        if kind >= 0:
+            return time, into_step + t if into_step + t < dt else 0.0, kind, i, k
+        into_step = 0.0
+    return time, 0.0, -2, -1, -1
+
+
+# ---------------------------------------------------------------- impacts of bodies that are free or fixed
+
+
+def rub(v, w, p, mu, R):
+    """Velocity and spin after the bed's normal impulse p has rubbed: Coulomb's law on the slip of the lowest point."""
+    return _rubbed(v, w, -UP, mu * p, R)
+
+
+def _rubbed(v, w, m, most, R):
+    """Friction of at most ``most`` at R m, m the unit vector to the contact, on one free ball."""
+    slip = v + R * np.cross(w, m)
+    slip = slip - (slip @ m) * m
+    size = math.sqrt(slip @ slip)
+    if size == 0.0:
+        return v, w
+    push = -min(most, 2.0 / 7.0 * size) / size * slip
+    return v + push, w + 2.5 / R * np.cross(m, push)
+
+
+def fixed(v, w, m, *, e, mu, R):
+    """A free ball meets a fixed body at R m (m from the centre to the contact)."""
+    p = (1.0 + e) * (v @ m)
+    return _rubbed(v - p * m, w, m, mu * p, R)
+
+
+def free(v1, w1, v2, w2, n, *, e, mu: Law, R):
+    """Two free balls; n from ball 1 to ball 2 in three dimensions. The slip s falls by ds/dp = -7 mu(s)."""
+    p = 0.5 * (1.0 + e) * ((v1 - v2) @ n)
+    slip = v1 - v2 + R * np.cross(w1 + w2, n)
+    slip = slip - (slip @ n) * n
+    size = math.sqrt(slip @ slip)
+
+    def rate(s):
+        return -7.0 * (mu[0] + mu[1] * math.exp(-mu[2] * max(s, 0.0)))
+
+    s, steps = size, 200
+    for _ in range(steps):  # Runge-Kutta of the fourth order; below zero the law goes on, to be cut off
+        h = p / steps
+        k1 = rate(s)
+        k2 = rate(s + 0.5 * h * k1)
+        k3 = rate(s + 0.5 * h * k2)
+        s += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + rate(s + h * k3))
+        if s <= 0.0:
+            s = 0.0
+            break
+    push = -p * n - ((size - s) / 7.0 / size * slip if size > 0.0 else 0.0)
+    turn = 2.5 / R * np.cross(n, push)
+    return v1 + push, w1 + turn, v2 - push, w2 + turn
+
+
+def hop(closing, spin_energy, mass):
+    """A slow contact on the bed: the speed of parting, and the factor on the spins, which pay for it."""
+    gain = min(0.5 * mass * (PART**2 - closing**2), spin_energy)
+    if gain <= 0.0:
+        return closing, 1.0
+    return math.sqrt(closing**2 + 2.0 * gain / mass), math.sqrt(max(0.0, 1.0 - gain / spin_energy))
+
+
+# ---------------------------------------------------------------- one ball in the air, one on the bed
+
+
+@numba.njit(error_model="numpy")
+def _in_disc(x, y, radius):
+    """The nearest point of a disc."""
+    size = math.hypot(x, y)
+    return (x, y) if size <= radius else (x * radius / size, y * radius / size)
+
+
+@numba.njit(error_model="numpy")
+def _impulses(u, D, law, mu_s, e, steps):
+    """The six impulses of an impact, by steps of p (``tilted``). u: the six velocities at the contacts; D: their
+    changes per unit of each impulse; ``law``: (a, b, c) of mu = a + b exp(-c s).
+
+    Coulomb's law holds at the end of each step, and N >= 0, v_z >= 0, N v_z = 0 (Moreau): slips end, hold and start
+    by themselves. The impulses of a step are found by projection, one contact after the other.
+    """
+    total, J, u = np.zeros(6), np.zeros(6), u.copy()
+    h = J[5] = u[5] / steps
+    rate_a, rate_b = 1.0 / max(D[0, 0], D[1, 1]), 1.0 / D[2, 2]
+    work, taken = 0.0, -1.0  # of the normal impulse; taken in compression, once that is over
+    for _ in range(1000 * steps):
+        for _trial in range(5000):
+            f1, f2, g1, g2, n = J[0], J[1], J[2], J[3], J[4]
+            a1, a2 = u[0] + D[0] @ J, u[1] + D[1] @ J
+            mu = law[0] + law[1] * math.exp(-law[2] * math.hypot(a1, a2))
+            J[0], J[1] = _in_disc(f1 - rate_a * a1, f2 - rate_a * a2, mu * h)
+            J[4] = max(0.0, n - (u[4] + D[4] @ J) / D[4, 4])
+            b1, b2 = u[2] + D[2] @ J, u[3] + D[3] @ J
+            J[2], J[3] = _in_disc(g1 - rate_b * b1, g2 - rate_b * b2, mu_s * J[4])
+            moved = abs(J[0] - f1) + abs(J[1] - f2) + abs(J[2] - g1) + abs(J[3] - g2) + abs(J[4] - n)
+            if moved < 1e-15 * h:
+                break
+        before, bend = u[5], D[5] @ J
+        after = before + bend
+        if taken < 0.0 and after <= 0.0:
+            taken = work - 0.5 * before * before / bend * h
+        gained = 0.5 * (before + after) * h
+        left = ((1.0 - e * e) * taken - work) / h  # to the end of restitution
+        if taken >= 0.0 and gained <= left * h:
+            # the last step is a part of one: before t + bend t^2 / 2 = left
+            part = (-before - math.sqrt(max(before * before + 2.0 * bend * left, 0.0))) / bend
+            return total + part * J
+        work += gained
+        total += J
+        u += D @ J
+    return total * np.nan
+
+
+def _row(direction, arm):
+    """direction . (velocity of a ball's surface at R arm), as a row on (v, R w): d . (v + R w x arm)."""
+    return np.concatenate([direction, np.cross(arm, direction)])
+
+
+def tilted(v1, w1, v2, w2, n, *, e, mu: Law, mu_s, R, steps=20_000):
+    """Ball C (1), free, meets ball O (2), on the bed; n: the unit vector from C to O, not upwards.
+
+    Routh's method: impulses grow with the normal impulse p, every contact obeys Coulomb's law, restitution is
+    energetic (Stronge). Six impulses act: friction F1, F2 on C from O, along X (horizontal) and Z' = X x n (upwards);
+    friction G_x, G_y of the bed on O; its reaction N; and p, from C to O. Each acts on the balls as the transpose of
+    the row of the velocity that it changes (Newton, and Euler with 1 / (2/5 R^2)): ``effect`` = M^-1 rows^T. The
+    velocities at the contacts so change by D = rows effect.
+
+    The error of ``steps`` is of first order; that of half as many is taken out.
+
+    Returns v1, w1, v2, w2 and the impulse by which friction pressed O down. O's vertical velocity is its lift, the
+    bed's restitution not yet in it.
+    """
+    none, x, y = np.zeros(6), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+    across = np.cross(n, UP)
+    size = math.sqrt(across @ across)
+    across = across / size if size > 0.0 else x
+    up = np.cross(across, n)
+    rows = np.array(
+        [np.concatenate([_row(d, n), -_row(d, -n)]) for d in (across, up)]
+        + [np.concatenate([none, _row(d, -UP)]) for d in (x, y, UP)]
+        + [np.concatenate([_row(n, n), -_row(n, -n)])]
+    )
+    effect = (np.tile([1.0, 1.0, 1.0, 2.5, 2.5, 2.5], 2) * rows).T
+    effect[:, 5] *= -1.0  # p pushes C backwards
+    state = np.concatenate([v1, R * w1, v2, R * w2])
+    coarse, fine = (_impulses(rows @ state, rows @ effect, mu, mu_s, e, k) for k in (steps, 2 * steps))
+    J = 2.0 * fine - coarse
+    if not np.isfinite(J).all():
+        raise RuntimeError("the impact did not end")
+    out = state + effect @ J
+    # N held v_z at zero, or the ball has a lift
+    out[8] = max(0.0, out[8]) if out[8] > 1e-9 * abs(state).max() else 0.0
+    return out[0:3], out[3:6] / R, out[6:9], out[9:12] / R, float(J[1] * up[2])
+
+
+# ---------------------------------------------------------------- a shot
+
+
+class _Shot:
+    """What each kind of contact does to the balls, under the constants ``physics``."""
+
+    def __init__(self, physics, noses, jaws, falls):
+        if getattr(physics, "nap", 0.0):
+            raise ValueError("the oracle has no nap")
+        self.p, self.e_t = physics, getattr(physics, "e_t", 0.5)
+        self.noses, self.jaws, self.falls = noses, jaws, falls
+        mu = MARLOW if physics.mu_bb == "marlow" else physics.mu_bb
+        self.mu_bb: Law = tuple(mu) if isinstance(mu, (tuple, list)) else (float(mu), 0.0, 0.0)
+        R, g, sin = physics.R, physics.g, physics.sin_theta
+        drag = getattr(physics, "roll_drag", 0.0)
+        ahead = R * math.sqrt(1.0 - sin * sin)
+        slides, rolls = physics.mu_s * g, physics.mu_r * g
+        self.model = Model(R, g, slides, rolls, physics.spin_decel, drag, R * sin, ahead)
+
+    def put(self, ball, v, w):
+        """New velocity and spin; a ball without height or vertical velocity is on the bed."""
+        ball[[VX, VY, VZ]], ball[[WX, WY, WZ]] = v, w
+        ball[MODE] = AIR if ball[Z] > 0.0 or ball[VZ] != 0.0 else BED
+
+    def restitution(self, jaw, speed):
+        """Of a jaw at every speed; of a nose, falling with the speed into it above the knee."""
+        p = self.p
+        if jaw:
+            e_j = getattr(p, "e_j", None)
+            return p.e_c if e_j is None else e_j
+        fades = p.e_c_power > 0.0 and speed > p.e_c_knee
+        return p.e_c * (speed / p.e_c_knee) ** -p.e_c_power if fades else p.e_c
+
+    def bounce(self, v, w):
+        """Off the bed or the rail's top at -v_z."""
+        down = -v[2]
+        up = self.e_t * down if self.e_t * down >= SETTLE else 0.0
+        v, w = rub(v, w, down + up, self.p.mu_s, self.p.R)
+        return np.array([v[0], v[1], up]), w
+
+    def thrown(self, v, w, press):
+        """A ball on the bed that another has pressed down with this impulse: the slate gives e_t of it back."""
+        up = self.e_t * press
+        if up < SETTLE:
+            return np.array([v[0], v[1], 0.0]), w
+        v, w = rub(v, w, up, self.p.mu_s, self.p.R)
+        return np.array([v[0], v[1], up]), w
+
+    def lifted(self, v, w, press=0.0):
+        """A ball on the bed after an impact: up with its v_z, or thrown up, or it stays."""
+        return (v, w) if v[2] >= SETTLE else self.thrown(v, w, press)
+
+    def meet(self, a, b):
+        """Two balls."""
+        p, R = self.p, self.p.R
+        if a[MODE] == BED and b[MODE] == AIR:
+            a, b = b, a
+        v1, w1, v2, w2 = (ball[k] for ball in (a, b) for k in ([VX, VY, VZ], [WX, WY, WZ]))
+        n = b[[X, Y, Z]] - a[[X, Y, Z]]
+        n = n / math.sqrt(n @ n)
+        closing = float((v1 - v2) @ n)
+        if b[MODE] == AIR:
+            v1, w1, v2, w2 = free(v1, w1, v2, w2, n, e=p.e_b, mu=self.mu_bb, R=R)
+        elif a[MODE] == AIR:
+            v1, w1, v2, w2, press = tilted(v1, w1, v2, w2, n, e=p.e_b, mu=self.mu_bb, mu_s=p.mu_s, R=R)
+            v2, w2 = self.lifted(v2, w2, press)
+        elif closing <= PART:
+            parting, k = hop(closing, 0.2 * R * R * float(w1 @ w1 + w2 @ w2), 0.5)
+            push = 0.5 * (closing + parting) * n
+            v1, w1, v2, w2 = v1 - push, k * w1, v2 + push, k * w2
+        else:
+            e = max(p.e_b, PART / closing)
+            least, extra, fade = self.mu_bb
+
+            def mu(s):
+                return least + extra * math.exp(-fade * s)
+
+            out = ball_ball(v1, w1, v2, w2, n, R=R, M=1.0, e=e, mu_bb=mu, mu_s=p.mu_s)
+            v1, w1 = self.lifted(out[0], out[1], out[2][2])
+            v2, w2 = self.lifted(out[2], out[3], out[0][2])
+        self.put(a, v1, w1)
+        self.put(b, v2, w2)
+
+    def rebound(self, ball, kind, k):
+        """A nose or a jaw."""
+        p, R, model = self.p, self.p.R, self.model
+        v, w = ball[[VX, VY, VZ]], ball[[WX, WY, WZ]]
+        if kind == JAW:
+            h = np.array([self.jaws[k, JAW_X] - ball[X], self.jaws[k, JAW_Y] - ball[Y], 0.0])
+            far = math.sqrt(h @ h)
+            h, off = h / far, far - self.jaws[k, JAW_RADIUS] - R + model.ahead
+        else:
+            h, axis = np.zeros(3), int(self.noses[k, NOSE_AXIS])
+            h[axis] = self.noses[k, NOSE_SIDE]
+            off = _edge_line(self.noses[k], model) - h[axis] * ball[X + axis]
+        closing = float(v @ h)
+        if ball[MODE] == AIR:
+            m = off * h + (model.height - ball[Z]) * UP
+            m = m / math.sqrt(m @ m)
+            v, w = fixed(v, w, m, e=self.restitution(kind == JAW, float(v @ m)), mu=p.mu_c, R=R)
+        elif closing <= PART:
+            parting, scale = hop(closing, 0.2 * R * R * float(w @ w), 1.0)
+            v, w = v - (closing + parting) * h, scale * w
+        else:
+            e = max(self.restitution(kind == JAW, closing), PART / closing)
+            out = ball_cushion(v, w, h, R=R, M=1.0, e=e, mu_w=p.mu_c, mu_s=p.mu_s, sin_theta=p.sin_theta)
+            v, w = self.lifted(*out)
+        self.put(ball, v, w)
+
+    def resolve(self, balls, kind, i, k):
+        """Change the balls; returns the kind and the index to log."""
+        ball = balls[i]
+        if kind == BALL:
+            self.meet(ball, balls[k])
+        elif kind in (CUSHION, JAW):
+            self.rebound(ball, kind, k)
+        elif kind == LAND and _over(ball, self.falls) < 0:
+            ball[Z] = 0.0
+            self.put(ball, *self.bounce(ball[[VX, VY, VZ]], ball[[WX, WY, WZ]]))
+            return LAND, -1
+        elif kind == RAIL_TOP and -self.e_t * ball[VZ] >= SETTLE:
+            self.put(ball, *self.bounce(ball[[VX, VY, VZ]], ball[[WX, WY, WZ]]))
+            return RAIL_TOP, -1
+        elif kind in (RAIL_TOP, OFF):
+            ball[MODE] = OFF_TABLE
+            return OFF, -1
+        else:
+            ball[MODE] = POTTED
+            return POT, k if kind == POT else _over(ball, self.falls)
+        return kind, k
+
+
+def simulate(
+    positions,
+    velocities,
+    spins,
+    *,
+    physics,
+    table=None,
+    dt: float = 5e-5,
+    max_time: float = 120.0,
+    log: list | None = None,
+    watch: Callable | None = None,
+) -> tuple[np.ndarray, list[str]]:
+    """Final positions, (n, 3) [m], and fates of n balls, once all are at rest or gone.
+
+    positions : (n, 2) or (n, 3) [m], z above the height on the bed. velocities [m/s], spins [rad/s] : (n, 3). A
+    v_z below zero at z = 0 is a strike into the bed.
+    physics : the constants, by the names of ``Physics``; ``e_t``, restitution of the bed, 0.5 if it has none.
+    table : None, or an object with the arrays ``noses``, ``jaws``, ``falls`` of ``Table``.
+    dt : step [s]. max_time [s] : RuntimeError if the balls still move then, or after 10000 contacts.
+    log : if a list is given, (time, kind, i, k) of each contact is appended. k: the other ball, or the nose, jaw or
+    fall, or -1. Kinds: ``KINDS``.
+    watch : called as watch(time, balls) with the states (n, 10) at the start and after each contact.
+
+    Fates: "table", "potted" or "off". A ball's position is then where it was lost.
+    Contacts in one step are resolved in order of time; at equal times the ball with the lowest index goes first.
+    """
+    arrays = [np.zeros((0, columns)) for columns in (5, 6, 3)]
+    if table is not None:
+        arrays = [np.array(a, dtype=float) for a in (table.noses, table.jaws, table.falls)]
+    shot = _Shot(physics, *arrays)
+    places = np.asarray(positions, dtype=float)
+    balls = np.zeros((len(places), 10))
+    balls[:, [X, Y]] = places[:, :2]
+    balls[:, Z] = places[:, 2] if places.shape[1] == 3 else 0.0
+    for ball, v, w in zip(balls, np.asarray(velocities, float), np.asarray(spins, float), strict=True):
+        shot.put(ball, v, w)
+    time = into_step = 0.0
+    for _ in range(10_000):
+        if watch is not None:
+            watch(time, balls.copy())
+        time, into_step, kind, i, k = _run_to_contact(
+            balls, time, into_step, dt, max_time, *arrays, shot.model
+        )
+        if kind == -2:
+            raise RuntimeError(f"the balls still move after {max_time} s")
+        if kind == -1:
+            fates = ["table", "table", "potted", "off"]
+            return balls[:, [X, Y, Z]].copy(), [fates[int(mode)] for mode in balls[:, MODE]]
+        kind, k = shot.resolve(balls, kind, i, k)
+        if log is not None:
+            log.append((time, KINDS[kind], int(i), int(k)))
+    raise RuntimeError("10000 contacts: the balls rattle")

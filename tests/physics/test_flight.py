@@ -1,0 +1,239 @@
+"""Do balls fly as they should? Closed forms: hops, bounces, jumps, noses, rails, impacts in the air."""
+
+import math
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env import EventKind
+from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
+from snooker_env.physics import flight
+from snooker_env.physics.impact import contact, free
+from snooker_env.physics.impact.coulomb import Friction
+from snooker_env.physics.impact.polynomial import WORK
+from tests.kernels import from_python
+
+FLYING = sn.Physics.preset("match", flight=True)
+R, G, E_T = FLYING.R, FLYING.g, FLYING.e_t
+HIGH = R * FLYING.sin_theta
+STILL = (0.0, 0.0, 0.0)
+
+
+def kinds(shot, ball=None):
+    """The kinds of the events of a shot, or of one ball's."""
+    return [EventKind(e["kind"]).name for e in shot.events if ball is None or e["i"] == ball]
+
+
+def one(place, velocity, spin=STILL, physics=FLYING, table: str | None = "match"):
+    """A shot of one ball from ``place`` (3,)."""
+    return sn.simulate([place], [velocity], [spin], table=table, physics=physics)
+
+
+@pytest.mark.parametrize(("speed", "inches"), [(3.13, 0.067), (5.36, 0.196), (8.94, 0.544)])
+def test_a_rolling_ball_hops_off_a_full_ball_as_measured(speed, inches):
+    """[TP B.5]: friction 0.06 and restitution 0.94."""
+    physics = sn.Physics.preset("match", flight=True, mu_bb=0.06, e_b=0.94)
+    shot = sn.simulate(
+        [(0, 0), (0, 2 * R + 1e-4)], [(0, speed), (0, 0)], [(-speed / R, 0, 0), STILL], None, physics
+    )
+    heights = shot.at(np.linspace(0, 0.3, 3001))[0][..., 2].max(axis=0)
+    assert heights[0] == pytest.approx(0.0254 * inches, rel=0.05)
+    # the other ball was pressed by the same impulse: it leaves the bed at e_t of the speed
+    assert heights[1] == pytest.approx(E_T**2 * heights[0], rel=1e-3)
+
+
+def test_a_dropped_ball_bounces_until_it_is_slower_than_it_settles():
+    shot = one((0, 0, 0.3), STILL)
+    first = math.sqrt(2 * 0.3 / G)
+    down, times, t = math.sqrt(2 * G * 0.3), [], first
+    while True:
+        times.append(t)
+        down *= E_T
+        if down < flight.SETTLE:
+            break
+        t += 2 * down / G
+    assert kinds(shot) == ["LAND"] * len(times)
+    np.testing.assert_allclose(shot.events["time"], times, rtol=1e-12)
+    assert np.abs(shot.events["z"]).max() < 1e-15
+    assert shot.positions[0].tolist() == [0.0, 0.0]
+
+
+def test_in_the_air_the_velocity_in_the_plane_and_the_spin_stay():
+    spin = (30.0, -20.0, 50.0)
+    shot = one((0, -1, 0.1), (0.5, 1.0, 0.4), spin)
+    place, velocity, spins = shot.at(0.1)
+    np.testing.assert_allclose(place[0], (0.05, -0.9, 0.1 + 0.04 - 0.5 * G * 0.01), atol=1e-15)
+    np.testing.assert_allclose(velocity[0], (0.5, 1.0, 0.4 - G * 0.1), atol=1e-15)
+    assert spins[0].tolist() == list(spin)
+
+
+def test_the_bed_rubs_by_its_impulse_or_until_the_ball_rolls():
+    for w_y, grips in ((400.0, False), (10.0, True)):
+        v, w, up = from_python(flight.thrown)((0.0, 0.0), (0.0, w_y, 7.0), 1.0, FLYING.pack())
+        slip = -R * w_y
+        push = min(FLYING.mu_s * (1.0 + E_T), abs(slip) * 2 / 7)
+        assert (v[0], up, w[2]) == (pytest.approx(push), E_T, 7.0)
+        assert R * w[1] == pytest.approx(R * w_y - 2.5 * push)
+        assert (abs(v[0] - R * w[1]) < 1e-12) == grips
+
+
+def test_a_cue_raised_far_enough_clears_a_ball_and_no_further():
+    """The ball must rise by 2 R: e_t V sin(elevation) >= sqrt(4 g R)."""
+    least = math.asin(math.sqrt(4 * G * R) / (E_T * 5.0))
+    for elevation, clears in ((1.02 * least, True), (0.98 * least, False)):
+        v, w = sn.strike(5.0, math.pi / 2, elevation=elevation, physics=FLYING)
+        half = v[1] * v[2] / G  # where it is highest
+        shot = sn.simulate([(0, 0), (0, half)], [v, STILL], [w, STILL], physics=FLYING)
+        assert (kinds(shot)[0] == "LAND") == clears
+    flat, _ = sn.strike(5.0, math.pi / 2, elevation=least, physics="match")
+    assert flat[2] == 0.0
+
+
+def test_where_no_ball_flies_nothing_changes():
+    rng = np.random.default_rng(4)
+    compared = 0
+    for _ in range(200):
+        places = np.column_stack([rng.uniform(-0.8, 0.8, 6), rng.uniform(-1.6, 1.6, 6)])
+        if min(np.hypot(*(a - b)) for k, a in enumerate(places) for b in places[:k]) < 2 * R:
+            continue
+        v, w = np.zeros((6, 2)), np.zeros((6, 3))
+        v[0] = rng.normal(0, 0.5, 2)
+        w[0, :2] = -v[0, 1] / R, v[0, 0] / R
+        flat, flying = (
+            sn.simulate(places, v, w, physics=sn.Physics.preset("match", flight=f)) for f in (False, True)
+        )
+        if EventKind.LAND in flying.events["kind"]:
+            continue
+        assert np.array_equal(flat.positions, flying.positions) and flat.duration == flying.duration
+        assert (flying.at(0.5 * flying.duration)[0][:, 2] == 0.0).all()
+        compared += 1
+    assert compared > 100
+
+
+@pytest.mark.parametrize("height", [0.5 * HIGH, HIGH + 0.5 * R])
+def test_a_nose_turns_a_ball_in_the_air_up_or_down(height):
+    """Below the nose's height it is driven down, above it is thrown up: a free sphere and a fixed edge."""
+    still = sn.Physics.preset("match", flight=True, g=1e-3, mu_c=0.0)
+    shot = one(
+        (0.5, 0.5, height), (1.0, 0.0, 0.5 * still.g * 0.34), physics=still
+    )  # about as high where it meets the nose
+    met = shot.events[0]
+    assert EventKind(met["kind"]) == EventKind.CUSHION
+    sin_phi = (HIGH - height) / R
+    cos_phi = math.sqrt(1 - sin_phi**2)
+    edge = HALF_WIDTH - R * (1 - math.sqrt(1 - still.sin_theta**2))
+    assert met["time"] == pytest.approx(edge - R * cos_phi - 0.5, abs=1e-4)
+    p = (1 + still.e_c) * cos_phi
+    after = shot.at(met["time"])[1][0]
+    np.testing.assert_allclose(after, (1 - p * cos_phi, 0.0, -p * sin_phi), atol=2e-3)
+
+
+def test_a_ball_over_a_rail_bounces_there_or_leaves_the_table():
+    top = HIGH + R
+    shot = one((HALF_WIDTH - 0.1, 0.3, 0.2), (0.7, 0.0, 0.0))
+    assert kinds(shot)[0] == "RAIL" and shot.potted[0] == -2 and not shot.on_table[0]
+    assert shot.events[0]["time"] == pytest.approx(math.sqrt(2 * (0.2 - top) / G), rel=1e-12)
+    assert shot.events["z"][0] == pytest.approx(top, abs=1e-12)
+    far = one((HALF_WIDTH - 0.1, 0.3, 0.2), (3.0, 0.0, 0.5))
+    assert kinds(far) == ["OFF"] and far.duration == pytest.approx(
+        (0.1 + flight.RAIL - (R - R * math.sqrt(1 - 0.16))) / 3
+    )
+
+
+def test_a_ball_that_bounces_back_off_a_rail_plays_on():
+    shot = one((HALF_WIDTH - 0.1, 0.3, 0.2), (0.58, 0.0, 0.0), (0.0, -500.0, 0.0))
+    assert kinds(shot)[0] == "RAIL" and "LAND" in kinds(shot) and shot.on_table[0]
+
+
+def test_balls_go_into_pockets_from_the_air_but_not_over_their_backs():
+    x, y = sn.geometry.POCKET_AIMS[0, :2] if hasattr(sn, "geometry") else (-HALF_WIDTH, -HALF_LENGTH)
+    way = np.array([x, y]) / np.hypot(x, y)
+    start = np.array([x, y]) - 0.4 * way
+    low = one((*start, 0.0), (*(2.0 * way), 0.9))
+    assert low.potted[0] >= 0
+    high = one((*start, 0.0), (*(3.0 * way), 2.5))
+    assert high.potted[0] == -2 and kinds(high)[-1] == "OFF"
+
+
+def test_balls_that_meet_in_the_air_keep_momentum_and_part_at_e():
+    shot = sn.simulate(
+        [(0, 0, 0.3), (0.02, 0.5, 0.31)],
+        [(0.0, 1.5, 1.0), (0.0, -1.5, 1.0)],
+        [(20.0, 5.0, -30.0), (0.0, 40.0, 10.0)],
+        None,
+        FLYING,
+    )
+    assert kinds(shot)[0] == "BALL_BALL"
+    t = float(shot.events["time"][0])
+    (r, v, w), (_, before, spun) = shot.at(t), shot.at(np.nextafter(t, 0))
+    np.testing.assert_allclose(v.sum(axis=0), before.sum(axis=0), atol=1e-9)
+    n = (r[1] - r[0]) / np.linalg.norm(r[1] - r[0])
+    assert np.linalg.norm(r[1] - r[0]) == pytest.approx(2 * R, abs=2e-9)
+    assert (v[1] - v[0]) @ n == pytest.approx(-FLYING.e_b * ((before[1] - before[0]) @ n), rel=1e-9)
+    # angular momentum about the point of contact: of each ball by itself
+    for k, side in ((0, 1.0), (1, -1.0)):
+        turned = 0.4 * R**2 * (w[k] - spun[k]) - side * np.cross(R * n, v[k] - before[k])
+        np.testing.assert_allclose(turned, 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("law", [(0.05, 0.0, 0.0), (9.951e-3, 0.108, 1.088), (0.0, 0.1, 2.0)])
+def test_the_slip_of_free_spheres_ends_as_in_small_steps(law):
+    slip_after = from_python(free.slip_after)
+    for s, p in ((0.3, 0.2), (3.0, 1.0), (20.0, 5.0), (0.5, 9.0)):
+        steps, left = 200_000, s
+        for _ in range(steps):
+            middle = left - 3.5 * (law[0] + law[1] * math.exp(-law[2] * left)) * p / steps
+            left -= 7.0 * (law[0] + law[1] * math.exp(-law[2] * middle)) * p / steps
+            if left <= 0.0:
+                left = 0.0
+                break
+        assert slip_after(s, p, Friction(*law)) == pytest.approx(left, abs=1e-8)
+
+
+def test_an_impact_from_hardly_above_is_that_on_the_bed():
+    tilted, flat = from_python(contact.collide_tilted), from_python(contact.collide_balls)
+    law = sn.physics.arrays.Law(FLYING.pack(), contact.REFERENCE, 0)
+    c, o = ((1.2, 2.0, 0.0), (-60.0, 30.0, 40.0)), ((0.1, 0.0, 0.0), (0.0, 4.0, 0.0))
+    normal = (0.6, 0.8)
+    level = flat(*c, *o, normal, law, FLYING.e_b, np.zeros(WORK))
+    z = 1e-9
+    high = tilted(
+        *c, *o, (0.6 * math.sqrt(1 - z * z), 0.8 * math.sqrt(1 - z * z), -z), law, FLYING.e_b, np.zeros(WORK)
+    )
+    assert level[4] and high[5]
+    for a, b in zip(level[:4], high[:4], strict=True):
+        np.testing.assert_allclose(a, b, atol=2e-7)
+    assert high[4] == pytest.approx(level[0][2])  # what lifts the one presses the other
+
+
+def test_a_ball_that_falls_straight_on_another_rebounds_at_e():
+    tilted = from_python(contact.collide_tilted)
+    law = sn.physics.arrays.Law(FLYING.pack(), contact.STANDARD, 0)
+    v, w, u, _, press, solved = tilted(
+        (0.0, 0.0, -1.0), STILL, STILL, STILL, (0.0, 0.0, -1.0), law, 0.9, np.zeros(WORK)
+    )
+    assert solved and press == 0.0
+    np.testing.assert_allclose(v, (0.0, 0.0, 0.9), atol=1e-12)
+    np.testing.assert_allclose((*w, *u), 0.0, atol=1e-12)
+
+
+def test_a_shot_in_space_is_the_same_in_the_mirror():
+    places = np.array([(0.1, -0.5, 0.0), (0.13, 0.1, 0.0), (-0.2, 0.6, 0.0)])
+    v, w = np.zeros((3, 3)), np.zeros((3, 3))
+    v[0], w[0] = (0.3, 4.0, 1.2), (-40.0, 20.0, 60.0)
+    shot = sn.simulate(places, v, w, physics=FLYING)
+    mirrored = sn.simulate(places * (-1, 1, 1), v * (-1, 1, 1), w * (1, -1, -1), physics=FLYING)
+    assert "LAND" in kinds(shot) and len(shot.events) == len(mirrored.events)
+    np.testing.assert_allclose(shot.positions * (-1, 1), mirrored.positions, atol=1e-9)
+
+
+def test_heights_need_flight_and_are_above_the_bed():
+    with pytest.raises(ValueError, match=r"positions .*must have shape"):
+        sn.simulate([(0, 0, 0.1)], [STILL], [STILL])
+    with pytest.raises(ValueError, match=r"positions z = -0.1: must be a height above the bed"):
+        one((0, 0, -0.1), STILL)
+    with pytest.raises(ValueError, match=r"physics.e_t = 1.0"):
+        sn.Physics(e_t=1.0)
+    with pytest.raises(ValueError, match=r"physics.flight = 1"):
+        sn.Physics(flight=1)  # type: ignore[arg-type]
