@@ -21,24 +21,15 @@ judge() {  # its name, all simulated shots of its training
 
 judge random 0
 judge ghost_ball 0
-judge geometric 0
-judge ppo_target 1015808
-judge ppo_absolute 507904
-judge ppo_mask 1015808
-# A step simulates 120 shots for the view, and 1 that is played: 49,152 x 121. Each of 10,240 imitated positions 48 more: x 169.
-judge ppo_foresight 7677952
-judge ppo_foresight_gamma0 7677952
-# The same view, rated by a rule of thumb.
-judge foresight_rule 0
-# The search over continuous strokes, and with what train.py learns: 153,600 positions x 64 simulated shots, 147,456 x 48 judged choices, PPO.
 judge best_pot 0
 judge search 0
-judge search_2000 0
+# What train.py learns for each level of errors: 153,600 positions x 64 simulated shots, 147,456 x 48 judged choices, PPO.
 judge planner 18415616
 # To those of planner, two rounds of 384 frames against itself and others: 205,141 positions, each with 120 shots of search and 8 that judge,
 # and some 12,000 strokes of the others, 120 shots each.
 judge tactician 46113664
+# The values of three levels, and 4.6 million strokes that are tried.
+judge stroke_value 60000000
 judge ppo_value 18415616
-judge ppo_mask_finetuned 26443776
 
 $bench table leaderboard/*.json --markdown docs/leaderboard.md --awaited "${labels[@]}"
