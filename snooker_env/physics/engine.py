@@ -299,9 +299,8 @@ def _is_astray(motion, state, i, reach, boundaries):
 def _watch(paths, kind, j, t, phys):
     """Ball 0 has an event at t: is its stroke a jump shot? In columns of ``flight``, until that is certain."""
     motion, state, seen = paths
-    if (
-        t < 0.0
-    ):  # never: a kernel that calls itself is not inlined, and does not slow down the loop of other shots
+    # never true: a kernel that calls itself is not inlined, so that its code does not slow down the loop of other shots
+    if t < 0.0:
         _watch(paths, kind, j, t, phys)
     d, other = 2.0 * phys[P_R], j if kind == events.BALL_BALL else -1
     flies, struck = state[0] == AIR, int(seen[0, flight.STRUCK])

@@ -71,8 +71,7 @@ from .columns import (
 from .detection import CREEP, SEAM, SKIN, TOUCH, distance_crossing, space_crossing
 
 SETTLE = 0.03
-"""A ball that would leave the bed more slowly stays on it [m/s]: a hop of 46 micrometres and 6 ms. With a third of it
-shots have 40 % more events."""
+"""A ball that would leave the bed more slowly stays on it [m/s]: a hop of 46 micrometres and 6 ms. Bounces so end."""
 RAIL = 0.127
 """Width of a rail, from the edge of the nose to the floor [m]: 5 inches."""
 _NEAR_ENOUGH = 1e-12
@@ -80,7 +79,7 @@ _NEAR_ENOUGH = 1e-12
 _GLIDES = 1e-9
 """The gap of a ball that touches a jaw, but does not approach it [m]."""
 _MOST_STEPS = 1000
-"""Of the search for a jaw; a contact takes 3 to 10."""
+"""Of the search for a jaw, which converges as Newton's method does."""
 
 
 STRUCK, WATCHED, WAY_X, WAY_Y, JUMPED = range(pocket.FLIGHT, pocket.FLIGHT + 5)

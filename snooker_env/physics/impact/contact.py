@@ -227,7 +227,7 @@ def collide_tilted(vc, wc, vo, wo, normal, law, e, series):
     accuracy = impulse.REFERENCE if fidelity == REFERENCE else _LOOSE if fidelity == FAST else _STANDARD
     problem = Problem(inertia.tilted(sin_t, cos_t), start, friction, phys[P_MU_S], e)
     x, status = solve(problem, accuracy, series)
-    if status != OK:  # three in a million of a fuzz: friction holds the cloth's slip almost exactly
+    if status != OK:  # rare (one shot in 160,000 of a fuzz)
         x, status = solve(problem, _LOOSE, series)
     f1, f2, g1, g2 = x.F1 * closing, x.F2 * closing, x.G1 * closing, x.G2 * closing
     p, lift, q = x.p * closing, x.Z * closing, 2.5 / R

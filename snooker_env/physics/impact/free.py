@@ -8,7 +8,6 @@ acts along the first slip s: between two spheres ds = -7 mu(s) dp, against a fix
 from math import exp, expm1, log, sqrt
 
 from ..._jit import kernel
-from .coulomb import Friction
 
 
 @kernel
@@ -50,11 +49,7 @@ def between(v1, w1, v2, w2, n, friction, e, R):
     sy = dy - closing * n[1] + R * turn[1]
     sz = dz - closing * n[2] + R * turn[2]
     s, p = sqrt(sx * sx + sy * sy + sz * sz), 0.5 * (1.0 + e) * closing
-    k = (
-        (s - slip_after(s, p, Friction(friction.least, friction.extra, friction.fade))) / (7.0 * s)
-        if s > 0.0
-        else 0.0
-    )
+    k = (s - slip_after(s, p, friction)) / (7.0 * s) if s > 0.0 else 0.0
     f = -k * sx, -k * sy, -k * sz
     j = f[0] - p * n[0], f[1] - p * n[1], f[2] - p * n[2]
     return (
