@@ -237,3 +237,16 @@ def test_heights_need_flight_and_are_above_the_bed():
         sn.Physics(e_t=1.0)
     with pytest.raises(ValueError, match=r"physics.flight = 1"):
         sn.Physics(flight=1)  # type: ignore[arg-type]
+
+
+def test_a_jaw_is_met_in_the_air_where_its_edge_is():
+    """As high as the nose the ball meets the edge R before it, and the edge lies R (1 - cos theta) inside the table's line."""
+    still, speed = sn.Physics.preset("match", flight=True, g=1e-3), 1.0
+    x, y, radius, ux, uy, _ = sn.Table.preset("match").jaws[0]
+    edge = radius + R * (1 - math.sqrt(1 - still.sin_theta**2))
+    start = edge + R + 0.05
+    climb = 0.5 * still.g * 0.05
+    shot = one((x + start * ux, y + start * uy, HIGH), (-speed * ux, -speed * uy, climb), physics=still)
+    met = shot.events[0]
+    assert (EventKind(met["kind"]), met["j"]) == (EventKind.JAW, 0)
+    assert met["time"] == pytest.approx(0.05 / speed, abs=2e-6)
