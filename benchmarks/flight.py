@@ -94,8 +94,19 @@ def break_offs(n, rng):
     """n break-offs: the cue ball in the D, at an end red of the pack, full to thin."""
     side = rng.choice([-1.0, 1.0], n)
     cue = np.column_stack([side * rng.uniform(0.06, 0.22, n), np.full(n, SPOTS[0, 1] - 0.02)])
+    yellow, green, brown, blue, pink, black = (tuple(spot) for spot in SPOTS[16:22].tolist())
     positions = [
-        sn.Position(cue=tuple(place), reds=SPOTS[1:16].tolist(), on="red", **_colours())
+        sn.Position(
+            cue=tuple(place),
+            reds=SPOTS[1:16].tolist(),
+            yellow=yellow,
+            green=green,
+            brown=brown,
+            blue=blue,
+            pink=pink,
+            black=black,
+            on="red",
+        )
         for place in cue.tolist()
     ]
     red = SPOTS[np.where(side > 0, 15, 11)]
@@ -105,11 +116,6 @@ def break_offs(n, rng):
         [rng.uniform(2.0, 7.0, n), rng.uniform(-0.3, 0.3, n), rng.uniform(-0.3, 0.3, n), aim, np.zeros(n)]
     )
     return Positions.of(positions), np.arange(n), strokes
-
-
-def _colours():
-    names = ("yellow", "green", "brown", "blue", "pink", "black")
-    return {name: tuple(SPOTS[16 + k]) for k, name in enumerate(names)}
 
 
 def shown(title, rows):
