@@ -43,6 +43,8 @@ from .parameters import FARTHEST, FASTEST, MOST_SPIN
 from .placement import SOUND, layout_fault, place_fault
 
 NOT_IN_AIR, SOLVED, UNSOLVED = range(3)
+_LIFTS = -1
+"""Status of a run without flight that has stopped where a ball would fly."""
 _LATEST = 1.7e308
 """Every time of a meeting is below."""
 
@@ -71,8 +73,6 @@ def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
     """Two balls on the bed, or one over a pocket, have met, and balls fly: one is lifted, the other pressed, which gives
     back no more than the impact has lost. ``before``: v1, w1, v2, w2."""
     motion, state, _falls = paths
-    if t < 0.0:  # never, as in ``_watch``
-        _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys)
     impulse = max(ball_i[1][2], ball_j[1][2])
     if impulse > 0.0:
         after = ball_i[1], ball_i[2], ball_j[1], ball_j[2]
@@ -128,8 +128,6 @@ def _in_air(paths, i, kind, j, t, law, boundaries, series):
     next phases, and say whether it was solved. ``NOT_IN_AIR``: it is another event, or the ball is lost."""
     motion, state, falls = paths
     phys = law.phys
-    if t < 0.0:  # never, as in ``_watch``
-        return _in_air(paths, i, kind, j, t, law, boundaries, series)
     if kind == events.BALL_BALL:
         return SOLVED if _meet_in_air(paths, i, j, t, law, boundaries, series) else UNSOLVED
     if kind == events.POT or kind == events.OFF:
@@ -299,9 +297,6 @@ def _is_astray(motion, state, i, reach, boundaries):
 def _watch(paths, kind, j, t, phys):
     """Ball 0 has an event at t: is its stroke a jump shot? In columns of ``flight``, until that is certain."""
     motion, state, seen = paths
-    # never true: a kernel that calls itself is not inlined, so that its code does not slow down the loop of other shots
-    if t < 0.0:
-        _watch(paths, kind, j, t, phys)
     d, other = 2.0 * phys[P_R], j if kind == events.BALL_BALL else -1
     flies, struck = state[0] == AIR, int(seen[0, flight.STRUCK])
     (x, y), _v, _w = flight.evaluate(motion, state, 0, t, phys)
@@ -386,12 +381,15 @@ def _next_event(best_time, best_ball, alone_time, alone_kind, alone_index):
 
 
 @kernel
-def run(balls, aloft, setup, max_events, log, paths, forecast, series):
+def run(balls, aloft, lift, setup, max_events, log, paths, forecast, series, so_far):
     """Simulate one shot to rest, in place -> status, number of events and of segments, duration [s].
 
-    ``aloft``: None where no ball flies (numba then compiles nothing of it); else (n, 2), the height of each ball above the
-    bed [m] and its rate [m/s], and after the shot in the first place 1 for a jump shot of ball 0: it flew over a part of
-    a ball before it met one, or came down behind the one that it met from above.
+    ``aloft`` None: no ball flies (numba then compiles nothing of it). Such a run stops with ``_LIFTS`` at the first impact
+    after which a ball would go up at ``lift`` [m/s] or faster, and leaves that event to a run with ``aloft`` that goes on
+    with what it has returned, ``so_far``: until a ball flies, the shot costs what it costs without flight.
+    ``aloft``: (n, 2), the height of each ball above the bed [m] and its rate [m/s], and after the shot in the first place 1
+    for a jump shot of ball 0, if it alone moved at first: it flew over a part of a ball before it met one, or came down
+    behind the one that it met from above.
     ``paths``, ``forecast`` and ``series``: work space. Not inlined into ``run_batch``, which makes arrays:
     numba would count references to the arrays of a tuple at every use (4 % of a shot of two balls).
     """
@@ -403,32 +401,38 @@ def run(balls, aloft, setup, max_events, log, paths, forecast, series):
     bounds, pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
     n = positions.shape[0]
     n_segments = n_events = np.int64(0)  # (typed: with a literal numba would compile every callee twice)
-    for i in range(n):
-        potted[i] = -1
-        best_time[i], best_ball[i], alone_time[i] = inf, -1, inf
-        for j in range(pair.shape[1]):
-            pair[i, j] = inf
-        if on_table[i]:
-            r, v = (positions[i, 0], positions[i, 1]), (velocities[i, 0], velocities[i, 1])
-            w = spins[i, 0], spins[i, 1], spins[i, 2]
-            motion[i, Z] = motion[i, UZ] = 0.0
-            cloth.begin(motion, state, i, 0.0, r, v, w, phys)
-            if aloft is not None and (aloft[i, 0] > 0.0 or aloft[i, 1] > 0.0):
-                r3, v3 = (r[0], r[1], aloft[i, 0]), (v[0], v[1], aloft[i, 1])
-                flight.take_off(motion, state, i, 0.0, r3, v3, w, phys)
-            _bound(bounds, i, motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y])
-        else:
-            state[i] = GONE
-            _lie(motion, i, positions[i, 0], positions[i, 1])
-            _bound(bounds, i, inf, -inf, inf, -inf)
-        n_segments = _record(segments, n_segments, motion, state, i)
-    for i in range(n):
-        if state[i] > REST:
-            _predict(paths, i, 0.0, boundaries, clear, forecast, phys, aloft)
+    end, met, begins = 0.0, False, True
     if aloft is not None:
         over[0, flight.STRUCK], over[0, flight.WATCHED], over[0, flight.JUMPED] = -1.0, 0.0, 0.0
+        status, n_events, n_segments, end = so_far
+        if status == _LIFTS:
+            begins, n_events, met = False, n_events - 1, over[0, flight.MET] != 0.0
+            if met:
+                over[0, flight.WATCHED] = -1.0
+    if begins:
+        for i in range(n):
+            potted[i] = -1
+            best_time[i], best_ball[i], alone_time[i] = inf, -1, inf
+            for j in range(pair.shape[1]):
+                pair[i, j] = inf
+            if on_table[i]:
+                r, v = (positions[i, 0], positions[i, 1]), (velocities[i, 0], velocities[i, 1])
+                w = spins[i, 0], spins[i, 1], spins[i, 2]
+                motion[i, Z] = motion[i, UZ] = 0.0
+                cloth.begin(motion, state, i, 0.0, r, v, w, phys)
+                if aloft is not None and (aloft[i, 0] > 0.0 or aloft[i, 1] > 0.0):
+                    r3, v3 = (r[0], r[1], aloft[i, 0]), (v[0], v[1], aloft[i, 1])
+                    flight.take_off(motion, state, i, 0.0, r3, v3, w, phys)
+                _bound(bounds, i, motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y])
+            else:
+                state[i] = GONE
+                _lie(motion, i, positions[i, 0], positions[i, 1])
+                _bound(bounds, i, inf, -inf, inf, -inf)
+            n_segments = _record(segments, n_segments, motion, state, i)
+        for i in range(n):
+            if state[i] > REST:
+                _predict(paths, i, 0.0, boundaries, clear, forecast, phys, aloft)
     status = events.OK
-    end, met = 0.0, False
     while True:
         t, kind, i, j = _next_event(best_time, best_ball, alone_time, alone_kind, alone_index)
         if t == inf:
@@ -459,7 +463,15 @@ def run(balls, aloft, setup, max_events, log, paths, forecast, series):
         n_events += 1
         end = t
         in_air = NOT_IN_AIR
-        if aloft is not None:
+        if aloft is None:
+            # also where a ball over a pocket comes back or meets one: ``pocket.aloft`` cannot begin an impact twice
+            if lift < inf and (
+                kind == events.RETURN
+                or (kind == events.BALL_BALL and (state[i] == FALLING or state[j] == FALLING))
+            ):
+                status = _LIFTS
+                break
+        else:
             if i == 0 and over[0, flight.WATCHED] >= 0.0:
                 _watch(paths, kind, j, t, phys)
             if state[i] == AIR or (kind == events.BALL_BALL and state[j] == AIR):
@@ -476,16 +488,17 @@ def run(balls, aloft, setup, max_events, log, paths, forecast, series):
             nx, ny = r2[0] - r1[0], r2[1] - r1[1]
             d = sqrt(nx * nx + ny * ny)
             u1, s1, u2, s2, solved = meet(v1, w1, v2, w2, (nx / d, ny / d), law if met else first, series)
-            met = True
-            lifts = False
-            if aloft is not None:
-                lifts = max(u1[2], u2[2]) >= flight.SETTLE
-                if lifts:
+            if max(u1[2], u2[2]) >= lift:
+                if aloft is None:
+                    status = _LIFTS
+                    break
+                else:
                     before = (v1[0], v1[1], 0.0), w1, (v2[0], v2[1], 0.0), w2
                     _part(paths, i, j, t, (r1, u1, s1), (r2, u2, s2), before, boundaries, phys)
-            if not lifts:
+            else:
                 _begin_again(paths, i, t, r1, u1, s1, boundaries, phys)
                 _begin_again(paths, j, t, r2, u2, s2, boundaries, phys)
+            met = True
         elif kind == events.ROLL or kind == events.STOP or kind == events.BEND:
             cloth.next_phase(motion, state, i, phys)
             solved = True
@@ -535,12 +548,13 @@ def run(balls, aloft, setup, max_events, log, paths, forecast, series):
                 d = sqrt(nx * nx + ny * ny)
                 nx, ny = nx / d, ny / d
             u, w, solved = rebound(v, w, (nx, ny), kind == events.JAW, law, series)
-            lifts = False
-            if aloft is not None:
-                lifts = u[2] >= flight.SETTLE
-                if lifts:
+            if u[2] >= lift:
+                if aloft is None:
+                    status = _LIFTS
+                    break
+                else:
                     flight.take_off(motion, state, i, t, (r[0], r[1], 0.0), u, w, phys)
-            if not lifts:
+            else:
                 cloth.begin(motion, state, i, t, r, (u[0], u[1]), w, phys)
         if not solved:
             status = events.IMPACT_UNSOLVED
@@ -566,7 +580,18 @@ def run(balls, aloft, setup, max_events, log, paths, forecast, series):
                 end = max(end, motion[i, T0] + abs(motion[i, WZ]) / phys[P_SPIN])
     if aloft is not None:
         aloft[0, 0] = over[0, flight.JUMPED]
+    else:
+        over[0, flight.MET] = 1.0 if met else 0.0
     return status, n_events, n_segments, end
+
+
+@kernel
+def _flies(aloft):
+    """Whether a shot begins with a ball in the air, or on its way up."""
+    flies = False
+    for i in range(aloft.shape[0]):
+        flies |= aloft[i, 0] > 0.0 or aloft[i, 1] > 0.0
+    return flies
 
 
 @kernel
@@ -645,7 +670,24 @@ def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
         setting = Setup(law, first, boundaries, reach, clear)
         shot_log = Log(time[k], what[k], segments[k])
         if aloft is None:
-            found = run(shot, None, setting, max_events, shot_log, paths, forecast, series)
+            found = run(shot, None, inf, setting, max_events, shot_log, paths, forecast, series, None)
         else:
-            found = run(shot, aloft[k], setting, max_events, shot_log, paths, forecast, series)
+            found, flies = (np.int64(events.OK), np.int64(0), np.int64(0), 0.0), _flies(aloft[k])
+            if not flies:
+                found = run(
+                    shot, None, flight.SETTLE, setting, max_events, shot_log, paths, forecast, series, None
+                )
+            if flies or found[0] == _LIFTS:
+                found = run(
+                    shot,
+                    aloft[k],
+                    flight.SETTLE,
+                    setting,
+                    max_events,
+                    shot_log,
+                    paths,
+                    forecast,
+                    series,
+                    found,
+                )
         status[k], n_events[k], n_segments[k], duration[k] = found

@@ -82,8 +82,8 @@ _MOST_STEPS = 1000
 """Of the search for a jaw, which converges as Newton's method does."""
 
 
-STRUCK, WATCHED, WAY_X, WAY_Y, JUMPED = range(pocket.FLIGHT, pocket.FLIGHT + 5)
-COLUMNS = pocket.FLIGHT + 5
+MET, STRUCK, WATCHED, WAY_X, WAY_Y, JUMPED = range(pocket.FLIGHT, pocket.FLIGHT + 6)
+COLUMNS = pocket.FLIGHT + 6
 """Of ball 0 in ``Motions.flight``, behind the columns of ``pocket``: the ball that it met first, or -1; below 0 once it is
 certain whether the stroke was a jump shot; the way it came; 1 for a jump shot."""
 OVER = 1e-3
@@ -149,8 +149,6 @@ def evaluate(motion, state, i, t, phys):
 @kernel
 def take_off(motion, state, i, t, r, v, w, phys):
     """Ball i is in the air at t [s], at r = (x, y, z) with v = (vx, vy, u): write its flight, at the longest to the bed."""
-    if t < 0.0:  # never: so it is not inlined (``engine._watch``)
-        take_off(motion, state, i, t, r, v, w, phys)
     (x, y, z), (vx, vy, u), g = r, v, phys[P_G]
     state[i] = AIR
     motion[i, X], motion[i, Y], motion[i, Z] = x, y, z
@@ -177,8 +175,6 @@ def leave(motion, state, i, t, r, v, w, up, phys):
 @kernel
 def pair_time(motion, state, i, j, t, d, phys):
     """``detection.pair_time`` where one or both of the balls are in the air."""
-    if t < 0.0:  # never: so it is not inlined (``engine._watch``)
-        return pair_time(motion, state, i, j, t, d, phys)
     ti, tj, g = t - motion[i, T0], t - motion[j, T0], phys[P_G]
     axi, ayi, axj, ayj = motion[i, AX], motion[i, AY], motion[j, AX], motion[j, AY]
     vxi, vyi, vxj, vyj = motion[i, VX], motion[i, VY], motion[j, VX], motion[j, VY]
@@ -282,8 +278,6 @@ def _fall_at(x, y, falls):
 @kernel
 def next_event(motion, i, boundaries, clear, phys):
     """What ball i in the air meets next, but for balls: time [s], kind, index."""
-    if motion[i, T0] < 0.0:  # never: so it is not inlined (``engine._watch``)
-        return next_event(motion, i, boundaries, clear, phys)
     noses, jaws, falls, R = boundaries
     T, g, high = motion[i, T_END] - motion[i, T0], phys[P_G], phys[P_SIN] * phys[P_R]
     inset = R - sqrt(R * R - high * high)
