@@ -65,6 +65,15 @@ class Batch:
     aloft: np.ndarray
     """(b, n, 2): heights of the balls above the bed, and their rates."""
 
+    def states(self):
+        """Positions and velocities as ``simulate_batch`` takes them, (b, n, 3) where balls fly."""
+        if not self.physics.flight:
+            return self.positions, self.velocities
+        return tuple(
+            np.concatenate([part, self.aloft[..., c, None]], axis=-1)
+            for c, part in enumerate((self.positions, self.velocities))
+        )
+
 
 def _mouth(table):
     """How far past the noses a ball may be drawn [m]: nowhere on a table without pockets."""
@@ -377,13 +386,8 @@ class Fuzzed:
 
 def compare_public(one, found, threads):
     """Does ``simulate_batch`` give the same bits? It also checks every layout."""
-    places, velocities = one.positions, one.velocities
-    if one.physics.flight:
-        places = np.concatenate([places, one.aloft[..., :1]], axis=-1)
-        velocities = np.concatenate([velocities, one.aloft[..., 1:]], axis=-1)
     batch = sn.simulate_batch(
-        places,
-        velocities,
+        *one.states(),
         one.spins,
         one.table,
         one.physics,

@@ -24,17 +24,13 @@ CLOTH: Any = None
 def images(drawn, axis, rows=slice(None)):
     """How ``rows`` of a fuzz's batch end, and how their mirror images (x or y reversed) do, seen in the
     mirror: positions and durations."""
-    flip = np.array([1.0, 1.0])
+    p, v = (part[rows] for part in drawn.states())
+    w, how = drawn.spins[rows], (drawn.table, drawn.physics, drawn.fidelity)
+    flip = np.ones(p.shape[-1])
     flip[axis] = -1.0
     spin = np.array([-flip[0], -flip[1], -1.0])  # spins are axial
-    p, v, w, how = (
-        drawn.positions[rows],
-        drawn.velocities[rows],
-        drawn.spins[rows],
-        (drawn.table, drawn.physics, drawn.fidelity),
-    )
     here, there = sn.simulate_batch(p, v, w, *how), sn.simulate_batch(p * flip, v * flip, w * spin, *how)
-    return (here.positions, here.duration), (there.positions * flip, there.duration)
+    return (here.positions, here.duration), (there.positions * flip[:2], there.duration)
 
 
 def mirrored_fuzz(batches=20, seed=5):
