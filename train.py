@@ -4,6 +4,7 @@ players, and report the result.
     python train.py                                    about 25 minutes on one busy core: a value and a policy by expert iteration, then PPO
     python train.py --steps 1 --imitate 4096           the same, shortened to a few minutes
     python train.py --agent ppo_mask --seed 1 --out runs/mine
+    python train.py --agent stroke_value               a player that simulates no shot, in six minutes
     python train.py --resume --out runs/mine           continue from the last checkpoint after Ctrl-C, a kill or a power cut
 
 Files of a run folder:
@@ -12,6 +13,8 @@ Files of a run folder:
   --resume only your own runs.
 * ``model.zip``: the trained model. ``python -m agents.evaluate`` and --start read it as plain data;
   ``PPO.load`` of Stable-Baselines3 unpickles it.
+* of ``stroke_value``: ``stroke_value.json``, its settings, the data and weights of each round, and ``strokes.npz``, the
+  trained network.
 * ``results.json``: every figure. ``tb/``: the curves (``tensorboard --logdir runs``).
 * ``train.lock``, while the run goes on: two runs cannot share a folder (``commands/lock.py``).
 
@@ -41,20 +44,23 @@ with needs("train.py"):
     from agents.cluster.job import ClusterError
     from agents.cluster.mirror import Mirror, copied, left
     from agents.cluster.ray_cluster import add_ray, checked_ray, place
-    from agents.evaluation.training_summary import conclusion, evaluate, show
+    from agents.evaluation.training_summary import conclusion, evaluate, held_out, show
     from agents.features.views import training_tables
     from agents.learning.callback import RunCallback, Stop, goal_of, imitate, rollout_of
     from agents.learning.expert_iteration import ExpertIteration, judge_rewards
     from agents.learning.hyperparameters import Recipe, names
     from agents.learning.imitation import Imitation
+    from agents.learning.learn_strokes import SETTINGS, StrokeSettings, StrokeTraining
     from agents.learning.models import load_weights, zipped
     from agents.learning.run_folder import claimed, go_on, kept, load_model, options_of, read_checkpoint
     from commands.files import write_atomic
     from commands.physics_option import physics_option
     from commands.provenance import commit, software
+    from snooker_env import player
     from snooker_env.checks import refuse
     from snooker_env.game import HELD_OUT
     from snooker_env.planning import processors
+    from snooker_env.players.weights import STROKES
     from snooker_env.progress import Progress
 
 # settings
@@ -71,7 +77,9 @@ class Settings:
     """The settings of a run."""
 
     agent: str = option(
-        "ppo_value", "the agent to train: a file of agents/hyperparams", choices=tuple(names())
+        "ppo_value",
+        "the agent to train: a file of agents/hyperparams, or stroke_value",
+        choices=(*names(), "stroke_value"),
     )
     steps: int = option(0, "total number of shots, rounded up to whole rollouts; 0: the recipe's")
     envs: int = option(0, "number of parallel tables; 0: the recipe's")
@@ -373,29 +381,113 @@ def judge(out, settings, recipe, model, callback, imitation, part_of):
         "seconds": sum(part["seconds"] for part in parts),
         "parts": parts,
         "start": model.start,
-        "learned": learned,
-        "evaluation": figures,
         "curve": callback.curve,
         "imitation": imitation,
-        "versions": software(),
-        "git_commit": commit(),
-        "processors": os.cpu_count(),
     }
+    best = f"planner@{out}" if "planner" in figures else str(out)
+    report(out, results, learned, figures, best)
+    print(f"Curves: tensorboard --logdir {out / 'tb'}")
+
+
+def report(out, results, learned, figures, best):
+    """Write and print what a run has brought, and how the player ``best`` is seen."""
+    results |= {"learned": learned, "evaluation": figures, "versions": software()}
+    results |= {"git_commit": commit(), "processors": os.cpu_count()}
     write_atomic(out / "results.json", text := json.dumps(results, indent=1).encode())
     copied(out, text, "results.json")
     show(figures)
-    print(f"{learned}\nFigures: {out / 'results.json'}   curves: tensorboard --logdir {out / 'tb'}")
+    # half of the longest break: other visits than those of the evaluation are played to find it
+    points = figures["planner" if "planner" in figures else "trained"]["longest_break"] // 2
+    watch = shlex.join(["python", "-m", "agents.watch", "--agent", best, "--at-least", str(points)])
+    print(f"{learned}\nFigures: {out / 'results.json'}\nWatch a break:  {watch}")
+
+
+def strokes_of(parser, given, rest):
+    """The ``StrokeSettings`` of a run of ``stroke_value``, whose folder is claimed; of another agent None."""
+    out, allowed = rest.out, ("agent", "seed", "set", "eval_visits")
+    if rest.resume and (out / SETTINGS).is_file():
+        given.setdefault("agent", "stroke_value")
+    if given.get("agent") != "stroke_value":
+        return None
+    for name in (*given, *(name for name in ("ray", "mirror") if getattr(rest, name))):
+        if name not in allowed:
+            parser.error(f"--{name.replace('_', '-')} must be left out for stroke_value")
+    try:
+        if not rest.resume:
+            return StrokeSettings.of(given.get("seed", 0), given.get("set", ()))
+        if "seed" in given or "set" in given:
+            parser.error(f"--seed and --set must be left out with --resume: the run in {out} has them")
+        return StrokeSettings.read(out)
+    except ValueError as error:
+        parser.error(str(error))
+
+
+def train_strokes(parser, given, rest, settings):
+    """Train ``stroke_value``, evaluate it, save. Exit code 0, or 128 + the signal that stopped it."""
+    out, visits = rest.out, given.get("eval_visits", Settings.eval_visits)
+
+    def part_of(number, what, total, unit, done=0):
+        what = f"stroke_value, part {number} of 2, {what}"
+        return Progress(what, total, unit, done=done, to=sys.stdout, quiet=rest.no_progress)
+
+    with ExitStack() as ending:
+        try:
+            ending.enter_context(claimed(out, rest.resume, SETTINGS))
+            settings.save(out)
+            training = StrokeTraining(out, settings)
+        except ValueError as error:
+            parser.error(str(error))
+        except OSError as error:
+            parser.error(f"out = {str(out)!r}: must be a folder that can be written ({error.strerror})")
+        try:
+            snooker_env.warmup()
+            with Stop() as stop:
+                stop.running = "these tables"
+                with part_of(1, "its own visits", training.total, "tables", training.done) as progress:
+                    completed = training.run(progress, stop)
+            if not completed:
+                print(f"Saved at {len(training.rounds)} of {settings.rounds} rounds. {go_on(out)}")
+                return 128 + stop.signal
+            fit = training.finish()
+            shared = {"noise": "professional", "cue": settings.cue}
+            best = f"stroke_value@{out / STROKES}"
+            players = {
+                "trained": player(best),
+                "ghost_ball": player("ghost_ball"),
+                "random": player("random"),
+            }
+            figures = held_out(
+                players, visits, lambda total: part_of(2, "evaluation", total, "visits"), **shared
+            )
+            learned = conclusion("stroke_value", training.shots, 0, figures)
+            results = {
+                "command": shlex.join(["python", "train.py", *settings.words()]),
+                "settings": asdict(settings),
+                "steps": training.shots,
+                "fit": fit,
+                "curve": training.curve,
+            }
+            report(out, results, learned, figures, best)
+        except KeyboardInterrupt:
+            print(f"Interrupted. {go_on(out)}", file=sys.stderr)
+            return 130
+        except OSError as error:
+            raise SystemExit(f"train.py: {of_disk(error, out)}. {go_on(out)}") from None
+    return 0
 
 
 @command("train.py")
 def main(argv=None):
     """Train, evaluate, save. Exit code 0, or 128 + the signal that stopped it."""
     parser, given, rest = parse(argv)
-    out = rest.out
     # more threads do not speed up a network this small, and the tables use the processors
     torch.set_num_threads(1)
     # these checks cost a twentieth of the time
     torch.distributions.Distribution.set_default_validate_args(False)
+    strokes = strokes_of(parser, given, rest)
+    if strokes is not None:
+        return train_strokes(parser, given, rest, strokes)
+    out = rest.out
     with ExitStack() as ending:
         settings, recipe, state, tables, model = prepared(parser, given, rest, ending)
         try:

@@ -29,6 +29,11 @@ def evaluate(recipe, model, visits, part_of):
     # some learn on "fast" to save time, and are meant to play on the usual fidelity
     if not recipe.fidelity_given:
         shared.pop("fidelity", None)
+    return held_out(players, visits, part_of, **shared)
+
+
+def held_out(players, visits, part_of, **shared):
+    """Figures of held-out visits of players {name: player} under environment options."""
     seeds = tables_of("held_out", visits)
     figures = {}
     with part_of(visits * len(players)) as progress:

@@ -96,7 +96,7 @@ class Recipe:
         usual, env_kwargs = keys["env_kwargs"], env_kwargs or {}
         unset = [key for key in KINDS if keys.get(key) is None]
         known = [key for key in keys if key == "env_kwargs" or (key in KINDS and key not in unset)]
-        changed = _changes(changes, known)
+        changed = changes_of(changes, known)
         keys |= changed | more
         for key, (check, low, high) in KINDS.items():
             if keys.get(key) is not None:
@@ -162,7 +162,7 @@ def value_of(text):
         return text
 
 
-def _changes(changes, keys):
+def changes_of(changes, keys):
     """The values of the "key=value" in ``changes``, each key at most once."""
     free, changed = [key for key in keys if key not in BY_OPTION], {}
     for change in changes:

@@ -1,44 +1,41 @@
-"""Learn what strokes are worth, without simulating them when it plays: the network of ``stroke_value``.
+"""How is ``stroke_value`` trained: what strokes are worth, without simulating them when it plays?
 
-    python -m agents.learn_strokes --out runs/strokes [--rounds 8]
-
-Each round plays visits, under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds before
-have learned (the first one half with the planner), and in each
+``python train.py --agent stroke_value``. Each round plays visits, under errors from ``SCALES[0]`` to ``SCALES[1]`` times a
+professional's, with what the rounds before have learned (the first one half with the planner), and in each
 position that comes about tries some of the strokes that the player looks at, each under ``ERRORS`` execution errors. What
 they bring and what the planner's value says of what they leave is their worth: a network is fitted to it, on the
-positions of its own visits (DAgger; Ross, Gordon & Bagnell 2011). After each round OUT holds its data and its weights:
-the same command goes on from there. After the last one a network is fitted for longer, and written to OUT/strokes.npz, and
-with --export into the package.
+positions of its own visits (DAgger; Ross, Gordon & Bagnell 2011). After each round the run's folder holds its data and
+its weights: a resumed run goes on from there. After the last one a network is fitted for longer.
 """
 
 import io
-import sys
-import time
+import json
+from dataclasses import asdict, dataclass, fields
 from itertools import pairwise
-from pathlib import Path
 
-from commands.lifecycle import command, needs, parser_of
+import numpy as np
+import torch
+from torch import nn
 
-with needs("agents.learn_strokes"):
-    import numpy as np
-    import torch
-    from torch import nn
+import snooker_env as sn
+from commands.files import write_atomic
+from commands.noise_option import noise_option
+from snooker_env.checks import choice, integer, refuse
+from snooker_env.planning import Planner, Positions
+from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SAMPLES, SIZE, StrokeValue
+from snooker_env.players import VISITS, Strokes
+from snooker_env.players.player import placed
+from snooker_env.players.search import SearchPlayer
+from snooker_env.players.stroke_value import StrokeValuePlayer
+from snooker_env.players.weights import STROKES, learned_strokes
 
-    import snooker_env as sn
-    from agents.cluster.keep import packed
-    from commands.files import writable, write_atomic
-    from commands.noise_option import noise_option
-    from snooker_env.checks import integer, refuse
-    from snooker_env.planning import Planner, Positions
-    from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SAMPLES, SIZE, StrokeValue
-    from snooker_env.players import VISITS, Strokes
-    from snooker_env.players.player import placed
-    from snooker_env.players.search import SearchPlayer
-    from snooker_env.players.stroke_value import StrokeValuePlayer
-    from snooker_env.players.weights import FOLDER, STROKES, learned_strokes
+from ..cluster.keep import packed
+from .hyperparameters import changes_of
 
-TABLES, STROKES_EACH, PARTS = 1024, 8, 8
-"""Tables of a round, strokes that are played on each, and parts with errors of their own."""
+SETTINGS = "stroke_value.json"
+"""The file of a run's settings."""
+STROKES_EACH, PARTS = 8, 8
+"""Strokes that are played on each table of a round, and parts of the tables with errors of their own."""
 SCALES = 0.7, 4.5
 """Errors of the visits, times those of a professional: half of them below 1.12."""
 BEST, OTHERS, ERRORS = 10, 10, 4
@@ -161,7 +158,7 @@ def arrays_of(layers):
     return made | {f"strokes/{k}/bias": bias.astype(np.float32) for k, (_, bias) in enumerate(layers)}
 
 
-def _kept_round(file):
+def _kept(file):
     with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
         return {name: arrays[name] for name in arrays.files}
 
@@ -171,72 +168,134 @@ def _fitted_to(rounds, seed, passes):
     return fitted(both["seen"].astype(np.float32), both["worth"], both["table"], seed, passes)
 
 
-def told(what, figures, began):
-    """Print the figures of a fit."""
-    line = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())
-    print(f"{what}: {line}  {time.time() - began:.0f} s", flush=True)
+@dataclass(frozen=True)
+class StrokeSettings:
+    """Of a run: what its rounds are made of."""
+
+    seed: int = 0
+    rounds: int = 8
+    tables: int = 1024
+    """Of a round."""
+    cue: str = "real"
+
+    @classmethod
+    def of(cls, seed, changes):
+        """With "key=value" in ``changes``. Raises ValueError."""
+        made = cls(seed, **changes_of(changes, ("rounds", "tables", "cue")))
+        integer("seed", made.seed, 0, 80)
+        integer("rounds", made.rounds, 1, 99)
+        integer("tables", made.tables, PARTS, 100_000)
+        choice("cue", made.cue, ("real", "free"))
+        return made
+
+    def save(self, out):
+        """Into the run's folder."""
+        write_atomic(out / SETTINGS, json.dumps(asdict(self)).encode())
+
+    @classmethod
+    def read(cls, out):
+        """Of the run in that folder. Raises ValueError."""
+        try:
+            return cls(**json.loads((out / SETTINGS).read_text()))
+        except (OSError, ValueError, TypeError):
+            raise refuse("out", str(out), f"must hold a complete {SETTINGS}") from None
+
+    def words(self):
+        """The options of ``train.py`` that repeat the run."""
+        changed = [
+            f"{f.name}={getattr(self, f.name)}"
+            for f in fields(self)
+            if f.name != "seed" and getattr(self, f.name) != f.default
+        ]
+        return [
+            "--agent",
+            "stroke_value",
+            "--seed",
+            str(self.seed),
+            *(["--set", *changed] if changed else []),
+        ]
 
 
-@command("agents.learn_strokes")
-def main(argv=None):
-    """Play, fit, write. Exit code 0."""
-    p = parser_of("python -m agents.learn_strokes", __doc__)
-    p.add_argument("--out", type=Path, required=True, help="folder of rounds and weights")
-    p.add_argument("--rounds", type=int, default=8, help="[8]")
-    p.add_argument("--tables", type=int, default=TABLES, help=f"tables of a round [{TABLES}]")
-    p.add_argument("--cue", default="real", choices=("real", "free"), help="[real]")
-    p.add_argument("--seed", type=int, default=0, help="[0]")
-    p.add_argument("--export", action="store_true", help="write the weights into the package, too")
-    args = p.parse_args(sys.argv[1:] if argv is None else argv)
-    try:
-        integer("rounds", args.rounds, 1, 99)
-        integer("tables", args.tables, PARTS, 100_000)
-        integer("seed", args.seed, 0, 80)
-        writable("out", args.out / STROKES)
-    except ValueError as error:
-        p.error(str(error))
-    sn.warmup()
-    torch.set_num_threads(1)  # sums do not depend on the number of cores
-    layers, rounds, asked = None, [], [args.tables, args.seed, args.cue, LOOKS, SAMPLES, SIZE, SCALES]
-    for k in range(args.rounds):
-        data, weights, began = args.out / f"round-{k}.npz", args.out / f"strokes-{k}.npz", time.time()
-        if data.is_file():
-            rows = _kept_round(data)
-            if rows.pop("asked").tolist() != list(map(str, asked)):
-                p.error(
-                    str(
-                        refuse(
-                            "out",
-                            str(args.out),
-                            "must hold rounds of this version with the same --tables, --seed and --cue",
-                        )
-                    )
-                )
-        else:
-            first = FIRST_SEED + 10_000_000 * args.seed + 100_000 * k
-            rng, parts = np.random.default_rng([args.seed, k]), []
-            shares = (np.arange(PARTS) + rng.random(PARTS)) / PARTS
-            for share, seeds in zip(
-                shares, np.array_split(np.arange(first, first + args.tables), PARTS), strict=True
-            ):
-                scale = SCALES[0] * (SCALES[1] / SCALES[0]) ** share**2
-                options = {"noise": noise_option(f"professional*{scale}"), "cue": args.cue}
-                parts.append(played(layers, options, seeds.tolist(), rng))
-            seen, worth, table = map(np.concatenate, zip(*parts, strict=True))
-            rows = {"seen": seen, "worth": worth, "table": table}
-            write_atomic(data, packed(rows | {"asked": np.array(list(map(str, asked)))}))
-        rounds.append(rows)
+class StrokeTraining:
+    """The rounds of a run in the folder ``out``; those that it holds already are read. ``round`` does the next one."""
+
+    def __init__(self, out, settings):
+        self.out, self.settings, self.rounds, self.curve, self.layers = out, settings, [], [], None
+        # (sizes that files of another version may have otherwise)
+        self._asked = [settings.tables, settings.seed, settings.cue, LOOKS, SAMPLES, SIZE, SCALES]
+        self._asked = list(map(str, self._asked))
+        while len(self.rounds) < settings.rounds and (self._file("round").is_file()):
+            rows = _kept(self._file("round"))
+            if rows.pop("asked").tolist() != self._asked:
+                raise refuse("out", str(out), "must hold rounds of this version and of the same settings")
+            self._learn(rows)
+
+    def _file(self, what):
+        return self.out / f"{what}-{len(self.rounds)}.npz"
+
+    @property
+    def shots(self):
+        """Shots that were simulated for the strokes that were tried."""
+        return sum(one["worth"].size * ERRORS for one in self.rounds)
+
+    @property
+    def total(self):
+        """Tables of all rounds."""
+        return self.settings.rounds * self.settings.tables
+
+    @property
+    def done(self):
+        """Tables of the rounds that are complete."""
+        return len(self.rounds) * self.settings.tables
+
+    def run(self, progress, stop):
+        """Play the rounds that are left and learn from each; False if ``stop`` has noted a signal before the end."""
+        while len(self.rounds) < self.settings.rounds:
+            if not self._round(progress, stop):
+                return False
+        return True
+
+    def _round(self, progress, stop):
+        one, k = self.settings, len(self.rounds)
+        first = FIRST_SEED + 10_000_000 * one.seed + 100_000 * k
+        rng, parts, played_on = np.random.default_rng([one.seed, k]), [], self.done
+        shares = (np.arange(PARTS) + rng.random(PARTS)) / PARTS
+        for share, seeds in zip(
+            shares, np.array_split(np.arange(first, first + one.tables), PARTS), strict=True
+        ):
+            scale = SCALES[0] * (SCALES[1] / SCALES[0]) ** share**2
+            options = {"noise": noise_option(f"professional*{scale}"), "cue": one.cue}
+            parts.append(played(self.layers, options, seeds.tolist(), rng))
+            progress.at(played_on := played_on + len(seeds), self.figures)
+            if stop.signal is not None:
+                return False
+        seen, worth, table = map(np.concatenate, zip(*parts, strict=True))
+        rows = {"seen": seen, "worth": worth, "table": table}
+        write_atomic(self._file("round"), packed(rows | {"asked": np.array(self._asked)}))
+        self._learn(rows)
+        return True
+
+    @property
+    def figures(self):
+        """Those of the last fit, in words."""
+        said = f"round {len(self.rounds) + 1} of {self.settings.rounds}"
+        return said + (
+            f", {self.curve[-1]['explained']:.0%} of the differences explained" if self.curve else ""
+        )
+
+    def _learn(self, rows):
+        weights, seed = self._file("strokes"), self.settings.seed + len(self.rounds)
+        self.rounds.append(rows)
         if weights.is_file():
-            layers = learned_strokes(weights)
-            continue
-        layers, figures = _fitted_to(rounds, args.seed + k, PASSES)
-        write_atomic(weights, packed(arrays_of(layers)))
-        told(f"round {k}", figures, began)
-    began = time.time()
-    layers, figures = _fitted_to(rounds, args.seed, LAST_PASSES)
-    told("at last", figures, began)
-    content = packed(arrays_of(layers))
-    write_atomic(args.out / STROKES, content)
-    if args.export:
-        write_atomic(FOLDER / STROKES, content)
-    return 0
+            self.layers = learned_strokes(weights)
+            self.curve.append(json.loads(str(_kept(weights)["figures"])))
+        else:
+            self.layers, figures = _fitted_to(self.rounds, seed, PASSES)
+            self.curve.append(figures)
+            write_atomic(weights, packed(arrays_of(self.layers) | {"figures": np.array(json.dumps(figures))}))
+
+    def finish(self):
+        """The last fit, into ``STROKES`` of the folder: figures of the tables kept from it."""
+        layers, figures = _fitted_to(self.rounds, self.settings.seed, LAST_PASSES)
+        write_atomic(self.out / STROKES, packed(arrays_of(layers)))
+        return figures

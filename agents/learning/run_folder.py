@@ -19,26 +19,27 @@ from .hyperparameters import algorithm_class
 from .models import CHECKPOINT, zipped
 
 
-def claimed(out, resume):
-    """The ``Lock`` on the folder of a new run (made here) or of one to resume. ValueError if it is unfit."""
+def claimed(out, resume, checkpoint=CHECKPOINT):
+    """The ``Lock`` on the folder of a new run (made here) or of one to resume, which holds the file ``checkpoint``.
+    ValueError if it is unfit."""
     if not (out / LOCK).exists():
-        _check(out, resume)
+        _check(out, resume, checkpoint)
     out.mkdir(parents=True, exist_ok=True)
     lock = Lock(out)
     try:
         for file in out.iterdir():
             if UNFINISHED.fullmatch(file.name):
                 file.unlink()
-        _check(out, resume)  # again: from now on no other run changes it
+        _check(out, resume, checkpoint)  # again: from now on no other run changes it
     except BaseException:
         lock.release()
         raise
     return lock
 
 
-def _check(out, resume):
+def _check(out, resume, checkpoint):
     if resume:
-        if not (out / CHECKPOINT).is_file():
+        if not (out / checkpoint).is_file():
             raise refuse("out", str(out), "holds no checkpoint: start the run without --resume")
         return
     if out.exists() and not out.is_dir():

@@ -65,7 +65,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
 
         * a name of ``players()``, for players that search optionally with a number of simulated shots
           ("planner_500") and for a planner with a model ("planner@runs/ppo_value-0"); for ``stroke_value`` with a network of
-          ``agents.learn_strokes`` ("stroke_value@runs/strokes/strokes.npz");
+          ``train.py`` ("stroke_value@runs/stroke_value-0/strokes.npz");
         * "MODULE:CLASS" of a player of your own, made without arguments; its module is imported;
         * a ``.zip`` of Stable-Baselines3 or sb3-contrib, or a run's folder or files of ``train.py``;
         * "program:COMMAND", an external program (docs/play/protocol.md);
@@ -192,13 +192,15 @@ def _of_file(path: Path, trust: bool) -> Player:
 
 
 def _strokes(name: str, path: Path) -> Any:
-    """The layers of a network that ``agents.learn_strokes`` has written."""
+    """The layers of a network that ``train.py --agent stroke_value`` has written."""
     from .weights import learned_strokes
 
     try:
         return learned_strokes(path)
     except (OSError, KeyError, ValueError):
-        raise refuse("player", name, "must name a file that agents.learn_strokes has written") from None
+        raise refuse(
+            "player", name, "must name a file strokes.npz of train.py --agent stroke_value"
+        ) from None
 
 
 def _learned(model: str) -> Any:

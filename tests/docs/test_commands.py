@@ -65,7 +65,6 @@ ELSEWHERE = {
     "agents.publish": "tests/agents/evaluation/test_publish.py",
     "agents.tournament": "tests/agents/evaluation/test_tournament.py",
     "agents.search": "tests/cluster/test_searched.py",
-    "agents.learn_strokes": "tests/players/test_stroke_value.py",
     "agents.learn_worth": "tests/agents/learning/test_frame_worth.py",
     "agents.calibrate": "tests/agents/evaluation/test_calibrate.py",
     "benchmarks.cluster": "tests/cluster/test_ray_commands.py",

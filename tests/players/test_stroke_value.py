@@ -1,9 +1,15 @@
 """Does ``stroke_value`` choose well without a simulated shot, the same for one position or many?"""
 
+import json
+import shlex
+import shutil
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import snooker_env as sn
+import train
 from agents.learning import learn_strokes
 from snooker_env.benchmark import play_visits, simulated, summary
 from snooker_env.planning import Position, Positions
@@ -11,6 +17,7 @@ from snooker_env.planning.learned.stroke_value import LOOKS, SIZE
 from snooker_env.players import VISITS
 from snooker_env.players.stroke_value import StrokeValuePlayer
 from snooker_env.players.weights import learned_strokes
+from snooker_env.progress import Progress
 
 
 def opened(n, **options):
@@ -49,14 +56,31 @@ def test_it_makes_more_than_players_that_see_no_position():
     assert points["stroke_value"] > 3.0 * points["ghost_ball"]
 
 
-def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path):
+def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, capsys):
     whole, parts = tmp_path / "whole", tmp_path / "parts"
-    asked = ["--tables", "16", "--seed", "3"]
-    assert learn_strokes.main(["--out", str(whole), "--rounds", "2", *asked]) == 0
-    assert learn_strokes.main(["--out", str(parts), "--rounds", "1", *asked]) == 0
-    (parts / "strokes-0.npz").unlink()  # as if it had been interrupted between the round and the fit
-    assert learn_strokes.main(["--out", str(parts), "--rounds", "2", *asked]) == 0
+    short = [
+        "--agent",
+        "stroke_value",
+        "--set",
+        "rounds=2",
+        "tables=16",
+        "--eval-visits",
+        "20",
+        "--no-progress",
+    ]
+    assert train.main([*short, "--seed", "3", "--out", str(whole)]) == 0
+    said = capsys.readouterr().out
+    assert f"python -m agents.watch --agent stroke_value@{whole / 'strokes.npz'}" in said
+    results = json.loads((whole / "results.json").read_text())
+    assert set(results["evaluation"]) == {"trained", "ghost_ball", "random"}
+    repeated = ["--agent", "stroke_value", "--seed", "3", "--set", "rounds=2", "tables=16"]
+    assert shlex.split(results["command"]) == ["python", "train.py", *repeated]
+    shutil.copytree(whole, parts)
+    for name in ("results.json", "strokes.npz", "round-1.npz", "strokes-1.npz", "strokes-0.npz"):
+        (parts / name).unlink()  # as if it had been interrupted between the first round and its fit
+    assert train.main(["--resume", "--out", str(parts), "--eval-visits", "20", "--no-progress"]) == 0
     assert (whole / "strokes.npz").read_bytes() == (parts / "strokes.npz").read_bytes()
+    assert json.loads((parts / "results.json").read_text())["curve"] == results["curve"]
     layers = learned_strokes(whole / "strokes.npz")
     at = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     named = sn.player(f"stroke_value@{whole / 'strokes.npz'}").at({}).play(at, [3]).values
@@ -64,8 +88,44 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path):
     assert layers[0][0].shape == (128, SIZE) and layers[-1][0].shape == (1, 64)
     tables = opened(8)
     assert len(StrokeValuePlayer(layers).at(tables).play(tables, np.arange(8))) == 8
+
+
+def test_a_signal_stops_a_training_between_its_parts(tmp_path):
+    training = learn_strokes.StrokeTraining(tmp_path, learn_strokes.StrokeSettings(tables=16))
+    with Progress("a test", training.total, "tables", quiet=True) as progress:
+        assert not training.run(progress, SimpleNamespace(signal=2))
+        assert 0 < progress.done < 16
+    assert training.done == 0 and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--envs", "64"], "--envs must be left out for stroke_value"),
+        (["--mirror", "there"], "--mirror must be left out for stroke_value"),
+        (["--set", "tables=3"], "tables = 3"),
+        (["--set", "widths=3"], "must be KEY=VALUE with KEY one of rounds, tables, cue"),
+        (["--seed", "81"], "seed = 81"),
+    ],
+)
+def test_wrong_options_of_a_training_are_refused(tmp_path, words, said, capsys):
     with pytest.raises(SystemExit):
-        learn_strokes.main(["--out", str(parts), "--rounds", "2", "--tables", "32"])
+        train.main(["--agent", "stroke_value", "--out", str(tmp_path / "run"), *words])
+    assert said in capsys.readouterr().err and not (tmp_path / "run").exists()
+
+
+def test_a_folder_of_a_training_is_resumed_as_it_was_or_refused(tmp_path, capsys):
+    out = tmp_path / "run"
+    out.mkdir()
+    (out / learn_strokes.SETTINGS).write_text('{"seed": 1')
+    for words, said in (
+        (["--agent", "stroke_value"], "--resume continues it"),
+        (["--resume"], "must hold a complete stroke_value.json"),
+        (["--resume", "--seed", "2"], "--seed and --set must be left out with --resume"),
+    ):
+        with pytest.raises(SystemExit):
+            train.main([*words, "--out", str(out)])
+        assert said in capsys.readouterr().err
 
 
 def test_the_network_is_fitted_to_what_strokes_are_worth():

@@ -1,7 +1,7 @@
 """What is a stroke worth, without playing it? A policy proposes strokes at the pots; of each it predicts where it
 leaves the cue ball (``cue_ball_path``), under no error and under some, and a learned value says what such positions are worth.
 A small network weighs this against how sure the pot is: the points that the stroke, and the visit after it, bring.
-``agents.learn_strokes`` trains it."""
+``train.py --agent stroke_value`` trains it."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -22,7 +22,7 @@ FOLDER = Path(__file__).parent
 WORTH = "worth.npz"
 """The file of the ``tactician``'s worth of positions of frames (``python -m agents.learn_worth``)."""
 STROKES = "strokes.npz"
-"""The file of the network of ``stroke_value`` (``python -m agents.learn_strokes``)."""
+"""The file of the network of ``stroke_value`` (``python train.py --agent stroke_value``)."""
 VALUE_LAYERS = 3  # layers of each network of a value
 
 
