@@ -444,8 +444,8 @@ def train_strokes(parser, given, rest, settings):
             with Stop() as stop:
                 stop.running = "these tables"
                 with part_of(1, "its own visits", training.total, "tables", training.done) as progress:
-                    completed = training.run(progress, stop)
-            if not completed:
+                    training.run(progress, stop)
+            if stop.signal:
                 print(f"Saved at {len(training.rounds)} of {settings.rounds} rounds. {go_on(out)}")
                 return 128 + stop.signal
             fit = training.finish()

@@ -249,11 +249,9 @@ class StrokeTraining:
         return len(self.rounds) * self.settings.tables
 
     def run(self, progress, stop):
-        """Play the rounds that are left and learn from each; False if ``stop`` has noted a signal before the end."""
-        while len(self.rounds) < self.settings.rounds:
-            if not self._round(progress, stop):
-                return False
-        return True
+        """Play the rounds that are left and learn from each, until ``stop`` notes a signal."""
+        while len(self.rounds) < self.settings.rounds and stop.signal is None:
+            self._round(progress, stop)
 
     def _round(self, progress, stop):
         one, k = self.settings, len(self.rounds)
@@ -268,12 +266,11 @@ class StrokeTraining:
             parts.append(played(self.layers, options, seeds.tolist(), rng))
             progress.at(played_on := played_on + len(seeds), self.figures)
             if stop.signal is not None:
-                return False
+                return
         seen, worth, table = map(np.concatenate, zip(*parts, strict=True))
         rows = {"seen": seen, "worth": worth, "table": table}
         write_atomic(self._file("round"), packed(rows | {"asked": np.array(self._asked)}))
         self._learn(rows)
-        return True
 
     @property
     def figures(self):
