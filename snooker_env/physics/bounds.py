@@ -18,8 +18,9 @@ def bounds_of(noses: Floats) -> Floats:
     return bounds
 
 
-_PAST_THE_END = 1e-3
-"""So much of a jaw's circle beyond its arc's end counts [m]: an arc may end a little before the fall's edge."""
+_PAST_THE_END = 5e-3
+"""So much of a jaw's circle beyond its arc's end counts [m]: an arc may end before the fall's edge, at the mouth of a middle
+pocket that is narrower than a ball by 4 mm."""
 
 
 def deepest(jaws: Floats, falls: Floats, bounds: Floats, R: float) -> float:

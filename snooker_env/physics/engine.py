@@ -50,20 +50,20 @@ _LATEST = 1.7e308
 
 
 @kernel
-def _begin_again(paths, i, t, r, v, w, boundaries, phys):
-    """Ball i met a ball at time t: write its next phase, on the bed or over a pocket."""
-    motion, state, falls = paths
+def _begin_again(paths, i, t, ball, way, other, boundaries, phys):
+    """Ball i = (r, v, w) met a ball at time t: write its next phase, on the bed or over a pocket. ``way``: the unit vector to
+    that ball, which has now the velocity ``other``.
+
+    Over a pocket a path is its mean line. Where edge and jaw hold a ball, the line may go back into the other ball, and they
+    meet again at once: without end, if such a ball were not pressed over the edge, and lost.
+    """
+    (motion, state, falls), (r, v, w) = paths, ball
     if state[i] == FALLING:
-        pocket.next_leg(
-            paths,
-            i,
-            t,
-            (r[0], r[1], falls[i, pocket.Z0]),
-            (v[0], v[1], falls[i, pocket.U0]),
-            w,
-            boundaries,
-            phys,
-        )
+        at, velocity = (r[0], r[1], falls[i, pocket.Z0]), (v[0], v[1], falls[i, pocket.U0])
+        at_once = motion[i, T0] == t
+        pocket.next_leg(paths, i, t, at, velocity, w, boundaries, phys)
+        if at_once and (motion[i, VX] - other[0]) * way[0] + (motion[i, VY] - other[1]) * way[1] > 0.0:
+            pocket.lose(paths, i, t, at, velocity, w, phys)
     else:
         cloth.begin(motion, state, i, t, (r[0], r[1]), (v[0], v[1]), w, phys)
 
@@ -77,9 +77,14 @@ def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
     if impulse > 0.0:
         after = ball_i[1], ball_i[2], ball_j[1], ball_j[2]
         impulse = min(impulse, sqrt(2.0 * lost(before, after, phys[P_R])))
-    for k, (r, v, w) in ((i, ball_i), (j, ball_j)):
+    (xi, yi), (xj, yj) = ball_i[0], ball_j[0]
+    nx, ny = (xj - xi) / (2.0 * phys[P_R]), (yj - yi) / (2.0 * phys[P_R])
+    for k, (r, v, w), way, other in (
+        (i, ball_i, (nx, ny), ball_j[1]),
+        (j, ball_j, (-nx, -ny), ball_i[1]),
+    ):
         if state[k] == FALLING:
-            _begin_again(paths, k, t, r, v, w, boundaries, phys)
+            _begin_again(paths, k, t, (r, v, w), way, other, boundaries, phys)
         elif v[2] > 0.0:
             flight.leave(motion, state, k, t, r, v, w, v[2], phys)
         else:
@@ -113,7 +118,7 @@ def _meet_in_air(paths, i, j, t, law, boundaries, series):
     if other == AIR:
         flight.take_off(motion, state, j, t, (x2, y2, zj), b, wb, phys)
     elif other == FALLING:
-        _begin_again(paths, j, t, (x2, y2), b, wb, boundaries, phys)
+        _begin_again(paths, j, t, ((x2, y2), b, wb), (-nx / d, -ny / d), a, boundaries, phys)
     elif b[2] > 0.0:
         flight.leave(motion, state, j, t, (x2, y2), b, wb, b[2], phys)
     else:
@@ -496,8 +501,10 @@ def run(balls, aloft, lift, setup, max_events, log, paths, forecast, series, so_
                     before = (v1[0], v1[1], 0.0), w1, (v2[0], v2[1], 0.0), w2
                     _part(paths, i, j, t, (r1, u1, s1), (r2, u2, s2), before, boundaries, phys)
             else:
-                _begin_again(paths, i, t, r1, u1, s1, boundaries, phys)
-                _begin_again(paths, j, t, r2, u2, s2, boundaries, phys)
+                nx, ny = nx / d, ny / d
+                _begin_again(paths, i, t, (r1, u1, s1), (nx, ny), u2, boundaries, phys)
+                other = motion[i, VX], motion[i, VY]
+                _begin_again(paths, j, t, (r2, u2, s2), (-nx, -ny), other, boundaries, phys)
             met = True
         elif kind == events.ROLL or kind == events.STOP or kind == events.BEND:
             cloth.next_phase(motion, state, i, phys)

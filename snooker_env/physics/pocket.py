@@ -249,12 +249,24 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
 @kernel
 def next_leg(paths, i, t, r, v, w, boundaries, phys):
     """Ball i is in the air at r = (x, y, z) with v = (vx, vy, u): write its leg, a line to its next event."""
+    flight = paths.flight
+    into, entered = int(flight[i, POCKET]), (flight[i, IN_X], flight[i, IN_Y])
+    leg = fly(r, v, entered, boundaries.falls, into, boundaries.jaws, phys)
+    _write(paths, i, t, r, v, w, leg, phys)
+
+
+@kernel
+def lose(paths, i, t, r, v, w, phys):
+    """The same of a ball that is lost."""
+    (x, y, z), (vx, vy, _) = r, v
+    _write(paths, i, t, r, v, w, (LOST, -1, STEP, (x + vx * STEP, y + vy * STEP, z), v), phys)
+
+
+@kernel
+def _write(paths, i, t, r, v, w, leg, phys):
+    """Write a leg of ball i, as ``fly`` returns it."""
     (motion, state, flight), (x, y, z), (vx, vy, u) = paths, r, v
-    into = int(flight[i, POCKET])
-    entered = flight[i, IN_X], flight[i, IN_Y]
-    end, jaw, T, (x1, y1, z1), (vx1, vy1, u1) = fly(
-        r, v, entered, boundaries.falls, into, boundaries.jaws, phys
-    )
+    end, jaw, T, (x1, y1, z1), (vx1, vy1, u1) = leg
     state[i] = FALLING
     T = max(T, SHORTEST)
     motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY] = x, y, (x1 - x) / T, (y1 - y) / T
@@ -279,7 +291,7 @@ def next_leg(paths, i, t, r, v, w, boundaries, phys):
         vy1,
     )
     flight[i, KIND] = events.JAW if end == JAW else events.RETURN if end == BACK else events.POT
-    flight[i, INDEX] = jaw if end == JAW else into
+    flight[i, INDEX] = jaw if end == JAW else int(flight[i, POCKET])
 
 
 @kernel
