@@ -45,7 +45,7 @@ def some(n=6):
 
 @pytest.fixture(scope="module")
 def learned():
-    return PolicyProposals(load_trained(PRETRAINED / "ppo_mask.zip", "agent").policy.fused)
+    return PolicyProposals(load_trained(PRETRAINED / "ppo_value.zip", "agent").policy.fused)
 
 
 def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():
