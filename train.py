@@ -45,7 +45,7 @@ with needs("train.py"):
     from agents.cluster.mirror import Mirror, copied, left
     from agents.cluster.ray_cluster import add_ray, checked_ray, place
     from agents.evaluation.training_summary import conclusion, evaluate, held_out, show
-    from agents.features.views import training_tables
+    from agents.features.observed import training_tables
     from agents.learning.callback import RunCallback, Stop, goal_of, imitate, rollout_of
     from agents.learning.expert_iteration import ExpertIteration, judge_rewards
     from agents.learning.hyperparameters import Recipe, names
@@ -248,7 +248,7 @@ def prepared(parser, chosen, rest, ending):
             raise refuse("ray", ray, f"must be left out for {recipe.name}: {why}")
         settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs, imitate=recipe.imitation)
         threads = 1 if settings.parallel == "one" else None
-        tables = training_tables(recipe.n_envs, threads=threads, view=recipe.view, **recipe.env_kwargs)
+        tables = training_tables(recipe.n_envs, threads=threads, **recipe.env_kwargs)
         ending.callback(tables.close)
         if state:
             model = load_model(out, state, recipe.algo, tables)

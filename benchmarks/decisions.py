@@ -20,7 +20,6 @@ from ._common.command import Command, at_least, run, save_json
 
 AGENTS = (
     "ghost_ball",
-    "ppo_mask",
     "ppo_value",
     "search",
     "planner_30",

@@ -1,11 +1,10 @@
 """How many shots a second does PPO play and learn from, on one core? Of this tree and, with --against, of
 another commit in turns with it.
 
-    python -m benchmarks.learner [--agents ppo_mask ppo_foresight] [--against COMMIT] [--rounds 9] [--steps N]
-    [--seed 0] [--json FILE]
+    python -m benchmarks.learner [--against COMMIT] [--rounds 9] [--steps N] [--seed 0] [--json FILE]
 
-Each agent begins with the weights of the pre-trained model of its name, and each tree uses its own recipe. A
-round is one rollout of all tables and the update from it. Both trees take turns, round by round, each in a
+The agent is ``ppo_mask``; it begins with the policy of the pre-trained ``ppo_value``, and each tree uses its own
+recipe. A round is one rollout of all tables and the update from it. Both trees take turns, round by round, each in a
 process of its own with one thread, so that a busy machine slows both alike. The times are processor times:
 what other processes take is not counted. Medians over the rounds.
 """
@@ -27,8 +26,7 @@ from ._common.kept import kept_folder
 
 ROOT = Path(__file__).parents[1]
 WORKER = Path(__file__).parent / "_common" / "learner_worker.py"
-AGENTS = {"ppo_mask": 0, "ppo_foresight": 8}
-"""Steps of a rollout; 0: the recipe's. A step of ``ppo_foresight`` simulates 30,000 shots."""
+AGENT, WEIGHTS = "ppo_mask", ROOT / "agents" / "pretrained" / "ppo_value.zip"
 
 
 def tree_of(commit):
@@ -49,11 +47,10 @@ def tree_of(commit):
     return kept_folder(f"commit_{name[:16]}", make)
 
 
-def started(tree, agent, steps, seed):
+def started(tree, steps, seed):
     """The worker of a tree, once it is ready. SystemExit if it does not start."""
-    weights = ROOT / "agents" / "pretrained" / f"{agent}.zip"
     worker = subprocess.Popen(
-        [sys.executable, str(WORKER), agent, str(weights), str(steps), str(seed)],
+        [sys.executable, str(WORKER), AGENT, str(WEIGHTS), str(steps), str(seed)],
         cwd=tree,
         text=True,
         stdin=subprocess.PIPE,
@@ -72,13 +69,13 @@ def answer(worker, tree, wanted=None):
     return line
 
 
-def measured(trees, agent, steps, rounds, seed):
+def measured(trees, steps, rounds, seed):
     """Figures of each round of each tree, in turns."""
     found = {name: [] for name in trees}
     with ExitStack() as ending:
         workers = {}
         for name, tree in trees.items():
-            workers[name] = ending.enter_context(started(tree, agent, steps, seed))
+            workers[name] = ending.enter_context(started(tree, steps, seed))
             ending.callback(workers[name].stdin.close)
         for _ in range(rounds):
             for name, worker in workers.items():
@@ -91,36 +88,27 @@ def measured(trees, agent, steps, rounds, seed):
 def main():
     """Measure and print."""
     parser = Command("learner", __doc__, seed=0)
-    parser.add_argument(
-        "--agents", nargs="+", choices=tuple(AGENTS), default=tuple(AGENTS), help=f"[{' '.join(AGENTS)}]"
-    )
     parser.add_argument("--against", metavar="COMMIT", help="measure this commit too, in turns")
     parser.add_argument("--rounds", type=at_least(1), default=9, help="rollouts of each [9]")
-    parser.add_argument(
-        "--steps", type=at_least(2), help="steps of a rollout [the recipe's; ppo_foresight: 8]"
-    )
+    parser.add_argument("--steps", type=at_least(2), default=0, help="steps of a rollout [the recipe's]")
     args = parser.options()
     trees = ({args.against: tree_of(args.against)} if args.against else {}) | {"this tree": ROOT}
-    kept = {}
     print(
         f"{'us of processor time a shot':30s}{'tables':>10s}{'network':>10s}{'update':>10s}{'all':>10s}{'shots/s':>10s}"
     )
-    for agent in args.agents:
-        kept[agent] = found = measured(trees, agent, args.steps or AGENTS[agent], args.rounds, args.seed)
-        for name, rounds in found.items():
-            tables, update, everything = (
-                float(np.median([1e6 * one[part] / one["shots"] for one in rounds]))
-                for part in ("tables", "update", "all")
-            )
-            parts = f"{tables:10.1f}{everything - tables - update:10.1f}{update:10.1f}{everything:10.1f}{1e6 / everything:10,.0f}"
-            print(f"{f'{agent}, {name}':30s}{parts}", flush=True)
-        if args.against:
-            each = [[one["all"] / one["shots"] for one in found[name]] for name in trees]
-            print(
-                f"{'':30s}{np.median(np.array(each[0]) / each[1]):.2f} times as fast, the median of {args.rounds} pairs",
-                flush=True,
-            )
-    save_json(args.json, kept)
+    found = measured(trees, args.steps, args.rounds, args.seed)
+    for name, rounds in found.items():
+        tables, update, everything = (
+            float(np.median([1e6 * one[part] / one["shots"] for one in rounds]))
+            for part in ("tables", "update", "all")
+        )
+        parts = f"{tables:10.1f}{everything - tables - update:10.1f}{update:10.1f}{everything:10.1f}{1e6 / everything:10,.0f}"
+        print(f"{f'{AGENT}, {name}':30s}{parts}")
+    if args.against:
+        each = [[one["all"] / one["shots"] for one in found[name]] for name in trees]
+        faster = np.median(np.array(each[0]) / each[1])
+        print(f"{'':30s}{faster:.2f} times as fast, the median of {args.rounds} pairs")
+    save_json(args.json, found)
     return 0
 
 

@@ -1,6 +1,6 @@
 """Where does the cue ball stop after a red, and what does that bring? A picture of agents side by side.
 
-    python -m agents.evaluate --agent ppo_foresight ghost_ball --layouts held_out --noise professional
+    python -m agents.evaluate --agent planner ghost_ball --layouts held_out --noise professional
     --picture
 
 Maps: how densely the cue ball came to rest after first strokes that potted a red. Only first strokes count,
@@ -60,11 +60,7 @@ def figures_of(report, strokes):
 
 def draw(report, strokes, file):
     """Draw the first agents of the report; ``strokes``: as in ``figures_of``, in the main condition."""
-    draw_figures(figures_of(report, strokes), file)
-
-
-def draw_figures(found, file):
-    """Draw what ``figures_of`` has found."""
+    found = figures_of(report, strokes)
     agents, visits = found["agents"], found["visits"]
     note = (
         f"First strokes that potted a red, from the same {visits:,} held-out tables, with {found['noise']} execution errors.\n"

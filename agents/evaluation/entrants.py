@@ -177,7 +177,7 @@ def _told(saved, options):
     except ValueError as error:
         raise saved.refused(f"must be a model saved by Stable-Baselines3 ({error})") from None
     options = UNKNOWN | options
-    return Trained(None, saved.algorithm[1], "plain", options, steps, gamma, seed, imitated=None, start=None)
+    return Trained(None, saved.algorithm[1], options, steps, gamma, seed, imitated=None, start=None)
 
 
 def _number_in(file, name):

@@ -1,6 +1,6 @@
 """How does a trained run become a pre-trained model? Its weights and a card that says where they come from.
 
-    python -m agents.publish runs/ppo_foresight-0 --limits "what it cannot do"
+    python -m agents.publish runs/ppo_value-0 --limits "what it cannot do"
 
 writes ``agents/pretrained/AGENT.zip`` and ``AGENT.json``; ``python -m agents.evaluate --agent AGENT`` plays
 it. The zip holds figures as JSON and weights, no pickled code as a run's own model.zip does, so that nobody

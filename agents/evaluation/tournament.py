@@ -1,9 +1,9 @@
 """Who is the better player of whole frames? A round robin: every player against every other, each seed twice,
 both colours of the break.
 
-    python -m agents.tournament random ghost_ball ppo_mask --frames 200
+    python -m agents.tournament random ghost_ball ppo_value --frames 200
     python -m agents.tournament "mine=runs/0" search_2000 --fewer search_2000=20 --out ladder.json --resume
-    python -m agents.tournament ppo_mask search --match 7 --frames 40 --noise amateur
+    python -m agents.tournament planner search --match 7 --frames 40 --noise amateur
     python -m agents.tournament --check ladder.json
     python -m agents.tournament --show ladder.json --markdown ladder.md
 

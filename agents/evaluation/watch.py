@@ -1,15 +1,15 @@
 """How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
 
-    python -m agents.watch --agent ppo_foresight --out break.html
+    python -m agents.watch --out break.html
     python -m agents.watch --agent search_2000 --at-least 50 --out break.mp4
     python -m agents.watch --frame --out frame.html
 
 The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the
-replay is written to a temporary file and opened in the browser. Visits are played on held-out tables, the
-seeds one after the other; --at-least takes the first of --tries visits with so many points. The same seed
-gives the same visit as ``agents.evaluate`` plays on that table. With --frame: a whole frame, against --opponent, with a
-real cue and the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The replay shows how likely
-each player was to win, by the ``tactician``.
+replay is written to a temporary file and opened in the browser. The cue is real. Visits are played on held-out
+tables, the seeds one after the other; --at-least takes the first of --tries visits with so many points. The
+same seed gives the same visit as ``agents.evaluate`` plays on that table. With --frame: a whole frame, against
+--opponent, with the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The replay shows
+how likely each player was to win, by the ``tactician``.
 """
 
 import argparse
@@ -68,7 +68,7 @@ def parser():
     p = argparse.ArgumentParser(prog="python -m agents.watch", description=str(__doc__).split("\n\n")[0])
     add = p.add_argument
     what = "a player's name, a pre-trained model, a model's .zip or run folder"
-    add("--agent", help=f"{what} [ppo_foresight; with --frame {TACTICIAN}]")
+    add("--agent", help=f"{what} [planner; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
     add("--opponent", help="its player [the agent itself]")
     what = "break.html, .json, .mp4 or .gif; left out: opened in the browser"
@@ -107,7 +107,7 @@ def _film(args):
 
 def sought(args):
     """The environment after the visit or frame that is wanted, its seed and its players. SystemExit if there is none."""
-    name = args.agent or (TACTICIAN if args.frame else "ppo_foresight")
+    name = args.agent or (TACTICIAN if args.frame else "planner")
     entrant = Entrant.of(name, trust=args.trust)
     if args.frame:
         other = args.opponent or name
@@ -121,7 +121,7 @@ def sought(args):
         )
     longest = -1
     for seed in range(args.seed, args.seed + args.tries):
-        env = episode(entrant.player(0), seed, layout=args.layout, noise=args.noise)
+        env = episode(entrant.player(0), seed, layout=args.layout, noise=args.noise, cue="real")
         if env.points >= args.at_least:
             return env, seed, [entrant.label]
         longest = max(longest, env.points)

@@ -1,1 +1,1 @@
-"""What do agents observe? The pots on the table, simulated afterstates, and noise samples for these."""
+"""What do agents observe? The table and its pots."""

@@ -1,9 +1,9 @@
 """How is an agent defined? By its ``hyperparams/NAME.yml``, in RL Baselines3 Zoo's format, for SB3.
 
-Additional keys: ``algo`` (the algorithm), ``view`` (the observation: pots or foresight), ``imitation``
-(positions of pre-training), ``expert`` (true: expert iteration in its place) and ``first_aim_std`` (of the aim
-at the start). They may stand under ``agent`` instead: the Zoo itself then trains with the same file, if the
-policy is one of SB3's own. ``learning_rate: lin_X`` falls linearly from X to nearly 0.
+Additional keys: ``algo`` (the algorithm), ``imitation`` (positions of pre-training), ``expert`` (true: expert
+iteration in its place) and ``first_aim_std`` (of the aim at the start). They may stand under ``agent``
+instead: the Zoo itself then trains with the same file, if the policy is one of SB3's own.
+``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
 
 import ast
@@ -22,11 +22,11 @@ ACTION_OPTIONS = Options.group("action", "visit")
 """Options of the environment that say how actions are read, with its defaults: they belong to the agent."""
 SHOT_OPTIONS = tuple(Options.group("shot"))
 """Options that decide the outcome of a shot: the same in training and evaluation."""
-VIEW_OPTIONS = ("observe_conditions",)
-"""Options that say what the agent observes beside its view: they belong to the agent."""
+SEEN_OPTIONS = ("observe_conditions",)
+"""Options that say what the agent observes: they belong to the agent."""
 TRAINING_OPTIONS = ("layout", "reward")
 """Options of training alone."""
-ENV_OPTIONS = (*ACTION_OPTIONS, *SHOT_OPTIONS, *VIEW_OPTIONS, *TRAINING_OPTIONS)
+ENV_OPTIONS = (*ACTION_OPTIONS, *SHOT_OPTIONS, *SEEN_OPTIONS, *TRAINING_OPTIONS)
 """The options that ``env_kwargs`` may hold."""
 BY_OPTION = ("n_timesteps", "n_envs", "imitation")
 """Keys that have their own option of train.py: --steps, --envs, --imitate."""
@@ -77,7 +77,6 @@ class Recipe:
     n_envs: int
     env_kwargs: dict
     first_aim_std: float | None
-    view: str
     imitation: int
     expert: bool
     settings: dict
@@ -87,11 +86,11 @@ class Recipe:
     def of(cls, name, changes=(), env_kwargs=None, **more):
         """The recipe of that name with "key=value" changed, then environment options, other keys. ValueError.
 
-        Algorithm, policy, network, view and action belong together: to change them takes another recipe.
+        Algorithm, policy, network and action belong together: to change them takes another recipe.
         """
         file = FOLDER / f"{choice('agent', name, names())}.yml"
         written = yaml.safe_load(file.read_text(encoding="utf-8"))
-        keys = {"view": "pots", "imitation": 0, "expert": False, "first_aim_std": None}
+        keys = {"imitation": 0, "expert": False, "first_aim_std": None}
         keys |= written[ENV_ID] | written.get("agent", {})
         usual, env_kwargs = keys["env_kwargs"], env_kwargs or {}
         unset = [key for key in KINDS if keys.get(key) is None]
@@ -102,10 +101,8 @@ class Recipe:
             if keys.get(key) is not None:
                 keys[key] = check(key, keys[key], low, high)
         keys["env_kwargs"] = _options(keys["env_kwargs"], env_kwargs, usual, keys["policy"])
-        if keys["env_kwargs"].get("observe_conditions") and (keys["expert"] or keys["view"] != "pots"):
+        if keys["env_kwargs"].get("observe_conditions") and keys["expert"]:
             why = "its planner reads policy and value without the constants of the table"
-            if not keys["expert"]:
-                why = "what it observes is simulated with the constants of the table"
             raise refuse("observe_conditions", True, f"must be left out for {name}: {why}")
         asked = "fidelity" in env_kwargs or "fidelity" in changed.get("env_kwargs", {})
         mine = {f.name: keys.pop(f.name) for f in fields(cls) if f.name in keys}
@@ -140,7 +137,7 @@ class Recipe:
         if self.first_aim_std is not None:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
         # SB3 saves and restores additional attributes, too
-        model.recipe, model.env_options, model.view = self.name, dict(self.env_kwargs), self.view
+        model.recipe, model.env_options = self.name, dict(self.env_kwargs)
         # origin of its weights, see ``models.load_weights``; positions of imitation
         model.start, model.imitated = None, 0
         return model
@@ -211,7 +208,7 @@ def algorithm_class(name):
 
 
 def policy(name):
-    """A policy class of ``networks`` or ``mixture_policy``, or a name of SB3's own."""
-    from . import mixture_policy, networks
+    """A policy class of ``networks``, or a name of SB3's own."""
+    from . import networks
 
-    return getattr(mixture_policy, name, getattr(networks, name, name))
+    return getattr(networks, name, name)

@@ -16,7 +16,7 @@ from snooker_env import SnookerVectorEnv
 from snooker_env.checks import choice, integer, number, refuse
 from snooker_env.tasks.saved_models import PLAIN, by_train, entries, part
 
-from ..features.views import VIEWS, view_of
+from ..features.observed import space_of
 from .hyperparameters import ENV_OPTIONS, Recipe, names
 
 WEIGHTS = "policy.pth"
@@ -29,7 +29,6 @@ class Trained:
     policy: Any
     """Its network, an SB3 policy."""
     recipe: str
-    view: str
     env_options: dict
     """``SnookerEnv`` arguments of its training."""
     num_timesteps: int
@@ -64,7 +63,6 @@ def _count(field, value):
 
 KEPT = {
     "recipe": lambda field, value: choice(field, value, names()),
-    "view": lambda field, value: choice(field, value, VIEWS),
     "env_options": _options,
     "num_timesteps": _count,
     "gamma": lambda field, value: number(field, value, 0, 1),
@@ -113,8 +111,8 @@ def _network(path, described, seen):
         recipe = Recipe.of(described["recipe"], env_kwargs=described["env_options"])
         tables = SnookerVectorEnv(1, **described["env_options"])
         with torch.random.fork_rng(devices=[]):  # the initial weights are replaced below
-            view = view_of(described["view"], constants=tables.options.observe_conditions)
-            network = recipe.new_network(view.space, tables.single_action_space)
+            space = space_of(tables.options.observe_conditions)
+            network = recipe.new_network(space, tables.single_action_space)
     except ImportError:
         raise
     except Exception:  # options or parts that no longer exist

@@ -16,16 +16,14 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import nn
 
 from snooker_env.game import N_BALLS
-from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN, VIEW_SPACE
+from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
 from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, SPEEDS, STROKES, TOPS
 
-from ..features.lookahead_features import CUE_X, ENTRIES, PICKS, POTS_SEEN, STROKES_SEEN
 from .fused import FusedTable
 from .value_network import ValueNetwork
 
 BALL, CONTEXT, POT = 64, 128, 128
 """Widths of the codes."""
-OUTCOME = 32
 _STATE = OBSERVATION_SIZE - 5 * N_BALLS
 _N_REDS = 15
 
@@ -93,45 +91,6 @@ class StrokeHead(nn.Module):
         return torch.where(side < 0.0, turned, scores.reshape(n, -1))
 
 
-class ForesightReader(TableReader):
-    """The view ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context, a code an outcome."""
-
-    def __init__(self, observation_space):
-        super().__init__(VIEW_SPACE)  # the outcomes do not pass through it
-        self._features_dim = CONTEXT + STROKES_SEEN * OUTCOME
-        # one layer from the three
-        self.outcome = nn.ModuleList([nn.Linear(CONTEXT, 64), nn.Linear(POT, 64), nn.Linear(ENTRIES, 64)])
-        self.code = nn.Linear(64, OUTCOME)
-        self.best = nn.Linear(OUTCOME, CONTEXT)
-
-    def forward(self, seen):
-        n = len(seen)
-        read = super().forward(seen[:, :SHOWN])
-        context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
-        rows = seen[:, SHOWN:].reshape(n, STROKES_SEEN, ENTRIES)
-        turned = rows[..., CUE_X : CUE_X + 1] * side[:, None]
-        rows = torch.cat([rows[..., :CUE_X], turned, rows[..., CUE_X + 1 :]], 2)
-        of_pot = self.outcome[1](pots[:, :POTS_SEEN]).repeat_interleave(STROKES_SEEN // POTS_SEEN, 1)
-        joint = torch.relu(self.outcome[0](context)[:, None] + of_pot + self.outcome[2](rows))
-        codes = torch.relu(self.code(joint)) * rows[..., :1]
-        context = context + self.best(codes.amax(1))
-        return torch.cat([context, codes.reshape(n, -1)], 1)
-
-
-class OutcomeHead(nn.Module):
-    """The features of ``ForesightReader`` -> a score for each choice; only simulated ones may be played."""
-
-    def __init__(self):
-        super().__init__()
-        self.score = nn.Linear(OUTCOME, 1)
-        self.picks: torch.Tensor
-        self.register_buffer("picks", torch.as_tensor(PICKS), persistent=False)
-
-    def forward(self, read):
-        scores = self.score(read[:, CONTEXT:].reshape(len(read), STROKES_SEEN, OUTCOME))[..., 0]
-        return scores.new_zeros(len(read), POTS * STROKES).index_copy(1, self.picks, scores)
-
-
 class ValueHead(nn.Module):
     """The context -> the expected return."""
 
@@ -143,18 +102,18 @@ class ValueHead(nn.Module):
         return self.value(read[:, :CONTEXT])
 
 
-class _Policy(MaskableActorCriticPolicy):
-    """A maskable policy of a reader and a head for the choices; the value comes from the reader's context."""
+class TablePolicy(MaskableActorCriticPolicy):
+    """Observes the table and its pots, scores all strokes; the value comes from the reader's context."""
 
-    reader: type[TableReader]
-    head: type[nn.Module]
+    reader = TableReader
+    _fused = None
 
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **(kwargs | {"features_extractor_class": self.reader, "net_arch": []}))
 
     def _build(self, lr_schedule):
         super()._build(lr_schedule)
-        self.action_net, self.value_net = self.head(), ValueHead()
+        self.action_net, self.value_net = StrokeHead(), ValueHead()
         self.optimizer = self._new_optimizer(self.parameters(), lr_schedule)
 
     def _new_optimizer(self, parameters, lr_schedule):
@@ -162,19 +121,11 @@ class _Policy(MaskableActorCriticPolicy):
         settings = {"fused": True, **self.optimizer_kwargs, "lr": lr_schedule(1)}
         return self.optimizer_class(parameters, **settings)
 
-
-class TablePolicy(_Policy):
-    """Observes the table and its pots, scores all strokes."""
-
-    reader, head = TableReader, StrokeHead
-    _fused = None
-
     @property
     def has_fused(self):
-        """Whether there are fused passes: not for a subclass with another reader or head, nor for one that
-        observes the constants of the table."""
-        alone = self.observation_space.shape == (SHOWN,)
-        return alone and (self.reader, self.head) == (TableReader, StrokeHead)
+        """Whether there are fused passes: not for a subclass with another reader, nor for one that observes the
+        constants of the table."""
+        return self.observation_space.shape == (SHOWN,) and self.reader is TableReader
 
     @property
     def fused(self):
@@ -225,9 +176,3 @@ class JudgedPolicy(TablePolicy):
         by_ppo = list(self.parameters())
         self.position_value = ValueNetwork()
         self.optimizer = self._new_optimizer(by_ppo, lr_schedule)
-
-
-class ForesightPolicy(_Policy):
-    """Observes the view ``foresight``, scores the simulated strokes."""
-
-    reader, head = ForesightReader, OutcomeHead

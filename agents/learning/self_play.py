@@ -30,7 +30,7 @@ def policy_for(model, where):
     if where.here:
         return model.policy
     weights = {name: one.numpy() for name, one in model.policy.state_dict().items()}
-    return {"recipe": model.recipe, "env_options": model.env_options, "view": model.view, "weights": weights}
+    return {"recipe": model.recipe, "env_options": model.env_options, "weights": weights}
 
 
 def strokes(shared, args, threads):
@@ -131,19 +131,19 @@ def _proposals(shared):
         return PolicyProposals(policy.fused)
     import torch
 
-    made = {name: policy[name] for name in ("recipe", "env_options", "view")}
+    made = {name: policy[name] for name in ("recipe", "env_options")}
     network = once(("network", shared["run"]), lambda: _network(**made))
     network.load_state_dict({name: torch.from_numpy(one.copy()) for name, one in policy["weights"].items()})
     return PolicyProposals(network.fused)
 
 
-def _network(recipe, env_options, view):
+def _network(recipe, env_options):
     """The untrained network of a recipe."""
     from snooker_env import SnookerVectorEnv
 
-    from ..features.views import view_of
+    from ..features.observed import space_of
     from .hyperparameters import Recipe
 
     tables = SnookerVectorEnv(1, **env_options)
     made = Recipe.of(recipe, env_kwargs=env_options)
-    return made.new_network(view_of(view).space, tables.single_action_space)
+    return made.new_network(space_of(), tables.single_action_space)

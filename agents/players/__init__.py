@@ -1,9 +1,7 @@
-"""Which players does the repository add? Geometry with solved aims, a rule with foresight, trained models.
+"""Which players does the repository add? Its trained models.
 
 ``pyproject.toml`` names them as entry points, so that ``snooker_env.player`` finds them in a clone.
 """
-
-from .aim_search import Geometric
 
 
 def read_model(path):
@@ -14,11 +12,7 @@ def read_model(path):
 
 
 def __getattr__(name):
-    """What needs other libraries: the rule with foresight, and a maker of each pre-trained model."""
-    if name == "ForesightRule":
-        from .foresight import ForesightRule
-
-        return ForesightRule
+    """A maker of each pre-trained model, which needs other libraries."""
     if name.startswith("__"):
         raise AttributeError(name)
     from ..learning.models import PRETRAINED, pretrained
@@ -28,4 +22,4 @@ def __getattr__(name):
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-__all__ = ["ForesightRule", "Geometric", "read_model"]
+__all__ = ["read_model"]

@@ -1,4 +1,4 @@
-"""How does a trained model of this repository play? Its greedy choices or actions, from the view it knows."""
+"""How does a trained model of this repository play? Its greedy choices or actions, from what it observes."""
 
 from pathlib import Path
 
@@ -12,8 +12,8 @@ from snooker_env.players.seen import conditions_seen
 from snooker_env.players.weights import learned_of
 from snooker_env.tasks.saved_models import by_train, entries, one_thread
 
-from ..features.views import view_of
-from ..learning.hyperparameters import ACTION_OPTIONS, VIEW_OPTIONS
+from ..features.observed import seen_of
+from ..learning.hyperparameters import ACTION_OPTIONS, SEEN_OPTIONS
 from ..learning.models import file_of, load_trained
 from ..learning.policy_files import read_policy
 
@@ -23,12 +23,6 @@ class PolicyPlayer(ChoicePlayer):
 
     def __init__(self, model):
         self.model, self.name = model, model.recipe
-        self._view = None
-
-    def _bind(self, options):
-        super()._bind(options)
-        plain, constants = isinstance(self.model.policy, Layers), _sees_constants(self.model)
-        self._view = None if plain else view_of(self.model.view, 1, constants).at(options)
 
     @property
     def learned(self):
@@ -45,11 +39,11 @@ class PolicyPlayer(ChoicePlayer):
             action_masks(at, cue=self.options.cue),
             at.observations(),
         )
-        if self._view is None:
+        if isinstance(policy, Layers):
             return np.where(masks, policy(observations), -np.inf)
-        if _sees_constants(self.model):
+        if self.model.env_options.get("observe_conditions"):
             observations = np.concatenate([observations, conditions_seen(at, self.options.rules)], 1)
-        masks, seen = self._view.allowed(masks), self._view(at, observations)
+        seen = seen_of(observations)
         fused = getattr(policy, "has_fused", False)
         scores = policy.fused.scores(seen, masks) if fused else _logits(policy, seen, masks)
         return np.where(masks, scores, -np.inf)
@@ -57,11 +51,6 @@ class PolicyPlayer(ChoicePlayer):
     def figures(self, scores):
         """The probabilities."""
         return shares(scores)
-
-
-def _sees_constants(model):
-    """Whether a ``Trained`` model observes the constants of its table."""
-    return bool(model.env_options.get("observe_conditions"))
 
 
 def _logits(policy, seen, masks):
@@ -81,13 +70,12 @@ class BoxModel:
     """A model with box actions as a ``Seen``: its deterministic actions, a table at a time."""
 
     def __init__(self, model):
-        self.model, self._view = model, view_of(model.view, constants=_sees_constants(model))
-        belong = (*ACTION_OPTIONS, *VIEW_OPTIONS)
+        self.model, belong = model, (*ACTION_OPTIONS, *SEEN_OPTIONS)
         self.options = {key: model.env_options[key] for key in belong if key in model.env_options}
 
     def act(self, observations, masks, seeds):
         """The actions (n, k)."""
-        seen = self._view(None, observations)
+        seen = seen_of(observations)
         with one_thread():
             actions = [self.model.policy.predict(row, deterministic=True)[0] for row in seen]
         return np.array(actions).reshape(len(seen), *self.model.policy.action_space.shape)

@@ -201,16 +201,6 @@ def save_figure(figure, file, **options):
     pyplot().close(figure)
 
 
-def save_image(file, pixels):
-    """Write a picture (H, W, 3), in the format of the file's suffix. Not by pygame, which says nothing of a
-    full disk."""
-    import pygame
-
-    drawn = io.BytesIO()
-    pygame.image.save(pygame.surfarray.make_surface(pixels.swapaxes(0, 1)), drawn, file.name)
-    save_bytes(file, drawn.getvalue())
-
-
 def pyplot():
     """``matplotlib.pyplot`` drawing into files."""
     import matplotlib

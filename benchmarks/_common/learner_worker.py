@@ -4,15 +4,16 @@ reads, and says what it took.
     python learner_worker.py AGENT MODEL STEPS SEED
 
 Run in the root of the tree to be measured, which need not be this one: it uses only what all versions of
-``agents`` have. MODEL: a .zip with the weights to begin with. Prints, after the first rollout, which is not
-timed, and then for each line: JSON with the shots and the processor time [s] of the tables (steps, view,
+``train.py`` have. MODEL: a .zip with the weights to begin with. Prints, after the first rollout, which is not
+timed, and then for each line: JSON with the shots and the processor time [s] of the tables (steps,
 masks), of the update, and in all.
 """
 
 import json
 import sys
 import time
-from pathlib import Path
+import zipfile
+from io import BytesIO
 
 import torch
 
@@ -33,17 +34,17 @@ def timed(thing, name, spent, key):
 
 def main():
     """Train until the input ends."""
-    from agents.features.views import training_tables
-    from agents.learning.hyperparameters import Recipe
-    from agents.learning.models import load_trained
+    from train import Recipe, training_tables
 
-    agent, weights, steps, seed = sys.argv[1], Path(sys.argv[2]), int(sys.argv[3]), int(sys.argv[4])
+    agent, weights, steps, seed = sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
     torch.set_num_threads(1)
     torch.distributions.Distribution.set_default_validate_args(False)  # as train.py
     recipe = Recipe.of(agent, [f"n_steps={steps}"] if steps else [], imitation=0)
-    tables = training_tables(recipe.n_envs, threads=1, view=recipe.view, **recipe.env_kwargs)
+    tables = training_tables(recipe.n_envs, threads=1, **recipe.env_kwargs)
     model = recipe.new_model(tables, seed)
-    model.policy.load_state_dict(load_trained(weights, "start").policy.state_dict())
+    with zipfile.ZipFile(weights) as file:  # which may hold a value beside the policy
+        given = torch.load(BytesIO(file.read("policy.pth")), weights_only=True)
+    model.policy.load_state_dict({name: given[name] for name in model.policy.state_dict()})
     model.learn(1)
     spent = {"tables": 0.0, "update": 0.0, "all": 0.0}
     timed(tables, "step_wait", spent, "tables")

@@ -34,7 +34,6 @@ from .strikes import fit
 
 FILE = "real_shots.png"
 USED, HELD_OUT = "used for the constants", "held out"
-_BOUNDS = (0.12, 0.07, 0.85, 0.95)
 
 
 def part(number):

@@ -72,7 +72,7 @@ FILMS = {
     "line_up": _visit("stroke_value", "line_up", 20),
     "colours": _visit("planner_500", "colours", 27),
     "pot_hard": _visit("planner_500", "pots:hard", 1),
-    "escape": _visit("geometric", "snookered", 0, reward="legal", one_stroke=True),
+    "escape": _visit("planner", "snookered", 0, reward="legal", one_stroke=True),
     "frame": Film(
         "tactician",
         {

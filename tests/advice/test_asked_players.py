@@ -123,7 +123,7 @@ def test_a_choice_in_a_frame_is_asked_as_the_stroke_to_come():
     assert len(sn.advise(session.position, agent="search", **QUICK)) >= 1
 
 
-@pytest.mark.parametrize("name", ["geometric", "planner", "foresight_rule", "test_asked_players:Soft"])
+@pytest.mark.parametrize("name", ["planner", "ppo_value_club", "test_asked_players:Soft"])
 @pytest.mark.parametrize("position", ["open", "respotted", "snookered"])
 def test_players_are_asked_by_their_names(name, position):
     position = ALL[position]
@@ -134,4 +134,4 @@ def test_players_are_asked_by_their_names(name, position):
 
 def test_a_pretrained_agent_ranks_several_strokes():
     pytest.importorskip("sb3_contrib")
-    assert len({one.stroke.aim for one in sn.advise(OPEN, agent="ppo_mask", n=4, **QUICK)}) > 1
+    assert len({one.stroke.aim for one in sn.advise(OPEN, agent="ppo_value", n=4, **QUICK)}) > 1

@@ -25,7 +25,7 @@ from snooker_env.progress import Progress
 from tests.agents.training import TINY, results, resume, run, weights
 from tests.processes import ROOT, replace
 
-AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
+AGENTS = ("ppo_mask", "ppo_target", "tqc_target")
 
 
 @pytest.fixture(scope="module")
@@ -96,10 +96,10 @@ def test_it_says_in_a_pipe_what_it_does(tmp_path, capsys, monkeypatch):
     """A line at the start of each part and every few seconds; the last words give each part its own time."""
     monkeypatch.setattr(progress, "EVERY", 0.02)
     spoken = [word for word in TINY if word != "--no-progress"]
-    more = ["--agent", "ppo_foresight", "--imitate", "64", "--steps", "256", "--out", str(tmp_path / "run")]
+    more = ["--imitate", "64", "--steps", "256", "--out", str(tmp_path / "run")]
     assert train.main([*spoken, *more]) == 0
     printed = capsys.readouterr().out
-    learning = r"round 2 of 2, policy loss \S+, value loss \S+, [\d.]+ points a visit, .*shots/s"
+    learning = r"round [2-4] of 4, policy loss \S+, value loss \S+, [\d.]+ points a visit, .*shots/s"
     for k, name, total, figures in (
         (
             1,
@@ -110,7 +110,7 @@ def test_it_says_in_a_pipe_what_it_does(tmp_path, capsys, monkeypatch):
         (2, "PPO", "256 shots", learning),
         (3, "evaluation", "12 visits", r"(trained|ghost_ball|random), .*visits/s"),
     ):
-        head = f"ppo_foresight, part {k} of 3, {name}: "
+        head = f"ppo_mask, part {k} of 3, {name}: "
         said = [line for line in printed.splitlines() if line.startswith(head)]
         assert said[0] == f"{head}0 of {total}"
         assert re.fullmatch(rf"{head}{total.split()[0]} of {total}, .* elapsed", said[-1])
@@ -302,7 +302,7 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
     found = results(tmp_path / "run")
     assert found["start"] == {"model": start, "shots": 512, "imitated": 0, "start": None}
     assert found["learned"].startswith(f"With 512 shots of training on top of the 512 of {start}, ppo_mask ")
-    for agent in ("ppo_foresight", "ppo_target"):
+    for agent in ("ppo_value", "ppo_target"):
         error = refused(train.main, *TINY, "--out", tmp_path / "other", "--agent", agent, "--start", start)
         assert f"must be a model of {agent}" in error
 
@@ -390,7 +390,7 @@ def test_agents_with_longer_actions_are_judged_and_not_taken_for_shorter(tmp_pat
 
 
 def test_imitation_comes_first_and_is_kept(tmp_path):
-    few = "--agent ppo_foresight --imitate 256 --envs 16 --set n_steps=32"  # of 512 shots a rollout
+    few = "--imitate 256 --envs 16 --set n_steps=32"  # of 512 shots a rollout
     assert run(tmp_path, *few.split()) == 0
     first = results(tmp_path)
     assert first["settings"]["imitate"] == 256 and first["imitation"][-1]["states"] == 256

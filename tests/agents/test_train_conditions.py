@@ -9,7 +9,7 @@ import torch
 
 import snooker_env as sn
 import train
-from agents.features.views import training_tables
+from agents.features.observed import training_tables
 from agents.learning import expert_iteration, self_play
 from agents.learning.expert_iteration import ExpertIteration
 from agents.learning.hyperparameters import Recipe
@@ -37,7 +37,7 @@ def few(monkeypatch):
 def model_and_tables(agent="ppo_value", n=N):
     torch.manual_seed(5)
     recipe = Recipe.of(agent, env_kwargs=DRAWN, n_envs=n)
-    venv = training_tables(n, threads=1, view=recipe.view, **recipe.env_kwargs)
+    venv = training_tables(n, threads=1, **recipe.env_kwargs)
     return recipe.new_model(venv, 5), venv
 
 
@@ -141,13 +141,13 @@ def test_a_stopped_run_goes_on_with_its_tables(few, kind, agent):
 def observed(tmp_path_factory):
     """Folders of runs of agents that observe the constants of their tables."""
     folder = tmp_path_factory.mktemp("observed")
-    for agent in ("ppo_mask", "ppo_target", "ppo_absolute", "tqc_target"):
+    for agent in ("ppo_mask", "ppo_target", "tqc_target"):
         more = ["--imitate", "64"] if agent == "ppo_mask" else []
         assert run(folder / agent, "--agent", agent, *more, *OBSERVED) == 0
     return folder
 
 
-@pytest.mark.parametrize("agent", ["ppo_mask", "ppo_target", "ppo_absolute", "tqc_target"])
+@pytest.mark.parametrize("agent", ["ppo_mask", "ppo_target", "tqc_target"])
 def test_an_agent_can_observe_the_constants_of_its_table(observed, agent):
     found, trained = results(observed / agent), load_trained(observed / agent, "agent")
     words = found["command"].split()
@@ -160,11 +160,11 @@ def test_an_agent_can_observe_the_constants_of_its_table(observed, agent):
     assert summary(play_visits(player, 4, **options)) == found["evaluation"]["trained"]
 
 
-@pytest.mark.parametrize("agent", ["ppo_mask", "ppo_target", "ppo_absolute"])
+@pytest.mark.parametrize("agent", ["ppo_mask", "ppo_target"])
 def test_it_sees_those_of_the_table_that_it_plays_on(observed, agent, monkeypatch):
     """In training as when it plays: behind the pots, in their order; on a table that it does not know the nominal."""
     recipe = Recipe.of(agent, env_kwargs={"conditions": "drawn", "observe_conditions": True})
-    venv = training_tables(3, threads=1, view=recipe.view, **recipe.env_kwargs)
+    venv = training_tables(3, threads=1, **recipe.env_kwargs)
     assert venv.observation_space.shape == (SHOWN + 8,)
     venv.seed(1)
     still = np.zeros((3, *venv.action_space.shape), venv.action_space.dtype)
@@ -184,9 +184,8 @@ def test_it_sees_those_of_the_table_that_it_plays_on(observed, agent, monkeypatc
         assert np.allclose(np.stack(seen)[:, SHOWN:], conditions.normalised(wanted), atol=1e-6)
 
 
-@pytest.mark.parametrize("agent", ["ppo_mask", "ppo_absolute"])
-def test_the_constants_reach_choices_and_values(observed, agent):
-    policy = load_trained(observed / agent, "agent").policy
+def test_the_constants_reach_choices_and_values(observed):
+    policy = load_trained(observed / "ppo_mask", "agent").policy
     seen = torch.rand(2, SHOWN + 8, generator=torch.Generator().manual_seed(1))
     seen[1, :SHOWN] = seen[0, :SHOWN]
     with torch.no_grad():
@@ -235,10 +234,6 @@ def test_a_resumed_run_goes_on_observing(observed, tmp_path, refused, monkeypatc
         (
             "--agent ppo_value --imitate 8",
             "observe_conditions = True: must be left out for ppo_value: its planner",
-        ),
-        (
-            "--agent ppo_foresight",
-            "observe_conditions = True: must be left out for ppo_foresight: what it observes",
         ),
     ],
 )

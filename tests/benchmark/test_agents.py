@@ -232,7 +232,7 @@ def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
         ("program:", "must name a program"),
         ('program:"cat', """player = 'program:"cat': must be a command line (No closing quotation)"""),
         ("a=train.py,train.py", "must be different players or models"),
-        ("ppo_mask=train.py", "label = 'ppo_mask': must not be the name of another player: give --label"),
+        ("ppo_value=train.py", "label = 'ppo_value': must not be the name of another player: give --label"),
         (str(tmp_path / "no.zip"), "no.zip': must be a file or folder that is there: it is missing"),
         (f"planner@{tmp_path / 'no.npz'}", "must name a model with policy and value"),
         (str(tmp_path / "bad.zip"), "must be a model saved by Stable-Baselines3"),
@@ -305,7 +305,7 @@ def test_without_the_libraries_one_line_says_which_to_install(model, monkeypatch
 
 def test_a_model_of_the_repository_plays_visits_and_frames():
     pytest.importorskip("sb3_contrib")
-    agent = Agent.of("ppo_target")
+    agent = Agent.of("ppo_value")
     for name, n in (("SnookerColours-v0", 20), ("SnookerFrame-v0", 2)):
         result = judge(TASKS[name], agent, episodes=n)
         assert faults(result) == [] and result["agent"]["class"] == "model_free"

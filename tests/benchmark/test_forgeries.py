@@ -90,7 +90,7 @@ def test_rows_101_to_500(official):
     assert refused[-1].endswith(" more faults")
 
 
-@pytest.mark.parametrize("name", ["random", "ghost_ball", "search_30", "ppo_mask"])
+@pytest.mark.parametrize("name", ["random", "ghost_ball", "search_30", "ppo_value"])
 def test_the_name_of_a_known_player_for_other_strokes(name):
     """Sound in all that a replay can see; but this player does not play so."""
     record = judge(HARD, agent(), episodes=30)
@@ -115,9 +115,7 @@ def test_simulated_shots_that_the_agent_does_not_need():
     assert replayed(record, random, 4) == ["timing.simulated_shots = 8: must be 0, as the agent played again"]
 
 
-@pytest.mark.parametrize(
-    ("name", "training"), [("search_30", 0), ("planner_30", 10**7), ("foresight_rule", 0)]
-)
+@pytest.mark.parametrize(("name", "training"), [("search_30", 0), ("planner_30", 10**7)])
 def test_a_known_planner_is_not_model_free(name, training):
     """Its own strokes, as if no shot had been simulated for them."""
     record = judge(HARD, Agent.of(name, training_shots=training), episodes=4)

@@ -26,7 +26,7 @@ def command(monkeypatch, capsys):
 
 def test_seeds_of_a_training_are_taken_together_and_compared_visit_by_visit(command, tmp_path):
     for seed in (0, 1):
-        shutil.copy(PRETRAINED / "ppo_mask.zip", tmp_path / f"mine-{seed}.zip")
+        shutil.copy(PRETRAINED / "ppo_value.zip", tmp_path / f"mine-{seed}.zip")
     file = tmp_path / "figures.json"
     players = ["--players", "ghost_ball", f"mine={tmp_path}/mine-?.zip"]
     code, lines = command(*players, "--ways", "fixed", "known", "--visits", 3, "--json", file)

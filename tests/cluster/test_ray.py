@@ -115,7 +115,7 @@ def results_of(agents, seeds, where, count=None):
 def test_two_nodes_play_what_one_machine_plays(cluster, folder, monkeypatch):
     """Every kind of player; by the workers of both nodes."""
     monkeypatch.setattr(visits, "SIZE", 10)
-    names = ("tests.cluster.players:Noted", "random", "ghost_ball", "best_pot_30", "planner_30", "ppo_mask")
+    names = ("tests.cluster.players:Noted", "random", "ghost_ball", "best_pot_30", "planner_30", "ppo_value")
     agents = [Entrant.of(name) for name in names]
     seeds = tables_of("held_out", 24)
     assert cluster.cores == 2
@@ -141,7 +141,7 @@ def test_a_node_killed_amid_an_evaluation_is_survived_and_nothing_counts_twice(
 def test_a_node_killed_amid_training_leaves_the_result_as_it_is(nodes, cluster, monkeypatch):
     """Expert iteration by this process alone, and by two nodes of which one dies in the fourth round."""
     torch = pytest.importorskip("torch")
-    from agents.features.views import training_tables
+    from agents.features.observed import training_tables
     from agents.learning.expert_iteration import ExpertIteration
     from agents.learning.hyperparameters import Recipe
 
@@ -151,7 +151,7 @@ def test_a_node_killed_amid_training_leaves_the_result_as_it_is(nodes, cluster, 
     for where in (None, cluster):
         recipe = Recipe.of("ppo_value", n_envs=16)
         torch.manual_seed(1)
-        venv = training_tables(16, threads=1, view=recipe.view, **recipe.env_kwargs)
+        venv = training_tables(16, threads=1, **recipe.env_kwargs)
         model = recipe.new_model(venv, 1)
         run = ExpertIteration(model, venv, 96, 1, 1, where=where)
         while run.done < 96:

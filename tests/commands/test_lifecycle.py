@@ -42,9 +42,9 @@ runpy.{start}, run_name="__main__")
         ("sb3_contrib", "train", "train.py"),
         ("numpy", "train", "train.py"),
         ("yaml", "train", "agents.evaluate --agent random"),
-        ("torch", "train", "agents.evaluate --agent ppo_mask"),
+        ("torch", "train", "agents.evaluate --agent ppo_value"),
         ("matplotlib", "test", "agents.curves runs/x"),
-        ("numba", "train", "agents.noise_samples"),
+        ("numba", "train", "agents.watch"),
         ("yaml", "train", "agents.publish runs/x --limits none"),
     ],
 )
@@ -56,7 +56,7 @@ def test_a_command_says_what_is_missing(package, extra, command):
 
 
 @pytest.mark.parametrize(
-    "module", [f"agents.{name}" for name in ("evaluate", "publish", "curves", "noise_samples", "report")]
+    "module", [f"agents.{name}" for name in ("evaluate", "publish", "curves", "watch", "report")]
 )
 def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     """And compiles nothing: the cache stays empty."""
@@ -67,6 +67,7 @@ def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
 
 
 QUICK = str.split("--agent random --visits 4 --layouts held_out --noise professional --resamples 100")
+LADDER = ROOT / "agents" / "results" / "ladder.json"
 TINY = str.split("--agent ppo_mask --envs 2 --eval-visits 4 --parallel one --steps 1 --imitate 0")
 
 
@@ -97,7 +98,7 @@ def test_ctrl_c_is_one_line(capsys):
     assert stop.value.code == 130
 
 
-@pytest.mark.parametrize("arguments", [["-m", "agents.noise_samples"], ["train.py", *TINY]])
+@pytest.mark.parametrize("arguments", [["-m", "agents.report", "--show", str(LADDER)], ["train.py", *TINY]])
 def test_a_reader_that_leaves_ends_a_command_in_one_line_at_most(arguments, tmp_path):
     out = [] if "-m" in arguments else ["--out", str(tmp_path / "run")]
     reading, writing = os.pipe()

@@ -8,7 +8,7 @@ from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.evaluation import evaluate_policy
 
-from agents.features.views import training_tables
+from agents.features.observed import training_tables
 from snooker_env import SnookerEnv
 from snooker_env.planning.learned import pot_view
 from snooker_env.sb3 import SnookerVecEnv

@@ -37,7 +37,7 @@ def test_the_built_in_players_load_no_learning_library():
         import sys
         import numpy as np, snooker_env as sn
         at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-        for name in ("random", "ghost_ball", "best_pot_8", "search_8", "planner_8", "geometric"):
+        for name in ("random", "ghost_ball", "best_pot_8", "search_8", "planner_8"):
             sn.player(name).at({}).play(at, [0])
         ours = ("agents.learning.hyperparameters", "agents.learning.models", "agents.players.trained")
         print([name for name in ("torch", "stable_baselines3", "sb3_contrib", *ours) if name in sys.modules])

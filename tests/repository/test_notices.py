@@ -121,7 +121,6 @@ LONG = {
     "snooker_env.game.paths": ["best_paths"],
     "snooker_env.game.snookered": ["_snookered"],
     "snooker_env.planning.learned.pot_view": ["_add_pots"],
-    "agents.features.indirect_pots": ["_indirect"],
     "snooker_env.planning.strokes": ["_pot_aim", "_strike"],
     "snooker_env.planning.geometry": ["_pots", "_clear_paths"],
 }

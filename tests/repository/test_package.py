@@ -260,7 +260,7 @@ def test_a_pickled_shot_and_physics_stay_what_they_are():
 
 def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(tmp_path):
     """A column number baked into a kernel of agents/ comes from another folder of agents/."""
-    code = "from agents.features.indirect_pots import _indirect as k\nfrom snooker_env import _jit\n"
+    code = "from agents.learning.fused_kernels import spread_to_balls as k\nfrom snooker_env import _jit\n"
     code += "print(_jit.CACHE_FOLDER, k._cache.cache_path)"
     copy_of_package(tmp_path)
     shutil.copytree(
@@ -268,7 +268,7 @@ def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(t
     )
     seen = []
     for change in ("", "\n# other columns"):
-        with (tmp_path / "agents/features/indirect_pots.py").open("a") as file:
+        with (tmp_path / "agents/learning/fused_kernels.py").open("a") as file:
             file.write(change)
         seen.append(python(code, at=tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache"))[0].split())
     assert seen[0][0] == seen[1][0] and seen[0][1] != seen[1][1]

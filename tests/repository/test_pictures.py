@@ -2,12 +2,11 @@
 
 import importlib
 import importlib.util
-import json
 
 import matplotlib as mpl
 import pytest
 
-from agents.evaluation import destinations
+from agents.evaluation import protocol
 from benchmarks import layouts_picture, pictures
 from commands import picture_style
 from tests.pictures import saved_figures, unreadable
@@ -41,9 +40,17 @@ def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch
 
 
 def test_destinations_can_be_read(tmp_path):
-    kept = json.loads((ROOT / "agents/pictures/destinations.json").read_text())
+    few = str.split("--visits 60 --layouts held_out --noise professional --resamples 100")
     with saved_figures() as figures:
-        destinations.draw_figures(kept, tmp_path / "d.png")
+        protocol.main(
+            [
+                "--agent",
+                *str.split("best_pot_30 ghost_ball random"),
+                *few,
+                "--picture",
+                str(tmp_path / "d.png"),
+            ]
+        )
     read(figures)
 
 

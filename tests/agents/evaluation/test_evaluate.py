@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from agents.evaluation import protocol, report
-from agents.features.views import training_tables
+from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe
 from commands.physics_option import physics_option, physics_text
 from snooker_env.benchmark import FIGURES
@@ -157,7 +157,7 @@ def test_a_path_with_a_colon_is_a_path(models, tmp_path):
 FOREIGN = "agent = '.*': must be a model saved by Stable-Baselines3"
 
 
-@pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},agents.players:Geometric"])
+@pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},tests.agents.user_players:Softly"])
 def test_players_and_models_under_one_label_are_refused(which, models):
     with pytest.raises(ValueError, match=r"agent = 'x=.*: must be players or trained models, not both"):
         protocol.Entrant.of(which.format(models / "m-0"))

@@ -98,7 +98,15 @@ def test_a_model_plays_where_the_package_of_its_schedules_is_missing(tmp_path, m
 
 def test_a_foreign_model_is_compared_with_consent(foreign, tmp_path, capsys):
     """Of its training only what the model itself says is reported."""
-    agents = ["--agent", str(foreign / "ppo.zip"), "ppo_mask", "random", "--trust", "--options", "aim=target"]
+    agents = [
+        "--agent",
+        str(foreign / "ppo.zip"),
+        "ppo_value",
+        "random",
+        "--trust",
+        "--options",
+        "aim=target",
+    ]
     assert protocol.main([*agents, *QUICK, "--json", str(tmp_path / "r.json")]) == 0
     (run,) = json.loads((tmp_path / "r.json").read_text())["agents"][0]["runs"]
     its = {"from": str(foreign / "ppo.zip"), "recipe": "PPO", "shots": 0, "seed": 4, "gamma": 0.99}
@@ -160,6 +168,6 @@ KEYS = ": must be KEY=VALUE, KEY once each of action, aim, elevation, placement"
     ],
 )
 def test_options_are_checked_before_anything_is_played(options, says, refused):
-    for agent in ("ppo_target", PRETRAINED / "ppo_mask.zip", "random"):
+    for agent in ("ppo_value", PRETRAINED / "ppo_value.zip", "random"):
         error = refused(protocol.main, "--agent", agent, "--trust", "--options", *options, *QUICK)
         assert error.endswith(says)

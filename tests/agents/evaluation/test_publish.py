@@ -14,7 +14,7 @@ import torch
 
 from agents.evaluation import publish
 from agents.evaluation.entrants import Entrant
-from agents.features.views import training_tables
+from agents.features.observed import training_tables
 from agents.learning import models
 from agents.learning.hyperparameters import Recipe
 from agents.learning.model_files import KEPT
@@ -60,12 +60,6 @@ def published(folder):
 
 
 WEIGHTS = {
-    "ppo_absolute": "611324598b6626e1e5028fa1fb92ba79be5ad1917a6357315dcef1737bdf8702",
-    "ppo_foresight": "7fc358b888bb3d9d96408491715de7b6f720336e5812392120b3da910105445c",
-    "ppo_foresight_gamma0": "86b1104b70879a7b187cc7a73c0d6622de313f04c6952d300a9f17d33c8e4a3d",
-    "ppo_mask": "dfe17966c74afe0d4d1a8cce0d121d1ba2a4ebfbe5091edff517c4f3688fcc36",
-    "ppo_mask_finetuned": "0a7876b29ed979493e44c36cb67cb9a8308a77a4b2b71bf4730ba8929f6b6fd8",
-    "ppo_target": "a0d80caf6416d41fab71b6157ba3c380d2e128f98f993adf96ce37bbbe09ff7f",
     "ppo_value": "13ca8f8b324f42d39756c2e08f4fd37a13e743fe0b1d0dfdc01211e3c4b0947a",
     "ppo_value_amateur": "81b63d740602f4ec12de1ee6a4d65c30061abd0c3711a4e72dcf02a70c6246e5",
     "ppo_value_club": "e1f4d04c626b212c1f4bdbedff07a0a9802619907fa2c4f8a6a26d52010ede6f",
@@ -193,7 +187,7 @@ def test_a_file_that_is_no_model_is_refused(run, refused):
 
 
 def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
-    """Other weights, another view, a recipe that is gone: one sentence that names the file and the recipe."""
+    """Other weights, another observation, a recipe that is gone: one sentence that names the file and the recipe."""
     said = r"{} = '.*model.zip': must be a model of the current ppo_mask: this one is older, train it again"
     for at in ("agents.learning.networks.POT", "agents.learning.networks.CONTEXT"):
         with monkeypatch.context() as patch:
@@ -201,7 +195,7 @@ def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
             with pytest.raises(ValueError, match=said.format("agent")):
                 load_player(run)
     with monkeypatch.context() as patch:
-        patch.setattr("agents.features.views.SHOWN", 7)
+        patch.setattr("agents.features.observed.SHOWN", 7)
         with pytest.raises(ValueError, match=said.format("start")):
             load_trained(run / "model.zip", "start")
     monkeypatch.setattr("agents.learning.model_files.Recipe.of", lambda name, **more: {}[name])

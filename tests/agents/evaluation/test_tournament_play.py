@@ -8,7 +8,6 @@ import snooker_env as sn
 from agents.evaluation import tournament_play
 from agents.evaluation.tournament_figures import COLUMNS
 from agents.evaluation.tournament_play import TimedPlayer, play_pair
-from agents.players import Geometric
 from snooker_env import SnookerVectorEnv
 from snooker_env.players import SeenPlayer
 from snooker_env.tasks.stroke import FOULS, PLAYER, SCORED
@@ -102,7 +101,7 @@ def test_rows_depend_neither_on_threads_nor_on_how_many_tables_there_are(monkeyp
     assert play(ghost_ball(), softly(), list(seeds)[3:5]) == want[6:10]
 
 
-@pytest.mark.parametrize("second", [ghost_ball, softly, Geometric])
+@pytest.mark.parametrize("second", [ghost_ball, softly, partial(sn.player, "best_pot_8")])
 def test_the_order_of_the_players_does_not_matter(second):
     """Both are the agent in one frame on each seed."""
     one = frames(play(ghost_ball(), second(), range(4)))

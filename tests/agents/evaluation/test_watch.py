@@ -12,10 +12,11 @@ from snooker_env.benchmark import HELD_OUT_SEED, play_visits
 SHORT = ["--agent", "ghost_ball", "--noise", "club"]
 
 
-@pytest.mark.parametrize("name", ["ghost_ball", "geometric", "ppo_mask"])
+@pytest.mark.parametrize("name", ["ghost_ball", "ppo_value"])
 def test_the_visit_is_the_one_that_the_protocol_plays(name):
-    env = watch.episode(player(name), HELD_OUT_SEED + 3, layout="held_out", noise="professional")
-    strokes = play_visits(player(name), 1, first_seed=HELD_OUT_SEED + 3, threads=1)
+    seed = HELD_OUT_SEED + 3
+    env, _, _ = watch.sought(watch.parser().parse_args(["--agent", name, "--seed", str(seed)]))
+    strokes = play_visits(player(name), 1, first_seed=seed, threads=1, noise="professional", cue="real")
     assert [p.points for p in env.history] == strokes.points.tolist()
     cue = np.array([p.positions[0] for p in env.history if p.on_table[0]])
     assert np.array_equal(cue, strokes.cue[~np.isnan(strokes.cue[:, 0])])
@@ -56,7 +57,8 @@ def test_the_first_visit_that_is_long_enough_is_taken(capsys):
     env, seed, _ = watch.sought(args)
     assert env.points >= 1
     for earlier in range(HELD_OUT_SEED, seed):
-        assert watch.episode(player("ghost_ball"), earlier, layout="held_out", noise="club").points < 1
+        options = {"layout": "held_out", "noise": "club", "cue": "real"}
+        assert watch.episode(player("ghost_ball"), earlier, **options).points < 1
     with pytest.raises(SystemExit, match="no visit of 140 points in 3 tries"):
         watch.main([*SHORT, "--at-least", "140", "--tries", "3"])
 

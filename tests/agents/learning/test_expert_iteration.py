@@ -7,7 +7,7 @@ import pytest
 import torch
 from positions import tables
 
-from agents.features.views import training_tables
+from agents.features.observed import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import FRESH, STARTS, ExpertIteration, Starts, judge_rewards
 from agents.learning.hyperparameters import Recipe

@@ -8,7 +8,7 @@ import torch
 from sb3_contrib import MaskablePPO
 from sb3_contrib.common.maskable.buffers import MaskableRolloutBuffer
 
-from agents.features.views import training_tables
+from agents.features.observed import training_tables
 from agents.learning.fast_ppo import BoolMasks, FastPPO
 from agents.learning.hyperparameters import Recipe
 
@@ -19,7 +19,7 @@ def made(agent="ppo_mask", seed=0, **changes):
     """An untrained agent on a few tables."""
     changes = {"n_steps": 16, "n_epochs": 2, "batch_size": 64} | changes
     recipe = Recipe.of(agent, [f"{key}={value}" for key, value in changes.items()], n_envs=TABLES)
-    return recipe.new_model(training_tables(TABLES, threads=1, view=recipe.view, **recipe.env_kwargs), seed)
+    return recipe.new_model(training_tables(TABLES, threads=1, **recipe.env_kwargs), seed)
 
 
 def with_rollout(model):
@@ -134,7 +134,7 @@ def test_same_seed_same_weights():
     assert torch.equal(found[0], found[1]) and not torch.equal(found[0], found[2])
 
 
-@pytest.mark.parametrize("agent", ["ppo_mask", "ppo_foresight"])
+@pytest.mark.parametrize("agent", ["ppo_mask", "ppo_value"])
 def test_its_files_are_read_by_sb3_and_learning_goes_on(agent):
     model = made(agent, n_steps=2, batch_size=16).learn(16)
     file = io.BytesIO()

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from agents.features import lookahead_features
-from agents.features.views import training_tables
+from agents.features.observed import training_tables
 from agents.learning import hyperparameters
 from snooker_env.planning.learned import pot_view
+from snooker_env.tasks.observations import SIZE
 
 
 def test_a_recipe_with_a_wrong_value_is_refused(tmp_path, monkeypatch):
@@ -27,26 +27,11 @@ def test_a_linear_rate_falls_from_what_it_says_to_nearly_nothing():
     tables.close()
 
 
-def test_masks_are_those_of_the_view():
-    """An agent with a lookahead may play the simulated strokes, nothing else."""
-    tables = training_tables(4, threads=1, view="foresight", action="discrete")
-    tables.seed(3)
-    seen = tables.reset()
-    masks, all_masks = np.array(tables.env_method("action_masks")), tables.unwrapped.tables.action_masks()
-    assert (masks.sum(1) > 0).any() and (masks.sum(1) < all_masks.sum(1)).any()
-    assert not (masks & ~all_masks).any()
-    rows = seen[:, pot_view.SHOWN :].reshape(4, lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)
-    there = rows[:, :, lookahead_features.THERE] > 0
-    for row, looked_at in zip(masks, there, strict=True):
-        assert set(np.flatnonzero(row)) == set(lookahead_features.PICKS[looked_at])
-    assert np.array_equal(tables.env_method("action_masks", indices=[2])[0], masks[2])
-    tables.close()
-
-
-@pytest.mark.parametrize("shown", ["pots", "foresight"])
-def test_the_end_of_a_visit_is_shown_with_its_pots(shown):
-    """The last table, not the one after it, and nothing looked ahead on it."""
-    tables = training_tables(4, threads=1, view=shown, action="discrete", noise="club")
+@pytest.mark.parametrize("conditions", [False, True])
+def test_the_end_of_a_visit_is_shown_with_its_pots(conditions):
+    """The last table, not the one after it; and its constants, if they are observed."""
+    drawn = {"conditions": "drawn", "observe_conditions": True} if conditions else {}
+    tables = training_tables(4, threads=1, action="discrete", noise="club", **drawn)
     tables.seed(3)
     tables.reset()
     ended = 0
@@ -66,7 +51,7 @@ def test_the_end_of_a_visit_is_shown_with_its_pots(shown):
         for k in np.flatnonzero(done):
             last, ended = infos[k]["terminal_observation"], ended + 1
             assert np.array_equal(last[: pot_view.SHOWN], pot_view.with_pots(kept[k][None])[0])
-            assert last[: pot_view.SHOWN].any() and not last[pot_view.SHOWN :].any()
+            assert last[: pot_view.SHOWN].any() and np.array_equal(last[pot_view.SHOWN :], kept[k][SIZE:])
             assert last.shape == tables.observation_space.shape
     assert ended > 0
     tables.close()

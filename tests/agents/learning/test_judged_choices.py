@@ -7,7 +7,7 @@ import pytest
 import torch
 from positions import tables
 
-from agents.features.views import training_tables
+from agents.features.observed import training_tables
 from agents.learning import imitation, judged_choices
 from agents.learning.hyperparameters import Recipe
 from agents.learning.imitation import Expert, Imitation, to_try

@@ -20,7 +20,7 @@ from stable_baselines3 import SAC
 import train
 from agents.evaluation import protocol, publish
 from agents.evaluation.entrants import Entrant
-from agents.features.views import training_tables
+from agents.features.observed import training_tables
 from agents.learning import policy_files
 from agents.learning.hyperparameters import Recipe, names
 from agents.learning.model_files import KEPT, packed, read
@@ -37,7 +37,7 @@ from tests.processes import ROOT
 def made(name, file=None, seed=3):
     """An untrained model of that recipe, saved as train.py does if there is a file."""
     recipe = Recipe.of(name, n_envs=2)
-    tables = training_tables(2, threads=1, view=recipe.view, **recipe.env_kwargs)
+    tables = training_tables(2, threads=1, **recipe.env_kwargs)
     model = recipe.new_model(tables, seed)
     model.imitated, model.num_timesteps = 300, 77
     if file is not None:
@@ -71,7 +71,7 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
     assert torch.equal(torch.get_rng_state(), before) and not (tmp_path / "mark").exists()
     (tmp_path / "plain.zip").write_bytes(packed(trained))
     seen = np.random.default_rng(0).uniform(-1, 1, (16, *model.observation_space.shape)).astype(np.float32)
-    wanted = {"recipe": name, "view": Recipe.of(name).view, "num_timesteps": 77, "gamma": model.gamma}
+    wanted = {"recipe": name, "num_timesteps": 77, "gamma": model.gamma}
     wanted |= {"seed": 3, "imitated": 300, "start": None}
     for one in (trained, read(tmp_path / "plain.zip", "agent")):
         assert {key: getattr(one, key) for key in wanted} == wanted
@@ -97,7 +97,7 @@ def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
             wrong = weights or file == foreign
             with pytest.raises(ValueError, match=r"^agent = '.*': must be") if wrong else nullcontext():
                 call(file)
-    for arguments in ([foreign], [ours, "--agent", "ppo_foresight"]):
+    for arguments in ([foreign], [ours, "--agent", "ppo_value"]):
         new = ["--out", tmp_path / "new", "--envs", "2", "--no-progress"]
         assert "start = " in refused(train.main, "--start", *arguments, *new)
     refused(publish.main, tmp_path / "run", "--limits", "none")
@@ -106,8 +106,8 @@ def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
 
 HOSTILE = [(key, value) for key in KEPT for value in ([1], "x" * 9, {"a": 1}, -1, True, float("nan"))]
 HOSTILE.remove(("start", {"a": 1}))
-HOSTILE += [(key, None) for key in ("view", "env_options", "num_timesteps", "gamma", "recipe")]
-HOSTILE += [("recipe", "../../etc/passwd"), ("recipe", "x" * 10**6), ("view", "os.system"), ("gamma", 2)]
+HOSTILE += [(key, None) for key in ("env_options", "num_timesteps", "gamma", "recipe")]
+HOSTILE += [("recipe", "../../etc/passwd"), ("recipe", "x" * 10**6), ("gamma", 2)]
 HOSTILE += [("num_timesteps", 1.5), ("seen", 7), ("seen", "x")]
 OPTIONS = {"opponent": "x.zip", "aim": ["target"], "action": "box", "physics": {"R": 1}, "layout": 3}
 OPTIONS["noise"] = {"aim": 1}
@@ -207,16 +207,16 @@ def test_weights_are_handed_on(mask, plain):
         assert its.keys() == weights.keys() and all(torch.equal(its[name], weights[name]) for name in its)
 
 
-def test_the_policy_of_a_judged_model_is_handed_on():
+def test_the_policy_of_a_judged_model_is_handed_on(mask):
     """``ppo_value`` holds the network of ``ppo_mask``, which goes on from it; the other way misses the value."""
     judged, model = PRETRAINED / "ppo_value.zip", made("ppo_mask")
     load_weights(model, judged)
     its = read(judged, "start").policy.state_dict()
     assert all(torch.equal(its[name], weights) for name, weights in model.policy.state_dict().items())
     assert model.start["model"] == str(judged) and model.recipe == "ppo_mask"
-    says = r"start = '.*ppo_mask.zip': must be a model of ppo_value, or .* not of ppo_mask"
+    says = r"start = '.*model.zip': must be a model of ppo_value, or .* not of ppo_mask"
     with pytest.raises(ValueError, match=says):
-        load_weights(made("ppo_value"), PRETRAINED / "ppo_mask.zip")
+        load_weights(made("ppo_value"), mask)
 
 
 def test_a_model_of_another_maker_is_recognised(tmp_path):

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import torch
 
-from agents.features.lookahead_features import CUE_X, ENTRIES, PICKS, SPACE, STROKES_SEEN
 from agents.learning import networks
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, VIEW_SPACE, with_pots
@@ -93,34 +92,3 @@ def test_a_mirror_turns_the_side_spin(net, seen):
     assert torch.allclose(expected[off_centre], turned[off_centre], atol=1e-5)
     assert torch.allclose(values[off_centre], turned_values[off_centre], atol=1e-5)
     assert not torch.allclose(scores, turned, atol=1e-3)
-
-
-def test_foresight_scores_each_stroke_by_its_own_outcome(seen):
-    torch.manual_seed(0)
-    reader, head = networks.ForesightReader(SPACE), networks.OutcomeHead()
-    rng = np.random.default_rng(0)
-    rows = torch.as_tensor(rng.uniform(-1, 1, (N, STROKES_SEEN, ENTRIES)).astype(np.float32))
-    rows[:, :, 0] = 1.0
-    rows[:, 7, 2] = -0.5
-
-    def scores(rows):
-        return head(reader(torch.cat([seen, rows.flatten(1)], 1))).detach()
-
-    before = scores(rows)
-    assert before.shape == (N, SIZE)
-    assert reader(torch.cat([seen, rows.flatten(1)], 1)).shape[1] == networks.CONTEXT + STROKES_SEEN * 32
-    other = rows.clone()
-    other[:, 7, 2] = 0.5
-    moved = (scores(other) - before).abs()
-    assert moved[:, PICKS[7]].median() > 1e-4
-    unseen = np.setdiff1d(np.arange(SIZE), PICKS)
-    assert not moved[:, unseen].any() and moved[:, np.setdiff1d(PICKS, [PICKS[7]])].max() == 0.0
-    # the place where the cue ball stops is read in the same mirror as the table
-    flipped = rows.clone()
-    flipped[:, :, CUE_X] *= -1
-    with torch.no_grad():
-        reader.context[0].weight[:, -1] = 0.0
-    here, there = scores(rows), head(reader(torch.cat([mirrored(seen), flipped.flatten(1)], 1))).detach()
-    off_centre = seen[:, BALL_X] != 0.0
-    assert torch.allclose(here[off_centre], there[off_centre], atol=1e-5)
-    assert not torch.allclose(here, scores(flipped), atol=1e-4)

@@ -16,7 +16,7 @@ FILES = ("ppo_target", "tqc_target")
 @pytest.mark.parametrize("name", FILES)
 def test_what_the_zoo_does_not_know_stands_apart(name):
     found = yaml.safe_load((FOLDER / f"{name}.yml").read_text(encoding="utf-8"))
-    assert not {"algo", "view", "imitation", "expert", "first_aim_std"} & set(found[ENV_ID])
+    assert not {"algo", "imitation", "expert", "first_aim_std"} & set(found[ENV_ID])
     assert found["agent"]["algo"] in name
 
 

@@ -1,0 +1,65 @@
+"""What does an agent see of a table? The flat observation with its pots; to train as a ``VecEnv``."""
+
+import numpy as np
+from gymnasium import spaces
+
+from snooker_env.planning import Positions
+from snooker_env.planning.learned.pot_view import SHOWN, with_pots
+from snooker_env.tasks import OBSERVATION_SIZE, observation_space
+
+OBSERVED_SIZE = spaces.flatdim(observation_space("flat", conditions=True))
+"""Numbers in a flat observation with the constants of the table."""
+
+
+def space_of(constants=False):
+    """The space of what ``seen_of`` returns; ``constants``: with those of the table."""
+    size = SHOWN + (OBSERVED_SIZE - OBSERVATION_SIZE) * bool(constants)
+    return spaces.Box(-1.0, 1.0, (size,), np.float32)
+
+
+def seen_of(observations):
+    """``with_pots`` of n flat observations, float32; the constants of the table follow where they hold them."""
+    seen = with_pots(observations)
+    constants = observations[:, OBSERVATION_SIZE:]
+    return np.concatenate([seen, constants], 1) if constants.shape[1] else seen
+
+
+def training_tables(n, threads=None, **options):
+    """n tables of ``SnookerVecEnv`` that show their pots: an SB3 ``VecEnv``."""
+    from stable_baselines3.common.vec_env import VecEnvWrapper
+
+    from snooker_env.sb3 import SnookerVecEnv
+
+    base = SnookerVecEnv(n, threads=threads, **options)
+
+    class Seen(VecEnvWrapper):
+        """All tables at once."""
+
+        judge = None
+        """Values [points] of ``Positions``, added to rewards where the visit goes on; or None."""
+
+        def reset(self):
+            return seen_of(self.venv.reset())
+
+        def step_wait(self):
+            observations, rewards, done, infos = self.venv.step_wait()
+            if self.judge is not None:
+                rewards, on = rewards.copy(), np.flatnonzero(~done)
+                rewards[on] += self.judge(Positions.of(base.tables)[on])
+            ended = [info for info in infos if "terminal_observation" in info]
+            if ended:
+                last = np.stack([info["terminal_observation"] for info in ended])
+                for info, row in zip(ended, seen_of(last), strict=True):
+                    info["terminal_observation"] = row
+            return seen_of(observations), rewards, done, infos
+
+        @property
+        def running(self):
+            """Returns and lengths so far of running visits, for ``episode`` in the last info; in no state."""
+            return base.episode_returns.copy(), base.episode_lengths.copy()
+
+        @running.setter
+        def running(self, sums):
+            base.episode_returns[:], base.episode_lengths[:] = sums
+
+    return Seen(base, space_of(base.tables.options.observe_conditions))
