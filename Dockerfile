@@ -8,14 +8,12 @@ RUN pip wheel --no-deps --wheel-dir /wheels /source
 FROM python:3.13-slim
 # as "[train]"; with nothing, gymnasium, numpy and numba alone
 ARG EXTRAS=""
-# Kernels are compiled for this processor, and again where another one runs them. "generic" is for all, and slower.
-ARG NUMBA_CPU_NAME=""
 RUN useradd --create-home player
 COPY --from=build /wheels /wheels
 RUN pip install --no-cache-dir "$(echo /wheels/*.whl)$EXTRAS"
 # who runs them: a cache that others can write to is not read
 USER player
 WORKDIR /home/player
-ENV NUMBA_CACHE_DIR=/home/player/kernels NUMBA_CPU_NAME=$NUMBA_CPU_NAME
+ENV NUMBA_CACHE_DIR=/home/player/kernels
 RUN python -c "import snooker_env; snooker_env.warmup()"
 CMD ["python"]

@@ -39,7 +39,7 @@ SHORT = {
     "benchmarks.flight": "--tables 2 --shots 20",
     "benchmarks.vector": "--seconds 0.1 --repeats 1 --tables 64 --ppo-steps 2048",
     "agents.value_quality": "--agent planner_30 --visits 3",
-    "agents.watch": "--agent ghost_ball --out {tmp}/visit.html",
+    "snooker_env.watch": "--agent ghost_ball --out {tmp}/visit.html",
     "tests.rules_cases": "tests/data/rules_cases.json",
     "tests.oracles.frame_oracle": "--frames 2 --kind tables",
     "docs/pictures/make.py": "--out {tmp}",

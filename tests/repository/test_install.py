@@ -100,26 +100,26 @@ WORKERS = """
 import functools, sys
 import gymnasium
 from gymnasium.vector import AsyncVectorEnv
-from stable_baselines3.common.env_util import make_vec_env
-from stable_baselines3.common.vec_env import SubprocVecEnv
-
-WANTED = gymnasium.make("snooker_env:Snooker-v0", layout="random:2").reset(seed=5)[0]
 
 def main(method):
+    from stable_baselines3.common.env_util import make_vec_env  # not in the workers: torch is slow to import
+    from stable_baselines3.common.vec_env import SubprocVecEnv
+
     name, options = "snooker_env:Snooker-v0", {"layout": "random:2"}
     make = functools.partial(gymnasium.make, name, **options)
+    wanted = make().reset(seed=5)[0]
     spec = {"vectorization_mode": "async", "vector_kwargs": {"context": method}}
     for envs in (
-        gymnasium.make_vec(name, 2, **spec, **options),
-        gymnasium.make_vec("Snooker-v0", 2, **spec, **options),  # imported here, and its spec is sent
-        AsyncVectorEnv([make, make], context=method),
-        AsyncVectorEnv([lambda: gymnasium.make(name, **options)] * 2, context=method),
+        gymnasium.make_vec(name, 1, **spec, **options),
+        gymnasium.make_vec("Snooker-v0", 1, **spec, **options),  # imported here, and its spec is sent
+        AsyncVectorEnv([make], context=method),
+        AsyncVectorEnv([lambda: gymnasium.make(name, **options)], context=method),
     ):
-        print((envs.reset(seed=5)[0][0] == WANTED).all())
+        print((envs.reset(seed=5)[0][0] == wanted).all())
         envs.close()
     vec_env = {"vec_env_cls": SubprocVecEnv, "vec_env_kwargs": {"start_method": method}}
-    envs = make_vec_env(name, 2, seed=5, env_kwargs=options, **vec_env)
-    print((envs.reset()[0] == WANTED).all())
+    envs = make_vec_env(name, 1, seed=5, env_kwargs=options, **vec_env)
+    print((envs.reset()[0] == wanted).all())
     envs.close()
 
 if __name__ == "__main__":
@@ -127,6 +127,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.parametrize("installed", ["wheel"], indirect=True)
 @pytest.mark.parametrize("method", ["spawn", "forkserver"])
 def test_workers_make_it_from_the_name_with_its_module(installed, method):
     (installed.cwd / "workers.py").write_text(WORKERS)

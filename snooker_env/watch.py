@@ -1,50 +1,48 @@
 """How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
 
-    python -m agents.watch --agent ppo_foresight --out break.html
-    python -m agents.watch --agent search_2000 --at-least 50 --out break.mp4
-    python -m agents.watch --frame --out frame.html
+    python -m snooker_env.watch --agent planner --out break.html
+    python -m snooker_env.watch --agent search_2000 --at-least 50 --out break.mp4
+    python -m snooker_env.watch --frame --out frame.html
 
 The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the
 replay is written to a temporary file and opened in the browser. Visits are played on held-out tables, the
 seeds one after the other; --at-least takes the first of --tries visits with so many points. The same seed
-gives the same visit as ``agents.evaluate`` plays on that table. With --frame: a whole frame, against --opponent, with a
-real cue and the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The replay shows how likely
-each player was to win, by the ``tactician``.
+gives the same visit as ``benchmark.play_visits`` plays on that table. With --frame: a whole frame, against
+--opponent, with a real cue and the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The
+replay shows how likely each player was to win, by the ``tactician``.
 """
 
 import argparse
+import os
+import sys
 import tempfile
 import webbrowser
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from commands.lifecycle import command, needs
+import numpy as np
 
-with needs("agents.watch"):
-    import numpy as np
+from ._check import choice, integer, number, refuse
+from .benchmark import HELD_OUT_SEED
+from .envs.snooker import SnookerEnv
+from .planning import Positions
+from .players import FRAMES, VISITS, Player, decision_seeds, player
+from .replays import Replay, replay
 
-    import snooker_env as sn
-    from commands.files import writable
-    from snooker_env.benchmark import HELD_OUT_SEED
-    from snooker_env.checks import choice, integer, number, refuse
-    from snooker_env.planning import Positions
-    from snooker_env.players import FRAMES, VISITS, decision_seeds
-
-    from .entrants import Entrant
-
+NAME = "snooker_env.watch"
 FILMS = (".mp4", ".gif")
 SUFFIXES = (".html", ".json", *FILMS)
-
-
-TACTICIAN = "tactician"  # who plays a frame unless someone is named
+USUAL, TACTICIAN = "planner", "tactician"
+"""Who plays a visit and a frame unless someone is named."""
 FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}
 """Options of a frame that is watched."""
 
 
-def episode(player, seed, **options):
+def episode(who: Player, seed: int, **options: Any) -> SnookerEnv:
     """A ``SnookerEnv`` after a whole visit or frame, with its history; a visit is that of ``play_visits``."""
-    env = sn.SnookerEnv(**{**VISITS, **options})
-    bound, decision = player.at(env), 0
+    env = SnookerEnv(**{**VISITS, **options})
+    bound, decision = who.at(env), 0
     env.keep_history = True
     env.reset(seed=seed)
     ended = False
@@ -56,19 +54,20 @@ def episode(player, seed, **options):
     return env
 
 
-def described(replay):
+def described(played: Replay) -> Iterator[str]:
     """A line for each stroke."""
-    for k, stroke in enumerate(replay.to_dict()["strokes"], 1):
+    for k, stroke in enumerate(played.to_dict()["strokes"], 1):
         cue = stroke["cue"]
         spin = f"side {cue['side']:+.2f}, top {cue['top']:+.2f}"
         yield f"{k:3}  {stroke['ball_on']:<10}  {cue['speed']:.2f} m/s, {spin}   {stroke['words']}"
 
 
-def parser():
-    p = argparse.ArgumentParser(prog="python -m agents.watch", description=str(__doc__).split("\n\n")[0])
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    p = argparse.ArgumentParser(prog=f"python -m {NAME}", description=str(__doc__).split("\n\n")[0])
     add = p.add_argument
-    what = "a player's name, a pre-trained model, a model's .zip or run folder"
-    add("--agent", help=f"{what} [ppo_foresight; with --frame {TACTICIAN}]")
+    what = "a name of snooker_env.players(), a model's .zip or MODULE:CLASS"
+    add("--agent", help=f"{what} [{USUAL}; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
     add("--opponent", help="its player [the agent itself]")
     what = "break.html, .json, .mp4 or .gif; left out: opened in the browser"
@@ -86,7 +85,7 @@ def parser():
     return p
 
 
-def _film(args):
+def _film(args: argparse.Namespace) -> dict[str, Any]:
     """The options of the film that is wanted, {} for a page."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     choice("out", suffix, SUFFIXES)
@@ -105,63 +104,92 @@ def _film(args):
     return film
 
 
-def sought(args):
+def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
     """The environment after the visit or frame that is wanted, its seed and its players. SystemExit if there is none."""
-    name = args.agent or (TACTICIAN if args.frame else "ppo_foresight")
-    entrant = Entrant.of(name, trust=args.trust)
+    name = args.agent or (TACTICIAN if args.frame else USUAL)
+    who = player(name, trust=args.trust)
+    label = name.rpartition(":")[2]
     if args.frame:
         other = args.opponent or name
         options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": other, "trust": args.trust}
-        env = episode(entrant.player(0), args.seed, **options)
-        twins = entrant.label == other
-        return (
-            env,
-            args.seed,
-            [f"{name} {k}" if twins else name for k, name in (("A", entrant.label), ("B", other))],
-        )
+        env = episode(who, args.seed, **options)
+        both = [f"{label} A", f"{label} B"] if other == name else [label, other]
+        return env, args.seed, both
     longest = -1
     for seed in range(args.seed, args.seed + args.tries):
-        env = episode(entrant.player(0), seed, layout=args.layout, noise=args.noise)
+        env = episode(who, seed, layout=args.layout, noise=args.noise)
         if env.points >= args.at_least:
-            return env, seed, [entrant.label]
-        longest = max(longest, env.points)
+            return env, seed, [label]
+        longest = max(longest, int(env.points))
     why = f"no visit of {args.at_least} points in {args.tries} tries; the longest had {longest}"
-    raise SystemExit(f"agents.watch: {why}")
+    raise SystemExit(f"{NAME}: {why}")
 
 
-@command("agents.watch")
-def main(argv=None):
+def _checked(args: argparse.Namespace) -> dict[str, Any]:
+    """The options of the film that is wanted; ValueError for arguments that do not belong together."""
+    film = _film(args)
+    if args.opponent and not args.frame:
+        allowed = "must be left out without --frame: nobody plays against a visit"
+        raise refuse("opponent", args.opponent, allowed)
+    if args.frame and args.at_least:
+        raise refuse("at_least", args.at_least, "must be left out with --frame")
+    integer("seed", args.seed, 0, 2**63)
+    integer("tries", args.tries, 1, 10**9)
+    if args.out:
+        try:
+            args.out.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            words = f"must be a file that can be written ({error.strerror})"
+            raise refuse("out", str(args.out), words) from None
+    return film
+
+
+def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
     """Play, print, write."""
-    p = parser()
-    args = p.parse_args(argv)
-    try:
-        film = _film(args)
-        if args.opponent and not args.frame:
-            allowed = "must be left out without --frame: nobody plays against a visit"
-            raise refuse("opponent", args.opponent, allowed)
-        if args.frame and args.at_least:
-            raise refuse("at_least", args.at_least, "must be left out with --frame")
-        integer("seed", args.seed, 0, 2**63)
-        integer("tries", args.tries, 1, 10**9)
-        writable("out", args.out)
-        env, seed, players = sought(args)
-    except ValueError as error:
-        p.error(str(error))
+    env, seed, names = sought(args)
     if args.frame:
         scores = env.tables.standing(0)["scores"]
-        made = f"{players[0]} {scores[0]} - {scores[1]} {players[1]}"
+        made = f"{names[0]} {scores[0]} - {scores[1]} {names[1]}"
         where = f"frame {seed}, noise {args.noise}"
     else:
-        made = f"{players[0]}: {env.points} points"
+        made = f"{names[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
     title = f"{made}, {args.noise}'s errors, {where.split(',')[0]}"
-    judge: Any = sn.player(TACTICIAN).at(env) if args.frame else None
-    replay = sn.replay(env, title=title, players=players, judge=judge)
-    print(*described(replay), sep="\n")
-    print(f"{made} in {len(replay)} strokes ({where})")
+    judge: Any = player(TACTICIAN).at(env) if args.frame else None
+    played = replay(env, title=title, players=names, judge=judge)
+    print(*described(played), sep="\n")
+    print(f"{made} in {len(played)} strokes ({where})")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
-    replay.save(file, **film)
+    played.save(file, **film)
     print(f"written: {file}", flush=True)
     if not args.out and not webbrowser.open(file.as_uri()):
         print("No browser was found: open this file in one, or choose its place with --out break.html")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Play, print, write. Exit code 0; 1: failed; 2: wrong arguments; 130: Ctrl-C."""
+    p = parser()
+    args = p.parse_args(argv)
+    try:
+        watched(args, _checked(args))
+    except ValueError as error:
+        p.error(str(error))
+    except ImportError as error:
+        print(f"{NAME}: {error}", file=sys.stderr)
+        return 1
+    except BrokenPipeError:  # nobody reads on: ... | head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        print(
+            f"{NAME}: {error.filename or 'the output'} cannot be written: {error.strerror}", file=sys.stderr
+        )
+        return 1
+    except KeyboardInterrupt:
+        print(f"{NAME}: interrupted", file=sys.stderr)
+        return 130
     return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
