@@ -27,6 +27,8 @@ def test_the_wheel_alone_plays_simulates_advises_serves_and_judges(tmp_path, mon
         [python, "-m", "pip", "install", "--quiet", wheel],
         [python, Path(__file__).with_name("wheel_alone.py")],
     ):
-        done = subprocess.run(command, cwd=tmp_path / "empty", env=env, capture_output=True, text=True, timeout=1200)
+        done = subprocess.run(
+            command, cwd=tmp_path / "empty", env=env, capture_output=True, text=True, timeout=1200
+        )
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-3000:]
     assert "missing extras" in done.stdout
