@@ -398,7 +398,7 @@ def report(out, results, learned, figures, best):
     show(figures)
     # half of the longest break: other visits than those of the evaluation are played to find it
     points = figures["planner" if "planner" in figures else "trained"]["longest_break"] // 2
-    watch = shlex.join(["python", "-m", "agents.watch", "--agent", best, "--at-least", str(points)])
+    watch = shlex.join(["python", "-m", "snooker_env.watch", "--agent", best, "--at-least", str(points)])
     print(f"{learned}\nFigures: {out / 'results.json'}\nWatch a break:  {watch}")
 
 

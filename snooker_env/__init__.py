@@ -47,7 +47,7 @@ if _typing.TYPE_CHECKING:
     from .replays import RecordReplay, Replay, replay
     from .tasks.options import Options
 
-__version__ = "0.3.0.dev0"
+__version__ = "1.0.0"
 
 __all__ = [
     "POCKETS",

@@ -1,4 +1,4 @@
-"""Which ids does Gymnasium know? Read by the package, or alone by ``_autoregister.py``; imports nothing."""
+"""Which ids does Gymnasium know once the package is imported?"""
 
 from typing import Any
 

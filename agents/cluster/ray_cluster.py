@@ -54,7 +54,10 @@ def difference(wanted):
 
 def add_ray(p, keep=False):
     """Add ``--ray`` to a parser, and ``--keep``."""
-    text = "play on a Ray cluster: local (all cores here), or HOST:PORT of a head; results are the same"
+    where = (
+        "local (all cores here), auto (RAY_ADDRESS, or the cluster of this machine), or HOST:PORT of a head"
+    )
+    text = f"play on a Ray cluster: {where}; results are the same"
     p.add_argument("--ray", metavar="ADDRESS", help=text)
     if keep:
         text = "keep each part in this folder or fsspec URL: the same command goes on after an interruption"
@@ -63,10 +66,10 @@ def add_ray(p, keep=False):
 
 
 def checked_ray(address):
-    """Raise ValueError unless it is None, local or HOST:PORT."""
+    """Raise ValueError unless it is None, local, auto or HOST:PORT."""
     port = re.fullmatch(r"[^/\s]+:(\d{1,5})", address or "head:6379")
-    if address != "local" and (port is None or not 0 < int(port[1]) < 2**16):
-        wanted = "must be local, or HOST:PORT of the head of a Ray cluster that this machine is part of"
+    if address not in ("local", "auto") and (port is None or not 0 < int(port[1]) < 2**16):
+        wanted = "must be local, auto, or HOST:PORT of the head of a Ray cluster that this machine is part of"
         raise refuse("ray", address, wanted)
 
 
@@ -95,14 +98,16 @@ def ray_of():
 
 
 def connected(address, cores=None):
-    """The ``Cluster`` at "local" (with so many cores, default all) or HOST:PORT. Raises ClusterError."""
+    """The ``Cluster`` at "local" (with so many cores, default all), "auto" or HOST:PORT. Raises ClusterError."""
     ray = ray_of()
     quiet = {"log_to_driver": False, "logging_level": "ERROR", "configure_logging": True}
     if address == "local":
         small = {"include_dashboard": False, "object_store_memory": LOCAL_STORE}
         ray.init("local", num_cpus=cores or processors(), **small, **quiet)
         return Cluster(ray)
-    if not _is_head(address):  # ray.init would wait for minutes
+    if address == "auto":  # KubeRay and others set it where a cluster's programs run
+        address = os.environ.get("RAY_ADDRESS") or address
+    if address != "auto" and not _is_head(address):  # ray.init would wait for minutes
         start = f"start one with  ray start --head --port={address.rpartition(':')[2]}"
         wanted = f"must be the head of a Ray cluster that runs: {start}"
         raise ClusterError(str(refuse("ray", address, wanted)))
@@ -122,7 +127,7 @@ def _is_head(address):
     try:
         socket.create_connection((host, int(port)), ANSWER / 6).close()
         return subprocess.run(command, capture_output=True, timeout=ANSWER, check=False).returncode == 0
-    except (OSError, subprocess.TimeoutExpired):
+    except (OSError, ValueError, subprocess.TimeoutExpired):  # ValueError: a RAY_ADDRESS that names no port
         return False
 
 

@@ -113,8 +113,7 @@ class RunCallback(BaseCallback):
 LEAST, SHARE = 30.0, 0.01
 """Seconds of pre-training that a kill may lose, and the largest share of its time for saving.
 
-A checkpoint holds 3.3 kB for each imitated position (of agents with a lookahead): 35 MB for the 10,000 of
-``ppo_foresight``, written in half a second. One of expert iteration: 155 MB at most.
+A checkpoint of expert iteration holds 155 MB at most.
 """
 
 

@@ -69,7 +69,7 @@ def replay(browser, out):
     """The replay of a frame, paths on, at a desk and on a phone, and its chance to win."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "frame.html"
-        command = [sys.executable, "-m", "agents.watch", "--frame", "--seed", "3", "--out", str(file)]
+        command = [sys.executable, "-m", "snooker_env.watch", "--frame", "--seed", "3", "--out", str(file)]
         subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
         for name, width, height in (("replay.jpg", 1280, 720), ("replay_phone.jpg", 390, 700)):
             page = browser.new_page(viewport={"width": width, "height": height})

@@ -28,7 +28,6 @@ from snooker_env.game import layout
 from snooker_env.game.layouts import STORED_IN
 from snooker_env.players import BoundPlayer, Strokes
 from snooker_env.tasks import OBSERVATION_SIZE
-from tests.processes import python
 
 IDS = tuple(TASKS)
 
@@ -194,14 +193,6 @@ def test_a_spawned_worker_that_imports_only_gymnasium_makes_it():
     process.start()
     assert queue.get(timeout=300) == gymnasium.make("SnookerPotHard-v0").reset(seed=1)[0].tolist()
     process.join(60)
-
-
-def test_the_finder_registers_all_ids_without_importing_the_package():
-    out, _ = python(
-        "import sys; sys.path.insert(0, 'snooker_env'); import _autoregister; _autoregister.wait()\n"
-        "import gymnasium; print(sorted(n for n in gymnasium.registry if n.startswith('Snooker')), 'snooker_env' in sys.modules)"
-    )
-    assert out == f"{sorted(ENTRY_POINTS)} False\n"
 
 
 def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_decision():

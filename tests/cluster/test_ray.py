@@ -75,6 +75,13 @@ def cluster(nodes):
         joined.close()
 
 
+def test_auto_is_the_cluster_of_this_machine(nodes, monkeypatch):
+    monkeypatch.setenv("RAY_ADDRESS", nodes[0].address)
+    joined = connected("auto")
+    assert joined.cores == 2
+    joined.close()
+
+
 @contextmanager
 def killed(nodes, folder, ready):
     """The second node is killed amid a part at which it hangs, once all is ``ready``."""

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shlex
 import signal
 import socket
 import subprocess
@@ -11,10 +12,17 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
+import yaml
 
 pytest.importorskip("ray", reason='Ray is not installed: pip install -e ".[cluster]"')
 from ray.cluster_utils import Cluster as Nodes
+from ray.scripts.scripts import start as ray_start
+from ray.scripts.symmetric_run import symmetric_run
 
+from agents.cluster.job import ClusterError
+from agents.cluster.ray_cluster import checked_ray, connected
+from agents.evaluation import protocol
+from tests.docs.pages import blocks
 from tests.processes import ROOT
 
 NODE = {"num_cpus": 2, "object_store_memory": 100 * 2**20, "include_dashboard": False}
@@ -190,10 +198,39 @@ def test_an_address_without_a_head_is_one_line(command, environment):
     assert f"ray = '127.0.0.1:{port}': must be the head of a Ray cluster that runs" in line
 
 
+PAGE = (ROOT / "docs/scale.md").read_text(encoding="utf-8")
+
+
+def test_the_jobs_of_the_page_give_commands_that_exist():
+    (manifest,), scripts = map(yaml.safe_load, blocks(PAGE, "yaml")), blocks(PAGE, "bash")
+    (job,) = [script for script in scripts if "#SBATCH" in script]
+    start, _, command = job.replace("\\\n", " ").partition("ray symmetric-run")[2].partition(" -- ")
+    for line in (command, manifest["spec"]["entrypoint"]):
+        words = shlex.split(line)
+        assert words[:3] == ["python", "-m", "agents.evaluate"]
+        args = protocol.parser().parse_args(words[3:])
+        checked_ray(args.ray)
+        assert args.ray == "auto" and args.keep
+    known = {option for parameter in (*ray_start.params, *symmetric_run.params) for option in parameter.opts}
+    assert {word for word in shlex.split(start) if word.startswith("--")} <= known
+    cluster = manifest["spec"]["rayClusterSpec"]
+    assert manifest["kind"] == "RayJob" and cluster["authOptions"] == {"mode": "token"}
+    groups = [cluster["headGroupSpec"], *cluster["workerGroupSpecs"]]
+    assert {f"--{name}" for group in groups for name in group["rayStartParams"]} <= known
+    assert len({group["template"]["spec"]["containers"][0]["image"] for group in groups}) == 1
+
+
+@pytest.mark.parametrize("address", ["127.0.0.1:1", "ray://127.0.0.1:1", "nowhere"])
+def test_auto_takes_the_address_of_the_environment(address, monkeypatch):
+    monkeypatch.setenv("RAY_ADDRESS", address)
+    with pytest.raises(ClusterError, match=f"ray = '{address}': must be the head of a Ray cluster that runs"):
+        connected("auto")
+
+
 @pytest.mark.parametrize("address", ["here", "ray://1.2.3.4:10001", "host:", "host:99999", ":6379"])
 def test_what_is_no_address_is_refused(address, environment):
     code, _, err = finished([*QUICK, address], environment)
-    assert code == 2 and f"ray = {address!r}: must be local, or HOST:PORT" in err.splitlines()[-1]
+    assert code == 2 and f"ray = {address!r}: must be local, auto, or HOST:PORT" in err.splitlines()[-1]
 
 
 def test_the_benchmark_prints_what_a_part_costs(tmp_path, environment):

@@ -59,7 +59,7 @@ def test_data_are_what_the_search_plays(tmp_path):
         (["--agent", "random"], "must be one player that searches"),
         (["--positions", "0"], "positions = 0"),
         (["--layout", "held_out"], "held-out tables are kept"),
-        (["--ray", "x"], "must be local, or HOST:PORT"),
+        (["--ray", "x"], "must be local, auto, or HOST:PORT"),
     ],
 )
 def test_wrong_options_are_refused(change, says, tmp_path, capsys):

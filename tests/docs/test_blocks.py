@@ -11,7 +11,6 @@ from tests.docs.pages import NAMES, PAGES, ROOT, blocks
 
 RUNNER = """if True:
     import json, sys, warnings
-    import snooker_env  # ids are registered, as they are where it is installed
     warnings.simplefilter("error")
     for number, block in enumerate(json.load(sys.stdin)):
         print("block", number, flush=True)

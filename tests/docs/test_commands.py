@@ -39,7 +39,7 @@ SHORT = {
     "benchmarks.flight": "--tables 2 --shots 20",
     "benchmarks.vector": "--seconds 0.1 --repeats 1 --tables 64 --ppo-steps 2048",
     "agents.value_quality": "--agent planner_30 --visits 3",
-    "agents.watch": "--agent ghost_ball --out {tmp}/visit.html",
+    "snooker_env.watch": "--agent ghost_ball --out {tmp}/visit.html",
     "tests.rules_cases": "tests/data/rules_cases.json",
     "tests.oracles.frame_oracle": "--frames 2 --kind tables",
     "docs/pictures/make.py": "--out {tmp}",
@@ -78,7 +78,10 @@ ELSEWHERE = {
 """Module or file -> the test that runs it."""
 
 NOT_RUN = {
-    "coverage": "it would run this suite within the suite; it is of the extra dev, which tests do not need"
+    "coverage": "it would run this suite within the suite; it is of the extra dev, which tests do not need",
+    "build": "of a release: .github/workflows/release.yml runs it; the wheel is built by tests/repository",
+    "twine": "of a release: .github/workflows/release.yml runs it",
+    "tests.library_versions": "it installs other versions of libraries, for half an hour",
 }
 
 GIVEN = {name: set() for page in PAGES for name, _ in commands(page.read_text(encoding="utf-8"))}
@@ -124,3 +127,15 @@ def test_commands_run(name, tmp_path):
         assert printed.splitlines()[-1].endswith(", 0 failed")
     if name == "docs/films/make.py":
         assert (tmp_path / "pot_easy.mp4").stat().st_size > 5_000
+
+
+def test_the_tests_that_are_named_exist():
+    """Of ``python -m pytest tests/...``."""
+    named = [
+        word
+        for page in PAGES
+        for name, words in commands(page.read_text(encoding="utf-8"))
+        for word in words
+        if name == "pytest" and word.startswith("tests/")
+    ]
+    assert len(named) > 3 and not [word for word in named if not (ROOT / word).exists()]

@@ -69,7 +69,7 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
     ]
     assert train.main([*short, "--seed", "3", "--out", str(whole)]) == 0
     said = capsys.readouterr().out
-    assert f"python -m agents.watch --agent stroke_value@{whole / 'strokes.npz'}" in said
+    assert f"python -m snooker_env.watch --agent stroke_value@{whole / 'strokes.npz'}" in said
     results = json.loads((whole / "results.json").read_text())
     assert set(results["evaluation"]) == {"trained", "ghost_ball", "random"}
     repeated = ["--agent", "stroke_value", "--seed", "3", "--set", "rounds=2", "tables=16"]

@@ -1,13 +1,10 @@
-"""Does ``gymnasium.make("Snooker-v0")`` work once installed, without an import and at no cost for others?"""
+"""What does an installation hold, and are the environments made from it, in worker processes too?"""
 
 import compileall
 import os
-import shutil
 import subprocess
-import sys
 import sysconfig
 import tarfile
-import time
 import venv
 import zipfile
 from importlib import metadata
@@ -16,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import snooker_env
+from snooker_env._registration import ENTRY_POINTS
 from tests.processes import ROOT
 
 hatchling = pytest.importorskip("hatchling.build")
@@ -67,122 +65,84 @@ def installed(request, tmp_path_factory):
     return Environment(folder / "venv").unpack(folder / name)
 
 
-MAKE = """
+IDS = """
 import sys, gymnasium
-assert "snooker_env" not in sys.modules and "numba" not in sys.modules
-print(gymnasium.spec("Snooker-v0").entry_point)
-assert "snooker_env" not in sys.modules and "numba" not in sys.modules
-env = gymnasium.make("Snooker-v0", layout="random:2")
+assert not [name for name in sys.modules if "snooker" in name or name == "numba"]
+{how}
 print(type(env.unwrapped).__name__, env.reset(seed=0)[0].shape)
-env = gymnasium.make_vec("Snooker-v0", 3, vectorization_mode="vector_entry_point", layout="random:2")
-print(type(env).__name__, env.reset(seed=0)[0].shape)
-import snooker_env, importlib
+many = gymnasium.make_vec("Snooker-v0", 3, vectorization_mode="vector_entry_point", layout="random:2")
+print(type(many).__name__, many.reset(seed=0)[0].shape)
+import importlib, snooker_env
 importlib.reload(snooker_env)
-print(type(gymnasium.make("snooker_env:Snooker-v0").unwrapped).__name__, [f for f in sys.meta_path if "snooker" in repr(f)])
+print(sorted(name for name in gymnasium.registry if "Snooker" in name))
 """
+HOW = {
+    "imported": 'import snooker_env\nenv = gymnasium.make("Snooker-v0", layout="random:2")',
+    "named": 'env = gymnasium.make("snooker_env:Snooker-v0", layout="random:2")',
+}
 
 
 @pytest.mark.parametrize("flags", [(), ("-I",), ("-E", "-s")], ids=["", "isolated", "without variables"])
-def test_the_environment_is_made_without_an_import(installed, flags):
-    out, err = installed.run(MAKE, *flags)
-    assert err == ""
-    made = ["SnookerEnv (121,)", "SnookerVectorEnv (3, 121)", "SnookerEnv []"]
-    assert out.splitlines() == ["snooker_env.envs.snooker:SnookerEnv", *made]
+@pytest.mark.parametrize("how", HOW)
+def test_the_environments_are_made_by_either_name(installed, how, flags):
+    out, err = installed.run(IDS.format(how=HOW[how]), *flags)
+    made = ["SnookerEnv (121,)", "SnookerVectorEnv (3, 121)", str(sorted(ENTRY_POINTS))]
+    assert out.splitlines() == made and err == ""
+
+
+def test_an_installation_changes_no_other_program(installed):
+    """Nothing runs when an interpreter starts, and Gymnasium alone knows no id of ours."""
+    code = "import sys, gymnasium; print([m for m in sys.modules if 'snooker' in m], 'Snooker-v0' in gymnasium.registry)"
+    assert installed.run(code) == ("[] False\n", "")
 
 
 WORKERS = """
-import multiprocessing, sys, gymnasium
+import functools, sys
+import gymnasium
+from gymnasium.vector import AsyncVectorEnv
 
-def made(spec):
-    return "snooker_env" in sys.modules, gymnasium.make(spec).spec.id
+def main(method):
+    from stable_baselines3.common.env_util import make_vec_env  # not in the workers: torch is slow to import
+    from stable_baselines3.common.vec_env import SubprocVecEnv
+
+    name, options = "snooker_env:Snooker-v0", {"layout": "random:2"}
+    make = functools.partial(gymnasium.make, name, **options)
+    wanted = make().reset(seed=5)[0]
+    spec = {"vectorization_mode": "async", "vector_kwargs": {"context": method}}
+    for envs in (
+        gymnasium.make_vec(name, 1, **spec, **options),
+        gymnasium.make_vec("Snooker-v0", 1, **spec, **options),  # imported here, and its spec is sent
+        AsyncVectorEnv([make], context=method),
+        AsyncVectorEnv([lambda: gymnasium.make(name, **options)], context=method),
+    ):
+        print((envs.reset(seed=5)[0][0] == wanted).all())
+        envs.close()
+    vec_env = {"vec_env_cls": SubprocVecEnv, "vec_env_kwargs": {"start_method": method}}
+    envs = make_vec_env(name, 1, seed=5, env_kwargs=options, **vec_env)
+    print((envs.reset()[0] == wanted).all())
+    envs.close()
 
 if __name__ == "__main__":
-    with multiprocessing.get_context({method!r}).Pool(1) as pool:
-        print(pool.map(made, ["Snooker-v0", gymnasium.spec("Snooker-v0")]))
+    main(sys.argv[1])
 """
 
 
-@pytest.mark.parametrize("method", ["spawn", "forkserver", "fork"])
-def test_workers_make_it_too(installed, method):
-    (installed.cwd / "workers.py").write_text(WORKERS.format(method=method))
-    out, err = installed.run(
-        "import runpy; runpy.run_path('workers.py', run_name='__main__')" if method == "fork" else RUN_FILE
-    )
-    assert out == "[(False, 'Snooker-v0'), (True, 'Snooker-v0')]\n" and err == ""
-
-
-RUN_FILE = "import subprocess, sys; sys.exit(subprocess.run([sys.executable, 'workers.py']).returncode)"
-
-
-def test_it_is_registered_by_the_site_and_can_be_switched_off(installed):
-    """The control: neither Gymnasium nor anything else here has the id by itself."""
-    paths = [str(installed.site), str(installed.cwd.parent / "libraries"), str(ROOT)]
-    code = f"import sys; sys.path += {paths!r}\nimport gymnasium\nprint('Snooker-v0' in gymnasium.registry)"
-    assert installed.run(code, "-S")[0] == "False\n"
-    code = "import gymnasium, sys; print('Snooker-v0' in gymnasium.registry, [f for f in sys.meta_path if 'snooker' in repr(f)])"
-    assert installed.run(code, SNOOKER_ENV_AUTOREGISTER="0")[0] == "False []\n"
-    assert installed.run(code)[0] == "True []\n"
-
-
-def test_other_programs_pay_nothing_that_can_be_felt(installed):
-    code = "import sys; print(sorted(m for m in sys.modules if 'snooker' in m or m in ('numpy', 'numba', 'gymnasium', 'importlib.util')))"
-    assert installed.run(code)[0] == "['_snooker_env_autoregister']\n"
-    code = (
-        "import sys, time\nsys.modules.pop('_snooker_env_autoregister')\n"
-        "line = open({!r}).read()\nt = time.perf_counter()\nexec(line)\nprint(time.perf_counter() - t)"
-    ).format(str(installed.site / "snooker_env_autoregister.pth"))
-    assert min(float(installed.run(code)[0]) for _ in range(5)) < 1e-3
-
-
-@pytest.mark.parametrize("broken", ["syntax error", "import no_such_module"])
-def test_a_broken_copy_stops_no_interpreter(installed, broken):
-    module = installed.site / "_snooker_env_autoregister.py"
-    sound = module.read_text()
-    try:
-        module.write_text(broken)
-        later = time.time() + 10
-        os.utime(module, (later, later))
-        assert installed.run("import gymnasium; print('Snooker-v0' in gymnasium.registry)") == ("False\n", "")
-        module.unlink()
-        assert installed.run("import gymnasium; print('Snooker-v0' in gymnasium.registry)") == ("False\n", "")
-    finally:
-        module.write_text(sound)
-
-
-def test_gymnasium_is_imported_whatever_happens_to_the_id(installed):
-    """A package without that file, as of another version."""
-    (installed.cwd / "snooker_env").mkdir()
-    (installed.cwd / "snooker_env/__init__.py").touch()
-    try:
-        out, err = installed.run("import gymnasium\nprint(gymnasium.make('CartPole-v1').spec.id)")
-    finally:
-        shutil.rmtree(installed.cwd / "snooker_env")
-    assert out == "CartPole-v1\n" and err.count("\n") == 1
-    assert err.startswith("snooker_env: its environments are not registered: FileNotFoundError: ")
-
-
-def test_a_gymnasium_that_is_there_already_has_the_id_at_once():
-    """A ``.pth`` file that sorts before ours may have imported it."""
-    code = (
-        "import gymnasium, sys; sys.path.insert(0, 'snooker_env'); import _autoregister\n"
-        "_autoregister.wait(); print('Snooker-v0' in gymnasium.registry, 'snooker_env' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert done.stdout == "True False\n"
+@pytest.mark.parametrize("installed", ["wheel"], indirect=True)
+@pytest.mark.parametrize("method", ["spawn", "forkserver"])
+def test_workers_make_it_from_the_name_with_its_module(installed, method):
+    (installed.cwd / "workers.py").write_text(WORKERS)
+    code = "import subprocess, sys; sys.exit(subprocess.run([sys.executable, 'workers.py', {!r}]).returncode)"
+    out, err = installed.run(code.format(method))
+    assert out.split() == ["True"] * 5, err
 
 
 def test_the_wheel_holds_what_belongs_there_and_says_who_may_use_it(tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)
     with zipfile.ZipFile(tmp_path / hatchling.build_wheel(str(tmp_path))) as wheel:
         names = wheel.namelist()
-        direct = (ROOT / "snooker_env/_autoregister.py").read_bytes()
-        assert wheel.read("_snooker_env_autoregister.py") == direct
-        assert wheel.read("snooker_env_autoregister.pth").count(b"\n") == 1  # one line: each is run by itself
         wheel.extractall(tmp_path)
-    tops = {"snooker_env", "_snooker_env_autoregister.py", "snooker_env_autoregister.pth"}
-    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == tops
+    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {"snooker_env"}
     assert "snooker_env/_registration.py" in names and len(names) == len(set(names))
-    assert [name for name in names if name.endswith(".pth")] == ["snooker_env_autoregister.pth"]
     built = metadata.Distribution.at(*tmp_path.glob("*.dist-info"))
     assert built.metadata["License-Expression"] == "MIT" and built.version == snooker_env.__version__
     for name in ("LICENSE", "snooker_env/render/fonts/OFL.txt"):
@@ -190,24 +150,32 @@ def test_the_wheel_holds_what_belongs_there_and_says_who_may_use_it(tmp_path, mo
 
 
 @pytest.mark.skipif(not (ROOT / ".git").exists(), reason="only a clone can say what belongs to it")
-def test_the_source_distribution_is_a_clone_and_gives_the_same_wheel(tmp_path, monkeypatch):
-    """Tests, agents, weights and documents come with it; what git ignores does not."""
+def test_the_source_distribution_is_the_package_alone_and_gives_the_same_wheel(tmp_path, monkeypatch):
+    """No pictures, results or agents; nor what git ignores."""
     monkeypatch.chdir(ROOT)
     with tarfile.open(tmp_path / hatchling.build_sdist(str(tmp_path))) as source:
         source.extractall(tmp_path)
     (tree,) = (path for path in tmp_path.iterdir() if path.is_dir())
     there = {path.relative_to(tree).as_posix() for path in tree.rglob("*") if path.is_file()}
-    command = ["git", "ls-files", "-z", "-co", "--exclude-standard"]
+    command = ["git", "ls-files", "-z", "-co", "--exclude-standard", "snooker_env"]
     listed = subprocess.check_output(command, cwd=ROOT, text=True)
-    here = {name for name in listed.split("\0") if name and (ROOT / name).is_file()}
-    assert there - here == {"PKG-INFO"} and here <= there, sorted(here ^ there)[:20]
+    package = {name for name in listed.split("\0") if name and (ROOT / name).is_file()}
+    assert {name for name in there if name.startswith("snooker_env/")} == package
+    beside = {
+        "PKG-INFO",
+        "pyproject.toml",
+        "hatch_build.py",
+        "README.md",
+        "LICENSE",
+        "CHANGELOG.md",
+        "CITATION.cff",
+    }
+    assert there - package == {*beside, ".gitignore"}
     wheels = []
     for folder in (ROOT, tree):
         monkeypatch.chdir(folder)
         with zipfile.ZipFile(tmp_path / hatchling.build_wheel(str(tmp_path))) as wheel:
             wheels.append({one.filename: one.CRC for one in wheel.infolist()})
             del wheels[-1][next(name for name in wheels[-1] if name.endswith("RECORD"))]
-    assert wheels[0] == wheels[1]
-    data = {name for name in here if name.startswith("snooker_env/") and not name.endswith(".py")}
-    assert data - {"snooker_env/_autoregister.pth"} <= set(wheels[0])
-    assert {"snooker_env/py.typed", "snooker_env/game/opened.npz"} <= data
+    assert wheels[0] == wheels[1] and package <= set(wheels[0])
+    assert {"snooker_env/py.typed", "snooker_env/game/opened.npz"} <= package

@@ -1,12 +1,11 @@
-"""Does ``python -m agents.watch`` show the visit that the protocol plays, as a page, as data and as films?"""
+"""Does ``python -m snooker_env.watch`` show the visit that the protocol plays, as a page, as data and as films?"""
 
 import json
 
 import numpy as np
 import pytest
 
-from agents.evaluation import watch
-from snooker_env import player
+from snooker_env import player, watch
 from snooker_env.benchmark import HELD_OUT_SEED, play_visits
 
 SHORT = ["--agent", "ghost_ball", "--noise", "club"]
@@ -83,7 +82,7 @@ def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
         ("--opponent random", "without --frame"),
         ("--frame --at-least 5", "with --frame"),
         ("--frame --opponent nobody", "opponent"),
-        ("--agent nobody", "agent"),
+        ("--agent nobody", "player = 'nobody'"),
         ("--out a.exe", "must be one of '.html'"),
         ("--out a.html --speed 2", "a film"),
         ("--out a.mp4 --size big", "WIDTHxHEIGHT"),
@@ -94,7 +93,26 @@ def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
         ("--noise loud", "noise"),
     ],
 )
-def test_wrong_arguments_are_named(wrong, words, refused, tmp_path, monkeypatch):
+def test_wrong_arguments_are_named(wrong, words, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert words in refused(watch.main, "--agent", "ghost_ball", *wrong.split())
+    with pytest.raises(SystemExit) as stop:
+        watch.main(["--agent", "ghost_ball", *wrong.split()])
+    assert stop.value.code == 2 and words in capsys.readouterr().err.splitlines()[-1]
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "words"),
+    [
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (OSError(28, "No space left on device"), 1, "the output cannot be written: No space left on device"),
+        (ImportError("films need ffmpeg"), 1, "films need ffmpeg"),
+    ],
+)
+def test_what_stops_it_from_outside_is_one_line(error, code, words, monkeypatch, capsys):
+    def stop(*_, **__):
+        raise error
+
+    monkeypatch.setattr(watch, "replay", stop)
+    assert watch.main(SHORT) == code
+    assert capsys.readouterr().err == f"snooker_env.watch: {words}\n"

@@ -1,0 +1,195 @@
+"""How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
+
+    python -m snooker_env.watch --agent planner --out break.html
+    python -m snooker_env.watch --agent search_2000 --at-least 50 --out break.mp4
+    python -m snooker_env.watch --frame --out frame.html
+
+The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the
+replay is written to a temporary file and opened in the browser. The cue is real. Visits are played on held-out tables, the
+seeds one after the other; --at-least takes the first of --tries visits with so many points. The same seed
+gives the same visit as ``benchmark.play_visits`` plays on that table. With --frame: a whole frame, against
+--opponent, with the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The
+replay shows how likely each player was to win, by the ``tactician``.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+import webbrowser
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ._check import choice, integer, number, refuse
+from .benchmark import HELD_OUT_SEED
+from .envs.snooker import SnookerEnv
+from .planning import Positions
+from .players import FRAMES, VISITS, Player, decision_seeds, player
+from .replays import Replay, replay
+
+NAME = "snooker_env.watch"
+FILMS = (".mp4", ".gif")
+SUFFIXES = (".html", ".json", *FILMS)
+USUAL, TACTICIAN = "planner", "tactician"
+"""Who plays a visit and a frame unless someone is named."""
+FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}
+"""Options of a frame that is watched."""
+
+
+def episode(who: Player, seed: int, **options: Any) -> SnookerEnv:
+    """A ``SnookerEnv`` after a whole visit or frame, with its history; a visit is that of ``play_visits``."""
+    env = SnookerEnv(**{**VISITS, **options})
+    bound, decision = who.at(env), 0
+    env.keep_history = True
+    env.reset(seed=seed)
+    ended = False
+    while not ended:
+        at = Positions.of(env)
+        strokes = bound.play(at, decision_seeds(0, np.array([seed]), decision))
+        _, _, terminated, truncated, _ = env.step(strokes.actions(env.options, at)[0].astype(np.float32))
+        ended, decision = terminated or truncated, decision + 1
+    return env
+
+
+def described(played: Replay) -> Iterator[str]:
+    """A line for each stroke."""
+    for k, stroke in enumerate(played.to_dict()["strokes"], 1):
+        cue = stroke["cue"]
+        spin = f"side {cue['side']:+.2f}, top {cue['top']:+.2f}"
+        yield f"{k:3}  {stroke['ball_on']:<10}  {cue['speed']:.2f} m/s, {spin}   {stroke['words']}"
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    p = argparse.ArgumentParser(prog=f"python -m {NAME}", description=str(__doc__).split("\n\n")[0])
+    add = p.add_argument
+    what = "a name of snooker_env.players(), a model's .zip or MODULE:CLASS"
+    add("--agent", help=f"{what} [{USUAL}; with --frame {TACTICIAN}]")
+    add("--frame", action="store_true", help="play a whole frame against --opponent")
+    add("--opponent", help="its player [the agent itself]")
+    what = "break.html, .json, .mp4 or .gif; left out: opened in the browser"
+    add("--out", type=Path, help=what)
+    add("--layout", default="held_out", help="of the tables, as for Snooker-v0")
+    add("--noise", default="professional", help="execution noise")
+    add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
+    what = "show the first visit with so many points"
+    add("--at-least", type=int, default=0, metavar="POINTS", help=what)
+    add("--tries", type=int, default=200, help="most visits played to find it")
+    add("--speed", type=float, default=1.0, help="of a film, over that of the play")
+    add("--size", help="of a film, WIDTHxHEIGHT, both even")
+    add("--fps", type=float, help="pictures a second of a film")
+    add("--trust", action="store_true", help="let code in a model's file run")
+    return p
+
+
+def _film(args: argparse.Namespace) -> dict[str, Any]:
+    """The options of the film that is wanted, {} for a page."""
+    suffix = args.out.suffix.lower() if args.out else ".html"
+    choice("out", suffix, SUFFIXES)
+    film: dict[str, Any] = {}
+    for name, usual, most in (("speed", 1.0, 100.0), ("fps", None, 240.0)):
+        if (value := getattr(args, name)) != usual:
+            film[name] = number(name, value, 0.0, most, open_low=True)
+    if args.size is not None:
+        width, _, height = args.size.partition("x")
+        if not (width.isdigit() and height.isdigit()) or int(width) % 2 or int(height) % 2:
+            even = "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders want them"
+            raise refuse("size", args.size, even)
+        film["size"] = int(width), int(height)
+    if film and suffix not in FILMS:
+        raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
+    return film
+
+
+def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
+    """The environment after the visit or frame that is wanted, its seed and its players. SystemExit if there is none."""
+    name = args.agent or (TACTICIAN if args.frame else USUAL)
+    who = player(name, trust=args.trust)
+    label = name.rpartition(":")[2]
+    if args.frame:
+        other = args.opponent or name
+        options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": other, "trust": args.trust}
+        env = episode(who, args.seed, **options)
+        both = [f"{label} A", f"{label} B"] if other == name else [label, other]
+        return env, args.seed, both
+    longest = -1
+    for seed in range(args.seed, args.seed + args.tries):
+        env = episode(who, seed, layout=args.layout, noise=args.noise, cue="real")
+        if env.points >= args.at_least:
+            return env, seed, [label]
+        longest = max(longest, int(env.points))
+    why = f"no visit of {args.at_least} points in {args.tries} tries; the longest had {longest}"
+    raise SystemExit(f"{NAME}: {why}")
+
+
+def _checked(args: argparse.Namespace) -> dict[str, Any]:
+    """The options of the film that is wanted; ValueError for arguments that do not belong together."""
+    film = _film(args)
+    if args.opponent and not args.frame:
+        allowed = "must be left out without --frame: nobody plays against a visit"
+        raise refuse("opponent", args.opponent, allowed)
+    if args.frame and args.at_least:
+        raise refuse("at_least", args.at_least, "must be left out with --frame")
+    integer("seed", args.seed, 0, 2**63)
+    integer("tries", args.tries, 1, 10**9)
+    if args.out:
+        try:
+            args.out.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            words = f"must be a file that can be written ({error.strerror})"
+            raise refuse("out", str(args.out), words) from None
+    return film
+
+
+def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
+    """Play, print, write."""
+    env, seed, names = sought(args)
+    if args.frame:
+        scores = env.tables.standing(0)["scores"]
+        made = f"{names[0]} {scores[0]} - {scores[1]} {names[1]}"
+        where = f"frame {seed}, noise {args.noise}"
+    else:
+        made = f"{names[0]}: {env.points} points"
+        where = f"table {seed}, layout {args.layout}, noise {args.noise}"
+    title = f"{made}, {args.noise}'s errors, {where.split(',')[0]}"
+    judge: Any = player(TACTICIAN).at(env) if args.frame else None
+    played = replay(env, title=title, players=names, judge=judge)
+    print(*described(played), sep="\n")
+    print(f"{made} in {len(played)} strokes ({where})")
+    file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
+    played.save(file, **film)
+    print(f"written: {file}", flush=True)
+    if not args.out and not webbrowser.open(file.as_uri()):
+        print("No browser was found: open this file in one, or choose its place with --out break.html")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Play, print, write. Exit code 0; 1: failed; 2: wrong arguments; 130: Ctrl-C."""
+    p = parser()
+    args = p.parse_args(argv)
+    try:
+        watched(args, _checked(args))
+    except ValueError as error:
+        p.error(str(error))
+    except ImportError as error:
+        print(f"{NAME}: {error}", file=sys.stderr)
+        return 1
+    except BrokenPipeError:  # nobody reads on: ... | head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except OSError as error:
+        print(
+            f"{NAME}: {error.filename or 'the output'} cannot be written: {error.strerror}", file=sys.stderr
+        )
+        return 1
+    except KeyboardInterrupt:
+        print(f"{NAME}: interrupted", file=sys.stderr)
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
