@@ -8,9 +8,16 @@ VECTOR_ENTRY_POINT = "snooker_env.envs.vector:SnookerVectorEnv"
 
 _TASKS = "snooker_env.benchmark.environments"
 _NAMES = ("Break", "BreakClub", "LineUp", "Colours", "PotHard", "Escape", "Safety", "Frame")
+FORMS: dict[str, dict[str, Any]] = {
+    "SnookerBreakDiscrete-v0": {"action": "discrete"},
+    "SnookerBreakMasked-v0": {"action": "discrete", "observation": "masked"},
+    "SnookerBreakTarget-v0": {"aim": "target"},
+}
+"""Forms of ``SnookerBreak-v0`` for scripts that take an id alone: how an agent acts, and sees masks."""
 ENTRY_POINTS = {
     ID: (ENTRY_POINT, VECTOR_ENTRY_POINT),
     **{f"Snooker{name}-v0": (f"{_TASKS}:{name}Env", f"{_TASKS}:{name}VectorEnv") for name in _NAMES},
+    **dict.fromkeys(FORMS, (f"{_TASKS}:BreakEnv", f"{_TASKS}:BreakVectorEnv")),
 }
 """Of each id the environment of one table, and that of many."""
 
@@ -19,4 +26,5 @@ def register(registration: Any) -> None:
     """Register with Gymnasium's module the ids that it lacks; string entry points keep it light."""
     for name, (one, many) in ENTRY_POINTS.items():
         if name not in registration.registry:
-            registration.register(id=name, entry_point=one, vector_entry_point=many)
+            kwargs = dict(FORMS.get(name, {}))
+            registration.register(id=name, entry_point=one, vector_entry_point=many, kwargs=kwargs)

@@ -33,6 +33,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
     ## Action space
     ``action="box"`` (default): ``Box(-1, 1, (4,), float32)`` or longer, in this order, each component linear.
+    What is up to 1e-6 outside is clipped, as rounding; more is refused.
 
     | component | -1 | +1 | present with |
     |---|---|---|---|

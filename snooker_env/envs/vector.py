@@ -199,11 +199,11 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     ) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
         """Play one step on each table; ``out``: arrays to write into, see the class.
 
-        ``actions``: float (num_envs, k) within [-1, 1], or choices, int (num_envs,). Returns observations and
-        infos as ``reset`` (with SAME_STEP also "final_obs" and "final_info"), rewards float64 (num_envs,),
-        terminations and truncations bool (num_envs,). ValueError for an action outside the space, ResetNeeded
-        before the first reset, and with DISABLED if an episode is over: then nothing is played. After a
-        SimulationError all tables need a reset.
+        ``actions``: float (num_envs, k) within [-1, 1], clipped if up to 1e-6 outside; or choices, int
+        (num_envs,). Returns observations and infos as ``reset`` (with SAME_STEP also "final_obs" and
+        "final_info"), rewards float64 (num_envs,), terminations and truncations bool (num_envs,). ValueError
+        for an action outside the space, ResetNeeded before the first reset, and with DISABLED if an episode
+        is over: then nothing is played. After a SimulationError all tables need a reset.
         """
         a = self.options.rules.actions.check_many(actions, self.num_envs)
         arrays = self._arrays_of(out, OUTPUTS)

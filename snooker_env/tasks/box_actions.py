@@ -24,8 +24,11 @@ MIN_SPEED, MAX_SPEED = 0.2, 7.0
 """Cue speeds [m/s] for -1 and +1 of an action: from a ball just rolled to the hardest power shot."""
 TARGET_SPAN = radians(3.0)
 """With ``aim="target"``: angle off the target line for +-1 [rad], more than any throw or error."""
+ROUNDING = 1e-6
+"""How far outside [-1, 1] a component may be, and is clipped: float rounding of a policy's own limits."""
 MAX_ELEVATION, STEEPEST = radians(30.0), radians(70.0)
 """The highest elevation of an action, by default and at the most that a person can do [rad]."""
+_BOUNDS = "must be finite and within [-1, 1]; gymnasium.wrappers.ClipAction clips what a policy draws outside"
 
 
 @kernel
@@ -129,19 +132,22 @@ class Actions:
         return self.concede or self.claim or self.lot
 
     def check(self, action: Action) -> list[float]:
-        """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1]."""
+        """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1].
+
+        What is up to ``ROUNDING`` outside is clipped."""
         a = self._read("action", action, (self.size,)).tolist()
-        if not all(-1.0 <= x <= 1.0 for x in a):  # NaN fails too
-            raise refuse("action", a, "must be finite and within [-1, 1]")
-        return a
+        if not all(abs(x) <= 1.0 + ROUNDING for x in a):  # NaN fails too
+            raise refuse("action", a, _BOUNDS)
+        return [min(max(x, -1.0), 1.0) for x in a]
 
     def check_many(self, actions: Any, n: int) -> Floats:
-        """The actions of n tables, float64 (n, size); ValueError names the first invalid one."""
+        """The actions of n tables, float64 (n, size), as ``check``; ValueError names the first invalid one."""
         a = self._read("actions", actions, (n, self.size))
-        if not (np.abs(a) <= 1.0).all():  # NaN fails too
-            k = int(np.argmin((np.abs(a) <= 1.0).all(axis=1)))
-            raise refuse(f"actions[{k}]", a[k].tolist(), "must be finite and within [-1, 1]")
-        return a
+        sound = np.abs(a) <= 1.0 + ROUNDING  # NaN is not
+        if not sound.all():
+            k = int(np.argmin(sound.all(axis=1)))
+            raise refuse(f"actions[{k}]", a[k].tolist(), _BOUNDS)
+        return a.clip(-1.0, 1.0, out=a)
 
     def _read(self, field: str, actions: Any, shape: tuple[int, ...]) -> Floats:
         allowed = f"must have shape {shape}, real numbers"

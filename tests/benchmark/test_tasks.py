@@ -8,10 +8,10 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.envs.registration import EnvSpec
-from gymnasium.utils.env_checker import check_env
+from gymnasium.utils.env_checker import check_env, data_equivalence
 
 import snooker_env as sn
-from snooker_env._registration import ENTRY_POINTS, ID
+from snooker_env._registration import ENTRY_POINTS, FORMS, ID
 from snooker_env.benchmark import (
     COLUMNS,
     FREE,
@@ -36,20 +36,41 @@ def many(name, n, **options):
     return gymnasium.make_vec(name, num_envs=n, vectorization_mode="vector_entry_point", **options)
 
 
-def test_every_registered_id_but_snooker_is_a_task():
-    assert set(ENTRY_POINTS) == {ID, *TASKS}
+def test_every_registered_id_but_snooker_is_a_task_or_a_form_of_one():
+    assert set(ENTRY_POINTS) == {ID, *FORMS, *TASKS}
     for name in TASKS:
         assert name == gymnasium.make(name).unwrapped.TASK and TASKS[name].id == name
         assert name == many(name, 2).TASK
 
 
-@pytest.mark.parametrize("name", IDS)
+@pytest.mark.parametrize("form", FORMS)
+def test_a_form_is_break_with_its_options(form):
+    """As scripts make it that know an id alone: one table, many in a loop, many at once."""
+    one = gymnasium.make(form)
+    assert one.spec.kwargs == FORMS[form] and one.spec == EnvSpec.from_json(one.spec.to_json())
+    assert one.unwrapped.options == TASKS["SnookerBreak-v0"].options(**FORMS[form])
+    assert ("Discrete" in type(one.action_space).__name__) == (one.unwrapped.options.action == "discrete")
+    native, loop = many(form, 3), gymnasium.make_vec(form, num_envs=3, vectorization_mode="sync")
+    assert native.options == one.unwrapped.options
+    assert native.action_space == loop.action_space and native.observation_space == loop.observation_space
+    native.action_space.seed(0)
+    a, b = native.reset(seed=1)[0], loop.reset(seed=1)[0]
+    for _ in range(4):
+        assert data_equivalence(a, b, exact=True)
+        actions = native.action_space.sample()
+        (a, *played), (b, *other) = native.step(actions), loop.step(actions)
+        assert data_equivalence(tuple(played[:3]), tuple(other[:3]), exact=True)
+    with pytest.raises(ValueError, match=r"^noise = 'none': must be left out: SnookerBreak-v0 freezes it"):
+        gymnasium.make(form, noise="none")
+
+
+@pytest.mark.parametrize("name", [*IDS, *FORMS])
 @pytest.mark.filterwarnings("error")
 def test_gymnasium_accepts_it(name):
     check_env(gymnasium.make(name, disable_env_checker=True).unwrapped, skip_render_check=True)
 
 
-@pytest.mark.parametrize("name", IDS)
+@pytest.mark.parametrize("name", [*IDS, *FORMS])
 @pytest.mark.filterwarnings("error")
 def test_stable_baselines_accepts_it(name):
     checker = pytest.importorskip("stable_baselines3.common.env_checker")

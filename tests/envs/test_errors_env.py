@@ -2,6 +2,7 @@
 
 import json
 from functools import partial
+from typing import ClassVar
 
 import gymnasium
 import numpy as np
@@ -156,7 +157,7 @@ PLAYED = {
     "match": lambda: sn.match_env(),
     "matches": lambda: sn.MatchVectorEnv(2, threads=1),
 }
-BOUNDS = "must be finite and within [-1, 1]"
+BOUNDS = "must be finite and within [-1, 1]; gymnasium.wrappers.ClipAction clips"
 
 
 def wrong_actions(n):
@@ -168,7 +169,7 @@ def wrong_actions(n):
         (0.0, "shape ()", shape),
         (None, "None", shape),
         ([[0.0] * n], "shape (1, ", shape),
-        ([*zeros, 1.0000001], "1.0000001", BOUNDS),
+        ([*zeros, 1.00000101], "1.00000101", BOUNDS),
         ([-1.5, *zeros], "-1.5", BOUNDS),
         ([NAN, *zeros], "nan", BOUNDS),
         ([*zeros, INF], "inf", BOUNDS),
@@ -205,6 +206,107 @@ def test_wrong_actions_change_nothing(kind, action, field, value, allowed):
     before = json.dumps(env.get_state())
     refused(lambda: env.step(action), field, value, allowed)
     assert json.dumps(env.get_state()) == before
+
+
+def _vector_env(action):
+    envs = SnookerVectorEnv(2, threads=1)
+    envs.reset(seed=1)
+    envs.step([[0.0] * 4, action])
+    return envs.get_state()
+
+
+def _sb3(action):
+    envs = pytest.importorskip("snooker_env.sb3").SnookerVecEnv(2, seed=1, threads=1)
+    envs.reset()
+    envs.step(np.array([[0.0] * 4, action]))
+    return envs.tables.get_state()
+
+
+def _match(action):
+    pytest.importorskip("pettingzoo")
+    env = sn.match_env()
+    env.reset(seed=1)
+    env.step([*action, 0.0, 0.0, 0.0])
+    return env.get_state()
+
+
+def _matches(action):
+    envs = sn.MatchVectorEnv(2, threads=1)
+    envs.reset(seed=1)
+    envs.step([[*action, 0.0, 0.0, 0.0]] * 2)
+    return envs.get_state()
+
+
+def _one(action, **options):
+    env = SnookerEnv(**options)
+    env.reset(seed=1)
+    env.step(action)
+    return env.get_state()
+
+
+def _opponent(action):
+    env = SnookerEnv(task="frame", opponent=lambda observation, rng: action)
+    env.reset(seed=1, options={"breaker": 0})
+    env.step([0.0] * 4)
+    return env.get_state()
+
+
+class _Same:
+    """A player of observations that always answers the same."""
+
+    options: ClassVar = {"aim": "absolute"}
+
+    def __init__(self, action):
+        self.action = action
+
+    def act(self, observations, masks, seeds):
+        return [self.action] * len(seeds)
+
+
+def _player(action):
+    position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    return [part.tolist() for part in sn.player(_Same(action)).at({}).play(position, [7]).parts[:1]]
+
+
+def _planner(action):
+    position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    return sn.Planner({}).play(position, [0], [action]).afterstates.positions.tolist()
+
+
+WAYS = {
+    "one table": _one,
+    "target": lambda action: _one(action, aim="target"),
+    "long": lambda action: _one([*action, 0.0, 0.0], layout="break_off", placement=True),
+    "many": _vector_env,
+    "SB3": _sb3,
+    "match": _match,
+    "matches": _matches,
+    "opponent": _opponent,
+    "player": _player,
+    "planner": _planner,
+}
+"""Every way by which an action in [-1, 1] comes in, and what it leaves."""
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("component", range(4))
+def test_rounding_outside_the_bounds_is_clipped_and_more_is_refused(way, component):
+    def action(x):
+        a = [-0.5, 0.0, 0.0, 0.25]
+        a[component] = x
+        return a
+
+    for end in (-1.0, 1.0):
+        at_the_end = WAYS[way](action(end))
+        assert WAYS[way](action(end * (1.0 + 1e-6))) == at_the_end
+        assert WAYS[way](np.array(action(end * 1.0000005), np.float32)) == at_the_end  # as of a network
+        if component < 3 and way != "SB3":  # nor is it deaf; SB3 deals a new table after a miss
+            assert WAYS[way](action(end * 0.99)) != at_the_end
+    for wrong in (1.0000011, -1.0000011, NAN):
+        with pytest.raises(
+            ValueError, match=r"must be finite and within \[-1, 1\]; gymnasium\.wrappers\.ClipAction"
+        ):
+            WAYS[way](action(wrong))
 
 
 @pytest.fixture(scope="module")
