@@ -56,7 +56,7 @@ def test_a_command_says_what_is_missing(package, extra, command):
 
 
 @pytest.mark.parametrize(
-    "module", [f"agents.{name}" for name in ("evaluate", "publish", "curves", "watch", "report")]
+    "module", [f"agents.{name}" for name in ("evaluate", "publish", "curves", "report")]
 )
 def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     """And compiles nothing: the cache stays empty."""
