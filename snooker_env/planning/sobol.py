@@ -113,8 +113,6 @@ def sobol_points(n: int, dimensions: int, seed: int) -> Floats:
     return out
 
 
-EVEN_SAMPLES = (354, 1840, 979, 2326, 3875)
-"""Keys of five noise samples whose errors of each kind are evenly spread (of ``agents.noise_samples``)."""
 _NORMAL = np.vectorize(NormalDist().inv_cdf, otypes=[np.float64])
 _AIM_FIRST = [1, 2, 3, 0, 4]
 """Which coordinate becomes which error: the first, the most even one, that of the aim, which matters most."""

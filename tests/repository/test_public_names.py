@@ -58,7 +58,6 @@ def private(source):
 TRAINED_FOR = (
     "snooker_env.players",
     "snooker_env.planning.learned",
-    "snooker_env.planning.sobol: EVEN_SAMPLES",
     "snooker_env.planning.frame_search: LEAST",
     "snooker_env.planning.worth",
     "snooker_env.game.sides: strikers_own",
@@ -66,7 +65,6 @@ TRAINED_FOR = (
     "snooker_env.tasks.carry_out",
     "snooker_env.tasks.frame",
     "snooker_env.tasks.threads",
-    "snooker_env.tasks.noise: errors_of",
 )
 
 

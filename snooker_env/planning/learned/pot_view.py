@@ -19,13 +19,7 @@ SHOWN = OBSERVATION_SIZE + POTS * POT_ENTRIES
 # Entries that change sign when the table is mirrored, left and right exchanged.
 BALL_X = 0
 POT_X, CUT = (1, 9, 11), 3
-TOLERANCE = 7
-"""The entry that shows the tolerance, see ``tolerance_of``."""
-
-
-def tolerance_of(shown: Any) -> Any:
-    """The tolerance [rad] of a pot whose entry ``TOLERANCE`` is this (array or tensor)."""
-    return 10.0 ** (2.0 * (shown - 1.0))
+TOLERANCE = 7  # the entry that shows the tolerance [rad], as 1 + log10(tolerance) / 2
 
 
 @entry(what="the view of the pots", seconds=1)

@@ -55,10 +55,6 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
     assert pockets == set(range(6))
 
 
-def test_the_tolerance_is_read_back():
-    assert pot_view.tolerance_of(1 + log10(4e-3) / 2) == pytest.approx(4e-3)
-
-
 def test_pot_view_shows_the_line_that_the_aim_is_read_against():
     table = SnookerEnv(aim="target", layout="held_out")
     for seed in range(20):
