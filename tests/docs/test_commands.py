@@ -132,5 +132,11 @@ def test_commands_run(name, tmp_path):
 
 def test_the_tests_that_are_named_exist():
     """Of ``python -m pytest tests/...``."""
-    named = [word for page in PAGES for name, words in commands(page.read_text(encoding="utf-8")) for word in words if name == "pytest" and word.startswith("tests/")]
+    named = [
+        word
+        for page in PAGES
+        for name, words in commands(page.read_text(encoding="utf-8"))
+        for word in words
+        if name == "pytest" and word.startswith("tests/")
+    ]
     assert len(named) > 3 and not [word for word in named if not (ROOT / word).exists()]
