@@ -3,7 +3,7 @@
     python -m tests.library_versions 3.10 3.11 3.12 3.13
 
 Needs ``uv``. Each line of the table is an environment of its own with the wheel of this clone, in which one table
-and many are played, a shot is simulated and a player asked; kernels are compiled anew. It takes minutes a line.
+and many are played and a shot is simulated; kernels are compiled anew. It takes minutes a line.
 """
 
 import argparse
@@ -28,8 +28,6 @@ assert many.reset(seed=0)[0].shape == (4, *env.observation_space.shape)
 many.step(np.zeros((4, 4), np.float32))
 v, w = sn.strike(2.0, 0.1)
 assert sn.simulate([(0.0, 0.0), (0.5, 0.05)], [v[:2], (0, 0)], [w, (0, 0, 0)]).positions.shape == (2, 2)
-env.reset(seed=1)
-assert sn.player("search_30").at(env.unwrapped).play(sn.Positions.of(env.unwrapped), [1])
 """
 LIBRARIES = ("gymnasium", "numpy", "numba")
 
@@ -41,10 +39,12 @@ def tried(python, resolution, wheel):
         run = {"capture_output": True, "text": True, "cwd": folder}
         subprocess.run(["uv", "venv", "--quiet", "--python", python, here], check=True, **run)
         target = ["--python", here, "--resolution", resolution, "--only-binary", ":all:"]
-        done = subprocess.run(["uv", "pip", "install", "--quiet", *target, wheel], **run)
+        done = subprocess.run(["uv", "pip", "install", "--quiet", *target, wheel, *LIBRARIES], **run)
         if done.returncode:
             return ["", "", "", f"not installed: {done.stderr.strip().splitlines()[-1]}"]
-        listed = subprocess.check_output(["uv", "pip", "freeze", "--python", here], text=True, cwd=folder)
+        listed = subprocess.check_output(
+            ["uv", "pip", "freeze", "--quiet", "--python", here], text=True, cwd=folder
+        )
         versions = dict(line.split("==") for line in listed.split() if "==" in line)
         env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
         env |= {"NUMBA_CACHE_DIR": f"{folder}/kernels", "SNOOKER_ENV_QUIET": "1"}

@@ -29,7 +29,7 @@ NAME = "python -m snooker_env.benchmark"
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    what = "Judge agents on named tasks by the rules of docs/benchmark.md."
+    what = "Judge agents on named tasks by the rules in the documentation, Benchmark."
     p = argparse.ArgumentParser(NAME, description=what)
     commands = p.add_subparsers(dest="command", required=True)
     commands.add_parser("tasks", help="list the tasks")

@@ -115,7 +115,7 @@ def main(argv: list[str] | None = None) -> int:
         return 130
     try:
         print(f"Snooker is played at\n\n    {server.address}\n")
-        print("Programs play at its api/ (docs/play/protocol.md). Ctrl-C ends it.", flush=True)
+        print("Programs play at its api/ (documentation: The protocol). Ctrl-C ends it.", flush=True)
         if not args.no_browser:
             webbrowser.open(server.address)
         server.serve_forever(poll_interval=0.2)

@@ -82,7 +82,7 @@ HOW = {
 }
 
 
-@pytest.mark.parametrize("flags", [(), ("-I",), ("-E", "-s")], ids=["", "isolated", "without variables"])
+@pytest.mark.parametrize("flags", [(), ("-I",)], ids=["", "isolated"])
 @pytest.mark.parametrize("how", HOW)
 def test_the_environments_are_made_by_either_name(installed, how, flags):
     out, err = installed.run(IDS.format(how=HOW[how]), *flags)
