@@ -22,7 +22,7 @@ with needs("agents.dataset"):
     from commands.files import write_atomic
     from commands.provenance import provenance
     from snooker_env.benchmark import HELD_OUT_SEED, TASKS, task_of
-    from snooker_env.checks import choice, integer, refuse
+    from snooker_env.checks import choice, integer, refuse, refuse_what
     from snooker_env.planning import Planner, Positions
     from snooker_env.players import FRAMES, VISITS, decided, decision_seeds
     from snooker_env.players.resolver import is_name
@@ -33,8 +33,8 @@ with needs("agents.dataset"):
 
 TABLES = 256
 """Tables of a part, each of which plays one episode."""
-FIRST_SEED = 40_000_000
-"""The seed of the first table; those of the judging begin at ``HELD_OUT_SEED`` and are 2**20 at the most."""
+FIRST_SEED = 200_000
+"""The seed of the first table; the last one is before ``HELD_OUT_SEED``, where those of the judging begin."""
 FORMS = ("strokes", "choices")
 INFOS = ("points", "foul")
 """What is kept of the environment's info after each stroke."""
@@ -222,7 +222,12 @@ simulator's, not measured play.
 
 
 def seeds_of(part):
-    """The seeds of the tables of a part."""
+    """The seeds of the tables of a part; ValueError where those of the judging begin."""
+    if FIRST_SEED + (part + 1) * TABLES > HELD_OUT_SEED:
+        most = (HELD_OUT_SEED - FIRST_SEED) // TABLES * TABLES
+        raise refuse_what(
+            "strokes", "more", f"must be at most those of {most:,} episodes: the seeds end there"
+        )
     return list(range(FIRST_SEED + part * TABLES, FIRST_SEED + (part + 1) * TABLES))
 
 
@@ -264,8 +269,12 @@ def main(argv=None):
         while strokes < args.strokes:
             file = kept / f"{len(parts):05d}.npz"
             if not file.is_file():
+                try:
+                    seeds = seeds_of(len(parts))
+                except ValueError as error:
+                    parser.error(str(error))
                 file.parent.mkdir(parents=True, exist_ok=True)
-                part = played(task, args.player, form, seeds_of(len(parts)), args.threads)
+                part = played(task, args.player, form, seeds, args.threads)
                 write_atomic(file, packed(part))
                 new += len(part["rewards"])
             parts.append(file)
