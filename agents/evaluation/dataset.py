@@ -11,6 +11,7 @@ table of the judging is among them.
 import shutil
 import time
 from pathlib import Path
+from typing import Any
 
 from commands.lifecycle import command, needs, parser_of
 
@@ -41,7 +42,7 @@ INFOS = ("points", "foul")
 COLUMNS = ("observations", "masks", "actions", "rewards", "terminations", "truncations", *INFOS)
 
 
-def free_options(task, form):
+def free_options(task, form) -> dict[str, Any]:
     """The free options of the environment in which a data set is played."""
     if form == "choices":
         if task.frame:
@@ -78,7 +79,7 @@ def played(task, name, form, seeds, threads=None):
     planner = Planner(envs.options, threads=1) if choices else None
     observation, _ = envs.reset(seed=seeds)
     going, number, log = np.ones(n, bool), 0, []
-    last = [None] * n
+    last: list[Any] = [None] * n
     while going.any():
         asked = going & ~envs.tables.ended()
         keys = decision_seeds(0, np.asarray(seeds), number)

@@ -62,7 +62,7 @@ class TextPlayer(ProgramPlayer):
         return answer
 
 
-def play_text(agent: Agent, visits: int, done: list[dict[str, int]], each: Callable[[], None]) -> None:
+def play_text(agent: Agent, visits: int, done: list[dict[str, int]], each: Callable[[], Any]) -> None:
     """Play the visits after those ``done``, to which their counts are added; ``each`` is called after every one."""
     command = agent.texts[0].removeprefix(PROGRAM)
     player: Any = TextPlayer(command, timeout=agent.timeout) if agent.program else agent.player(TASK)
@@ -77,7 +77,7 @@ def play_text(agent: Agent, visits: int, done: list[dict[str, int]], each: Calla
 
 def _visit(player: Any, table: int) -> dict[str, int]:
     """Play one visit: the table and its counts."""
-    counts = dict.fromkeys(COUNTS, 0)
+    counts: dict[str, int] = dict.fromkeys(COUNTS, 0)
     if isinstance(player, TextPlayer):
         player.counts = counts
     tables = tables_for(TASK, 1, threads=1)
