@@ -1,4 +1,4 @@
-"""How is the benchmark run? The commands tasks, run, check, table and profile; rules: docs/benchmark.md."""
+"""How is the benchmark run? The commands tasks, run, text, check, table and profile; rules: docs/benchmark.md."""
 
 import argparse
 import os
@@ -23,6 +23,7 @@ from .leaderboard import lines, page, profile
 from .results import missing, read_result
 from .run import judge
 from .tasks import FREE, HELD_OUT_SEED, TASKS, Task, task_of
+from .text import VISITS, judge_text
 
 NAME = "python -m snooker_env.benchmark"
 
@@ -45,6 +46,12 @@ def parser() -> argparse.ArgumentParser:
     add("--out", metavar="PATH", help="result file, or folder for several tasks (default: TASK.LABEL.json)")
     add("--resume", action="store_true", help="go on with an incomplete result file, keep a complete one")
     add("--force", action="store_true", help="replace result files that are there")
+    text = commands.add_parser("text", help="judge a program that reads words, as a language model does")
+    _agent(text, required=True)
+    text.add_argument("--label", help="name in the result (default: from the agent)")
+    text.add_argument("--visits", type=int, default=VISITS, help=f"tables (default: {VISITS})")
+    text.add_argument("--out", metavar="PATH", help="result file (default: text.LABEL.json)")
+    text.add_argument("--resume", action="store_true", help="go on with a result file")
     check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
     help_ = "have --agent play N episodes again: the same strokes?"
@@ -141,6 +148,30 @@ def _run(args: Any) -> int:
         if worst < 130:
             worst = max(worst, _told(_judged(task, agent, file, args), task, file))
     return worst
+
+
+def _text(args: Any) -> int:
+    """Play the track of words and print the result."""
+    agent = _agent_of(args, label=args.label)
+    out = Path(args.out or f"text.{agent.label}.json")
+    with ExitStack() as ending:
+        progress: list[Progress] = []
+
+        def tick(played: int, total: int) -> None:
+            if not progress:
+                progress.append(ending.enter_context(Progress("text", total, "visits", done=played)))
+            progress[0].at(played)
+
+        result = judge_text(agent, visits=args.visits, out=out, resume=args.resume, tick=tick)
+    figures = result["figures"]
+    said = f"{shown(figures['points'])} points a visit, {len(result['rows'])} visits"
+    if agent.program:
+        kept = (
+            f"{100 * figures['forfeited']:.0f} % forfeited, {figures['refused']:.2f} answers refused a visit"
+        )
+        said = f"{said}, {kept}, {figures['read']:,.0f} characters read and {figures['written']:,.0f} written"
+    print(f"text  {agent.label}: {said}: {out}")
+    return 0
 
 
 def _judged(task: Task, agent: Agent, file: Path, args: Any) -> dict[str, Any]:
@@ -247,7 +278,14 @@ def _profile(args: Any) -> int:
     return 0
 
 
-COMMANDS = {"tasks": _tasks, "run": _run, "check": _check, "table": _table, "profile": _profile}
+COMMANDS = {
+    "tasks": _tasks,
+    "run": _run,
+    "text": _text,
+    "check": _check,
+    "table": _table,
+    "profile": _profile,
+}
 
 if __name__ == "__main__":
     raise SystemExit(main())

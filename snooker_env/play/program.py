@@ -43,6 +43,10 @@ class AgentError(RuntimeError):
     """An agent that stopped playing: it died, was too slow, or answered something that is no stroke."""
 
 
+class AnswerError(AgentError):
+    """An answer in time that is no stroke here: the program goes on, and may be asked again."""
+
+
 class ProgramPlayer(BoundPlayer):
     """An external program as a player. All that ``at`` makes of it share one process.
 
@@ -113,7 +117,7 @@ class ProgramPlayer(BoundPlayer):
             return _struck(stroke.numbers(), twin.tables.positions[0, CUE] if twin.frame.in_hand else None)
         except ValueError as error:
             what = f"answered {_short(json.dumps(answer))}, which is refused: {error}"
-            raise AgentError(f"the program {self._lines.command!r} {what}") from None
+            raise AnswerError(f"the program {self._lines.command!r} {what}") from None
 
     def _stand(self, at: Positions, k: int) -> None:
         """The session as the position k stands."""
@@ -135,13 +139,16 @@ class ProgramPlayer(BoundPlayer):
 
     def _asked(self, seed: int) -> dict[str, Any]:
         """The program's answer to the table as it stands: an object."""
-        state = json.dumps(report(self._service) | {"seed": seed}, separators=(",", ":"))
-        answer = self._lines.asked(state.encode() + b"\n")
+        answer = self._answered(report(self._service) | {"seed": seed})
         try:
             return parsed(answer.strip())
         except RefusedError as error:
             what = f"answered {_short(answer)}, which is no stroke: {error}"
-            raise AgentError(f"the program {self._lines.command!r} {what}") from None
+            raise AnswerError(f"the program {self._lines.command!r} {what}") from None
+
+    def _answered(self, state: dict[str, Any]) -> bytes:
+        """The line that the program answers a state with."""
+        return self._lines.asked(json.dumps(state, separators=(",", ":")).encode() + b"\n")
 
 
 class _Lines:

@@ -1,0 +1,157 @@
+"""How well does a program play that reads words, as a language model does? Visits on fixed tables, within budgets.
+
+It is asked as every program is (docs/play/protocol.md) and reads ``text``, the table in words. Unlike there, an
+answer that is no stroke is not the end: the state comes again with what was wrong as ``error``, ``TRIES`` times in all;
+after that the visit is forfeited, with the points made before. docs/benchmark.md holds the rules.
+"""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._check import integer, refuse
+from .._files import write_atomic
+from ..planning import Positions
+from ..play.program import AnswerError, ProgramPlayer
+from ..players import decided, decision_seeds
+from ..players.resolver import PROGRAM
+from .agents import Agent
+from .playing import tables_for
+from .provenance import commit, machine, software
+from .statistics import Resamples, figure
+from .tasks import TASKS
+
+TASK = TASKS["SnookerBreak-v0"]
+"""Its judged tables, its errors and its rules are those of the track."""
+VISITS, MOST = 50, 200
+"""Tables of a result, the first ones judged; and the most there are."""
+STROKES, TRIES = 10, 3
+"""Budgets: strokes of a visit, and answers for a stroke."""
+COUNTS = ("points", "strokes", "pots", "fouls", "forfeited", "answers", "refused", "read", "written")
+"""Of a visit: ``refused``: answers that were no stroke; ``read``, ``written``: characters of ``text`` and of answers."""
+
+
+class TextPlayer(ProgramPlayer):
+    """A program that is told what was wrong with its answer, and asked again; ``counts`` of the current visit."""
+
+    def __init__(self, command: str, *, timeout: float = 60.0):
+        super().__init__(command, timeout=timeout)
+        self.counts: dict[str, int] = {}
+        self._error: str | None = None
+
+    def _stroke(self, at: Positions, k: int, seed: int) -> Any:
+        self._error = None
+        for left in reversed(range(TRIES)):
+            try:
+                return super()._stroke(at, k, seed)
+            except AnswerError as error:
+                self.counts["refused"] += 1
+                self._error = str(error)
+                if not left:
+                    raise
+        raise AssertionError
+
+    def _answered(self, state: dict[str, Any]) -> bytes:
+        answer = super()._answered(state | {"error": self._error})
+        counted = {"answers": 1, "read": len(state["text"]), "written": len(answer)}
+        for name, more in counted.items():
+            self.counts[name] += more
+        return answer
+
+
+def play_text(agent: Agent, visits: int, done: list[dict[str, int]], each: Callable[[], Any]) -> None:
+    """Play the visits after those ``done``, to which their counts are added; ``each`` is called after every one."""
+    command = agent.texts[0].removeprefix(PROGRAM)
+    player: Any = TextPlayer(command, timeout=agent.timeout) if agent.program else agent.player(TASK)
+    try:
+        for table in TASK.seeds(visits)[len(done) :]:
+            done.append(_visit(player, table))
+            each()
+    finally:
+        if isinstance(player, TextPlayer):
+            player.close()
+
+
+def _visit(player: Any, table: int) -> dict[str, int]:
+    """Play one visit: the table and its counts."""
+    counts: dict[str, int] = dict.fromkeys(COUNTS, 0)
+    if isinstance(player, TextPlayer):
+        player.counts = counts
+    tables = tables_for(TASK, 1, threads=1)
+    tables.reset(seed=[table])
+    bound, going = player.at(tables), np.ones(1, np.bool_)
+    try:
+        for number in range(STROKES):
+            seeds = decision_seeds(0, np.array([table]), number)
+            try:
+                action = decided(bound, tables, going, seeds).astype("<f4")
+            except AnswerError:
+                counts["forfeited"] = 1
+                break
+            _, _, terminated, _, info = tables.step(action)
+            counts["strokes"] += 1
+            counts["points"] += int(info["points"][0])
+            counts["pots"] += int(info["points"][0] > 0)
+            counts["fouls"] += int(info["foul"][0])
+            if terminated[0]:
+                break
+    finally:
+        tables.close()
+    return {"table": table, **counts}
+
+
+def figures_of(rows: list[dict[str, int]]) -> dict[str, Any]:
+    """Points a visit with their interval, and means of all counts."""
+    points = np.array([[row["points"] for row in rows]], float)
+    samples = Resamples(1, len(rows)).sums(points) / len(rows)
+    means = {name: float(np.mean([row[name] for row in rows])) for name in COUNTS[1:]}
+    return {"points": figure(float(points.mean()), samples), **means}
+
+
+def judge_text(
+    agent: Agent, *, visits: int = VISITS, out: str | Path, resume: bool = False, tick: Any = None
+) -> dict[str, Any]:
+    """Play the track and keep the result in ``out`` after every visit; returns it.
+
+    ValueError for wrong arguments and a file of another agent, AgentError if the program dies or is too slow: what was
+    played is kept, and ``resume`` goes on with it.
+    """
+    integer("visits", visits, 2, MOST)
+    out = Path(out)
+    head = {"track": "text", "agent": agent.label, "source": agent.texts[0], "visits": visits}
+    head["budget"] = {"strokes": STROKES, "tries": TRIES, "timeout": agent.timeout}
+    rows: list[dict[str, int]] = []
+    if out.exists():
+        rows = _rows_in(out, head) if resume else _must_be_new(out)
+
+    def keep(done: bool = False) -> dict[str, Any]:
+        about = {"software": software(), "machine": machine(), "commit": commit()} if done else {}
+        result = head | {"figures": figures_of(rows) if done else None, "rows": rows} | about
+        write_atomic(out, json.dumps(result, indent=1) + "\n")
+        if tick is not None:
+            tick(len(rows), visits)
+        return result
+
+    if len(rows) < visits:
+        play_text(agent, visits, rows, keep)
+    return keep(done=True)
+
+
+def _must_be_new(out: Path) -> Any:
+    raise refuse("out", str(out), "must be a new file; --resume goes on with one")
+
+
+def _rows_in(out: Path, head: dict[str, Any]) -> list[dict[str, int]]:
+    """The visits in a file that was begun with the same head."""
+    try:
+        kept = json.loads(out.read_text(encoding="utf-8"))
+        same = {name: kept[name] for name in head} == head
+        rows = [{name: int(row[name]) for name in ("table", *COUNTS)} for row in kept["rows"]]
+    except (ValueError, KeyError, TypeError):
+        raise refuse("out", str(out), "must be a result of this track") from None
+    if not same or [row["table"] for row in rows] != TASK.seeds(head["visits"])[: len(rows)]:
+        raise refuse("out", str(out), "must be of the same agent, visits and budget to be gone on with")
+    return rows

@@ -1,0 +1,135 @@
+"""Is a data set what it says: the player's own strokes, on tables of training, gone on with after an interruption?"""
+
+import shutil
+
+import gymnasium
+import numpy as np
+import pytest
+import torch
+import yaml
+
+from agents.evaluation import dataset
+from agents.players.trained import load_player
+from snooker_env.benchmark import HELD_OUT_SEED, TASKS
+from snooker_env.planning import Planner, Positions
+from snooker_env.players import Strokes
+
+BREAK = TASKS["SnookerBreak-v0"]
+
+
+@pytest.fixture(autouse=True)
+def few_tables(monkeypatch):
+    monkeypatch.setattr(dataset, "TABLES", 6)
+
+
+@pytest.mark.parametrize("form", dataset.FORMS)
+def test_the_actions_of_an_episode_play_it_again(form):
+    """From its seed, in the environment that the data set names, to the bit."""
+    seeds = dataset.seeds_of(0)
+    part = dataset.played(BREAK, "ghost_ball", form, seeds, threads=1)
+    env, at = gymnasium.make(BREAK.id, **dataset.free_options(BREAK, form)), 0
+    for k, (seed, length) in enumerate(zip(seeds, part["lengths"], strict=True)):
+        seen, _ = env.reset(seed=seed)
+        for row in range(at, at + length):
+            shown = seen["observations"] if form == "choices" else seen
+            assert np.array_equal(part["observations"][row], shown)
+            if form == "choices":
+                assert np.array_equal(part["masks"][row], seen["action_mask"])
+                assert seen["action_mask"][part["actions"][row]]
+            seen, reward, terminated, truncated, info = env.step(part["actions"][row])
+            kept = [part[name][row] for name in ("rewards", "terminations", "truncations", *dataset.INFOS)]
+            assert kept == [reward, terminated, truncated, info["points"], info["foul"]]
+        assert terminated
+        assert np.array_equal(part["last"][k], seen["observations"] if form == "choices" else seen)
+        at += length
+    assert at == len(part["rewards"])
+
+
+def test_no_table_of_the_judging_is_among_them():
+    assert dataset.seeds_of(1)[0] == dataset.seeds_of(0)[-1] + 1
+    most = (HELD_OUT_SEED - dataset.FIRST_SEED) // 6
+    assert dataset.seeds_of(most - 1)[-1] < HELD_OUT_SEED
+    with pytest.raises(ValueError, match=r"^strokes = more: must be at most those of 799,998 episodes"):
+        dataset.seeds_of(most)
+
+
+def test_strokes_that_are_choices_become_those_choices():
+    envs = gymnasium.make_vec(
+        "SnookerBreakMasked-v0", num_envs=40, vectorization_mode="vector_entry_point", threads=1
+    ).unwrapped
+    seen, _ = envs.reset(seed=3)
+    at, masks, planner = Positions.of(envs), seen["action_mask"] != 0, Planner(envs.options, threads=1)
+    rng, rows = np.random.default_rng(0), np.arange(40)
+    choices = np.array([rng.choice(np.flatnonzero(row)) for row in masks])
+    values = planner.strokes_of(at, rows, choices)[0]
+    assert np.array_equal(dataset.nearest_choices(Strokes(values), at, masks, planner), choices)
+    values[:, 0] *= 1.02  # within half a step of the speeds
+    values[:, 1:3] += 0.05
+    values[:, 3] += 1e-4
+    assert np.mean(dataset.nearest_choices(Strokes(values), at, masks, planner) == choices) > 0.9
+
+
+def test_what_cannot_be_made_is_refused(tmp_path, capsys):
+    pytest.importorskip("minari")
+    for words, why in (
+        (["--task", "Snooker-v0"], "task = 'Snooker-v0': must be one of"),
+        (["--form", "targets"], "form = 'targets': must be one of 'strokes', 'choices'"),
+        (["--strokes", "0"], "strokes = 0: must be an integer"),
+        (["--player", "nobody"], "player = 'nobody': must be the name of a player"),
+        (
+            ["--task", "SnookerFrame-v0", "--form", "choices"],
+            "form = 'choices': must be \"strokes\" in frames",
+        ),
+    ):
+        with pytest.raises(SystemExit):
+            dataset.main(["--out", str(tmp_path), *words])
+        assert why in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path, capsys):
+    minari = pytest.importorskip("minari")
+    command = ["--out", str(tmp_path), "--player", "ghost_ball", "--form", "choices", "--strokes"]
+    assert dataset.main([*command, "10"]) == 0
+    folder = tmp_path / "snooker" / "break-ghost_ball-choices-v0"
+    short = list(minari.MinariDataset(folder / "data").iterate_episodes())
+    parts = tmp_path / "parts" / "snooker-break-ghost_ball-choices-v0"
+    (parts / "00000.npz.tmp").write_bytes(b"cut off")
+    assert dataset.main([*command, "30"]) == 0
+    data = minari.MinariDataset(folder / "data")
+    long = list(data.iterate_episodes())
+    assert len(long) > len(short) == 6 and data.total_steps >= 30 and data.total_episodes == len(long)
+    for a, b in zip(short, long[: len(short)], strict=True):
+        assert np.array_equal(a.actions, b.actions) and np.array_equal(a.rewards, b.rewards)
+        assert len(a.observations["observations"]) == len(a.actions) + 1 == len(a.infos["points"])
+    env = data.recover_environment()
+    assert env.observation_space == data.observation_space and env.action_space == data.action_space
+    seed = next(iter(data.storage.get_episode_metadata([0])))["seed"]
+    assert np.array_equal(env.reset(seed=seed)[0]["observations"], long[0].observations["observations"][0])
+    before = (folder / "data" / "main_data.hdf5").stat().st_size
+    shutil.rmtree(parts)  # from nothing again: the same data set
+    assert dataset.main([*command, "30"]) == 0
+    again = list(minari.MinariDataset(folder / "data").iterate_episodes())
+    assert all(np.array_equal(a.actions, b.actions) for a, b in zip(long, again, strict=True))
+    assert abs((folder / "data" / "main_data.hdf5").stat().st_size - before) < 1000
+    _, head, text = (folder / "README.md").read_text(encoding="utf-8").split("---\n", 2)
+    card = yaml.safe_load(head)
+    assert card["license"] == "mit" and "minari" in card["tags"] and card["size_categories"] == ["n<1K"]
+    assert f"{data.total_steps} strokes of {data.total_episodes} whole episodes" in text
+    assert "strokes/s" in capsys.readouterr().out
+
+
+def test_a_policy_is_cloned_from_one(tmp_path, monkeypatch):
+    """The expert is one that a network can copy: it always plays the first pot at one speed."""
+    pytest.importorskip("minari")
+    monkeypatch.setattr(dataset, "TABLES", 100)
+    before = torch.random.get_rng_state(), torch.get_num_threads()
+    from examples import behaviour_cloning as example
+
+    command = ["--out", str(tmp_path), "--player", "ghost_ball", "--form", "choices", "--strokes", "600"]
+    assert dataset.main(command) == 0
+    data = tmp_path / "snooker" / "break-ghost_ball-choices-v0" / "data"
+    share = example.main(["--data", str(data), "--visits", "60", "--out", str(tmp_path / "cloned.npz")])
+    torch.random.set_rng_state(before[0]), torch.set_num_threads(before[1])
+    assert share > 0.5
+    assert load_player(tmp_path / "cloned.npz").model.recipe == "behaviour cloning"
