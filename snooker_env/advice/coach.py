@@ -26,11 +26,12 @@ from typing import Any
 
 import numpy as np
 
+from .._check import choice
 from .._types import Floats, Ints
 from ..planning import Positions, clear_paths, pots, sobol_points, strokes_at
 from ..planning.worth import lead_of
 from ..tasks.noise import LEVELS, NoiseLike
-from .errors import BASE, Estimate, Fitted, PlayerErrors, checked, fitted
+from .errors import BASE, SCALES, Estimate, Fitted, PlayerErrors, checked, fitted
 from .practice import JUDGING, Practice, keys, one_position, practice_of
 from .recorded import Recorded
 
@@ -187,10 +188,13 @@ def coach(
         ValueError if an argument is invalid, or no stroke says anything of an error.
     """
     kept = checked(strokes)
+    if isinstance(target, str):
+        choice("target", target, LEVELS)
     bench = practice_of(target, options, of_frames=True)
     physical = {name: getattr(bench.options, name) for name in ("physics", "table", "fidelity", "cue")}
     base = practice_of(BASE, physical)
     found = fitted(kept, base, seed)
+    kept = found.strokes
     costs = lost(kept, bench, seed)
     many = max(1, visits_of(kept))
     rng = np.random.default_rng((seed, RESAMPLES))
@@ -236,8 +240,6 @@ def pots_expected(found: Fitted) -> Estimate | None:
 
 def pots_of_target(found: Fitted, bench: Practice, base: Practice) -> Estimate | None:
     """How many of the called pots a player of the target level makes."""
-    from .errors import SCALES
-
     if not found.pots.rows:
         return None
     physics = base.options.rules.physics
@@ -280,7 +282,7 @@ def lost(strokes: list[Recorded], bench: Practice, seed: int) -> Lost:
         if best is None:
             continue
         p, made, missed = best
-        parts[k, 0] = (p - one.potted) * (made - missed)
+        parts[k, 0] = (p - bool(one.potted)) * (made - missed)
         parts[k, 1 if one.potted else 2] = (made if one.potted else missed) - value
         counts += [1, bool(one.potted), not one.potted]
     return Lost(parts, counts)

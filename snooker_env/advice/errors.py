@@ -9,7 +9,9 @@ professional's.
 
 * *Meant and played.* The error e in standard deviations of a professional is seen itself: L = exp(-(e/s)^2 / 2) / s. Where
   only the pot that was meant is known, the line that the stroke should have had is solved, for its own speed and spin, to
-  the middle of the pocket: who plays for a side of the pocket is said to err.
+  the middle of the pocket: who plays for a side of the pocket is said to err. If the pot was only guessed from the line,
+  the stroke may have been a safety: it is one with an unknown share of chances, and its line then is anywhere within
+  ``CALLED`` of the pot's. Those that are likelier to be safeties count as such from there on.
 * *Meant, and potted or not.* The pot's tolerance is found by simulation: strokes are played in error by ``RADII``, times
   ``WAYS`` directions of the five errors (direction, two of the tip, elevation, speed, in a professional's proportions), and
   the share of each radius that is potted is kept. P(pot | s) is its mean over the law of the radius, which is chi with five
@@ -27,7 +29,7 @@ not says at most 0.65 as much (P = 0.87 is best), one that always or never goes 
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import erf, pi, remainder, sqrt
 from statistics import NormalDist
 from typing import Any, NamedTuple
@@ -42,13 +44,15 @@ from ..planning import Positions
 from ..planning.sobol import sobol_points
 from ..tasks.noise import LEVELS, POT_SPEED, TWICE, Noise
 from .practice import Practice, practice_of
-from .recorded import Recorded, direction_of
+from .recorded import CALLED, Recorded, direction_of
 
 BASE = "professional"
 """Whose errors the estimates are multiples of."""
 LEAST, MOST = 0.02, 50.0
 """Smallest and largest error that is thought of, over a professional's."""
 SCALES = np.geomspace(LEAST, MOST, 600)
+SHARES = np.linspace(0.005, 0.9, 40)
+"""Shares of safeties among guessed pots that are thought of, each alike."""
 RADII = np.geomspace(0.12, 60.0, 27)
 """Sizes of errors that are tried in the tolerance of a pot, in standard deviations of a professional."""
 WAYS, STOPS = 32, 1024
@@ -147,11 +151,13 @@ class Pots:
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """The errors of a player, the posterior of the direction's over ``SCALES``, and the pots that were called."""
+    """The errors of a player, the posterior of the direction's over ``SCALES``, the pots that were called, and the strokes,
+    without the guessed pots that were likelier to be safeties."""
 
     errors: PlayerErrors
     direction: Floats | None
     pots: Pots
+    strokes: list[Recorded]
 
 
 def estimate_errors(strokes: Sequence[Recorded], *, options: Any = None, seed: int = 0) -> PlayerErrors:
@@ -188,13 +194,21 @@ def checked(strokes: Any) -> list[Recorded]:
 def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
     """``estimate_errors`` with what was found on the way; ``practice``: with the errors ``BASE``."""
     integer("seed", seed, 0, 2**63)
-    directions, speeds = measured(strokes, practice)
+    directions, speeds, widths = measured(strokes, practice)
+    guessed = np.array([one.guessed for one in strokes]) & ~np.isnan(directions)
+    mixed, meant = guesses(directions[guessed], widths[guessed])
+    wrong = np.flatnonzero(guessed)[~meant]
+    strokes = list(strokes)
+    for k in wrong.tolist():
+        strokes[k] = replace(strokes[k], ball=None, pocket=None, potted=None, guessed=False)
+        directions[k] = np.nan
     pots = tolerances(strokes, practice, seed)
     told = [k for k, row in enumerate(pots.rows) if np.isnan(directions[row])]
     e = directions[~np.isnan(directions)]
     base, direction, weights = LEVELS[BASE], None, None
     if len(e) + len(told):
-        log_l = direct(e) + outcome(pots.chances[told], pots.made[told]).sum(axis=0)
+        sure = directions[~np.isnan(directions) & ~guessed]
+        log_l = direct(sure) + mixed + outcome(pots.chances[told], pots.made[told]).sum(axis=0)
         weights = posterior(log_l)
         direction = estimate(weights, base.direction_deg(practice.options.rules.physics), len(e) + len(told))
     v = speeds[~np.isnan(speeds)]
@@ -215,12 +229,27 @@ def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
         aside=mean_of(e, base.direction_deg(practice.options.rules.physics)),
         faster=mean_of(v, base.speed_rel),
     )
-    return Fitted(errors, weights, pots)
+    return Fitted(errors, weights, pots, strokes)
 
 
 def direct(e: Floats) -> Floats:
     """Log-likelihood (scales,) of errors (n,) in a professional's standard deviations."""
     return -len(e) * np.log(SCALES) - 0.5 * float(np.sum(e * e)) / SCALES**2
+
+
+def guesses(e: Floats, widths: Floats) -> tuple[Floats, Any]:
+    """Log-likelihood (scales,) of errors (n,) at guessed pots, some of which were safeties: these lie evenly within
+    ``widths`` (n,); all in a professional's standard deviations. And which are likelier to be pots, bool (n,)."""
+    if not len(e):
+        return np.zeros(len(SCALES)), np.zeros(0, np.bool_)
+    pot = np.exp(-0.5 * (e / SCALES[:, None]) ** 2) / (SCALES[:, None] * sqrt(2.0 * pi))
+    safety = 0.5 / widths
+    log_l = np.array([np.log((1.0 - share) * pot + share * safety).sum(axis=1) for share in SHARES])
+    both = np.exp(log_l - log_l.max())
+    both /= both.sum()
+    likely = [(1.0 - share) * pot / ((1.0 - share) * pot + share * safety) for share in SHARES]
+    meant = sum(weights @ each for weights, each in zip(both, likely, strict=True))
+    return np.log(np.maximum(both.sum(axis=0), 1e-300)), meant > 0.5
 
 
 def outcome(chances: Floats, made: Any) -> Floats:
@@ -254,9 +283,10 @@ def mean_of(e: Floats, unit: float) -> Estimate | None:
     return Estimate(value=middle * unit, low=(middle - half) * unit, high=(middle + half) * unit, strokes=n)
 
 
-def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats]:
-    """Errors of direction and speed (n,) in a professional's standard deviations; NaN where they were not measured."""
-    directions, speeds = np.full((2, len(strokes)), np.nan)
+def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats, Floats]:
+    """Errors of direction and speed (n,) in a professional's standard deviations, NaN where they were not measured; and
+    ``CALLED`` in these."""
+    directions, speeds, widths = np.full((3, len(strokes)), np.nan)
     base, physics = LEVELS[BASE], practice.options.rules.physics
     unit = np.radians(base.direction_deg(physics, speed=0.0))
     for k, one in enumerate(strokes):
@@ -272,8 +302,8 @@ def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Float
         raised = one.played["elevation"] / TWICE if practice.options.cue == "real" else 0.0
         more = sqrt(1.0 + (base.growth * speed) ** 2) * (1.0 + raised)
         aside = remainder(direction_of(one.played, physics) - aim, 2.0 * pi)
-        directions[k] = aside / (unit * more)
-    return directions, speeds
+        directions[k], widths[k] = aside / (unit * more), CALLED / (unit * more)
+    return directions, speeds, widths
 
 
 def solved(strokes: list[Recorded], practice: Practice) -> Floats:
@@ -290,7 +320,8 @@ def solved(strokes: list[Recorded], practice: Practice) -> Floats:
     if rows:
         at = Positions.of([strokes[k].position for k in rows])
         balls = np.array([strokes[k].ball for k in rows])
-        targets = POCKET_AIMS[[strokes[k].pocket for k in rows]][:, [AIM_X, AIM_Y]]
+        pockets = np.array([strokes[k].pocket for k in rows])
+        targets = POCKET_AIMS[pockets][:, [AIM_X, AIM_Y]]
         out[rows, 3] = practice.exact.pot_aim(at, np.arange(len(rows)), balls, targets, out[rows])
     return out
 

@@ -4,7 +4,7 @@ Three kinds of records say something about a player's errors, the first the most
 
 * The stroke meant and the stroke played (``intended``, ``played``), as a simulator has both.
 * The pot meant and the stroke played (``ball``, ``pocket``, ``played``), as in a replay. A replay does not say which pot
-  was meant: it is taken to be the direct pot whose line is nearest to that of the stroke, within ``CALLED``.
+  was meant: it is guessed to be the direct pot whose line is nearest to that of the stroke, within ``CALLED``.
 * The pot meant and whether it went in (``ball``, ``pocket``, ``potted``), as a person with a pencil, or a camera, has it.
 """
 
@@ -62,6 +62,8 @@ class Recorded:
         escape.
     potted : bool, optional
         Whether that ball went into that pocket without a foul.
+    guessed : bool
+        Whether ``ball`` and ``pocket`` were only told from the line of the stroke: it may have been a safety. Default False.
     stopped : (float, float), optional
         Where the cue ball stopped [m]; None if it was potted, or nobody looked.
     points, penalty : int
@@ -87,6 +89,7 @@ class Recorded:
     ball: int | None = None
     pocket: int | None = None
     potted: bool | None = None
+    guessed: bool = False
     stopped: Place | None = None
     points: int = 0
     penalty: int = 0
@@ -119,6 +122,11 @@ class Recorded:
             put("potted", truth("potted", self.potted))
             if self.ball is None:
                 raise refuse("potted", self.potted, "must be left out: no pot was meant")
+        put("guessed", truth("guessed", self.guessed))
+        if self.guessed and (self.ball is None or self.played is None):
+            raise refuse(
+                "guessed", True, "must be False without a pot, and the stroke played, which it is told from"
+            )
         if self.stopped is not None:
             put("stopped", tuple(array("stopped", self.stopped, (2,)).tolist()))
         put("points", integer("points", self.points, 0, MOST_POINTS))
@@ -328,6 +336,7 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
         ball=ball,
         pocket=pocket,
         potted=None if ball is None else ball in down and not one["penalty"],
+        guessed=ball is not None and intended is None,
         stopped=stopped,
         points=one["points"],
         penalty=one["penalty"],
