@@ -11,7 +11,10 @@ and left middle. Left and right are as seen from the baulk end: right is the yel
 """
 
 from .ask import advise, stroke_of
+from .coach import Coaching, Drill, coach
 from .destinations import Destinations, destinations
+from .errors import Estimate, PlayerErrors, estimate_errors
+from .recorded import Recorded, read_strokes, strokes_of, write_strokes
 from .room import Room
 from .strokes import Advice, CueStroke, Suggestion
 from .words import POCKET_WORDS
@@ -19,11 +22,21 @@ from .words import POCKET_WORDS
 __all__ = [
     "POCKET_WORDS",
     "Advice",
+    "Coaching",
     "CueStroke",
     "Destinations",
+    "Drill",
+    "Estimate",
+    "PlayerErrors",
+    "Recorded",
     "Room",
     "Suggestion",
     "advise",
+    "coach",
     "destinations",
+    "estimate_errors",
+    "read_strokes",
     "stroke_of",
+    "strokes_of",
+    "write_strokes",
 ]

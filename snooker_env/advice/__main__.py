@@ -1,4 +1,5 @@
-"""``python -m snooker_env.advice --position FILE --agent NAME``: what would a player do in a position?"""
+"""``python -m snooker_env.advice --position FILE --agent NAME``: what would a player do in a position?
+``python -m snooker_env.advice coach FILE``: what do recorded strokes say of a player?"""
 
 import argparse
 import json
@@ -11,11 +12,40 @@ from ..players import players
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from .ask import AGENT, OF_FRAMES, advise
+from .coach import coach
+from .recorded import read_strokes
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print advice for a position."""
-    about = "Ranked strokes of a player, and their outcomes."
+    """Print advice for a position; with the word "coach" first, what recorded strokes say of a player."""
+    argv = sys.argv[1:] if argv is None else argv
+    return _coach(argv[1:]) if argv[:1] == ["coach"] else _advice(argv)
+
+
+def _coach(argv: Sequence[str]) -> int:
+    about = "A player's errors, the pots he made and was expected to make, what costs him most, and drills."
+    parser = argparse.ArgumentParser("python -m snooker_env.advice coach", description=about)
+    parser.add_argument("file", metavar="FILE", help="recorded strokes (JSON), or a replay (JSON or page)")
+    parser.add_argument("--player", type=int, choices=(0, 1), help="of a replay of a frame: whose strokes")
+    target = f"whom costs are counted against: {', '.join(LEVELS)} (default: professional)"
+    parser.add_argument("--target", default="professional", help=target)
+    parser.add_argument("--cue", choices=CUES, default="free", help="the cue of the strokes (default: free)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the simulated strokes (default: 0)")
+    parser.add_argument("--json", action="store_true", help="print all figures as JSON")
+    args = parser.parse_args(argv)
+    try:
+        strokes = read_strokes(args.file, player=args.player)
+        found = coach(strokes, target=args.target, options={"cue": args.cue}, seed=args.seed)
+    except (ValueError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    print(json.dumps(found.to_dict(), indent=1) if args.json else found)
+    return 0
+
+
+def _advice(argv: Sequence[str]) -> int:
+    about = """Ranked strokes of a player, and their outcomes. With the word "coach" first: what recorded strokes say of a
+        player, see "coach --help"."""
     parser = argparse.ArgumentParser("python -m snooker_env.advice", description=about)
     from_file = "JSON of a position: from Position.save, or hand-written"
     parser.add_argument("--position", required=True, metavar="FILE", help=from_file)

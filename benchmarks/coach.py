@@ -1,0 +1,248 @@
+"""Does the coach find a player's errors? Simulated players with known errors, 100 strokes each.
+
+    python -m benchmarks.coach [--players 200] [--strokes 100] [--pool 300] [--levels club custom ...] [--no-places]
+    [--seed 0] [--json FILE] [--out FOLDER]
+
+The strokes are pots that ``search_30`` means in visits from opened tables; each player plays such strokes with errors of
+its own. The errors are then estimated from what is known: the stroke meant and played; the pot meant and the stroke
+played; the stroke meant, and whether the pot went in; the same and where the cue ball stopped, which a person marks to
+a ball's radius. Printed: the root mean square of the estimates' errors in per cent, the share of players whose estimate
+is within 15 %, and how often the 95 % interval holds the truth, with 95 % intervals of these shares (Wilson). "drill"
+is one straight pot that the player makes 7 to 9 times of ten. Tolerances of pots and clouds of the cue ball are
+simulated once for the pool; a cloud belongs to the nearest of three errors of direction.
+"""
+
+from dataclasses import asdict
+from math import atan2, hypot
+
+import numpy as np
+
+import snooker_env as sn
+from snooker_env.advice import CueStroke, Recorded
+from snooker_env.advice import errors as coaching
+from snooker_env.advice.judging import wilson
+from snooker_env.advice.practice import practice_of
+from snooker_env.planning import Planner, Positions
+from snooker_env.players import VISITS
+from snooker_env.tasks.noise import LEVELS, Noise
+
+from ._common.command import Command, at_least, run, save_json
+
+MEANS = "search_30"
+BASE = LEVELS[coaching.BASE]
+
+
+def errors_like(times, speed_rel, aim_share=0.5):
+    """Errors of direction ``times`` a professional's, of which the aim has a share of the variance."""
+    whole = BASE.direction_deg(speed=0.0) * times
+    squirt = Noise(offset_mm=1.0).direction_deg(speed=0.0)
+    aim, tip = whole * aim_share**0.5, whole * (1.0 - aim_share) ** 0.5 / squirt
+    return Noise(
+        aim_deg=aim, offset_mm=tip, speed_rel=speed_rel, elevation_deg=0.2 * times, growth=BASE.growth
+    )
+
+
+PLAYERS = {
+    "club": LEVELS["club"],
+    "amateur": LEVELS["amateur"],
+    "professional": LEVELS["professional"],
+    "straight but rash": errors_like(1.5, 0.06),
+    "wild, all of it aim": errors_like(3.0, 0.015, 0.9),
+}
+
+
+def pool_of(n, seed):
+    """n pots as they are meant: positions, ``CueStroke``s, balls and pockets."""
+    env = sn.SnookerVectorEnv(64, noise="professional", **VISITS)
+    exact, noisy = Planner(env.options, noise="none"), Planner(env.options)
+    player, pool, deal = sn.player(MEANS).at(env), [], 0
+    while len(pool) < n:
+        env.reset(seed=np.random.SeedSequence([seed, deal]).generate_state(64).tolist())
+        at = Positions.of(env)
+        for _ in range(8):
+            every = np.arange(len(at))
+            strokes = player.play(at, every + 64 * deal).values
+            stops = exact.stops(at, every, strokes=strokes)
+            for k in every.tolist():
+                ball = int(stops.first[k])
+                if ball > 0 and stops.potted[k, ball] >= 0 and not stops.penalty[k]:
+                    # a position numbers its reds anew
+                    ours = ball if ball > 15 else int(at.on_table[k, 1 : ball + 1].sum())
+                    pool.append((at[k], strokes[k], ours, int(stops.potted[k, ball])))
+            keys = np.random.default_rng((seed, deal, len(pool))).integers(0, 2**63, len(at))
+            stops = noisy.stops(at, every, strokes=strokes, keys=keys.astype(np.uint64))
+            at = stops.afterstates[stops.goes_on]
+            if not len(at):
+                break
+        deal += 1
+    env.close()
+    return [Recorded(position=at, intended=meant(row), ball=b, pocket=p) for at, row, b, p in pool[:n]]
+
+
+def meant(row):
+    """A row of five numbers as a ``CueStroke``."""
+    speed, side, top, aim, elevation = row.tolist()
+    shrink = max(1.0, hypot(side, top) / 0.5)
+    return CueStroke(speed=speed, side=side / shrink, top=top / shrink, aim=aim, elevation=elevation)
+
+
+def drill():
+    """The straight long blue of the notebook: blue on its spot, the cue ball so far behind it, to the top right pocket."""
+    pocket = np.array((0.874, 1.769))
+    to = pocket / hypot(*pocket)
+    made = []
+    for distance in np.geomspace(0.12, 1.2, 8):
+        at = sn.Position(cue=tuple((-distance * to).tolist()), blue=(0.0, 0.0), on="blue")
+        stroke = CueStroke(speed=2.0, aim=atan2(to[1], to[0]), top=-0.2)
+        made.append(Recorded(position=at, intended=stroke, ball=19, pocket=3))
+    return made
+
+
+def played(pool, rows, noise, rng):
+    """Strokes of the pool as played with errors: the cue ball's executed strokes, pots, and places, NaN if it fell."""
+    planner = Planner({"noise": noise})
+    at = Positions.of([pool[k].position for k in rows])
+    strokes = np.stack([pool[k].intended.numbers() for k in rows])
+    z = rng.standard_normal((len(rows), 5))
+    stops = planner.stops(at, np.arange(len(rows)), strokes=strokes, errors=z)
+    balls, pockets = np.array([(pool[k].ball, pool[k].pocket) for k in rows]).T
+    made = (stops.potted[np.arange(len(rows)), balls] == pockets) & (stops.penalty == 0)
+    places = np.where(stops.potted[:, :1] >= 0, np.nan, stops.places[:, 0])
+    return executed(strokes, z, noise), made, places
+
+
+def executed(strokes, z, noise):
+    """The law of ``tasks.noise`` for strokes (n, 5) with a free cue: speed, side, top, aim of the cue, elevation."""
+    speed, side, top, aim, elevation = strokes.T
+    more, tip = np.hypot(1.0, noise.growth * speed), noise.offset_mm * 1e-3 / sn.Physics().R
+    squirt = [np.arctan2(*sn.strike(1.0, 0.0, s)[0][1::-1]) for s in side]
+    return np.column_stack(
+        [
+            speed + z[:, 0] * np.hypot(noise.speed_abs, noise.speed_rel * speed),
+            side + z[:, 1] * tip * more,
+            top + z[:, 2] * tip * more,
+            aim - squirt + np.radians(noise.aim_deg) * more * z[:, 3],
+            np.maximum(0.0, elevation + np.radians(noise.elevation_deg) * z[:, 4]),
+        ]
+    )
+
+
+def told(one, *, cue=None, made=None, place=None, intended=True):
+    """A stroke of the pool with what is known of it after it was played."""
+    names = ("speed", "side", "top", "aim", "elevation")
+    return Recorded(
+        position=one.position,
+        intended=one.intended if intended else None,
+        played=None if cue is None else dict(zip(names, cue.tolist(), strict=True)),
+        ball=one.ball,
+        pocket=one.pocket,
+        potted=None if made is None else bool(made),
+        stopped=place,
+    )
+
+
+def ends(one):
+    """An estimate and its interval as three numbers."""
+    return one.value, one.low, one.high
+
+
+def found(weights, unit, n):
+    """Estimate and interval of a posterior."""
+    return ends(coaching.estimate(weights, unit, n))
+
+
+def level(name, noise, pool, chances, blues, clouds_at, args):
+    """What is found of players with one level's errors: {kind: (players, 3)}, {kind: truth}."""
+    practice, rng = practice_of(coaching.BASE), np.random.default_rng((args.seed, *name.encode()))
+    unit, truth = BASE.direction_deg(), noise.direction_deg()
+    out = {kind: [] for kind in ("meant, played", "pot, played", "pot made or not", "drill")}
+    speeds = {kind: [] for kind in ("meant, played", "place")}
+    scales = truth / unit * np.array([0.8, 1.0, 1.25])
+    clouds = [coaching.clouds(pool, practice, scale, args.seed) for scale in scales] if clouds_at else []
+    best = int(np.abs(blues.chances[:, np.abs(coaching.SCALES - truth / unit).argmin()] - 0.85).argmin())
+    blue = drill()
+    for _ in range(args.players):
+        rows = rng.choice(len(pool), args.strokes, replace=args.strokes > len(pool))
+        cues, made, places = played(pool, rows, noise, rng)
+        both = [told(pool[k], cue=cue) for k, cue in zip(rows, cues, strict=True)]
+        errors = coaching.estimate_errors(both)
+        out["meant, played"].append(ends(errors.direction))
+        speeds["meant, played"].append(ends(errors.speed))
+        line = coaching.estimate_errors(
+            [told(pool[k], cue=cue, intended=False) for k, cue in zip(rows, cues, strict=True)]
+        )
+        out["pot, played"].append(ends(line.direction))
+        weights = coaching.posterior(coaching.outcome(chances[rows], made).sum(axis=0))
+        out["pot made or not"].append(found(weights, unit, len(rows)))
+        if clouds:
+            scale = out["pot made or not"][-1][0] / unit
+            near = clouds[int(np.abs(np.log(scales / scale)).argmin())]
+            seen = np.flatnonzero(~np.isnan(places[:, 0]))
+            marked = places[seen] + rng.normal(0.0, coaching.PLACE, (len(seen), 2))
+            known = [
+                told(pool[rows[k]], made=made[k], place=tuple(place))
+                for k, place in zip(seen, marked, strict=True)
+            ]
+            mine = coaching.Clouds(near.places[rows[seen]], near.made[rows[seen]], near.weights)
+            log_l = coaching.places_tell(known, mine)
+            speeds["place"].append(found(coaching.posterior(log_l), BASE.speed_rel, len(seen)))
+        same = np.full(args.strokes, best)
+        _, made, _ = played(blue, same, noise, rng)
+        weights = coaching.posterior(coaching.outcome(blues.chances[same], made).sum(axis=0))
+        out["drill"].append(found(weights, unit, args.strokes))
+    kinds = {f"direction: {kind}": (truth, rows) for kind, rows in out.items()}
+    return kinds | {f"speed: {kind}": (noise.speed_rel, rows) for kind, rows in speeds.items() if rows}
+
+
+def summary(truth, rows):
+    """The figures of one kind of knowledge for one level."""
+    value, low, high = np.array(rows).T
+    near, held = np.abs(value / truth - 1.0) < 0.15, (low <= truth) & (truth <= high)
+    return {
+        "truth": truth,
+        "median": float(np.median(value)),
+        "rms_percent": float(100.0 * np.sqrt(np.mean((value / truth - 1.0) ** 2))),
+        "width_percent": float(100.0 * np.median((high - low) / (2.0 * truth))),
+        "within_15": [float(near.mean()), *wilson(int(near.sum()), len(near))],
+        "covered": [float(held.mean()), *wilson(int(held.sum()), len(held))],
+    }
+
+
+def main():
+    """Measure and print."""
+    parser = Command("coach", __doc__, seed=0)
+    add = parser.add_argument
+    add("--players", type=at_least(2), default=200, help="players of each level [200]")
+    add("--strokes", type=at_least(5), default=100, help="strokes of each player [100]")
+    add("--pool", type=at_least(5), default=300, help="different strokes [300]")
+    add("--levels", nargs="+", choices=PLAYERS, default=tuple(PLAYERS), help="whose errors [all]")
+    add("--no-places", action="store_true", help="without where the cue ball stopped")
+    args = parser.options()
+    pool, practice = pool_of(args.pool, args.seed), practice_of(coaching.BASE)
+    mark = [told(one, made=True) for one in pool]
+    chances = coaching.tolerances(mark, practice, args.seed).chances
+    blues = coaching.tolerances([told(one, made=True) for one in drill()], practice, args.seed)
+    print(f"{args.players} players, {args.strokes} strokes each, of {len(pool)}\n")
+    print(f"{'':50s}{'median':>9s}{'rms':>7s}{'+-':>7s}  within 15 %        interval holds the truth")
+    figures = {}
+    for name in args.levels:
+        noise = PLAYERS[name]
+        kinds = level(name, noise, pool, chances, blues, not args.no_places, args)
+        figures[name] = {"noise": asdict(noise)} | {kind: summary(*both) for kind, both in kinds.items()}
+        print(f"{name}: {noise.direction_deg():.4f} deg, speed {100 * noise.speed_rel:.1f} %")
+        for kind in kinds:
+            one = figures[name][kind]
+            shares = ["{:5.1f} % [{:.1f}, {:.1f}]".format(*(100 * x for x in one[key])) for key in SHARES]
+            print(
+                f"  {kind:48s}{one['median']:9.4f}{one['rms_percent']:6.1f}%{one['width_percent']:6.0f}%  "
+                f"{shares[0]:24s}{shares[1]}",
+                flush=True,
+            )
+    save_json(args.json, figures)
+    return 0
+
+
+SHARES = ("within_15", "covered")
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,407 @@
+"""What costs a player most, and what should he practise? ``coach``: errors, pots made and expected, costs, drills.
+
+**Costs** are counted in points of a frame (those of the player, less those of the other, that are expected from there on)
+against a player of the ``target`` level, as golf counts strokes gained. What a position is worth is the ``tactician``'s
+learned worth, between two players of that level. Of each stroke with a called pot the target's best stroke at that same pot
+is found by simulation: it is made with the chance p, and is worth M on average if made, N if missed. What the player did
+was worth W: his points, less penalties, and the worth of what was left, to him or, with the opposite sign, to the other.
+Then W - (p M + (1 - p) N), what he gained on the target, is the sum of
+
+    potting   (made - p) (M - N)     that he made or missed the pot
+    position  W - M, where made      what he left himself
+    safety    W - N, where missed    what his miss left the other
+
+A stroke without a called pot counts as safety, with W less the worth of the position that it was played from: there the
+target had its free choice. A cost is a loss, so it is positive where the player does worse than the target.
+
+Which strokes were chosen is not judged. Miss calls, free balls and decisions after a foul are not known: who comes next
+plays from where the balls lie. Each cost has the 95 % interval of a bootstrap over strokes. It holds luck: whether as many
+pots were made as such errors make says ``expected``.
+"""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from math import degrees, sqrt
+from typing import Any
+
+import numpy as np
+
+from .._check import choice
+from .._types import Floats, Ints
+from ..planning import Positions, clear_paths, pots, sobol_points, strokes_at
+from ..planning.worth import lead_of
+from ..tasks.noise import LEVELS, NoiseLike
+from .errors import BASE, SCALES, Estimate, Fitted, PlayerErrors, checked, fitted
+from .practice import JUDGING, Practice, keys, one_position, practice_of
+from .recorded import Recorded
+
+PARTS = ("potting", "position", "safety")
+LOOKS, BEST, SAMPLES = 24, 4, 24
+"""Strokes at a called pot that are tried without errors, the best of them that are then played so many times with."""
+SLOW, FAST, TIP = 0.8, 4.5, 0.35
+"""Of these strokes: cue speeds [m/s], and the largest height of the tip over R."""
+WIDE, NARROW = 0.23, 0.06
+"""Tolerances [deg] above which a pot is easy, and below which it is hard, as of the layouts ``pots:D``."""
+RESAMPLES = 2000
+WORDS = {
+    "easy": "pots of which the aim may err by more than 0.23 degrees",
+    "medium": "pots of which the aim may err by 0.06 to 0.23 degrees",
+    "hard": "pots of which the aim may err by less than 0.06 degrees",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drill:
+    """What to practise: a layout of this package, and why.
+
+    Attributes
+    ----------
+    layout : str
+        As ``layout`` of an environment, and ``--layout`` of the page.
+    reason : str
+        In one sentence.
+
+    Examples
+    --------
+    >>> from snooker_env.advice import Drill
+    >>> Drill(layout="line_up", reason="position costs most").layout
+    'line_up'
+    """
+
+    layout: str
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coaching:
+    """What ``coach`` found.
+
+    Attributes
+    ----------
+    errors : PlayerErrors
+        The player's errors of execution.
+    strokes, visits, called, made : int
+        Numbers of strokes and of visits; of the strokes with a called pot whose outcome is known, and of those made.
+    expected : Estimate or None
+        How many of these a player with such errors makes, and the 95 % interval of that number: the errors' own interval
+        and the luck of the pots. Where the errors were estimated from these very pots it must agree.
+    likely : Estimate or None
+        The same of a player of the target level, whose errors are known.
+    target : str or dict
+        The level that costs are counted against.
+    costs : dict of str to Estimate
+        "potting", "position", "safety": points lost in a visit against the target; without one of which no stroke is known.
+    most : str or None
+        Which of these costs most; None where none is known, or none is positive.
+    sure : float
+        The share of the bootstrap's samples in which it does.
+    drills : tuple of Drill
+        What to practise, first what costs most.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import Recorded, coach
+    >>> at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> over = sn.Position(over=True)
+    >>> made = Recorded(position=at, ball=21, pocket=3, potted=True, points=7, after=over)
+    >>> report = coach([made] * 3)
+    >>> report.called, report.made, sorted(report.costs)
+    (3, 3, ['position', 'potting'])
+    """
+
+    errors: PlayerErrors
+    strokes: int
+    visits: int
+    called: int
+    made: int
+    expected: Estimate | None
+    likely: Estimate | None
+    target: str | dict[str, float]
+    costs: dict[str, Estimate]
+    most: str | None
+    sure: float
+    drills: tuple[Drill, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all attributes by name as JSON types."""
+        return asdict(self) | {"drills": [asdict(one) for one in self.drills]}
+
+    def __str__(self) -> str:
+        errors, lines = self.errors, [f"{self.strokes} strokes in {self.visits} visits"]
+        base = LEVELS[BASE]
+        for name, one, unit, scale, usual in (
+            ("direction, at 1.5 m/s", errors.direction, "deg", 1.0, base.direction_deg()),
+            ("speed", errors.speed, "%", 100.0, base.speed_rel),
+        ):
+            if one is None:
+                lines.append(f"error of {name}: no stroke tells it")
+                continue
+            value, low, high = scale * one.value, scale * one.low, scale * one.high
+            lines.append(
+                f"error of {name}: {value:.3g} {unit} [{low:.3g}, {high:.3g}], {one.value / usual:.1f} times a "
+                f"professional's, from {one.strokes} strokes"
+            )
+        for name, one, unit, scale, words in (
+            ("aims", errors.aside, "deg", 1.0, ("left", "right")),
+            ("strikes", errors.faster, "%", 100.0, ("too hard", "too softly")),
+        ):
+            if one is not None and one.low * one.high > 0.0:
+                way = words[one.value < 0.0]
+                lines.append(f"on average {name} {scale * abs(one.value):.2g} {unit} {way}")
+        if self.expected is not None and self.likely is not None:
+            lines.append(
+                f"pots: {self.made} of {self.called} made; such errors make {self.expected.value:.0f} "
+                f"[{self.expected.low:.0f}, {self.expected.high:.0f}], the target {self.likely.value:.0f}"
+            )
+        for name, one in self.costs.items():
+            lines.append(
+                f"{name} costs {one.value:.2f} [{one.low:.2f}, {one.high:.2f}] points a visit, {one.strokes} strokes"
+            )
+        if self.most is not None:
+            lines.append(
+                f"{self.most} costs most: so it is in {100 * self.sure:.0f} % of the resampled strokes"
+            )
+        lines += [f"practise {one.layout}: {one.reason}" for one in self.drills]
+        return "\n".join(lines)
+
+
+def coach(
+    strokes: Sequence[Recorded], *, target: NoiseLike = "professional", options: Any = None, seed: int = 0
+) -> Coaching:
+    """Say what recorded strokes tell of a player: errors, pots expected and made, what costs most, and drills.
+
+    Parameters
+    ----------
+    strokes : sequence of Recorded
+        The strokes of one player, in order.
+    target : str, dict or Noise
+        Errors of the player that costs are counted against.
+    options : dict or Options, optional
+        Where they were played, as in ``advise``; in a frame also "miss" and "game".
+    seed : int
+        Seed of the simulated strokes, in [0, 2**63].
+
+    Returns
+    -------
+    Coaching
+        ValueError if an argument is invalid, or no stroke says anything of an error.
+    """
+    kept = checked(strokes)
+    if isinstance(target, str):
+        choice("target", target, LEVELS)
+    bench = practice_of(target, options, of_frames=True)
+    physical = {name: getattr(bench.options, name) for name in ("physics", "table", "fidelity", "cue")}
+    base = practice_of(BASE, physical)
+    found = fitted(kept, base, seed)
+    kept = found.strokes
+    costs = lost(kept, bench, seed)
+    many = max(1, visits_of(kept))
+    rng = np.random.default_rng((seed, RESAMPLES))
+    drawn = costs.parts[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / many
+    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), costs.parts.sum(axis=0) / many
+    parts = {
+        name: Estimate(
+            value=float(sums[k]), low=float(ends[0, k]), high=float(ends[1, k]), strokes=int(costs.counts[k])
+        )
+        for k, name in enumerate(PARTS)
+        if costs.counts[k]
+    }
+    first = max(parts, key=lambda name: parts[name].value) if parts else None
+    most = first if first is not None and parts[first].value > 0.0 else None
+    sure = 0.0 if most is None else float((drawn.argmax(axis=1) == PARTS.index(most)).mean())
+    return Coaching(
+        errors=found.errors,
+        strokes=len(kept),
+        visits=visits_of(kept),
+        called=len(found.pots.rows),
+        made=int(found.pots.made.sum()),
+        expected=pots_expected(found),
+        likely=pots_of_target(found, bench, base),
+        target=target if isinstance(target, str) else asdict(bench.noise),
+        costs=parts,
+        most=most,
+        sure=sure,
+        drills=drills_for(kept, parts, costs.parts, found.errors),
+    )
+
+
+def visits_of(strokes: Sequence[Recorded]) -> int:
+    """The number of visits in strokes of one player, in order; the last may go on."""
+    return sum(not one.goes_on for one in strokes) + strokes[-1].goes_on
+
+
+def pots_expected(found: Fitted) -> Estimate | None:
+    """How many of the called pots such errors make: the mean over the posterior, and the normal interval of the count."""
+    if found.direction is None or not found.pots.rows:
+        return None
+    return _counted(found.pots.chances, found.direction)
+
+
+def pots_of_target(found: Fitted, bench: Practice, base: Practice) -> Estimate | None:
+    """How many of the called pots a player of the target level makes."""
+    if not found.pots.rows:
+        return None
+    physics = base.options.rules.physics
+    times = bench.noise.direction_deg(physics) / LEVELS[BASE].direction_deg(physics)
+    weights = np.zeros(len(SCALES))
+    weights[int(np.abs(np.log(SCALES / max(times, SCALES[0]))).argmin())] = 1.0
+    return _counted(found.pots.chances, weights)
+
+
+def _counted(chances: Floats, weights: Floats) -> Estimate:
+    counts, spread = chances.sum(axis=0), (chances * (1.0 - chances)).sum(axis=0)
+    mean = float(counts @ weights)
+    half = 1.96 * sqrt(max(0.0, float(spread @ weights + counts**2 @ weights) - mean * mean))
+    low, high = max(0.0, mean - half), min(float(len(chances)), mean + half)
+    return Estimate(value=mean, low=low, high=high, strokes=len(chances))
+
+
+@dataclass(frozen=True, eq=False)
+class Lost:
+    """Points that each stroke lost, (n, 3) in the order of ``PARTS``, and how many strokes tell each part, (3,)."""
+
+    parts: Floats
+    counts: Ints
+
+
+def lost(strokes: list[Recorded], bench: Practice, seed: int) -> Lost:
+    """What strokes cost against a player with the errors of ``bench``."""
+    parts, counts = np.zeros((len(strokes), 3)), np.zeros(3, np.int64)
+    known = [k for k, one in enumerate(strokes) if one.after is not None]
+    at = {k: one_position(strokes[k].position, strokes[k].scores) for k in known}
+    worths = worth_of(bench, [at[k] for k in known])
+    left = values(bench, [strokes[k] for k in known])
+    for k, worth, value in zip(known, worths, left, strict=True):
+        one = strokes[k]
+        if one.ball is None:
+            parts[k, 2] = worth - value
+            counts[2] += 1
+            continue
+        best = best_at(bench, at[k], one, seed) if one.potted is not None else None
+        if best is None:
+            continue
+        p, made, missed = best
+        parts[k, 0] = (p - bool(one.potted)) * (made - missed)
+        parts[k, 1 if one.potted else 2] = (made if one.potted else missed) - value
+        counts += [1, bool(one.potted), not one.potted]
+    return Lost(parts, counts)
+
+
+def worth_of(bench: Practice, at: list[Positions]) -> Floats:
+    """What positions of frames are worth to their strikers (n,)."""
+    if not at:
+        return np.empty(0)
+    return np.asarray(bench.judge.worth(joined(at)), np.float64)
+
+
+def joined(at: list[Positions]) -> Positions:
+    """Positions of frames, each of one row, as the rows of one."""
+    places, present, game = zip(*((one.positions, one.on_table, one.game) for one in at), strict=True)
+    return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game))
+
+
+def values(bench: Practice, strokes: list[Recorded]) -> Floats:
+    """What strokes were worth as they came (n,): points, and the worth of what they left."""
+    out = np.array([float(one.points - one.penalty) for one in strokes])
+    going = [k for k, one in enumerate(strokes) if one.after is not None and not one.after.over]
+    after = []
+    for k in going:
+        one = strokes[k]
+        mine, others = one.scores[0] + one.points, one.scores[1] + one.penalty
+        scores = (mine, others) if one.goes_on else (others, mine)
+        assert one.after is not None
+        after.append(one_position(one.after, tuple(min(score, 1000) for score in scores)))
+    signs = np.array([1.0 if strokes[k].goes_on else -1.0 for k in going])
+    out[going] += signs * worth_of(bench, after)
+    return out
+
+
+def best_at(bench: Practice, at: Positions, one: Recorded, seed: int) -> tuple[float, float, float] | None:
+    """The target's best stroke at the called pot: its chance, and what it is worth if made and if missed. None where no
+    direct pot is the called one."""
+    direct = pots(at, 16)
+    which = np.flatnonzero((direct.ball[0] == one.ball) & (direct.pocket[0] == one.pocket))
+    if not len(which):
+        return None
+    u = sobol_points(LOOKS, 2, seed)
+    tips = np.column_stack([SLOW * (FAST / SLOW) ** u[:, 0], np.zeros(LOOKS), TIP * (2.0 * u[:, 1] - 1.0)])
+    asked, before = bench.judge, lead_of(at)
+    proposed = strokes_at(
+        at.as_visits(), np.full((1, LOOKS), which[0]), tips[None], asked.spread, asked.dynamics
+    )
+    strokes, chances = proposed.strokes[0], proposed.chances[0]
+
+    def outcomes(tried: Floats, samples: Any) -> tuple[Any, Floats]:
+        rows = np.zeros(len(tried), np.int64)
+        stops = bench.play(at, rows, tried, samples)
+        went = (stops.potted[:, one.ball] == one.pocket) & (stops.penalty == 0)
+        return went, asked.valued(np.repeat(before, len(tried)), stops.afterstates)[:, 1]
+
+    went, worth = outcomes(strokes, None)
+    looks = np.where(went, chances * worth, -np.inf)
+    best = np.argsort(-looks, kind="stable")[:BEST]
+    many = 1 if bench.sure else SAMPLES
+    samples = None if bench.sure else np.tile(keys(seed, JUDGING, many), len(best))
+    went, worth = (
+        part.reshape(len(best), many) for part in outcomes(np.repeat(strokes[best], many, 0), samples)
+    )
+    k = int(worth.mean(axis=1).argmax())
+    if not went[k].any():
+        return None
+    made = float(worth[k][went[k]].mean())
+    # where it is never missed, what a miss leaves does not count
+    missed = float(worth[k][~went[k]].mean()) if not went[k].all() else made
+    return float(went[k].mean()), made, missed
+
+
+def drills_for(
+    strokes: list[Recorded], costs: dict[str, Estimate], parts: Floats, errors: PlayerErrors
+) -> tuple[Drill, ...]:
+    """A drill for each part that costs something, first for what costs most."""
+    ranked = sorted((name for name in costs if costs[name].value > 0.0), key=lambda name: -costs[name].value)
+    made = {"potting": _potting, "position": _position, "safety": _safety}
+    return tuple(made[name](strokes, costs[name], parts[:, PARTS.index(name)], errors) for name in ranked)
+
+
+def _potting(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
+    """Pots as wide as those that cost most."""
+    sums = dict.fromkeys(WORDS, 0.0)
+    for one, points in zip(strokes, lost.tolist(), strict=True):
+        if points and (wide := width_of(one)) is not None:
+            sums["easy" if wide > WIDE else "medium" if wide > NARROW else "hard"] += points
+    worst = max(sums, key=lambda name: sums[name])
+    share = f"of {cost.value:.1f} points a visit lost by missed pots most were lost at {WORDS[worst]}"
+    return Drill(layout=f"pots:{worst}", reason=share)
+
+
+def width_of(one: Recorded) -> float | None:
+    """The tolerance of the called pot [deg], if it is direct."""
+    direct = pots(one.position, 16)
+    which = np.flatnonzero((direct.ball[0] == one.ball) & (direct.pocket[0] == one.pocket))
+    return degrees(float(direct.tolerance[0, which[0]])) if len(which) else None
+
+
+def _position(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
+    """The line-up: pots are easy there, and the speed decides."""
+    reason = f"the positions left after pots are {cost.value:.1f} points a visit worse than the target's"
+    if errors.speed is not None and errors.direction is not None:
+        base = LEVELS[BASE]
+        fast, aside = errors.speed.value / base.speed_rel, errors.direction.value / base.direction_deg()
+        if fast > 1.25 * aside:
+            reason += f", and the error of speed is {fast:.1f} times a professional's, that of direction {aside:.1f}"
+    return Drill(layout="line_up", reason=reason)
+
+
+def _safety(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
+    """Escapes, if most was lost where no straight path led to a ball on; else safeties."""
+    hidden = ~clear_paths([one.position for one in strokes]).any_part
+    if lost[hidden].sum() > 0.5 * lost.sum():
+        reason = f"of {cost.value:.1f} points a visit lost in safety most were lost when snookered"
+        return Drill(layout="escape", reason=reason)
+    missed = np.array([one.ball is not None for one in strokes])
+    if lost[missed].sum() > 0.5 * lost.sum():
+        reason = f"of {cost.value:.1f} points a visit lost in safety most were left on by missed pots"
+    else:
+        reason = f"strokes that leave the table to the other cost {cost.value:.1f} points a visit"
+    return Drill(layout="safety", reason=reason)

@@ -1,0 +1,415 @@
+"""How large are a player's errors of direction and speed? ``estimate_errors``: estimates with 95 % intervals.
+
+**The model** is that of ``snooker_env.tasks.noise``: the errors of strokes are independent and normal with mean 0. The
+direction of the cue ball errs by ``sigma_d`` at 1.5 m/s, and at a cue speed V by sqrt(1 + V^2) / sqrt(1 + 1.5^2) times as
+much (V in m/s); the speed errs by the share ``sigma_v``. Two numbers are estimated, each as a multiple s of a
+professional's.
+
+**What a stroke says of s**, by its likelihood L(s):
+
+* *Meant and played.* The error e in standard deviations of a professional is seen itself: L = exp(-(e/s)^2 / 2) / s. Where
+  only the pot that was meant is known, the line that the stroke should have had is solved, for its own speed and spin, to
+  the middle of the pocket: who plays for a side of the pocket is said to err. If the pot was only guessed from the line,
+  the stroke may have been a safety: it is one with an unknown share of chances, and its line then is anywhere within
+  ``CALLED`` of the pot's. Those that are likelier to be safeties count as such from there on.
+* *Meant, and potted or not.* The pot's tolerance is found by simulation: strokes are played in error by ``RADII``, times
+  ``WAYS`` directions of the five errors (direction, two of the tip, elevation, speed, in a professional's proportions), and
+  the share of each radius that is potted is kept. P(pot | s) is its mean over the law of the radius, which is chi with five
+  degrees of freedom, times s; L = P or 1 - P. It bears what a half-width in degrees does not: jaws, throw by a tip that is
+  off to the side, pockets that are narrow for hard balls. Without an ``intended`` stroke it is played in the middle of the
+  ball with the ``speed`` recorded, or at 1.5 m/s: then a player who strikes harder is said to err more than he does.
+* *Where the cue ball stopped*, if the stroke was meant and nobody measured its speed. ``STOPS`` strokes are played with the
+  direction's errors as estimated, and errors of speed of all sizes; L(s) is the mean density of their places at the one
+  seen, each with its weight under s, and a place is taken to be ``PLACE`` off.
+
+**The estimate** is the median of the posterior for a prior that is flat in log s from ``LEAST`` to ``MOST``, the interval
+its quantiles 2.5 and 97.5 %. For strokes meant and played that is the classical interval, sqrt(sum e^2 / chi^2_n), exact
+for every n: after 100 strokes the estimate has a standard error of 7 %, and no method does better. A pot that went in or
+not says at most 0.65 as much (P = 0.87 is best), one that always or never goes in nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from math import erf, pi, remainder, sqrt
+from statistics import NormalDist
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._check import integer, refuse_what
+from .._types import Floats
+from ..game.balls import CUE
+from ..geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from ..planning import Positions
+from ..planning.sobol import sobol_points
+from ..tasks.noise import LEVELS, POT_SPEED, TWICE, Noise
+from .practice import Practice, practice_of
+from .recorded import CALLED, Recorded, direction_of
+
+BASE = "professional"
+"""Whose errors the estimates are multiples of."""
+LEAST, MOST = 0.02, 50.0
+"""Smallest and largest error that is thought of, over a professional's."""
+SCALES = np.geomspace(LEAST, MOST, 600)
+SHARES = np.linspace(0.005, 0.9, 40)
+"""Shares of safeties among guessed pots that are thought of, each alike."""
+RADII = np.geomspace(0.12, 60.0, 27)
+"""Sizes of errors that are tried in the tolerance of a pot, in standard deviations of a professional."""
+WAYS, STOPS = 32, 1024
+"""Errors tried of each radius, and of each stroke of which is known where the cue ball stopped."""
+SIZES = 0.3, 15.0
+"""Sizes of the errors of speed that are tried, over a professional's."""
+PLACE, STRAY = 0.026, 0.01
+"""By how much a place of the cue ball errs, along each axis [m]: a ball's radius, as a person marks it; share of places
+that no error explains: anywhere on the table."""
+AREA = 4.0 * HALF_LENGTH * HALF_WIDTH
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """A number with its 95 % interval, and the strokes that it was learned from.
+
+    Attributes
+    ----------
+    value, low, high : float
+        The estimate and the ends of its interval.
+    strokes : int
+        Number of strokes.
+
+    Examples
+    --------
+    >>> from snooker_env.advice import Estimate
+    >>> print(Estimate(value=0.1, low=0.08, high=0.12, strokes=100))
+    0.1 [0.08, 0.12]
+    """
+
+    value: float
+    low: float
+    high: float
+    strokes: int
+
+    def __str__(self) -> str:
+        return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlayerErrors:
+    """A player's errors of execution, as returned by ``estimate_errors``.
+
+    Attributes
+    ----------
+    direction : Estimate or None
+        Standard deviation of the cue ball's direction at 1.5 m/s [deg]; None if no stroke tells it.
+    speed : Estimate or None
+        That of the speed, as a share of the speed.
+    aside, faster : Estimate or None
+        Mean errors: of the direction, anticlockwise (to the left as the player sees it) [deg at 1.5 m/s], and of the
+        speed, as a share. Only of strokes that were measured.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import Recorded, estimate_errors
+    >>> at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> meant = {"speed": 2.0, "aim": 0.8}
+    >>> strokes = [Recorded(position=at, intended=meant, played={"speed": 2.0, "aim": 0.8 + e}) for e in (-0.002, 0.002)]
+    >>> found = estimate_errors(strokes)
+    >>> round(found.direction.value, 2), found.direction.strokes
+    (0.11, 2)
+    """
+
+    direction: Estimate | None
+    speed: Estimate | None
+    aside: Estimate | None
+    faster: Estimate | None
+
+    @property
+    def noise(self) -> Noise:
+        """Execution errors like the player's, a ``Noise``, with a professional's proportions; of an error that is not known,
+        as many times a professional's as the other."""
+        base = LEVELS[BASE]
+        turned = self.direction and self.direction.value / base.direction_deg()
+        hurried = self.speed and self.speed.value / base.speed_rel
+        many, fast = turned or hurried or 1.0, hurried or turned or 1.0
+        same = {"aim_deg": base.aim_deg, "offset_mm": base.offset_mm, "elevation_deg": base.elevation_deg}
+        errors: Any = {name: value * many for name, value in same.items()}
+        return Noise(**errors, speed_rel=base.speed_rel * fast, growth=base.growth)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all attributes by name as JSON types."""
+        return asdict(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Pots:
+    """The strokes with a called pot: their rows, and the chances of the pots for each of ``SCALES``."""
+
+    rows: list[int]
+    chances: Floats  # (n, scales)
+    made: Any  # bool (n,)
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """The errors of a player, the posterior of the direction's over ``SCALES``, the pots that were called, and the strokes,
+    without the guessed pots that were likelier to be safeties."""
+
+    errors: PlayerErrors
+    direction: Floats | None
+    pots: Pots
+    strokes: list[Recorded]
+
+
+def estimate_errors(strokes: Sequence[Recorded], *, options: Any = None, seed: int = 0) -> PlayerErrors:
+    """Estimate a player's errors of direction and speed from recorded strokes.
+
+    Parameters
+    ----------
+    strokes : sequence of Recorded
+        The strokes of one player. Those that say nothing of an error are left out.
+    options : dict or Options, optional
+        Where they were played, as in ``advise``.
+    seed : int
+        Seed of the simulated strokes, in [0, 2**63].
+
+    Returns
+    -------
+    PlayerErrors
+        ValueError if no stroke says anything, or an argument is invalid.
+    """
+    return fitted(checked(strokes), practice_of(BASE, options), seed).errors
+
+
+def checked(strokes: Any) -> list[Recorded]:
+    """Strokes as a list; ValueError unless there is one, and all are ``Recorded``."""
+    kept = list(strokes)
+    for k, one in enumerate(kept):
+        if not isinstance(one, Recorded):
+            raise refuse_what(f"strokes[{k}]", f"a {type(one).__name__}", "must be a Recorded")
+    if not kept:
+        raise refuse_what("strokes", "none", "must hold at least one stroke")
+    return kept
+
+
+def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
+    """``estimate_errors`` with what was found on the way; ``practice``: with the errors ``BASE``."""
+    integer("seed", seed, 0, 2**63)
+    directions, speeds, widths = measured(strokes, practice)
+    guessed = np.array([one.guessed for one in strokes]) & ~np.isnan(directions)
+    mixed, meant = guesses(directions[guessed], widths[guessed])
+    wrong = np.flatnonzero(guessed)[~meant]
+    strokes = list(strokes)
+    for k in wrong.tolist():
+        strokes[k] = replace(strokes[k], ball=None, pocket=None, potted=None, guessed=False)
+        directions[k] = np.nan
+    pots = tolerances(strokes, practice, seed)
+    told = [k for k, row in enumerate(pots.rows) if np.isnan(directions[row])]
+    e = directions[~np.isnan(directions)]
+    base, direction, weights = LEVELS[BASE], None, None
+    if len(e) + len(told):
+        sure = directions[~np.isnan(directions) & ~guessed]
+        log_l = direct(sure) + mixed + outcome(pots.chances[told], pots.made[told]).sum(axis=0)
+        weights = posterior(log_l)
+        direction = estimate(weights, base.direction_deg(practice.options.rules.physics), len(e) + len(told))
+    v = speeds[~np.isnan(speeds)]
+    many = 1.0 if direction is None else direction.value / base.direction_deg()
+    log_v, seen = stops_tell(strokes, practice, many, seed)
+    speed = None
+    if len(v) + seen:
+        speed = estimate(posterior(direct(v) + log_v), base.speed_rel, len(v) + seen)
+    if direction is None and speed is None:
+        what = "none that tells an error"
+        allowed = (
+            "must hold strokes with intended and played, with a pot and played, or with a pot and potted"
+        )
+        raise refuse_what("strokes", what, allowed)
+    errors = PlayerErrors(
+        direction=direction,
+        speed=speed,
+        aside=mean_of(e, base.direction_deg(practice.options.rules.physics)),
+        faster=mean_of(v, base.speed_rel),
+    )
+    return Fitted(errors, weights, pots, strokes)
+
+
+def direct(e: Floats) -> Floats:
+    """Log-likelihood (scales,) of errors (n,) in a professional's standard deviations."""
+    return -len(e) * np.log(SCALES) - 0.5 * float(np.sum(e * e)) / SCALES**2
+
+
+def guesses(e: Floats, widths: Floats) -> tuple[Floats, Any]:
+    """Log-likelihood (scales,) of errors (n,) at guessed pots, some of which were safeties: these lie evenly within
+    ``widths`` (n,); all in a professional's standard deviations. And which are likelier to be pots, bool (n,)."""
+    if not len(e):
+        return np.zeros(len(SCALES)), np.zeros(0, np.bool_)
+    pot = np.exp(-0.5 * (e / SCALES[:, None]) ** 2) / (SCALES[:, None] * sqrt(2.0 * pi))
+    safety = 0.5 / widths
+    log_l = np.array([np.log((1.0 - share) * pot + share * safety).sum(axis=1) for share in SHARES])
+    both = np.exp(log_l - log_l.max())
+    both /= both.sum()
+    likely = [(1.0 - share) * pot / ((1.0 - share) * pot + share * safety) for share in SHARES]
+    meant = sum(weights @ each for weights, each in zip(both, likely, strict=True))
+    return np.log(np.maximum(both.sum(axis=0), 1e-300)), meant > 0.5
+
+
+def outcome(chances: Floats, made: Any) -> Floats:
+    """Log-likelihoods (n, scales) of pots made or missed, whose chances are (n, scales)."""
+    p = np.clip(chances, 1e-3, 1.0 - 1e-3)  # a fluke or a slip is never impossible
+    return np.where(np.asarray(made)[:, None], np.log(p), np.log1p(-p))
+
+
+def posterior(log_likelihood: Floats) -> Floats:
+    """Weights (scales,) that sum to 1, for a prior flat in the logarithm: ``SCALES`` are evenly spaced in it."""
+    weights = np.exp(log_likelihood - log_likelihood.max())
+    return weights / weights.sum()
+
+
+def estimate(weights: Floats, unit: float, strokes: int) -> Estimate:
+    """Median and 95 % interval of a posterior, in units of a professional's error."""
+    summed = np.cumsum(weights) - 0.5 * weights
+    value, low, high = np.exp(np.interp((0.5, 0.025, 0.975), summed, np.log(SCALES))) * unit
+    return Estimate(value=float(value), low=float(low), high=float(high), strokes=strokes)
+
+
+def mean_of(e: Floats, unit: float) -> Estimate | None:
+    """The mean of errors (n,) with its 95 % interval by Student's law (Hill's expansion of its quantile); None of fewer
+    than three."""
+    n = len(e)
+    if n < 3:
+        return None
+    z, f = 1.959964, n - 1
+    t = z + (z**3 + z) / (4 * f) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * f * f)
+    middle, half = float(e.mean()), t * float(e.std(ddof=1)) / sqrt(n)
+    return Estimate(value=middle * unit, low=(middle - half) * unit, high=(middle + half) * unit, strokes=n)
+
+
+def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats, Floats]:
+    """Errors of direction and speed (n,) in a professional's standard deviations, NaN where they were not measured; and
+    ``CALLED`` in these."""
+    directions, speeds, widths = np.full((3, len(strokes)), np.nan)
+    base, physics = LEVELS[BASE], practice.options.rules.physics
+    unit = np.radians(base.direction_deg(physics, speed=0.0))
+    for k, one in enumerate(strokes):
+        if one.played is None:
+            continue
+        if one.intended is not None:
+            aim, speed = one.intended.aim, one.intended.speed
+            speeds[k] = (one.played["speed"] - speed) / (base.speed_rel * speed)
+        elif one.ball is not None:
+            aim, speed = float(solved([one], practice)[0, 3]), one.played["speed"]
+        else:
+            continue
+        raised = one.played["elevation"] / TWICE if practice.options.cue == "real" else 0.0
+        more = sqrt(1.0 + (base.growth * speed) ** 2) * (1.0 + raised)
+        aside = remainder(direction_of(one.played, physics) - aim, 2.0 * pi)
+        directions[k], widths[k] = aside / (unit * more), CALLED / (unit * more)
+    return directions, speeds, widths
+
+
+def solved(strokes: list[Recorded], practice: Practice) -> Floats:
+    """The strokes (n, 5) that were meant: as recorded, or at the middle of the pocket with the speed and tip played, else
+    in the middle of the ball with the speed recorded, or ``POT_SPEED``."""
+    out = np.zeros((len(strokes), 5))
+    for k, one in enumerate(strokes):
+        if one.intended is not None:
+            out[k] = one.intended.numbers()
+            continue
+        cue = one.played or {"speed": one.speed or POT_SPEED, "side": 0.0, "top": 0.0}
+        out[k, :3] = np.clip([cue["speed"], cue["side"], cue["top"]], (0.2, -0.35, -0.35), (7.0, 0.35, 0.35))
+    rows = [k for k, one in enumerate(strokes) if one.intended is None]
+    if rows:
+        at = Positions.of([strokes[k].position for k in rows])
+        balls = np.array([strokes[k].ball for k in rows])
+        pockets = np.array([strokes[k].pocket for k in rows])
+        targets = POCKET_AIMS[pockets][:, [AIM_X, AIM_Y]]
+        out[rows, 3] = practice.exact.pot_aim(at, np.arange(len(rows)), balls, targets, out[rows])
+    return out
+
+
+def tolerances(strokes: list[Recorded], practice: Practice, seed: int) -> Pots:
+    """The called pots whose outcome is known, with their chances for each of ``SCALES``."""
+    rows = [k for k, one in enumerate(strokes) if one.ball is not None and one.potted is not None]
+    if not rows:
+        return Pots([], np.empty((0, len(SCALES))), np.empty(0, np.bool_))
+    called = [strokes[k] for k in rows]
+    meant, many = solved(called, practice), len(RADII) * WAYS
+    ways = normal_points(WAYS, seed)
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    errors = (RADII[:, None, None] * ways).reshape(-1, 5)
+    at = Positions.of([one.position for one in called])
+    each = np.repeat(np.arange(len(called)), many)
+    stops = practice.noisy.stops(at, each, strokes=meant[each], errors=np.tile(errors, (len(called), 1)))
+    balls, pockets = np.array([(one.ball, one.pocket) for one in called]).T
+    went = (stops.potted[np.arange(len(each)), balls[each]] == pockets[each]) & (stops.penalty == 0)
+    shares = went.reshape(len(called), len(RADII), WAYS).mean(axis=2)
+    return Pots(rows, shares @ radius_weights(), np.array([one.potted for one in called]))
+
+
+def radius_weights() -> Floats:
+    """How likely an error of each size in ``SCALES`` is to have each of ``RADII``: (radii, scales), columns sum to 1."""
+    edges = np.sqrt(RADII[1:] * RADII[:-1])[:, None] / SCALES
+    below = np.vstack([np.zeros(len(SCALES)), chi5(edges), np.ones(len(SCALES))])
+    return np.diff(below, axis=0)
+
+
+def chi5(x: Floats) -> Floats:
+    """The distribution function of the length of five standard normal numbers."""
+    half = np.vectorize(erf)(x / sqrt(2.0))
+    return half - sqrt(2.0 / pi) * np.exp(-0.5 * x * x) * (x + x**3 / 3.0)
+
+
+def normal_points(n: int, seed: int) -> Floats:
+    """n evenly spread standard normal points (n, 5)."""
+    return np.vectorize(NormalDist().inv_cdf)(sobol_points(n, 5, seed))
+
+
+def stops_tell(
+    strokes: list[Recorded], practice: Practice, direction: float, seed: int
+) -> tuple[Floats, int]:
+    """Log-likelihood (scales,) of the places where cue balls stopped, and the number of such strokes; ``direction``: the
+    error of direction over a professional's."""
+    rows = [one for one in strokes if one.intended and one.stopped and one.played is None]
+    if not rows:
+        return np.zeros(len(SCALES)), 0
+    return places_tell(rows, clouds(rows, practice, direction, seed)), len(rows)
+
+
+class Clouds(NamedTuple):
+    """Where the cue ball of n strokes may stop: ``places`` (n, stops, 2), NaN where it fell; ``made`` (n, stops), whether
+    the called pot was; ``weights`` (stops, scales) of the samples for each error of speed."""
+
+    places: Floats
+    made: Any
+    weights: Floats
+
+
+def clouds(strokes: list[Recorded], practice: Practice, direction: float, seed: int) -> Clouds:
+    """The clouds of strokes that were meant; see ``stops_tell``."""
+    errors = normal_points(STOPS, seed) * direction
+    # of all sizes, each as often: a mixture, whose density is the mean of those of its parts
+    sizes = np.geomspace(*SIZES, STOPS)
+    faster = np.random.default_rng((seed, STOPS)).standard_normal(STOPS) * sizes
+    errors[:, 0] = faster
+    drawn = (np.exp(-0.5 * (faster[:, None] / sizes) ** 2) / sizes).mean(axis=1)
+    weights = np.exp(-0.5 * (faster[:, None] / SCALES) ** 2) / SCALES / drawn[:, None]
+    at, meant = Positions.of([one.position for one in strokes]), solved(strokes, practice)
+    places, made = np.empty((len(strokes), STOPS, 2)), np.zeros((len(strokes), STOPS), np.bool_)
+    for k, one in enumerate(strokes):
+        rows = np.full(STOPS, k)
+        stops = practice.noisy.stops(at, rows, strokes=meant[rows], errors=errors)
+        fell = stops.potted[:, CUE] >= 0
+        places[k] = np.where(fell[:, None], np.nan, stops.places[:, CUE])
+        made[k] = one.ball is not None and (stops.potted[:, one.ball or 0] == one.pocket)
+    return Clouds(places, made, weights)
+
+
+def places_tell(strokes: list[Recorded], found: Clouds) -> Floats:
+    """Log-likelihood (scales,) of the places where the cue balls of strokes stopped."""
+    log_l = np.zeros(len(SCALES))
+    for one, places, made in zip(strokes, found.places, found.made, strict=True):
+        apart = np.hypot(*(places - one.stopped).T) / PLACE
+        near = np.nan_to_num(np.exp(-0.5 * np.minimum(apart, 30.0) ** 2)) / (2.0 * pi * PLACE**2)
+        if one.potted is not None:
+            near *= made == one.potted
+        log_l += np.log((1.0 - STRAY) * near @ found.weights / STOPS + STRAY / AREA)
+    return log_l

@@ -1,0 +1,383 @@
+"""What is recorded of a stroke, and how is it read from a file? ``Recorded``: what was meant, what was played, what came.
+
+Three kinds of records say something about a player's errors, the first the most:
+
+* The stroke meant and the stroke played (``intended``, ``played``), as a simulator has both.
+* The pot meant and the stroke played (``ball``, ``pocket``, ``played``), as in a replay. A replay does not say which pot
+  was meant: it is guessed to be the direct pot whose line is nearest to that of the stroke, within ``CALLED``.
+* The pot meant and whether it went in (``ball``, ``pocket``, ``potted``), as a person with a pencil, or a camera, has it.
+"""
+
+import base64
+import binascii
+import json
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from math import atan2, hypot, pi, radians, remainder
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._check import array, choice, integer, number, refuse, refuse_what, truth
+from .._files import write_atomic
+from .._types import Floats, Place
+from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
+from ..geometry import POCKETS
+from ..physics import cloth
+from ..physics.cue import strike
+from ..physics.parameters import Physics
+from ..planning import Position, pots
+from ..replays import replay
+from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
+from .strokes import CueStroke
+
+FORMAT, VERSION = "snooker-strokes", 1
+CALLED = radians(2.0)
+"""How far the line of a stroke may be from that of a pot which it is taken to be meant for [rad]: four standard deviations
+of a club player's hard stroke."""
+CUE_PARTS = ("speed", "side", "top", "aim", "elevation")
+MOST_PENALTY, MOST_POINTS = 7, 16
+_DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recorded:
+    """One stroke of a player as it was recorded, immutable; ValueError for a field that is out of range.
+
+    Parameters
+    ----------
+    position : Position
+        The balls before the stroke, and what was on.
+    intended : CueStroke, optional
+        The stroke as it was meant.
+    played : dict of str to float, optional
+        The stroke as it was played: "speed" [m/s], "side", "top" (over R), "aim" of the cue, "elevation" [rad], as
+        ``Played.cue``. Here ``aim`` is the direction of the cue itself, without its squirt.
+    speed : float, optional
+        About how hard it was struck [m/s], in [0.2, 7], where neither stroke is known.
+    ball, pocket : int, optional
+        Id of the ball and index into ``snooker_env.POCKETS`` of the pot that was meant; both or none. None: a safety, an
+        escape.
+    potted : bool, optional
+        Whether that ball went into that pocket without a foul.
+    guessed : bool
+        Whether ``ball`` and ``pocket`` were only told from the line of the stroke: it may have been a safety. Default False.
+    stopped : (float, float), optional
+        Where the cue ball stopped [m]; None if it was potted, or nobody looked.
+    points, penalty : int
+        What the stroke scored, in [0, 16], and what it gave away, in [0, 7].
+    after : Position, optional
+        The balls that whoever plays next meets; ``over=True`` where nobody does. None: not known.
+    scores : (int, int)
+        Of a frame: of the player and of the other, before the stroke. Default (0, 0).
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import Recorded
+    >>> at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> Recorded(position=at, ball=21, pocket=3, potted=True, points=7).goes_on
+    True
+    """
+
+    position: Position
+    intended: CueStroke | None = None
+    played: dict[str, float] | None = None
+    speed: float | None = None
+    ball: int | None = None
+    pocket: int | None = None
+    potted: bool | None = None
+    guessed: bool = False
+    stopped: Place | None = None
+    points: int = 0
+    penalty: int = 0
+    after: Position | None = None
+    scores: tuple[int, int] = (0, 0)
+
+    def __post_init__(self) -> None:
+        put: Any = lambda name, value: object.__setattr__(self, name, value)  # noqa: E731
+        for name in ("position", "after"):
+            here = getattr(self, name)
+            if not isinstance(here, Position) and (name == "position" or here is not None):
+                raise refuse_what(name, f"a {type(here).__name__}", "must be a Position")
+        if self.position.over:
+            raise refuse("position.over", True, "must be False: a stroke was played")
+        if self.intended is not None:
+            put("intended", CueStroke.of(self.intended))
+        if self.played is not None:
+            put("played", _cue(self.played))
+        if self.speed is not None:
+            put("speed", number("speed", self.speed, MIN_SPEED, MAX_SPEED))
+        if (self.ball is None) != (self.pocket is None):
+            missing = "ball" if self.ball is None else "pocket"
+            raise refuse(missing, None, "must be given: a pot has a ball and a pocket")
+        if self.ball is not None:
+            put("ball", integer("ball", self.ball, 1, N_BALLS - 1))
+            put("pocket", integer("pocket", self.pocket, 0, len(POCKETS) - 1))
+            if not self.position.arrays()[1][self.ball]:
+                raise refuse("ball", self.ball, "must be on the table of the position")
+        if self.potted is not None:
+            put("potted", truth("potted", self.potted))
+            if self.ball is None:
+                raise refuse("potted", self.potted, "must be left out: no pot was meant")
+        put("guessed", truth("guessed", self.guessed))
+        if self.guessed and (self.ball is None or self.played is None):
+            raise refuse(
+                "guessed", True, "must be False without a pot, and the stroke played, which it is told from"
+            )
+        if self.stopped is not None:
+            put("stopped", tuple(array("stopped", self.stopped, (2,)).tolist()))
+        put("points", integer("points", self.points, 0, MOST_POINTS))
+        put("penalty", integer("penalty", self.penalty, 0, MOST_PENALTY))
+        if not isinstance(self.scores, list | tuple) or len(self.scores) != 2:
+            raise refuse("scores", self.scores, "must be two integers: of the player and of the other")
+        put("scores", tuple(integer(f"scores[{k}]", one, 0, 1000) for k, one in enumerate(self.scores)))
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether the visit goes on after the stroke."""
+        return self.points > 0 and self.penalty == 0 and not (self.after is not None and self.after.over)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what is known of the stroke as JSON types; ``from_dict`` reads it."""
+        kept: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self)}
+        for name in ("position", "intended", "after"):
+            kept[name] = kept[name] and kept[name].to_dict()
+        for name in ("stopped", "scores"):
+            kept[name] = kept[name] and list(kept[name])
+        if self.pocket is not None:
+            kept["pocket"] = POCKETS[self.pocket]
+        return {name: value for name, value in kept.items() if value is not None}
+
+    @classmethod
+    def from_dict(cls, kept: Mapping[str, Any]) -> "Recorded":
+        """Make the stroke that a dict of ``to_dict`` describes; ``ball`` may be the name of a colour, ``pocket`` a name of
+        ``snooker_env.POCKETS``. ValueError for an unknown key."""
+        if not isinstance(kept, Mapping):
+            raise refuse_what(
+                "stroke", f"a {type(kept).__name__}", "must be a dict of the fields of Recorded"
+            )
+        names = [f.name for f in fields(cls)]
+        for key in kept:
+            choice("field of the stroke", key, names)
+        made = dict(kept)
+        if "position" not in made:
+            raise refuse_what("stroke", "a dict without 'position'", "must say where the balls lay")
+        for name in ("position", "after"):
+            if made.get(name) is not None:
+                made[name] = Position.from_dict(made[name])
+        if isinstance(made.get("ball"), str):
+            made["ball"] = NAMES.index(choice("ball", made["ball"], NAMES[16:]))
+        if isinstance(made.get("pocket"), str):
+            made["pocket"] = POCKETS.index(choice("pocket", made["pocket"], POCKETS))
+        return cls(**made)
+
+
+def _cue(played: Any) -> dict[str, float]:
+    """``Recorded.played`` as five numbers; what is left out of tip and elevation is 0."""
+    if not isinstance(played, Mapping):
+        raise refuse_what("played", f"a {type(played).__name__}", f"must be a dict with {list(CUE_PARTS)}")
+    for key in played:
+        choice("field of played", key, CUE_PARTS)
+    for key in ("speed", "aim"):
+        if key not in played:
+            raise refuse_what("played", f"a dict without {key!r}", f"must be a dict with {list(CUE_PARTS)}")
+    ends = {"speed": (0.0, 20.0), "side": (-1.0, 1.0), "top": (-1.0, 1.0), "elevation": (0.0, pi / 2)}
+    return {name: number(f"played.{name}", played.get(name, 0.0), *ends.get(name, ())) for name in CUE_PARTS}
+
+
+def write_strokes(path: str | Path, strokes: Iterable[Recorded]) -> None:
+    """Write strokes as JSON, whole or not at all; ``read_strokes`` reads them. OSError if it cannot be written."""
+    kept = {"format": FORMAT, "version": VERSION, "strokes": [one.to_dict() for one in strokes]}
+    write_atomic(path, json.dumps(kept, allow_nan=False) + "\n")
+
+
+def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorded]:
+    """Read the strokes of one player from a file of ``write_strokes``, or from a replay, JSON or page.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file: ``.json`` of ``write_strokes`` or of ``snooker_env.replay``, or the ``.html`` of a replay.
+    player : int, optional
+        Of a replay of a frame: whose strokes, 0 or 1. Default None: all are of one player.
+
+    Returns
+    -------
+    list of Recorded
+        At least one. ValueError names what is wrong in the file; OSError if it cannot be read.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+        page = _DATA.search(text)
+        kept = json.loads(page[1] if page else text)
+    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        raise refuse("path", str(path), f"must be a file of strokes or a replay ({error})") from None
+    form = kept.get("format") if isinstance(kept, dict) else None
+    readers = {FORMAT: _from_strokes, "snooker-replay": _from_replay}
+    if form not in readers or not isinstance(kept.get("strokes"), list):
+        allowed = f"must be a file of strokes ({FORMAT!r}) or a replay ('snooker-replay')"
+        raise refuse("path", str(path), allowed)
+    if kept.get("version") != VERSION or kept["version"] is True:
+        raise refuse(f"version of {path}", kept.get("version"), f"must be {VERSION}")
+    if player is not None:
+        integer("player", player, 0, 1)
+    try:
+        strokes = readers[form](kept, player)
+    except (KeyError, TypeError, IndexError, AttributeError, binascii.Error) as error:
+        what = f"a damaged file ({type(error).__name__}: {error})"
+        raise refuse_what(str(path), what, f"must be a whole {form!r}") from None
+    if not strokes:
+        raise refuse("path", str(path), "must hold at least one stroke of the player")
+    return strokes
+
+
+def strokes_of(
+    source: Any, *, player: int | None = None, intended: Sequence[CueStroke | None] | None = None
+) -> list[Recorded]:
+    """The recorded strokes of an environment that keeps its history, of its strokes, or of a replay.
+
+    Parameters
+    ----------
+    source : environment, sequence of Played, or Replay
+        As ``snooker_env.replay`` takes it.
+    player : int, optional
+        Of a frame: whose strokes, 0 or 1. Default None: all are of one player.
+    intended : sequence of CueStroke or None, optional
+        How each stroke of ``source`` was meant, the other player's too; None where it is not known.
+
+    Returns
+    -------
+    list of Recorded
+        ValueError for bare shots, or another number of ``intended``.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import strokes_of
+    >>> env = sn.SnookerEnv(action="discrete", noise="club")
+    >>> env.keep_history = True
+    >>> _ = env.reset(seed=1), env.step(67)
+    >>> strokes_of(env)[0].played is not None
+    True
+    """
+    kept = replay(source).to_dict()
+    if intended is not None and len(intended) != len(kept["strokes"]):
+        allowed = f"must be {len(kept['strokes'])}, one for each stroke"
+        raise refuse_what("intended", f"{len(intended)} strokes", allowed)
+    return _from_replay(kept, player, intended)
+
+
+def _from_strokes(kept: Mapping[str, Any], player: int | None) -> list[Recorded]:
+    if player is not None:
+        raise refuse("player", player, "must be left out: such a file is of one player")
+    made = []
+    for k, one in enumerate(kept["strokes"]):
+        try:
+            made.append(Recorded.from_dict(one))
+        except ValueError as error:
+            raise ValueError(f"strokes[{k}]: {error}") from None
+    return made
+
+
+def _from_replay(
+    kept: Mapping[str, Any], player: int | None, intended: Sequence[CueStroke | None] | None = None
+) -> list[Recorded]:
+    made = []
+    if player is None and len({one["player"] for one in kept["strokes"]}) > 1:
+        raise refuse("player", None, "must be 0 or 1: the replay is of two players")
+    before = (0, 0)
+    for k, one in enumerate(kept["strokes"]):
+        if one["player"] is None or one["cue"] is None or one["n"] != N_BALLS:
+            raise refuse_what(f"strokes[{k}]", "a bare shot", "must be of a visit or a frame, with a referee")
+        who, scores = one["player"], before
+        before = tuple((*one["score"], 0)[:2])
+        if player is None or who == player:
+            try:
+                meant = None if intended is None else intended[k]
+                made.append(_of_replay(one, (scores[who], scores[1 - who]), meant))
+            except ValueError as error:
+                raise ValueError(f"strokes[{k}]: {error}") from None
+    return made
+
+
+def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStroke | None) -> Recorded:
+    """A stroke of a replay; which pot was meant is told from the line of the stroke."""
+    start, here = _numbers(one["start"], "f8", 2), _present(one["on_table"])
+    word = one["ball_on"].replace(" ", "_")
+    position = _position(start, here, None if word == "free_ball" else word)
+    which, states = _numbers(one["paths"]["u1"], "u1", 2).astype(int).T
+    rest, left = start.copy(), here.copy()
+    for ball, state, row in zip(which, states, _numbers(one["paths"]["f8"], "f8", 7), strict=True):
+        rest[ball], left[ball] = row[1:3], state != cloth.GONE
+    stopped = tuple(rest[CUE].tolist()) if left[CUE] else None
+    if one["after"] is not None:
+        rest, left = _numbers(one["after"]["places"], "f8", 2), _present(one["after"]["on_table"])
+    scored = one["points"] > 0 and not one["penalty"]
+    colour = scored and word == "red" and bool(left[16:].any())
+    if left[1:].any() and left[CUE]:
+        after: Position | None = _position(rest, left, "any_colour" if colour else None)
+    else:
+        after = None if left[1:].any() else Position(over=True)
+    played = {name: one["cue"][name] for name in CUE_PARTS}
+    line = direction_of(played, Physics()) if intended is None else intended.aim
+    meant = None if word == "free_ball" else called(position, line)
+    ids = np.flatnonzero(here).tolist()
+    # a position numbers its reds anew
+    reds = {ball: 1 + k for k, ball in enumerate(ball for ball in ids if 1 <= ball <= 15)}
+    down = {reds.get(ball, ball) for ball in one["pots"]}
+    ball, pocket = (None, None) if meant is None else meant
+    return Recorded(
+        position=position,
+        intended=intended,
+        played=played,
+        ball=ball,
+        pocket=pocket,
+        potted=None if ball is None else ball in down and not one["penalty"],
+        guessed=ball is not None and intended is None,
+        stopped=stopped,
+        points=one["points"],
+        penalty=one["penalty"],
+        after=after,
+        scores=scores,
+    )
+
+
+def _numbers(text: str, kind: str, columns: int) -> Floats:
+    """Numbers (n, columns) of base64, little-endian."""
+    raw = base64.b64decode(text, validate=True)
+    return np.frombuffer(raw, np.dtype(kind).newbyteorder("<")).reshape(-1, columns).astype(np.float64)
+
+
+def _present(ids: Sequence[int]) -> Any:
+    here = np.zeros(N_BALLS, np.bool_)
+    here[[integer("on_table", ball, 0, N_BALLS - 1) for ball in ids]] = True
+    return here
+
+
+def _position(places: Floats, here: Any, on: str | None) -> Position:
+    """A position of arrays; ``on`` None: the lowest ball."""
+    mask = sum(1 << ball for ball in np.flatnonzero(here).tolist())
+    code = BallOn(next_on(mask)) if on is None else BallOn[choice("ball_on", on.upper(), BallOn.__members__)]
+    return Position.of_arrays(places, here, np.array([code, 0, 0, 0, 0]))
+
+
+def direction_of(played: Mapping[str, float], physics: Physics) -> float:
+    """The direction in which the cue ball leaves a level cue [rad]: that of the cue, and its squirt."""
+    side = min(physics.max_offset, max(-physics.max_offset, played["side"]))
+    (vx, vy, _), _ = strike(1.0, 0.0, side, 0.0, 0.0, physics)
+    return played["aim"] + atan2(vy, vx)
+
+
+def called(position: Position, direction: float) -> tuple[int, int] | None:
+    """Ball and pocket of the direct pot whose line is nearest to a direction [rad]; None beyond ``CALLED``."""
+    direct = pots(position, 16)
+    x, y = position.cue or (0.0, 0.0)
+    aside = [
+        abs(remainder(atan2(gy - y, gx - x) - direction, 2.0 * pi)) if ball > 0 and hypot(gx, gy) else pi
+        for ball, (gx, gy) in zip(direct.ball[0].tolist(), direct.ghost[0].tolist(), strict=True)
+    ]
+    k = int(np.argmin(aside))
+    return (int(direct.ball[0, k]), int(direct.pocket[0, k])) if aside[k] <= CALLED else None
