@@ -55,9 +55,7 @@ def test_a_command_says_what_is_missing(package, extra, command):
     assert done.stderr == f"{target}: {package} is missing; {where}\n" and done.returncode == 1
 
 
-@pytest.mark.parametrize(
-    "module", [f"agents.{name}" for name in ("evaluate", "publish", "curves", "report")]
-)
+@pytest.mark.parametrize("module", [f"agents.{name}" for name in ("evaluate", "publish", "curves", "report")])
 def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     """And compiles nothing: the cache stays empty."""
     done = python("-m", module, "--help", NUMBA_CACHE_DIR=str(tmp_path), COLUMNS="120")
