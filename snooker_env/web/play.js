@@ -26,12 +26,12 @@ const LEVELS = {
   beginner: ["ghost_ball", "club"], "club player": ["tactician_500", "club"], amateur: ["tactician_500", "amateur"],
   professional: ["tactician_500", "professional"], perfect: ["tactician_500", "none"], "nobody: two play here": ["person", "none"],
 };
-const OWN = "as under Options";
-const NOISE = { none: "nobody: exact", professional: "a professional", amateur: "an amateur", club: "a club player", robot: "a robot", olympiad: "the Olympiad's robots" };
+const OWN = "own";
+const NOISE = { none: "nobody", professional: "a professional", amateur: "an amateur", club: "a club player", robot: "a robot", olympiad: "the Olympiad's robots" };
 const GAMES = { snooker: "snooker", six_red: "six-red", shoot_out: "Shoot Out" };
 const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
-/** Slow motion, and zoom. */
-const SLOW = 0.2, ZOOM = 2;
+/** Slow motion, zoom, and how long a call is shown [ms]. */
+const SLOW = 0.2, ZOOM = 2, CALLED = 1600;
 /** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels]. */
 const LOUPE = 0.24, SMALL = 9;
 const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "escape", "safety", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
@@ -216,6 +216,7 @@ class Page {
       this.played++;
       if (!stroke) { this.played = this.state.strokes; break; }
       await this.move(stroke);
+      this.call(stroke);
       if (this.drills.now && this.played === this.state.strokes) this.scored = stroke;
       if (this.played < this.state.strokes) await new Promise(done => setTimeout(done, 500));
       const { state } = this;
@@ -305,6 +306,17 @@ class Page {
   }
 
   // --------------------------------------------------------------------------------------------------------------------- motion
+
+  /** Call what a stroke has brought, for a moment. */
+  call({ points, fouls, penalty, break: run }) {
+    if (!points && !fouls.length) return;
+    const call = by("call");
+    call.textContent = fouls.length ? `Foul, ${penalty}` : run > points ? `+${points}, break ${run}` : `+${points}`;
+    call.className = fouls.length ? "foul" : "";
+    call.hidden = false;
+    clearTimeout(this.called);
+    this.called = setTimeout(() => { call.hidden = true; }, CALLED);
+  }
 
   /** Animate a stroke; resolves when the balls rest or the motion is skipped. */
   move(data, rate = 1) {
@@ -449,7 +461,10 @@ class Page {
       by(`side-${k}`).querySelector(".frames").textContent = state.best_of > 1 ? `(${state.frames[k]})` : "";
     }
     const levels = Object.keys(LEVELS), level = levels.find(name => state.players[0] === "person" && LEVELS[name][0] === state.players[1] && LEVELS[name][1] === state.noise[1]);
-    fill(by("level"), level ? levels : [...levels, OWN], level ?? OWN);
+    fill(by("level"), [...levels, OWN], level ?? OWN);
+    const own = by("level").lastChild;
+    own.hidden = Boolean(level);
+    own.textContent = `${state.labels[1]}, who errs like ${NOISE[state.noise[1]]}`;
     by("practice").checked = state.practice;
     by("cue").value = state.cue;
     this.show();
@@ -478,6 +493,7 @@ class Page {
     by("go").hidden = setup || !this.waits && !this.agentsAlone;
     by("go").textContent = this.waits ? "Continue" : "Pause";
     by("play").disabled = !mine;
+    by("stroke").classList.toggle("idle", !mine);
     by("skip").hidden = !this.moving;
     by("play").hidden = Boolean(this.moving) || choosing || !by("go").hidden;
     if (!mine) by("odds").textContent = "";
@@ -551,8 +567,10 @@ class Page {
     by("loupe").hidden = !shown;
     if (!shown) return;
     const [px, py] = view.toScreen(x, y), [ix, iy] = view.toScreen(this.balls.x[0], this.balls.y[0]), { style } = by("loupe");
-    const left = view.upright || px + ix > box.clientWidth, top = py + iy > box.clientHeight;
-    Object.assign(style, { left: left ? "8px" : "auto", right: left ? "auto" : "8px", top: top ? "8px" : "auto", bottom: top ? "auto" : "8px" });
+    const aim = this.aim.wish.aim, cue = view.toScreen(this.balls.x[0] - 0.5 * Math.cos(aim), this.balls.y[0] - 0.5 * Math.sin(aim)), busy = [[px, py], [ix, iy], cue];
+    const room = ([left, top]) => Math.min(...busy.map(([x_, y_]) => Math.hypot(x_ - left * box.clientWidth, y_ - top * box.clientHeight)));
+    const [[left, top]] = (view.upright ? [[0, 1], [1, 1], [0, 0], [1, 0]] : [[0, 1], [0, 0], [1, 1]]).sort((a, b) => room(b) - room(a));
+    Object.assign(style, { left: left ? "auto" : "8px", right: left ? "8px" : "auto", top: top ? "auto" : "8px", bottom: top ? "8px" : "auto" });
     loupe.upright = view.upright;
     if (loupe.canvas.width < 2 || loupe.canvas.clientWidth * loupe.ratio !== loupe.canvas.width) loupe.resize();
     loupe.upright = view.upright;

@@ -163,9 +163,9 @@ export class Advisor {
   /** A suggestion in two lines: what is played with the figure that it is ordered by, and how. */
   told(one, what, how) {
     const pocket = one.kind === "pot" ? ` to ${how.shift()}` : "", figure = one.win ?? null;
-    const points = `${one.points.toFixed(1)} points`;
+    const points = `${one.points.toFixed(1)} points`, chance = word => /^(pot|fair) /.test(word);
     return {
-      what: `${what[0].toUpperCase()}${what.slice(1)}${pocket}`, how: how.join(", "),
+      what: `${what[0].toUpperCase()}${what.slice(1)}${pocket}`, how: [...how.filter(chance), ...how.filter(word => !chance(word))].join(", "),
       figure: figure !== null ? `win ${percent(figure)}` : one.kind === "pot" ? points : `fair ${percent(one.chance)}`,
     };
   }

@@ -715,7 +715,7 @@ def test_one_menu_seats_an_opponent_of_a_strength(shown):
         assert shown("page.state.noise[0]") == "none" and shown.page.input_value("#level") == level
     shown.line("api/players", {"noise": ["none", "robot"]})
     shown.until("page.state.noise[1] === 'robot'")
-    assert shown.page.input_value("#level") == "as under Options"
+    assert shown.page.inner_text("#level option:checked") == "tactician 500, who errs like a robot"
     shown.line("api/players", PERSONS)
 
 
