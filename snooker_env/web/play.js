@@ -561,7 +561,7 @@ class Page {
     this.asked ??= requestAnimationFrame(now => { this.asked = null; this.draw(now); });
   }
 
-  /** The first contact, larger, in the corner of the table that is farthest from it: where balls are small, or under a finger. */
+  /** The first contact, larger, in a corner of the table that is far from the stroke, but not under the buttons: where balls are small, or under a finger. */
   contact(frame, { x, y, ball }) {
     const { view, loupe, scene } = this, box = by("stage"), shown = ball >= 0 && !this.advisor.hover && view.R * view.scale / view.ratio < SMALL;
     by("loupe").hidden = !shown;
@@ -569,7 +569,7 @@ class Page {
     const [px, py] = view.toScreen(x, y), [ix, iy] = view.toScreen(this.balls.x[0], this.balls.y[0]), { style } = by("loupe");
     const aim = this.aim.wish.aim, cue = view.toScreen(this.balls.x[0] - 0.5 * Math.cos(aim), this.balls.y[0] - 0.5 * Math.sin(aim)), busy = [[px, py], [ix, iy], cue];
     const room = ([left, top]) => Math.min(...busy.map(([x_, y_]) => Math.hypot(x_ - left * box.clientWidth, y_ - top * box.clientHeight)));
-    const [[left, top]] = (view.upright ? [[0, 1], [1, 1], [0, 0], [1, 0]] : [[0, 1], [0, 0], [1, 1]]).sort((a, b) => room(b) - room(a));
+    const [[left, top]] = [[0, 1], [1, 1], [0, 0]].sort((a, b) => room(b) - room(a));
     Object.assign(style, { left: left ? "auto" : "8px", right: left ? "8px" : "auto", top: top ? "auto" : "8px", bottom: top ? "8px" : "auto" });
     loupe.upright = view.upright;
     if (loupe.canvas.width < 2 || loupe.canvas.clientWidth * loupe.ratio !== loupe.canvas.width) loupe.resize();

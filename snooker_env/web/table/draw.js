@@ -13,7 +13,7 @@ const EYE = 2;
 /** The view from the side: how much is seen above the bed [m], and how far it lies inside the upper edge [m]. */
 const SIDE = [0.3, 0.04];
 /** How strong a map is where it is strongest, and what share of that is not drawn: it must not fog the table. */
-const [HEAT, FAINT] = [210, 0.12];
+const [HEAT, FAINT] = [220, 0.2];
 
 /** Draws a table; its constant parts once for each size. `stands`: it may stand upright. */
 export class TableView {
