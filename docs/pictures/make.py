@@ -35,8 +35,8 @@ def shoot(page, file):
     print(file)
 
 
-def page_with_advice(browser, out):
-    """The page to play, as it answers "What would you play?"."""
+def page_to_play(browser, out):
+    """The page to play: at a desk as it answers "What would you play?", on a phone as a stroke is aimed."""
     command = [
         sys.executable,
         "-m",
@@ -52,15 +52,20 @@ def page_with_advice(browser, out):
         address = next(found[0] for line in server.stdout if (found := re.search(r"http://\S+", line)))
         page = browser.new_page(viewport={"width": 1280, "height": 720})
         page.goto(address)
-        page.locator("summary").click()
-        page.get_by_label("Errors").first.select_option("professional")
-        page.get_by_text("Errors of this seat: professional").wait_for()
-        page.locator("summary").click()
+        page.locator("#tour-skip").click()
+        page.locator("#options summary").click()
+        page.locator("#noise-0").select_option("professional")
+        page.locator("#options summary").click()
         page.get_by_role("button", name="What would you play?").click()
         page.locator("#advice button").nth(4).wait_for(timeout=120_000)
         page.locator("#advice button").first.hover()
         time.sleep(1.5)
         shoot(page, out / "page.jpg")
+        phone = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True)
+        phone.goto(address)
+        phone.locator("#tour-skip").click()
+        time.sleep(1.5)
+        shoot(phone, out / "page_phone.jpg")
     finally:
         server.terminate()
 
@@ -93,5 +98,5 @@ if __name__ == "__main__":
     folder = parser.parse_args().out
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(QUIET))
-        page_with_advice(chromium, folder)
+        page_to_play(chromium, folder)
         replay(chromium, folder)

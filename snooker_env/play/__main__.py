@@ -11,6 +11,8 @@ from .._check import refuse_what
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 
+PORT = 8147
+"""The port unless another is named: always the same, since a browser keeps a page's scores by its address."""
 MOST_FILE = 1_000_000  # largest size of a position's file [bytes]
 
 
@@ -20,7 +22,7 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
         requires the address that it prints."""
     parser = argparse.ArgumentParser(prog="python -m snooker_env.play", description=about)
     add = parser.add_argument
-    add("--port", type=int, default=0, help="port to listen on (default: any free port)")
+    add("--port", type=int, help=f"port to listen on (default: {PORT} if it is free, else any)")
     add("--no-browser", action="store_true", help="only print the address")
     agent = """an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or
         MODULE:CLASS; the first one is your opponent (default: tactician_500); may be given more than once"""
@@ -83,6 +85,18 @@ def warm_up(service: Any) -> None:
         report(service)
 
 
+def _server(service: Any, port: int | None) -> Any:
+    """The server on a port; by default on ``PORT``, where a browser finds again what it has kept, unless it is taken."""
+    from .server import PlayServer
+
+    try:
+        return PlayServer(service, PORT if port is None else port)
+    except ValueError:
+        if port is not None:
+            raise
+        return PlayServer(service)
+
+
 def _read(path: Path) -> dict[str, Any]:
     """The JSON object in a file."""
     if path.stat().st_size > MOST_FILE:
@@ -100,11 +114,9 @@ def _read(path: Path) -> dict[str, Any]:
 def main(argv: list[str] | None = None) -> int:
     """Serve until Ctrl-C."""
     args = _arguments(argv)
-    from .server import PlayServer
-
     try:
         service = service_of(args)
-        server = PlayServer(service, args.port)
+        server = _server(service, args.port)
         print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
         warm_up(service)
     except (ValueError, OSError, OverflowError) as error:

@@ -14,7 +14,7 @@ from ..planning import Planner
 from ..render.scene import ball_paths
 from ..replays.encode import packed
 from ..shot import Shot
-from .service import Seats
+from .service import DECIDED, Seats, Service
 from .session import Session
 
 
@@ -103,6 +103,17 @@ def scatter(
     stops = destinations(session.planned(), stroke, **how)
     figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
     return paths(shot) | figures | {"cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4")}
+
+
+def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
+    """What an agent would choose after the foul, and how likely the striker wins after each choice."""
+    seat, found = session.frame.striker, []
+    for what in session.frame.choices:
+        (chance,) = service.win_chances([session.twin().choose(what)])
+        win = chance if chance is None or seat == 0 else 1.0 - chance
+        found.append({"choice": what, "win": win})
+    decided = service.seats.decided(agent, session)
+    return {"choice": DECIDED.get(int(decided.decision[0]), "play"), "choices": found}
 
 
 def suggestions(

@@ -9,6 +9,7 @@ from typing import Any
 from ..advice import POCKET_WORDS
 from ..game.balls import CUE, NAMES, YELLOW, ids_of
 from ..game.frame import Frame
+from ..game.rule_sets import RULES, rule_set
 from ..game.snookered import is_snookered
 from ..geometry import POCKET_AIMS
 from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
@@ -42,6 +43,7 @@ def scene(service: Service) -> dict[str, Any]:
         "players": service.seats.names,
         "noise": list(LEVELS),
         "cues": list(CUES),
+        "games": list(RULES),
     }
 
 
@@ -50,7 +52,7 @@ def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> 
     state, frame = act.state, Frame.from_dict(act.state["frame"])
     present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"
-    names = ("phase", "striker", "breaker", "free_ball", "in_hand", "winner")
+    names = ("phase", "striker", "breaker", "free_ball", "in_hand", "anywhere", "winner")
     return {name: getattr(frame, name) for name in names} | {
         "scores": list(frame.scores),
         "win_chance": win_chance,
@@ -58,6 +60,7 @@ def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> 
         "ball_on": None if over else frame.ball_on.name.lower(),
         "reds": sum(0 < ball < YELLOW for ball in present),
         "available": 0 if over else frame.available,
+        "time_left": (clock - frame.clock) / 1000 if (clock := rule_set(frame.rules).clock) else None,
         "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present},
         "words": asked_words(frame, labels),
         "last": last_words(act, labels),
@@ -89,6 +92,10 @@ def report(service: Service) -> dict[str, Any]:
         "labels": list(seats.labels),
         "noise": list(session.noise),
         "practice": session.practice,
+        "game": session.game,
+        "best_of": session.best_of,
+        "frames": session.frames,
+        "match_over": session.match_over,
         "cue": session.cue,
         "balls_on": [NAMES[i] for i in ids_of(on)],
         "snookered": hidden,

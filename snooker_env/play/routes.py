@@ -141,12 +141,17 @@ def _moved(service: Service, fields: dict[str, Any], move: Callable[[Session], b
 
 
 def _new(service: Service, fields: dict[str, Any]) -> None:
-    kinds = {"layout": str, "seed": int, "breaker": int}
+    kinds = {"layout": str, "seed": int, "breaker": int, "game": str, "best_of": int, "next": bool}
     for name, kind in kinds.items():
         if name in fields and type(fields[name]) is not kind:
             raise refuse(name, fields[name], f"must be of type {kind.__name__}")
     with service.acting(any_turn=True) as session:
-        session.new(**fields)
+        if fields.pop("next", False):
+            for name in set(fields) - {"seed"}:
+                raise refuse(name, fields[name], "must be left out with next: the match goes on as it is")
+            session.next_frame(**fields)
+        else:
+            session.new(**fields)
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
@@ -188,9 +193,11 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     agent = choice("agent", fields.get("agent", service.seats.agents[0]), service.seats.agents)
     n = integer("n", fields.get("n", 5), 1, questions.MOST_SUGGESTIONS)
     with service.asking(_revision(fields)) as session:
-        return questions.suggestions(
-            session, service.seats, agent=agent, n=n, **_errors(fields, 200, session)
-        )
+        errors, foul = _errors(fields, 200, session), session.frame.phase == "choice"
+        decided = questions.decision(session, service, agent) if foul else {"choice": None, "choices": []}
+        if foul:
+            session.choose("play")  # the strokes are those of a player who plays the table as it lies
+        return decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
 
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -247,7 +254,7 @@ POST: dict[str, Route] = {
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
     "undo": Route(partial(_moved, move=Session.undo)),
     "redo": Route(partial(_moved, move=Session.redo)),
-    "new": Route(_new, ("layout", "seed", "breaker")),
+    "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede),

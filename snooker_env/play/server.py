@@ -25,7 +25,11 @@ from ..web import WEB, table_js
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
-PARTS = ("play", "play_aim", "play_ask", "play_first", "play_setup", "play_room", "play_parts")
+PARTS = (
+    "play",
+    *(f"play_{part}" for part in ("aim", "ask", "drill", "first", "parts", "room", "setup", "share")),
+)
+PARTS += ("play_sound", "play_stats", "play_tour")
 SCRIPTS = ("table.js", *(f"{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
@@ -251,7 +255,9 @@ class PlayHandler(BaseHTTPRequestHandler):
         return refused
 
     def _file(self, name):
-        text = table_js() if name == "table.js" else (WEB / (name or "play.html")).read_text("utf-8")
+        text = (
+            table_js(player=False) if name == "table.js" else (WEB / (name or "play.html")).read_text("utf-8")
+        )
         self._send(200, text.encode(), f"{FILES[name]}; charset=utf-8")
 
     def _refuse(self, refused: RefusedError) -> None:

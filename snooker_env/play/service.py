@@ -16,7 +16,7 @@ from .._check import choice, refuse, refuse_what
 from ..advice.ask import AGENT
 from ..advice.strokes import cue_strokes
 from ..game.frame import Frame
-from ..game.frame_columns import PLAY_AGAIN, REPLACE, STROKES
+from ..game.frame_columns import PLACE_ANYWHERE, PLAY_AGAIN, REPLACE, STROKES
 from ..game.ruling import AUTO
 from ..players import Player, Strokes, player
 from ..replays.chances import Judge, Standing, win_chances
@@ -84,7 +84,11 @@ class Seats:
         return decided
 
 
-DECIDED = {PLAY_AGAIN: "play_again", REPLACE: "replace"}  # decisions after a foul other than to play
+DECIDED = {
+    PLAY_AGAIN: "play_again",
+    REPLACE: "replace",
+    PLACE_ANYWHERE: "anywhere",
+}  # decisions after a foul other than to play
 LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 
 

@@ -18,6 +18,7 @@ from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
 from ..game.frame import Frame, write_frame
 from ..game.frame_columns import STROKES
 from ..game.in_hand import place_cue
+from ..game.rule_sets import RULES, RulesName, rule_set
 from ..game.ruling import AUTO
 from ..planning.position import Position
 from ..planning.positions import Positions
@@ -31,9 +32,10 @@ from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew
 
-DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0}
+DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0, "anywhere": 1.0}
 """Last component of an action for each choice after a foul."""
 DECLINED = 0  # the nomination of a player who does not use a free ball
+MOST_FRAMES = 99  # the longest match
 STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
 
 
@@ -55,6 +57,8 @@ class Session:
 
     noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
+    best_of: int  # the length of the match in frames; 1: a single frame
+    won: list[int]  # frames that each seat has won in the match before this one
     acts: list[Act]
     at: int  # number of acts that count; the following ones were undone
 
@@ -66,6 +70,7 @@ class Session:
             box |= {"elevation": 70, "physics": {"flight": True}}
         self._options = Options(task="frame", miss="clear_path", layout=layout, cue=cue, **box)
         self.noise, self.practice = ["none", "none"], False
+        self.best_of, self.won = 1, [0, 0]
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
@@ -87,6 +92,21 @@ class Session:
     def cue(self, kind: CueKind) -> None:
         self._options, self._with = self._options.but(cue=kind), {}
         self.tables.rules = self._options.rules
+
+    @property
+    def game(self) -> RulesName:
+        """The rules that are played: "snooker", "six_red" or "shoot_out"."""
+        return self._options.game
+
+    @property
+    def frames(self) -> list[int]:
+        """Frames that each seat has won in the match, with this one if it is over."""
+        return [won + (self.frame.winner == seat) for seat, won in enumerate(self.won)]
+
+    @property
+    def match_over(self) -> bool:
+        """Whether one seat has won the match."""
+        return max(self.frames) > self.best_of // 2
 
     @property
     def miss(self) -> str:
@@ -147,19 +167,53 @@ class Session:
         """A copy for another thread; of the acts it holds the last one only."""
         other = object.__new__(Session)
         other.__dict__.update(self.__dict__)
-        other._buffers, other.noise = ShotBuffers(1, path=True), list(self.noise)
+        other._buffers, other.noise, other.won = ShotBuffers(1, path=True), list(self.noise), list(self.won)
         other.tables = Frames(self._options.rules, 1)
         self.copy_to(other.tables)
         other.acts, other.at = [self.acts[self.at - 1]], 1
         return other
 
-    def new(self, *, layout: str | None = None, seed: int = 0, breaker: int = 0) -> None:
-        """Begin a new frame; earlier acts are forgotten. ValueError for an unknown layout."""
-        options = self._options if layout is None else self._options.but(layout=layout)
-        integer("seed", seed, 0, 2**63 - 1)
-        integer("breaker", breaker, 0, 1)
+    def new(
+        self,
+        *,
+        layout: str | None = None,
+        seed: int = 0,
+        breaker: int = 0,
+        game: RulesName | None = None,
+        best_of: int = 1,
+    ) -> None:
+        """Begin a match of so many frames, an odd number, or a single frame; earlier acts are forgotten. ``layout``
+        and ``game``: those of before unless they are given. ValueError for what cannot be."""
+        if integer("best_of", best_of, 1, MOST_FRAMES) % 2 == 0:
+            raise refuse("best_of", best_of, "must be odd, so that one player wins")
+        self._deal(self._but(layout, game), seed, breaker)
+        self.best_of, self.won = best_of, [0, 0]
+
+    def next_frame(self, *, seed: int = 0) -> None:
+        """Begin the next frame of the match, which the other player breaks off; after its end a new match."""
+        if self.frame.phase != "over":
+            raise refuse("next", True, "must be left out: the frame is not over")
+        won = [0, 0] if self.match_over else self.frames
+        self._deal(self._options, seed, 1 - self.frame.breaker)
+        self.won = won
+
+    def _but(self, layout: str | None, game: Any) -> Options:
+        """The options with another layout and game; the Shoot Out has no miss rule."""
+        game = self.game if game is None else choice("game", game, RULES)
+        miss = "off" if rule_set(game).anywhere else "clear_path"
+        return self._options.but(layout=layout or self._options.layout, game=game, miss=miss)
+
+    def _play_by(self, options: Options) -> None:
+        """Take these options, on an empty table if it is another game."""
+        if options.game != self.game:
+            self.tables = Frames(options.rules, 1)
         self._options, self._with = options, {}
         self.tables.rules = options.rules
+
+    def _deal(self, options: Options, seed: int, breaker: int) -> None:
+        integer("seed", seed, 0, 2**63 - 1)
+        integer("breaker", breaker, 0, 1)
+        self._play_by(options)
         self.tables.seed(0, np.random.default_rng(seed))
         self.tables.deal(np.zeros(1, np.int64), drawn=False)
         self._write(replace(self.frame, striker=breaker, breaker=breaker), 0)
@@ -238,11 +292,13 @@ class Session:
         return self._did(Act(what, self.state, striker))
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """Put the cue ball in hand on the free place of the D nearest to (x, y), and return that place."""
+        """Put the cue ball in hand on the free place nearest to (x, y), of the D or of the table, and return it."""
         frame = self.frame
         if not frame.in_hand or frame.phase != "stroke":
             raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
-        self.tables.positions[0, CUE] = place_cue(self.tables.positions[0], self.tables.on_table[0], x, y)
+        self.tables.positions[0, CUE] = place_cue(
+            self.tables.positions[0], self.tables.on_table[0], x, y, anywhere=frame.anywhere
+        )
         self.acts[self.at - 1] = replace(self.acts[self.at - 1], state=self.state)
         px, py = self.tables.positions[0, CUE].tolist()
         return px, py
@@ -257,7 +313,8 @@ class Session:
             positions[i] = 0.0
         game: Any = {"scores": scores, "striker": striker, "breaker": striker, "free_ball": free_ball}
         game |= {"break_points": position.points, "in_hand": position.in_hand, "on_table": mask}
-        frame = Frame(**game, ball_on=BallOn[str(position.on).upper()], miss="clear_path")
+        rules: Any = {"miss": self.miss, "rules": self.game}
+        frame = Frame(**game, **rules, ball_on=BallOn[str(position.on).upper()])
         state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
         sound = self._checked(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
         if not check:
@@ -295,9 +352,18 @@ class Session:
         state = saved["state"]
         if not isinstance(state, dict) or set(state) != set(STATE):
             raise refuse_what("saved.state", "something else", f"must be a dict with {list(STATE)}")
-        self.tables.set_state(0, self._checked(state))
+        frame = state["frame"]
+        options = self._but(None, frame.get("rules", "snooker") if isinstance(frame, dict) else None)
+        before, tables = self._options, self.tables
+        self._play_by(options)
+        try:
+            self.tables.set_state(0, self._checked(state))
+        except ValueError:
+            self.tables = tables
+            self._play_by(before)
+            raise
         self.practice, self.cue = practice, cast(CueKind, cue)
-        self.noise[:] = levels
+        self.noise[:], self.best_of, self.won = levels, 1, [0, 0]
         self.acts, self.at = [Act("load", self.state)], 1
 
     def _did(self, act: Act) -> Act:

@@ -19,6 +19,9 @@ from .session import Act
 MOST = 126  # largest number of lines: from 21 balls to 6 pockets
 
 
+STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
+
+
 @dataclass(frozen=True)
 class Line:
     """A straight line from the cue ball through a ball to a pocket; lengths in metres, angles in radians."""
@@ -131,7 +134,9 @@ def last_words(act: Act, labels: tuple[str, str]) -> str:
     if act.played is not None:
         nominated = f" ({act.detail} nominated)" if act.detail else ""
         said = f"{who}{nominated}: {sentence(act.played, labels)}"
-        room = act.room.words if act.room is not None else ""
+        room = (
+            act.room.words if act.room is not None and (act.room.moved or act.room.elevation > STEEP) else ""
+        )
         return f"{said} {room[:1].upper()}{room[1:]}." if room else said
     return {
         "choice": f"{who}: {act.detail.replace('_', ' ')}.",

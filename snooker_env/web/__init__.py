@@ -9,10 +9,11 @@ WEB = Path(__file__).resolve().parent
 _TABLE = WEB / "table"
 
 
-def table_js() -> str:
-    """The JavaScript module that draws a table and plays a replay; it imports nothing, so that a page can
-    hold it."""
-    style = json.dumps((_TABLE / "player.css").read_text("utf-8"))
-    names = ("decode", "pen", "paint", "draw", "chance", "play")
+def table_js(*, player: bool = True) -> str:
+    """The JavaScript module that draws a table and, with ``player``, plays a replay; it imports nothing, so that a
+    page can hold it."""
+    names = ("decode", "pen", "paint", "draw", "chance", *(("graph", "play") if player else ()))
     parts = [(_TABLE / f"{name}.js").read_text("utf-8") for name in names]
-    return "\n".join([*parts, f"const STYLE = {style};\n"])
+    if player:
+        parts.append(f"const STYLE = {json.dumps((_TABLE / 'player.css').read_text('utf-8'))};\n")
+    return "\n".join(parts)

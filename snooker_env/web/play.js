@@ -11,18 +11,39 @@
 import { decode, showChance, TableView } from "./table.js";
 import { Aim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
+import { Drills } from "./play_drill.js";
 import { firstAim } from "./play_first.js";
-import { ask, by, confirmed, fill, keep, Latest, make } from "./play_parts.js";
+import { ask, by, confirmed, fill, keep, kept, Latest, make } from "./play_parts.js";
 import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
+import { Share } from "./play_share.js";
+import { Sound } from "./play_sound.js";
+import { Stats } from "./play_stats.js";
+import { Tour } from "./play_tour.js";
 
+/** The strengths of an opponent: who plays, with whose errors. */
+const LEVELS = {
+  beginner: ["ghost_ball", "club"], "club player": ["tactician_500", "club"], amateur: ["tactician_500", "amateur"],
+  professional: ["tactician_500", "professional"], perfect: ["tactician_500", "none"], "nobody: two play here": ["person", "none"],
+};
+const OWN = "own";
+const NOISE = { none: "nobody", professional: "a professional", amateur: "an amateur", club: "a club player", robot: "a robot", olympiad: "the Olympiad's robots" };
+const GAMES = { snooker: "snooker", six_red: "six-red", shoot_out: "Shoot Out" };
+const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
+/** Slow motion, zoom, and how long a call is shown [ms]. */
+const SLOW = 0.2, ZOOM = 2, CALLED = 1600;
+/** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels]. */
+const LOUPE = 0.24, SMALL = 9;
 const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "escape", "safety", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
 const CUES = { real: "real: over rails and balls", free: "free: nothing in its way" };
-const CHOICES = { play: "Play the table as it lies", play_again: "Let the offender play again", replace: "Replace the balls: play again from before" };
+const CHOICES = { play: "Play the table as it lies", play_again: "Let the offender play again", replace: "Replace the balls: play again from before", anywhere: "Put the cue ball anywhere" };
+
+const seed = () => Math.floor(Math.random() * 2 ** 48);
 
 class Page {
   constructor(facts) {
     Object.assign(this, facts);
+    this.started = new Promise(done => { this.start = done; });
     this.names = this.scene.balls.map(ball => ball.name);
     this.state = this.table = null;
     this.balls = { x: new Float64Array(22), y: new Float64Array(22), on: new Uint8Array(22) };
@@ -32,42 +53,55 @@ class Page {
     this.held = false;
     this.drawn = [];
     this.kind = "play";
+    this.zoomed = false;
     for (const [name, rgb] of Object.entries(this.scene.palette)) document.documentElement.style.setProperty(`--${name}`, `rgb(${rgb})`);
-    this.view = new TableView(by("table"), this.scene);
+    this.view = new TableView(by("table"), this.scene, true);
+    this.loupe = new TableView(by("loupe"), this.scene, true);
     this.placing = new Latest("place", ({ state }, event) => { Object.assign(this, { chosen: state.revision, dragged: event }); this.take(state); }, error => this.trouble(error));
     this.aim = new Aim(this, event => { this.advisor.changed(event); this.room.changed(); this.redraw(); }, (x, y, event) => this.placing.ask({ place: [x, y] }, event));
     this.advisor = new Advisor(this);
     this.room = new Room(this);
     this.setup = new SetUp(this);
-    new ResizeObserver(() => { this.view.resize(); this.redraw(); }).observe(by("stage"));
+    this.sound = new Sound();
+    this.stats = new Stats(this);
+    this.drills = new Drills(this);
+    this.share = new Share(this);
+    if (matchMedia("(orientation: portrait) and (max-width: 640px)").matches) this.fold();
+    new ResizeObserver(() => this.fit()).observe(by("stage"));
     this.wire();
+    this.tour = new Tour();
   }
 
   wire() {
     const act = (id, what) => { by(id).onclick = () => this.try(what); };
     by("play").onclick = event => this.play(event);
     by("skip").onclick = () => this.skip();
-    by("fold").onclick = () => {
-      const folded = by("panel").classList.toggle("folded");
-      by("fold").setAttribute("aria-expanded", String(!folded));
-    };
+    by("fold").onclick = () => this.fold();
+    by("zoom").onclick = () => this.zoom();
+    by("full").onclick = () => this.full();
+    document.addEventListener("pointerdown", () => this.sound.wake());
     by("go").onclick = () => this.goOn();
+    by("slow").onclick = () => this.again(SLOW);
     act("undo", () => ask("undo", {}));
     act("redo", () => ask("redo", {}));
     by("concede").onclick = () => this.sure("Concede the frame?", "Concede", () => this.try(() => ask("concede", {})));
-    by("new").onclick = () => this.sure("Leave this frame and begin a new one? This cannot be undone.", "New frame", () => this.begin());
+    by("new").onclick = () => this.sure("Leave this frame and begin a new game? This cannot be undone.", "New game", () => this.begin());
     by("again").onclick = () => this.again();
-    by("next").onclick = () => this.begin(1 - this.state.breaker);
+    by("next").onclick = () => this.go("new", { next: true, seed: seed() });
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
-    by("save").onclick = () => this.try(async () => { keep("snooker-game.json", JSON.stringify(await ask("save", {})), "application/json"); });
+    by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
     by("load").onclick = () => this.sure("Leave this frame and load a file?", "Load", () => by("file").click());
     by("file").onchange = () => this.try(() => this.load());
-    by("labels").onchange = () => this.redraw();
+    by("labels").checked = kept.get("labels", false);
+    by("labels").onchange = () => { kept.set("labels", by("labels").checked); this.redraw(); };
     fill(by("layout"), LAYOUTS);
+    fill(by("rules"), this.games, undefined, game => GAMES[game]);
+    fill(by("best-of"), BEST_OF.map(String), "1", n => (n === "1" ? "one frame" : `best of ${n}`));
+    by("level").onchange = () => this.level();
     for (const k of [0, 1]) {
       fill(by(`who-${k}`), this.players);
-      fill(by(`noise-${k}`), this.noise);
+      fill(by(`noise-${k}`), this.noise, undefined, name => NOISE[name]);
       by(`who-${k}`).onchange = () => this.seats(k);
       by(`noise-${k}`).onchange = () => this.seats();
     }
@@ -75,8 +109,47 @@ class Page {
     fill(by("cue"), this.cues, undefined, kind => CUES[kind]);
     by("cue").onchange = () => this.seats();
     by("help-open").onclick = () => this.help();
-    for (const one of document.querySelectorAll("#panel details")) one.ontoggle = () => one.open && one.scrollIntoView({ block: "nearest" });
+    const folds = [...document.querySelectorAll("#panel details")];
+    for (const one of folds) one.ontoggle = () => {
+      if (!one.open) return;
+      for (const other of folds) other.open &&= other === one;
+      one.scrollIntoView({ block: "nearest" });
+    };
     document.addEventListener("keydown", event => this.key(event));
+  }
+
+  /** Hide or show the controls; on a phone upright, all but those of the stroke. */
+  fold() {
+    const folded = by("panel").classList.toggle("folded");
+    by("fold").setAttribute("aria-expanded", String(!folded));
+    if (folded) by("panel").scrollTop = 0;
+  }
+
+  full() {
+    const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.();
+    done?.catch(error => this.trouble(error));
+  }
+
+  zoom() {
+    this.zoomed = !this.zoomed;
+    by("zoom").setAttribute("aria-pressed", String(this.zoomed));
+    this.fit();
+  }
+
+  /** Fit the table to the screen, or zoom to the middle of the stroke. */
+  fit() {
+    const { view } = this;
+    view.resize();
+    this.loupe.resize();
+    if (this.zoomed && this.aiming) {
+      const { met } = this.aim.overlay(), [[x0, x1], [y0, y1]] = this.scene.extent, scale = view.scale * ZOOM;
+      const [wide, high] = [by("table").width / scale / 2, by("table").height / scale / 2], [half, long] = view.upright ? [wide, high] : [high, wide];
+      const middle = (value, low, high_, room) => (room > (high_ - low) / 2 ? (low + high_) / 2 : Math.min(high_ - room + 0.1, Math.max(low + room - 0.1, value)));
+      view.still = null;
+      view.look(middle((this.balls.x[0] + met.x) / 2, x0, x1, half), middle((this.balls.y[0] + met.y) / 2, y0, y1, long), scale);
+      this.near = true;
+    } else if (this.near) { view.still = null; this.near = false; }
+    this.redraw();
   }
 
   // ------------------------------------------------------------------------------------------------------- the server's answers 
@@ -117,6 +190,7 @@ class Page {
     by("last").className = "";
     this.seated();
     this.catchUp();
+    this.start();
   }
 
   /** Animate all strokes that have not been shown yet, one after the other. */
@@ -126,6 +200,9 @@ class Page {
     try { await this.showAll(); } catch (error) { this.played = this.state.strokes; this.trouble(error); }
     this.busy = false;
     this.settle();
+    const { scored } = this;
+    this.scored = null;
+    if (scored) this.drills.played(scored);
   }
 
   async showAll() {
@@ -139,6 +216,8 @@ class Page {
       this.played++;
       if (!stroke) { this.played = this.state.strokes; break; }
       await this.move(stroke);
+      this.call(stroke);
+      if (this.drills.now && this.played === this.state.strokes) this.scored = stroke;
       if (this.played < this.state.strokes) await new Promise(done => setTimeout(done, 500));
       const { state } = this;
       if (state.paused && !state.trouble && this.played >= state.strokes && this.agentsAlone && !this.held) await this.try(() => ask("go", {}));
@@ -165,9 +244,16 @@ class Page {
     if (!this.state?.strokes || await confirmed(question, yes)) then();
   }
 
-  begin(breaker = 0) {
+  /** Begin a game as it is chosen. */
+  begin() {
+    this.drills.stop();
+    this.go("new", { layout: by("layout").value, game: by("rules").value, best_of: Number(by("best-of").value), seed: seed() });
+    by("start").open = false;
+  }
+
+  go(name, body) {
     this.held = false;
-    this.try(() => ask("new", { layout: by("layout").value, seed: Math.floor(Math.random() * 2 ** 48), breaker }));
+    this.try(() => ask(name, body));
   }
 
   help() {
@@ -199,7 +285,9 @@ class Page {
       this.lay = moved;
       this.settled = state.revision;
       this.room.changed();
+      if (this.zoomed) this.fit();
     }
+    this.stats.turn(this.aiming);
   }
 
   /** Set a first aim on a new table; not while the player places the cue ball: then advice for its own place stays. */
@@ -219,11 +307,24 @@ class Page {
 
   // --------------------------------------------------------------------------------------------------------------------- motion
 
+  /** Call what a stroke has brought, for a moment. */
+  call({ points, fouls, penalty, break: run }) {
+    if (!points && !fouls.length) return;
+    const call = by("call");
+    call.textContent = fouls.length ? `Foul, ${penalty}` : run > points ? `+${points}, break ${run}` : `+${points}`;
+    call.className = fouls.length ? "foul" : "";
+    call.hidden = false;
+    clearTimeout(this.called);
+    this.called = setTimeout(() => { call.hidden = true; }, CALLED);
+  }
+
   /** Animate a stroke; resolves when the balls rest or the motion is skipped. */
-  move(data) {
+  move(data, rate = 1) {
     const stroke = decode({ format: "snooker-replay", version: 1, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     return new Promise(done => {
-      this.moving = { stroke, start: null, done };
+      this.moving = { stroke, rate, at: -0.4, now: null, done };
+      if (this.near) this.fit();
+      this.stats.turn(false);
       this.put(data.tables[0]);
     });
   }
@@ -243,13 +344,17 @@ class Page {
     this.skip();
   }
 
-  async again() {
+  /** The last stroke again, at a rate of time. */
+  async again(rate = 1) {
     if (!this.state.strokes || this.behind || this.setup.open) return;
+    await this.film(async () => (await ask("strokes", undefined, `?from=${this.state.strokes - 1}`)).strokes[0], rate);
+  }
+
+  /** Show a stroke that is not of the game now. */
+  async film(stroke, rate = 1) {
+    if (this.behind) return;
     this.busy = true;
-    try {
-      const { strokes } = await ask("strokes", undefined, `?from=${this.state.strokes - 1}`);
-      await this.move(strokes[0]);
-    } catch (error) { this.trouble(error); }
+    try { await this.move(typeof stroke === "function" ? await stroke() : stroke, rate); } catch (error) { this.moving = null; this.trouble(error); }
     this.busy = false;
     this.catchUp();
   }
@@ -266,6 +371,7 @@ class Page {
     if (!this.aiming || this.sending) return;  // one stroke for each press, even if the answer is slow
     by("play").disabled = true;
     this.sending = true;
+    this.stats.played();
     try {
       const { speed, side, top, aim, elevation } = this.aim.wish;
       await this.placing.quiet();  // the last place of a drag makes a new revision
@@ -290,9 +396,16 @@ class Page {
     const [file] = by("file").files;
     by("file").value = "";
     if (!file) return undefined;
+    const text = await file.text();
     let saved;
-    try { saved = JSON.parse(await file.text()); } catch { throw new Error(`${file.name} is not JSON`); }
-    return saved.format === undefined ? ask("position", { position: saved }) : ask("load", { saved });
+    try { saved = JSON.parse(text); } catch { throw new Error(`${file.name} is not JSON`); }
+    return saved.format === undefined ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`);
+  }
+
+  /** Seat an opponent of the chosen strength; it errs as its level says, the person as before. */
+  level() {
+    const [who, noise] = LEVELS[by("level").value] ?? [];
+    if (who) this.go("players", { players: ["person", who], noise: [this.state.noise[0], noise], practice: false });
   }
 
   /** Send the players; a new agent gets a professional's errors, a person none. */
@@ -311,16 +424,18 @@ class Page {
   }
 
   key(event) {
+    this.sound.wake();
     const tag = event.target.tagName, key = event.key.length === 1 ? event.key.toLowerCase() : event.key, { aim } = this;
     if (event.ctrlKey || event.metaKey || tag === "SELECT" || tag === "INPUT" && event.target.type !== "checkbox") {
       if (!(key === "Enter" && event.target.type === "range")) return;
     }
     if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
-    if (event.repeat && (key === "Enter" || key === " " || "urv".includes(key))) return;  // once for a key held down
+    if (event.repeat && (key === "Enter" || key === " " || "urvbzfm".includes(key))) return;  // once for a key held down
     if (event.altKey && !key.startsWith("Arrow")) return;
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, { side, top } = aim.wish;
     const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end() } : {
-      " ": () => this.skip(), Escape: () => this.skip(), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(),
+      " ": () => this.skip(), Escape: () => this.skip(), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
+      z: () => this.zoom(), f: () => this.full(), m: () => this.sound.flip(),
       "?": () => this.help(),
       ...this.aiming && {
         ArrowLeft: () => aim.turn(turn, event), ArrowRight: () => aim.turn(-turn, event), ArrowUp: () => aim.faster(push, event),
@@ -343,7 +458,13 @@ class Page {
       by(`who-${k}`).value = state.players[k];
       by(`noise-${k}`).value = state.noise[k];
       by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
+      by(`side-${k}`).querySelector(".frames").textContent = state.best_of > 1 ? `(${state.frames[k]})` : "";
     }
+    const levels = Object.keys(LEVELS), level = levels.find(name => state.players[0] === "person" && LEVELS[name][0] === state.players[1] && LEVELS[name][1] === state.noise[1]);
+    fill(by("level"), [...levels, OWN], level ?? OWN);
+    const own = by("level").lastChild;
+    own.hidden = Boolean(level);
+    own.textContent = `${state.labels[1]}, who errs like ${NOISE[state.noise[1]]}`;
     by("practice").checked = state.practice;
     by("cue").value = state.cue;
     this.show();
@@ -352,17 +473,19 @@ class Page {
   /** Words, score and controls. */
   show() {
     const { state, table } = this, busy = this.behind, mine = this.aiming, setup = this.setup.open;
-    for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
+    for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["game", setup], ["last", setup], ["tools", setup]]) by(id).hidden = hide;
     const who = state.labels[table.striker], on = table.ball_on?.replace("_", " ");
     by("asked").textContent = setup ? "Set up a position" : this.moving ? `${who} ${who === "You" ? "play" : "plays"}: ${on}` : table.words;
     if (by("last").className !== "trouble") by("last").textContent = table.last;
+    by("asked").title = by("asked").textContent;
+    by("last").title = by("last").textContent;
     const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
     by("choices").hidden = !choosing;
     if (choosing && by("choices").dataset.for !== String(state.revision)) {
       by("choices").dataset.for = state.revision;
       by("choices").replaceChildren(...state.choices.map(choice => {
         const button = make("button", { type: "button", textContent: choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice] });
-        button.dataset.choice = choice;
+        Object.assign(button.dataset, { choice, words: button.textContent });
         button.onclick = () => this.send({ choice });
         return button;
       }));
@@ -370,17 +493,21 @@ class Page {
     by("go").hidden = setup || !this.waits && !this.agentsAlone;
     by("go").textContent = this.waits ? "Continue" : "Pause";
     by("play").disabled = !mine;
+    by("stroke").classList.toggle("idle", !mine);
     by("skip").hidden = !this.moving;
-    by("play").hidden = Boolean(this.moving);
+    by("play").hidden = Boolean(this.moving) || choosing || !by("go").hidden;
     if (!mine) by("odds").textContent = "";
-    by("errors").textContent = state.noise[state.striker];
-    by("advise").disabled = !mine;
+    by("advise").disabled = !mine && !choosing;
+    by("aim-out").textContent = this.aim.words;
     by("undo").disabled = !state.undo;
     by("redo").disabled = !state.redo;
-    by("again").disabled = !state.strokes || busy;
+    by("again").disabled = by("slow").disabled = !state.strokes || busy;
+    by("share-shot").disabled = by("replay").disabled = by("stats-open").disabled = !state.strokes;
     by("concede").disabled = !mine && !choosing;
-    by("nominate-row").hidden = !mine || !state.nominations.length;
-    if (state.nominations.length) fill(by("nominate"), ["", ...state.nominations], by("nominate").value, value => value || "colour first struck");
+    const named = mine && state.nominations.length > 0;
+    by("nominate-row").classList.toggle("idle", !named);
+    by("nominate").disabled = !named;
+    fill(by("nominate"), named ? ["", ...state.nominations] : [""], by("nominate").value, value => value || (named ? "the one first struck" : "–"));
     this.score(on);
     this.over(!setup && !this.moving);
   }
@@ -401,6 +528,8 @@ class Page {
     }
     put("n-reds", "reds ", make("b", { textContent: table.reds }));
     put("n-left", "left ", make("b", { textContent: table.available }));
+    const left = Math.max(0, Math.ceil(table.time_left ?? 0));
+    put("n-time", ...table.time_left === null ? [] : ["time ", make("b", { textContent: `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}` })]);
   }
 
   /** The end of the frame, with the score from the side of the only person, else of the first seat. */
@@ -408,7 +537,9 @@ class Page {
     const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0;
     by("over").hidden = !rest || phase !== "over" || this.seen === this.table;
     if (phase !== "over") return;
-    by("over-who").textContent = `${labels[winner]} won the frame`;
+    const { match_over: ended, best_of: length, frames } = this.state;
+    by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}`;
+    by("next").textContent = length > 1 && ended ? "New match" : "Next frame";
     by("over-score").textContent = `${labels[me]} ${scores[me]} : ${scores[1 - me]} ${labels[1 - me]}`;
     by("over-last").textContent = last;
   }
@@ -430,17 +561,42 @@ class Page {
     this.asked ??= requestAnimationFrame(now => { this.asked = null; this.draw(now); });
   }
 
+  /** The first contact, larger, in a corner of the table that is far from the stroke, but not under the buttons: where balls are small, or under a finger. */
+  contact(frame, { x, y, ball }) {
+    const { view, loupe, scene } = this, box = by("stage"), shown = ball >= 0 && !this.advisor.hover && view.R * view.scale / view.ratio < SMALL;
+    by("loupe").hidden = !shown;
+    if (!shown) return;
+    const [px, py] = view.toScreen(x, y), [ix, iy] = view.toScreen(this.balls.x[0], this.balls.y[0]), { style } = by("loupe");
+    const aim = this.aim.wish.aim, cue = view.toScreen(this.balls.x[0] - 0.5 * Math.cos(aim), this.balls.y[0] - 0.5 * Math.sin(aim)), busy = [[px, py], [ix, iy], cue];
+    const room = ([left, top]) => Math.min(...busy.map(([x_, y_]) => Math.hypot(x_ - left * box.clientWidth, y_ - top * box.clientHeight)));
+    const [[left, top]] = [[0, 1], [1, 1], [0, 0]].sort((a, b) => room(b) - room(a));
+    Object.assign(style, { left: left ? "auto" : "8px", right: left ? "8px" : "auto", top: top ? "auto" : "8px", bottom: top ? "8px" : "auto" });
+    loupe.upright = view.upright;
+    if (loupe.canvas.width < 2 || loupe.canvas.clientWidth * loupe.ratio !== loupe.canvas.width) loupe.resize();
+    loupe.upright = view.upright;
+    loupe.look(x, y, loupe.canvas.width / LOUPE);
+    loupe.still ??= Object.assign(document.createElement("canvas"), { width: loupe.canvas.width, height: loupe.canvas.height });
+    const pen = loupe.still.getContext("2d");
+    pen.fillStyle = loupe.ink.cloth;
+    pen.fillRect(0, 0, loupe.still.width, loupe.still.height);
+    const noses = scene.noses.map(points => ({ points, colour: scene.palette.nose, width: 0.006 }));
+    loupe.draw({ ...frame, heat: [], cue: undefined, lines: [...noses, ...frame.lines], rings: frame.rings.map(one => ({ ...one, alpha: 0.5 })) });
+  }
+
   draw(now) {
     const { moving } = this, labels = by("labels").checked;
     this.advisor.marks();
     if (moving) {
-      moving.start ??= now;
-      const t = Math.max(0, (now - moving.start) / 1000 - 0.4), { stroke } = moving, frame = stroke.at(t);
+      const before = moving.at, { stroke } = moving;
+      moving.at += (moving.now === null ? 0 : (now - moving.now) / 1000) * (before < 0 ? 1 : moving.rate);
+      moving.now = now;
+      this.sound.passed(stroke, before, moving.at, moving.rate ** 0.5);
+      const t = Math.max(0, moving.at), frame = stroke.at(t);
       frame.labels = labels;
       frame.side = stroke.flies(t);
       frame.turns = Array.from({ length: stroke.n }, (_, ball) => (frame.on[ball] ? stroke.turn(ball, t) : undefined));
       if (t < 0.3 && stroke.cue) {
-        const lead = Math.min(1, (now - moving.start) / 400), { cue } = stroke;
+        const lead = Math.min(1, moving.at / 0.4 + 1), { cue } = stroke;
         const pull = t > 0 ? -Math.min(0.16, t * cue.speed * 0.4) : 0.02 + (0.02 + 0.02 * cue.speed) * Math.sin(Math.PI * lead);
         frame.cue = { x: stroke.first[0], y: stroke.first[1], aim: cue.aim, pull, elevation: cue.elevation, alpha: t > 0 ? 1 - t / 0.3 : 1 };
       }
@@ -458,9 +614,11 @@ class Page {
         frame.lines = [...asked.lines, ...this.advisor.hover ? [] : own.lines];
         frame.rings = [...asked.rings, ...this.advisor.hover ? [] : own.rings];
         frame.cue = own.cue;
-      }
+        this.contact(frame, own.met);
+      } else by("loupe").hidden = true;
       this.view.draw(frame);
     }
+    if (moving || this.setup.open) by("loupe").hidden = true;
     for (const seen of this.drawn.splice(0)) seen();
   }
 }
@@ -468,6 +626,7 @@ class Page {
 try {
   window.page = new Page(await ask("scene"));
   window.page.watch();
+  window.page.started.then(() => window.page.share.fromAddress());
 } catch (error) {
   by("asked").textContent = error.message;
 }

@@ -6,6 +6,16 @@
 
 import { by, firstContact, intoD } from "./play_parts.js";
 
+/** How far the cue is pulled back for the hardest stroke, and from which it is a stroke at all [m]; how softly the power begins. */
+const PULL = 0.42, LEAST_PULL = 0.015, SOFT = 1.4;
+/** The strip turns the aim by so much for each pixel [degrees]. */
+const FINE = 0.01;
+/** Half the breadth of the cue for mouse and finger [CSS pixels]. */
+const GRASP = { mouse: 9, touch: 24 };
+/** Offsets of a ball over its diameter from which it is struck less full. */
+const FULLNESS = [[0.12, "full ball"], [0.38, "three-quarter ball"], [0.62, "half ball"], [0.87, "quarter ball"], [1, "thin"]];
+const POWERS = [[1, "very soft"], [1.8, "soft"], [3, "medium"], [4.5, "firm"], [6, "hard"], [9, "very hard"]];
+
 const DEGREE = Math.PI / 180;
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 
@@ -24,13 +34,17 @@ export class Aim {
     elevation.max = Math.round(limits.elevation[1] / DEGREE);
     speed.oninput = event => this.set({ speed: Number(speed.value) }, event);
     elevation.oninput = event => this.set({ elevation: Math.min(limits.elevation[1], Number(elevation.value) * DEGREE) }, event);
+    const fine = by("fine");
+    fine.addEventListener("pointerdown", event => fine.setPointerCapture(event.pointerId));
+    fine.addEventListener("pointermove", event => fine.hasPointerCapture(event.pointerId) && event.movementX && this.turn(-FINE * event.movementX, event));
     by("centre").onclick = event => this.set({ side: 0, top: 0 }, event);
     by("left").onclick = event => this.turn(0.05, event);
     by("right").onclick = event => this.turn(-0.05, event);
     by("nominate").onchange = event => this.set({}, event);
     canvas.addEventListener("pointerdown", event => this.down(event));
     canvas.addEventListener("pointermove", event => this.move(event));
-    for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, () => { this.held = null; });
+    canvas.addEventListener("pointerup", () => this.up(true));
+    canvas.addEventListener("pointercancel", () => this.up(false));
     canvas.addEventListener("wheel", event => {
       if (!this.app.aiming) return;
       event.preventDefault();
@@ -77,17 +91,49 @@ export class Aim {
     const { app } = this;
     if (!app.aiming || event.button > 0) return;
     const [x, y] = this.at(event), near = Math.hypot(x - app.balls.x[0], y - app.balls.y[0]), reach = event.pointerType === "touch" ? 3.5 : 2;
-    this.held = app.state.in_hand && near < reach * app.view.R ? "ball" : "aim";
+    const behind = this.onCue(x, y, event);
+    this.held = app.state.in_hand && near < reach * app.view.R ? "ball" : behind ? "cue" : "aim";
+    if (behind) this.pulled = { from: behind, before: this.wish.speed, pull: 0 };
     by("table").setPointerCapture(event.pointerId);
-    this.move(event);
+    if (this.held !== "cue") this.move(event);
+  }
+
+  /** How far behind the cue ball a place on the cue is [m]; 0 beside it. */
+  onCue(x, y, event) {
+    const { view, balls } = this.app, dx = balls.x[0] - x, dy = balls.y[0] - y, c = Math.cos(this.wish.aim), s = Math.sin(this.wish.aim);
+    const back = dx * c + dy * s, aside = Math.abs(dy * c - dx * s) * view.scale / view.ratio;
+    return back > 1.3 * view.R && aside < (GRASP[event.pointerType] ?? GRASP.mouse) ? back : 0;
+  }
+
+  /** Let the cue go: that is the stroke, unless it was hardly pulled. */
+  up(whole) {
+    const { held, pulled, app } = this;
+    this.held = this.pulled = null;
+    by("power").hidden = true;
+    if (held !== "cue" || !app.aiming) { if (held) app.redraw(); return; }
+    if (whole && pulled.pull > LEAST_PULL) app.play();
+    else this.set({ speed: pulled.before });
+  }
+
+  /** Pull the cue back to a place [m]. */
+  pull(x, y, event) {
+    const { app, pulled, wish } = this, [least, most] = app.limits.speed, { balls } = app;
+    pulled.pull = clamp((balls.x[0] - x) * Math.cos(wish.aim) + (balls.y[0] - y) * Math.sin(wish.aim) - pulled.from, 0, PULL);
+    this.set({ speed: least + (most - least) * (pulled.pull / PULL) ** SOFT }, event);
+    const [px, py] = app.view.toScreen(balls.x[0], balls.y[0]), power = by("power");
+    power.hidden = false;
+    power.textContent = pulled.pull > LEAST_PULL ? `${wish.speed.toFixed(1)} m/s` : "no stroke";
+    Object.assign(power.style, { left: `${clamp(px, 60, by("stage").clientWidth - 60)}px`, top: `${py > 70 ? py - 45 : py + 45}px` });
   }
 
   move(event) {
     const { app } = this;
-    if (!this.held || !app.aiming) return;
+    if (!app.aiming) return;
     const [x, y] = this.at(event);
-    if (this.held === "ball") {
-      [app.balls.x[0], app.balls.y[0]] = intoD(x, y, app.scene.lines);
+    if (!this.held) { by("table").style.cursor = this.onCue(x, y, event) ? "grab" : ""; return; }
+    if (this.held === "cue") this.pull(x, y, event);
+    else if (this.held === "ball") {
+      [app.balls.x[0], app.balls.y[0]] = app.state.anywhere ? [x, y] : intoD(x, y, app.scene.lines);
       this.place(app.balls.x[0], app.balls.y[0], event);
       this.changed(event);
     } else if (Math.hypot(x - app.balls.x[0], y - app.balls.y[0]) > app.view.R) {
@@ -98,24 +144,38 @@ export class Aim {
   // ------------------------------------------------------------------------------------------------------------- what is shown
 
   show() {
-    const { wish } = this, around = ((90 - wish.aim / DEGREE) % 360 + 360) % 360;
+    const { wish } = this;
     by("speed").value = wish.speed;
-    by("speed-out").textContent = `${wish.speed.toFixed(2)} m/s`;
+    by("speed-out").textContent = `${POWERS.find(([most]) => wish.speed < most)[1]}, ${wish.speed.toFixed(2)} m/s`;
     by("elevation").value = wish.elevation / DEGREE;
-    const raised = this.elevation / DEGREE, own = `${(wish.elevation / DEGREE).toFixed(1)}°`;
-    by("elevation-out").textContent = this.elevation > wish.elevation ? `${own}, raised to ${raised.toFixed(1)}°` : own;
-    by("aim-out").textContent = `${around.toFixed(2)}°`;
+    const raised = this.elevation / DEGREE;
+    by("elevation-out").textContent = raised < 0.5 ? "level" : `${Math.round(raised)}°`;
+    by("aim-out").textContent = this.words;
+    by("fine").setAttribute("aria-valuetext", this.words);
+    by("fine").style.setProperty("--turn", `${-wish.aim / DEGREE / FINE}px`);
     const words = [];
-    if (wish.top) words.push(`${wish.top > 0 ? "top" : "screw"} ${Math.abs(wish.top).toFixed(2)}`);
-    if (wish.side) words.push(`${wish.side > 0 ? "right" : "left"} ${Math.abs(wish.side).toFixed(2)}`);
+    if (wish.top) words.push(wish.top > 0 ? "top" : "screw");
+    if (wish.side) words.push(`${wish.side > 0 ? "right" : "left"} side`);
     by("tip-words").textContent = words.join(", ") || "centre ball";
     this.drawDial();
+  }
+
+  /** How the first ball is struck, as a player says it; left and right are his. */
+  get words() {
+    const { app, wish } = this;
+    if (!app.aiming) return "";
+    const { balls, scene, view: { R }, names } = app, met = firstContact(balls, 0, wish.aim, scene.extent, R);
+    if (met.ball < 0) return "cushion first";
+    const x = balls.x[met.ball] - balls.x[0], y = balls.y[met.ball] - balls.y[0];
+    const aside = (x * Math.sin(wish.aim) - y * Math.cos(wish.aim)) / (2 * R), full = FULLNESS.find(([most]) => Math.abs(aside) <= most) ?? FULLNESS[4];
+    const side = full === FULLNESS[0] ? "" : aside > 0 ? ", left" : ", right";
+    return `${names[met.ball].replace(/ \d+$/, "")}: ${full[1]}${side}`;
   }
 
   /** The cue ball as the player sees it; the dashed circle is the miscue limit. A tip that the raised cue cannot reach is a ring, and the one that it reaches a disc. */
   drawDial() {
     const dial = by("dial"), ratio = Math.min(window.devicePixelRatio || 1, 3), size = Math.round((dial.clientWidth || 112) * ratio);
-    if (dial.width !== size) dial.width = dial.height = size;
+    if (dial.width !== size || dial.height !== size) dial.width = dial.height = size;
     const pen = dial.getContext("2d"), c = size / 2, R = c / 1.08, { wish, app } = this, disc = (x, y, r, style) => {
       pen.fillStyle = style;
       pen.beginPath(); pen.arc(x, y, r, 0, 2 * Math.PI); pen.fill();
@@ -149,7 +209,8 @@ export class Aim {
     }
     return {
       lines, rings: [{ x: met.x, y: met.y, ball: met.ball >= 0 ? 0 : undefined, alpha: 0.35 }],
-      cue: { x: balls.x[0], y: balls.y[0], aim: wish.aim, pull: 0.02 + 0.012 * wish.speed, elevation: this.elevation },
+      cue: { x: balls.x[0], y: balls.y[0], aim: wish.aim, pull: this.pulled ? 0.02 + this.pulled.pull : 0.045, elevation: this.elevation },
+      met,
     };
   }
 }

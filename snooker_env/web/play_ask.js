@@ -5,8 +5,9 @@
  * shows its clouds [ms].
  */
 
-import { ask, by, fill, Latest, make, pairs } from "./play_parts.js";
+import { ask, by, fill, Latest, make, pairs, pocketWords, setting } from "./play_parts.js";
 
+const GUIDES = { line: "aim line", paths: "paths of the balls", spread: "paths, and where they stop" };
 const CUE_CLOUD = [255, 255, 255], BALL_CLOUD = [255, 196, 60];
 const CELL = 0.02;
 const RAIL = 0.1;
@@ -27,6 +28,8 @@ export function cloud(places, extent, rgb) {
   return { x0, y0, cell: CELL, nx, ny, values, rgb };
 }
 
+const percent = share => `${Math.round(100 * share)} %`;
+
 export class Advisor {
   /** app: as for `Aim`, and `aim`, `redraw()`. */
   constructor(app) {
@@ -38,7 +41,7 @@ export class Advisor {
     this.times = [];
     this.wait = new Latest("destinations", (found, input, more) => this.take(found, input, more), error => this.wrong(error));
     by("pockets").replaceChildren(...app.pockets.map(({ name }) => make("span", { textContent: name })));
-    by("map").onchange = event => this.changed(event);
+    setting("guide", GUIDES, "line", event => this.changed(event));
     by("advise").onclick = () => this.advise();
   }
 
@@ -49,7 +52,6 @@ export class Advisor {
     this.wait.drop();
     by("advice").replaceChildren();
     by("advice-order").textContent = "";
-    by("advice-sides").hidden = true;
     by("odds").textContent = "";
   }
 
@@ -65,7 +67,8 @@ export class Advisor {
     marks.hidden = !(aiming && this.list.length);
     if (marks.hidden) return;
     pockets.forEach(({ x, y }, k) => {
-      const [px, py] = view.toScreen(x + Math.sign(x) * RAIL, Math.abs(y) > 1 ? y - Math.sign(y) * 0.29 : 0.3);
+      const [px, py] = view.upright ? view.toScreen(x * 0.76, y * 0.94) : view.toScreen(x + Math.sign(x) * RAIL, Math.abs(y) > 1 ? y - Math.sign(y) * 0.29 : 0.3);
+      marks.children[k].textContent = pocketWords(pockets[k].name, view.upright);
       Object.assign(marks.children[k].style, { left: `${px}px`, top: `${py}px` });
     });
   }
@@ -73,7 +76,7 @@ export class Advisor {
   /** The stroke or its player has changed. */
   changed(event) {
     const { app } = this;
-    if (!app.aiming || !by("map").checked) { this.found = null; this.wait.drop(); this.say(); app.redraw(); return; }
+    if (!app.aiming || by("guide").value === "line") { this.found = null; this.wait.drop(); this.say(); app.redraw(); return; }
     this.question(app.aim.wish, event, true);
   }
 
@@ -86,7 +89,8 @@ export class Advisor {
   take(found, input) {
     const { app } = this;
     if (found.stale || input.revision !== app.state.revision || !app.aiming || input.own && this.hover) return;
-    found.heat = [cloud(pairs(found.ball), app.scene.extent, BALL_CLOUD), cloud(pairs(found.cue), app.scene.extent, CUE_CLOUD)];
+    const spread = by("guide").value === "spread" || this.hover;
+    found.heat = spread ? [cloud(pairs(found.ball), app.scene.extent, BALL_CLOUD), cloud(pairs(found.cue), app.scene.extent, CUE_CLOUD)] : [];
     this.found = found;
     this.say();
     app.redraw(() => { this.times.push(performance.now() - input.at); });
@@ -99,6 +103,7 @@ export class Advisor {
 
   say() {
     const odds = by("odds"), { found } = this;
+    odds.hidden = by("guide").value === "line";
     odds.replaceChildren();
     if (!found) return;
     const dot = rgb => { const one = make("i"); one.style.background = `rgb(${rgb})`; return one; };
@@ -113,6 +118,7 @@ export class Advisor {
 
   async advise() {
     const button = by("advise"), { app } = this, { revision } = app.state;
+    if (by("panel").classList.contains("folded")) by("fold").click();
     button.disabled = true;
     button.textContent = "Thinking …";
     try {
@@ -125,14 +131,21 @@ export class Advisor {
     button.textContent = "What would you play?";
   }
 
-  show({ order, suggestions }) {
+  show({ order, suggestions, choices, choice }) {
     this.list = suggestions;
+    for (const { choice: one, win } of choices) {
+      const button = by("choices").querySelector(`[data-choice=${one}]`);
+      if (!button) continue;
+      button.classList.toggle("best", one === choice);
+      if (win !== null) button.textContent = `${button.dataset.words} · win ${percent(win)}`;
+    }
     const items = suggestions.map((one, k) => {
       const [low, high] = (one.win_interval ?? one.chance_interval).map(value => Math.round(100 * value));
       const [least, most] = one.points_interval.map(value => value.toFixed(1));
       const visit = one.kind === "pot" ? `points ${least} to ${most}` : `fair ${low} to ${high} %`;
       const range = one.win_interval ? `win chance ${low} to ${high} %` : visit;
-      const button = make("button", { type: "button" }, one.words, make("small", { textContent: `${range} (95 % interval)` }));
+      const [what, ...how] = pocketWords(one.words, this.app.view.upright).split("; ")[0].split(", "), told = this.told(one, what, how);
+      const button = make("button", { type: "button", title: `${range} (95 % interval)` }, make("b", { textContent: told.figure }), told.what, make("small", { textContent: told.how }));
       button.setAttribute("aria-pressed", "false");
       button.onpointerenter = event => event.pointerType === "mouse" && this.preview(k, event);
       button.onfocus = event => this.preview(k, event);
@@ -142,10 +155,19 @@ export class Advisor {
       return make("li", {}, button);
     });
     by("advice").replaceChildren(...items);
-    by("advice-order").textContent = order;
-    by("advice-sides").hidden = !items.length;
+    by("advice-order").textContent = choices.length ? `If you play, ${order[0].toLowerCase()}${order.slice(1)}` : order;
     by("advice-order").scrollIntoView({ block: "start" });
     this.app.redraw();
+  }
+
+  /** A suggestion in two lines: what is played with the figure that it is ordered by, and how. */
+  told(one, what, how) {
+    const pocket = one.kind === "pot" ? ` to ${how.shift()}` : "", figure = one.win ?? null;
+    const points = `${one.points.toFixed(1)} points`, chance = word => /^(pot|fair) /.test(word);
+    return {
+      what: `${what[0].toUpperCase()}${what.slice(1)}${pocket}`, how: [...how.filter(chance), ...how.filter(word => !chance(word))].join(", "),
+      figure: figure !== null ? `win ${percent(figure)}` : one.kind === "pot" ? points : `fair ${percent(one.chance)}`,
+    };
   }
 
   /** Show a suggestion and its clouds; -1: the player's stroke again. */

@@ -23,6 +23,27 @@ export function fill(select, values, chosen = select.value, words = value => val
   if (values.includes(chosen)) select.value = chosen;
 }
 
+/** What this browser keeps of the player, by name. Without storage it lasts as long as the page. */
+export const kept = {
+  all: (() => { try { return JSON.parse(localStorage.getItem("snooker")) ?? {}; } catch { return {}; } })(),
+  get(name, otherwise) { return this.all[name] ?? otherwise; },
+  set(name, value) {
+    this.all[name] = value;
+    try { localStorage.setItem("snooker", JSON.stringify(this.all)); } catch { /* private browsing */ }
+  },
+};
+
+/** A list of choices whose selection is kept. `words`: {value: text}. */
+export function setting(id, words, otherwise, changed) {
+  const select = by(id), values = Object.keys(words), known = kept.get(id, otherwise);
+  fill(select, values, values.includes(known) ? known : otherwise, value => words[value]);
+  select.onchange = event => { kept.set(id, select.value); changed(event); };
+}
+
+/** Pockets' names as they lie on the screen. */
+export const pocketWords = (text, upright) => (upright ? text : text.replace("right middle", "lower middle").replace("left middle", "upper middle")
+  .replace("top right", "lower right").replace("top left", "upper right"));
+
 /** Ask the player for confirmation; resolves to true for yes. */
 export function confirmed(question, yes) {
   const box = by("confirm");
@@ -41,11 +62,12 @@ export class ServerError extends Error {
   }
 }
 
-/** Send a request: POST with a body, else GET. */
+/** Send a request: POST with a body, a value or its JSON as text, else GET. A saved game is text, since its random numbers have 64 bits. */
 export async function ask(name, body, query = "") {
-  const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
+  const text = typeof body === "string" ? body : JSON.stringify(body);
+  const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: text };
   const reply = await fetch(`api/${name}${query}`, options);
-  if (name === "replay.html" && reply.ok) return reply.text();
+  if (["replay.html", "save"].includes(name) && reply.ok) return reply.text();
   const found = await reply.json();
   if (!reply.ok) throw new ServerError(found.error);
   return found;

@@ -7,7 +7,7 @@
 import { by, Latest } from "./play_parts.js";
 
 const SVG = "http://www.w3.org/2000/svg";
-const HALF_DEGREE = Math.PI / 360;
+const STEEP = Math.PI / 36;  // a cue raised less is not worth a word
 const ASPECT = 3, LEAST = 0.2, PAST = 0.07;  // of the view from the side: width over height, how wide it is at least and past what is in the way [m]
 
 export class Room {
@@ -36,9 +36,9 @@ export class Room {
 
   show(error) {
     const { found } = this;
-    by("room").textContent = error ? error.message : found?.words ? `${found.words[0].toUpperCase()}${found.words.slice(1)}.` : "";
+    const said = found?.words && (found.moved || found.unplayable || found.elevation > STEEP);
+    by("room").textContent = error ? error.message : said ? `${found.words[0].toUpperCase()}${found.words.slice(1)}.` : "";
     by("room").className = found?.unplayable ? "trouble" : "";
-    by("side").toggleAttribute("hidden", !found || found.elevation < HALF_DEGREE);
     if (found) this.draw();
     this.app.aim.show();
   }

@@ -4,7 +4,7 @@
 
 import { ask, by, fill, Latest, make, ServerError } from "./play_parts.js";
 
-const ON = ["as the balls say", "red", "any_colour", "yellow", "green", "brown", "blue", "pink", "black"];
+const ON = ["what the balls allow", "red", "any_colour", "yellow", "green", "brown", "blue", "pink", "black"];
 
 export class SetUp {
   /** app: `view`, `state`, `scene`, `take(state)`, `redraw()`, `bubble(text, x, y)`. */

@@ -473,3 +473,79 @@ def test_a_free_cue_is_a_choice_of_the_players(game):
     game("players", cue="real")
     advice = game("advise", agent="search_2000", n=3, samples=10)["suggestions"]
     assert any("over the rail" in one["words"] and one["room"]["over"] == "rail" for one in advice)
+
+
+def test_other_games_and_matches_are_played(game):
+    """Six reds and the Shoot Out by their own rules; frames are won, and the other player breaks the next."""
+    state = game("new", game="six_red", best_of=3, seed=4)
+    assert (state["game"], state["reds"], state["available"], state["best_of"]) == ("six_red", 6, 75, 3)
+    assert state["time_left"] is None and state["frames"] == [0, 0]
+    with pytest.raises(ValueError, match=r"next = True: must be left out"):
+        game("new", next=True)
+    assert game("concede")["frames"] == [0, 1]
+    with pytest.raises(ValueError, match=r"game = 'snooker': must be left out with next"):
+        game("new", next=True, game="snooker")
+    state = game("new", next=True, seed=5)
+    assert (state["striker"], state["breaker"], state["reds"], state["frames"]) == (1, 1, 6, [0, 1])
+    state = game("concede")
+    assert state["frames"] == [1, 1] and not state["match_over"]
+    game("new", next=True)
+    state = game("concede")
+    assert state["frames"] == [1, 2] and state["match_over"]
+    assert game("new", next=True)["frames"] == [0, 0]
+    for wrong, words in ((2, "must be odd"), (0, "best_of = 0"), (True, "best_of")):
+        with pytest.raises(ValueError, match=words):
+            game("new", best_of=wrong)
+    with pytest.raises(ValueError, match="game = 'pool'"):
+        game("new", game="pool")
+
+
+def test_in_the_shoot_out_a_clock_runs_and_after_a_foul_the_cue_ball_goes_anywhere(game):
+    state = game("new", game="shoot_out", seed=1)
+    assert state["time_left"] == 600.0
+    duration = game("stroke", speed=1.0, aim=-0.5 * pi)["stroke"]["duration"]  # it strikes nothing
+    state = game.get("state")
+    assert state["time_left"] == pytest.approx(600 - duration, abs=0.002)  # it runs from the break-off on
+    assert (state["phase"], state["striker"], state["in_hand"], state["anywhere"]) == (
+        "stroke",
+        1,
+        True,
+        True,
+    )
+    assert game("place", place=[0.3, 0.4])["place"] == [0.3, 0.4]
+    played = game("stroke", speed=1.0, aim=0.5 * pi, place=[0.3, 0.5])["stroke"]
+    assert game.get("state")["time_left"] == pytest.approx(600 - duration - 9 - played["duration"], abs=0.003)
+    start = np.frombuffer(base64.b64decode(played["start"]), "<f8")[:2]
+    assert start == pytest.approx([0.3, 0.5], abs=1e-9)
+    saved, state = game("save"), game.get("state")
+    game("new", game="snooker")
+    game("load", saved=saved)
+    again = game.get("state")
+    assert again["game"] == "shoot_out"
+    assert {k: again[k] for k in ("time_left", "positions", "scores")} == {
+        k: state[k] for k in ("time_left", "positions", "scores")
+    }
+    saved["state"]["frame"]["rules"] = "pool"
+    with pytest.raises(ValueError, match="'pool'"):
+        game("load", saved=saved)
+    assert game.get("state")["game"] == "shoot_out"
+
+
+def test_after_a_foul_the_advice_says_what_to_choose(game):
+    game("players", noise=["club", "club"])
+    game("position", position=COVERED, scores=[10, 20])
+    game("stroke", speed=1.0, aim=0.5 * pi)
+    asked = game("advise", agent="tactician_500", n=2, samples=20)
+    assert [one["choice"] for one in asked["choices"]] == ["play", "play_again", "replace"]
+    assert asked["choice"] in ("play", "play_again", "replace") and asked["suggestions"]
+    assert game.get("state")["phase"] == "choice"  # nothing was chosen
+    for one in asked["choices"]:
+        game("stroke", choice=one["choice"])
+        assert game.get("state")["win_chance"] == pytest.approx(
+            1 - one["win"], abs=1e-9
+        )  # the striker is seat 1
+        game("undo")
+    game("players", practice=True)
+    game("position", position=EASY)
+    plain = game("advise", agent="ghost_ball", n=1)
+    assert plain["choice"] is None and plain["choices"] == []

@@ -280,3 +280,20 @@ def test_a_port_in_use_is_said_with_what_to_do(line, capsys):
     _, err = capsys.readouterr()
     assert err.startswith(f"snooker_env.play: port = {port}: must be free (") and "another with --port" in err
     assert err.count("\n") == 1
+
+
+def test_the_port_is_always_the_same_unless_it_is_taken_and_then_any(monkeypatch, line):
+    """A browser keeps a page's scores by its address."""
+    from snooker_env.play import __main__ as command
+
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    monkeypatch.setattr(command, "PORT", port)
+    server = command._server(line.server.service, None)
+    other = command._server(line.server.service, None)
+    assert server.server_port == port != other.server_port
+    with pytest.raises(ValueError, match=f"port = {port}"):
+        command._server(line.server.service, port)
+    server.server_close()
+    other.server_close()

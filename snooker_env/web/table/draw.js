@@ -1,7 +1,7 @@
 /**
  * How is a table drawn with its balls? By a `TableView` on a canvas, from its scene; each frame says where the balls are.
  *
- * On screen +y goes right and +x down. A frame has `x`, `y`, `on` of all balls; and, as it likes, `z` (the height of balls that
+ * On screen +y goes right and +x down; on a canvas that may stand and is higher than wide, +y goes up and +x right. A frame has `x`, `y`, `on` of all balls; and, as it likes, `z` (the height of balls that
  * fly), `side` (a view from the side), `depth` (0 on the cloth, 1 gone into a pocket), `turns`, `labels`, `lines` (each with `points`, or a `path`, a Path2D in metres),
  * `rings`, `heat`, `highlight` and `cue`.
  */
@@ -12,11 +12,13 @@ const LAMP_HEIGHT = 0.95;
 const EYE = 2;
 /** The view from the side: how much is seen above the bed [m], and how far it lies inside the upper edge [m]. */
 const SIDE = [0.3, 0.04];
+/** How strong a map is where it is strongest, and what share of that is not drawn: it must not fog the table. */
+const [HEAT, FAINT] = [220, 0.2];
 
-/** Draws a table; its constant parts once for each size. */
+/** Draws a table; its constant parts once for each size. `stands`: it may stand upright. */
 export class TableView {
-  constructor(canvas, scene) {
-    Object.assign(this, { canvas, scene, R: scene.ball_radius, colours: scene.palette });
+  constructor(canvas, scene, stands = false) {
+    Object.assign(this, { canvas, scene, stands, R: scene.ball_radius, colours: scene.palette });
     this.pen = canvas.getContext("2d", { alpha: false });
     this.ink = Object.fromEntries(Object.entries(this.colours).map(([name, rgb]) => [name, css(rgb)]));
     const [lamp, pen] = sheet(32, 32);
@@ -41,11 +43,22 @@ export class TableView {
     this.ratio = min(devicePixelRatio, 3);
     const w = (canvas.width = round(canvas.clientWidth * this.ratio) || canvas.width);
     const h = (canvas.height = round(canvas.clientHeight * this.ratio) || canvas.height);
-    this.scale = min(w / wide, h / high);
-    this.left = w / 2 - this.scale * (y0 + y1) / 2;
-    this.top = h / 2 - this.scale * (x0 + x1) / 2;
+    this.upright = this.stands && h > w;
+    this.scale = this.upright ? min(w / high, h / wide) : min(w / wide, h / high);
+    this.look((x0 + x1) / 2, (y0 + y1) / 2, this.scale);
     this.sprites = new Map();
     if (this.still?.width !== w || this.still?.height !== h) this.still = null;
+  }
+
+  /** Show a place [m] in the middle, at so many of the canvas's own pixels for a metre. */
+  look(x, y, scale) {
+    const [px, py] = this.way(y, x);
+    Object.assign(this, { scale, left: this.canvas.width / 2 - scale * px, top: this.canvas.height / 2 - scale * py });
+  }
+
+  /** A direction on the screen, right and down: of one along and across the table. */
+  way(along, across) {
+    return this.upright ? [across, -along] : [along, across];
   }
 
   /** CSS pixels on the canvas of a place [m]. */
@@ -55,17 +68,21 @@ export class TableView {
 
   /** The place [m] of CSS pixels on the canvas. */
   toTable(px, py) {
-    return [(py * this.ratio - this.top) / this.scale, (px * this.ratio - this.left) / this.scale];
+    const [right, down] = [(px * this.ratio - this.left) / this.scale, (py * this.ratio - this.top) / this.scale];
+    return this.upright ? [right, -down] : [down, right];
   }
 
   /** The canvas's own pixels of a place [m]. */
   pixel(x, y) {
-    return [this.left + this.scale * y, this.top + this.scale * x];
+    const [right, down] = this.way(y, x);
+    return [this.left + this.scale * right, this.top + this.scale * down];
   }
 
   /** Let a pen draw in metres. */
   metres(pen) {
-    pen.setTransform(0, this.scale, this.scale, 0, this.left, this.top);
+    const { scale, left, top } = this;
+    if (this.upright) pen.setTransform(scale, 0, 0, -scale, left, top);
+    else pen.setTransform(0, scale, scale, 0, left, top);
   }
 
   /** Draw the table with a frame, of which only x, y and on are required. */
@@ -95,8 +112,9 @@ export class TableView {
     const seen = [...frame.x.keys()].filter(i => depth(i) < 1).sort((a, b) => depth(b) - depth(a) || z(a) - z(b));
     for (const i of seen.filter(i => !depth(i))) { // shadows fall away from the lamps
       const [px, py] = this.pixel(frame.x[i], frame.y[i]);
-      const away = [frame.y[i] / (y1 - y0) / 2, 0.14 + frame.x[i] / (x1 - x0) / 2].map(part => part * (1 + 2 * z(i) / this.R));
-      this.stamp(null, px + radius * away[0], py + radius * away[1], radius);
+      const far = radius * (1 + 2 * z(i) / this.R);
+      const [right, down] = this.way(frame.y[i] / (y1 - y0) / 2, 0.14 + frame.x[i] / (x1 - x0) / 2);
+      this.stamp(null, px + far * right, py + far * down, radius);
     }
     for (const i of seen) {
       if (depth(i)) this.falling(frame.x[i], frame.y[i], depth(i), scene.balls[i].rgb);
@@ -106,10 +124,11 @@ export class TableView {
 
   /** The table from its yellow side, over the upper edge of the picture: how high the balls are. */
   side(frame) {
-    const { pen, scene, scale, R, ink } = this;
+    const { pen, scene, R, ink, canvas } = this;
     const [[x0], [y0, y1]] = scene.extent;
     const [high, inside] = SIDE;
-    const [left, floor] = this.pixel(x0 + inside + high, y0);
+    const scale = this.upright ? canvas.width / (y1 - y0) : this.scale;
+    const [left, floor] = this.upright ? [0, (inside + high) * scale] : this.pixel(x0 + inside + high, y0);
     const wide = (y1 - y0) * scale;
     pen.globalAlpha = 0.7;
     pen.fillStyle = ink.bar;
@@ -159,7 +178,8 @@ export class TableView {
     const { pen, lamp, scene } = this;
     const [, [, y1]] = scene.extent;
     const clear = min(1, max(0, radius / 9 - 0.8));
-    const shine = (u, v, size, alpha) => {
+    const shine = (along, across, size, alpha) => {
+      const [u, v] = this.way(along, across);
       pen.globalAlpha = alpha;
       pen.drawImage(lamp, px + radius * (u - size), py + radius * (v - size), 2 * radius * size, 2 * radius * size);
     };
@@ -192,9 +212,10 @@ export class TableView {
     pen.beginPath();
     for (const axis of axes) {
       const [x, y, z] = axis[2] < 0 ? axis.map(value => -value) : axis;
-      const u = px + 0.96 * radius * y;
-      const v = py + 0.96 * radius * x;
-      const turn = atan2(x, y);
+      const [right, down] = this.way(y, x);
+      const u = px + 0.96 * radius * right;
+      const v = py + 0.96 * radius * down;
+      const turn = atan2(down, right);
       pen.moveTo(u + size * z * cos(turn), v + size * z * sin(turn));
       pen.ellipse(u, v, size * z, size, turn, 0, TURN);
     }
@@ -260,7 +281,7 @@ export class TableView {
   /** A line through points, or a `path` in metres, at least 3 pixels wide, with a dark edge. */
   line({ points = [], path, colour = this.ink.text, width = 0.007, dash = [], arrow }) {
     const { pen } = this;
-    const px = this.ratio / this.scale;
+    const px = max(this.ratio, this.canvas.height / 1000) / this.scale;
     const wide = max(width, 3 * px);
     const way = path ?? new Path2D();
     for (const point of points) way.lineTo(...point);
@@ -286,7 +307,7 @@ export class TableView {
     const [canvas, pen] = sheet(nx, ny);
     const image = pen.createImageData(nx, ny);
     const most = values.reduce((a, b) => max(a, b), 0) || 1;
-    for (let k = 0; k < nx * ny; k++) image.data.set([...rgb, 225 * sqrt(values[k] / most)], 4 * k);
+    for (let k = 0; k < nx * ny; k++) image.data.set([...rgb, HEAT * max(0, sqrt(values[k] / most) - FAINT)], 4 * k);
     pen.putImageData(image, 0, 0);
     this.metres(this.pen);
     this.pen.drawImage(canvas, x0, y0, nx * cell, ny * cell);

@@ -173,7 +173,8 @@ class Painter {
     const { pen, view, scale, scene } = this;
     const [[x0, x1], [y0, y1]] = scene.extent;
     const middle = view.pixel((x0 + x1) / 2, (y0 + y1) / 2);
-    pen.setTransform(scale * (y1 - y0), 0, 0, scale * (x1 - x0), ...middle);
+    const [wide, high] = view.way(scale * (y1 - y0), scale * (x1 - x0)).map(abs);
+    pen.setTransform(wide, 0, 0, high, ...middle);
     glow(pen, 0, 0, 2, [0, "#ffffe008"], [0.17, "#0000"], [0.42, "#0003"]);
   }
 }

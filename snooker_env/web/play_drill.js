@@ -1,0 +1,101 @@
+/**
+ * What can one practise alone? Drills: tables set up again and again, strokes that are scored, and the best score, which this browser keeps.
+ *
+ * Each has a `table` for its n-th try, a `score` of a stroke's report and the state after it, and ends after `tries` strokes, or with the first that scores
+ * nothing.
+ */
+
+import { ask, by, kept, make } from "./play_parts.js";
+
+const TRIES = 10;
+const dealt = layout => () => ask("new", { layout, seed: Math.floor(Math.random() * 2 ** 48), game: "snooker" });
+const open = state => state.lines.some(line => line.open);
+const fair = stroke => !stroke.fouls.length;
+const within = (low, high) => low + (high - low) * Math.random();
+
+const DRILLS = {
+  line_up: { name: "Line-up", about: "Clear the line: the points of one break", run: true, table: dealt("line_up"), score: stroke => stroke.points },
+  long_pots: {
+    name: "Long pots", about: "Ten reds from baulk: one point a pot", score: stroke => Number(stroke.points > 0),
+    table: () => ask("position", { position: { cue: [within(-0.5, 0.5), within(-1.35, -1.1)], reds: [[within(-0.5, 0.5), within(0.1, 0.6)]], black: [0, 1.4605], on: "red" } }),
+  },
+  safeties: {
+    name: "Safeties", about: "Ten safeties: one point if nothing can be potted, two for a snooker", table: dealt("safety"),
+    score: (stroke, state) => (!fair(stroke) || stroke.points ? 0 : state.snookered ? 2 : Number(!open(state))),
+  },
+  escapes: { name: "Escapes", about: "Ten snookers: one point for each fair stroke", table: dealt("escape"), score: stroke => Number(fair(stroke)) },
+};
+
+export class Drills {
+  /** app: `state`, `try(request)`. */
+  constructor(app) {
+    Object.assign(this, { app, now: null });
+    by("drill-again").onclick = () => this.begin(this.now);
+    by("drill-end").onclick = () => this.end();
+    this.list();
+  }
+
+  list() {
+    by("drill-list").replaceChildren(...Object.entries(DRILLS).map(([key, { name, about }]) => {
+      const best = kept.get("best", {})[key], button = make("button", { type: "button" }, name, make("small", { textContent: best === undefined ? about : `${about}. Best: ${best}` }));
+      button.onclick = () => this.app.sure("Leave this frame for a drill?", name, () => this.begin(key));
+      return button;
+    }));
+  }
+
+  async begin(key) {
+    const { app } = this;
+    this.before ??= app.state.practice ? null : { players: app.state.players, noise: app.state.noise, practice: false };
+    Object.assign(this, { now: key, tries: 0, score: 0, over: false });
+    by("drills").open = false;
+    this.show();
+    await app.try(() => ask("players", { players: ["person", "person"], practice: true }));
+    await this.deal();
+  }
+
+  async deal() {
+    await this.app.try(DRILLS[this.now].table);
+    this.dealt = this.app.state.revision;
+    this.show();
+  }
+
+  /** A stroke of the drill has come to rest. */
+  async played(stroke) {
+    const drill = DRILLS[this.now];
+    if (!drill || this.over) return;
+    const got = drill.score(stroke, this.app.state);
+    this.score += got;
+    this.tries++;
+    this.over = drill.run ? !got || this.app.state.phase === "over" : this.tries === TRIES;
+    if (this.over) {
+      const best = kept.get("best", {});
+      kept.set("best", { ...best, [this.now]: Math.max(best[this.now] ?? 0, this.score) });
+      this.list();
+    }
+    this.show();
+    if (!this.over && !drill.run) await this.deal();
+  }
+
+  async end() {
+    this.now = null;
+    this.show();
+    const { before } = this;
+    this.before = null;
+    if (before) await this.app.try(() => ask("players", before));
+    this.app.begin();
+  }
+
+  /** A game begins: there is no drill any more. */
+  stop() {
+    if (this.now) Object.assign(this, { now: null, before: null });
+    this.show();
+  }
+
+  show() {
+    by("drill").hidden = !this.now;
+    if (!this.now) return;
+    const { name, about, run } = DRILLS[this.now], best = kept.get("best", {})[this.now] ?? 0;
+    const ends = this.over ? `${name}: ${this.score}. Best: ${best}.` : run ? `${name}: ${this.score} points. Best: ${best}.` : `${name}, ${this.tries + 1} of ${TRIES}: ${this.score}. Best: ${best}.`;
+    by("drill-words").textContent = this.over || this.tries ? ends : `${ends} ${about}.`;
+  }
+}

@@ -1,0 +1,93 @@
+/**
+ * How well was the frame played? Counted from its strokes, and the time that each person took, against a shot clock if there is one.
+ *
+ * A stroke is a try at a pot if it potted, or if the ball that it struck first passed a pocket within `NEAR`; every other stroke is a safety, which
+ * succeeds if it is fair and the next stroke of the other pots nothing.
+ */
+
+import { decode } from "./table.js";
+import { ask, by, make, setting } from "./play_parts.js";
+
+const NEAR = 0.16, STEP = 0.02;
+const LIMITS = { off: "none", 15: "15 s", 25: "25 s", 40: "40 s" };
+
+/** How near [m] the ball that a decoded stroke struck first came to a pocket. */
+function nearest(stroke, falls) {
+  const met = stroke.events.find(([, kind, i, j]) => kind === 0 && (i === 0 || j === 0));
+  if (!met) return Infinity;
+  const ball = met[2] || met[3];
+  let least = Infinity;
+  for (let t = met[0]; t < stroke.duration; t += STEP) {
+    const { x, y, vx, vy } = stroke.at(t);
+    for (const fall of falls) least = Math.min(least, Math.hypot(fall[0] - x[ball], fall[1] - y[ball]));
+    if (!vx[ball] && !vy[ball]) break;
+  }
+  return least;
+}
+
+/** Counts of both players from a frame's strokes: {tries, pots, safeties, safe, visits, points, best, fouls}. */
+export function counted(strokes, falls) {
+  const counts = [0, 1].map(() => ({ tries: 0, pots: 0, safeties: 0, safe: 0, visits: 0, points: 0, best: 0, fouls: 0 }));
+  strokes.forEach((stroke, k) => {
+    const one = counts[stroke.player], next = strokes[k + 1], foul = stroke.fouls.length > 0;
+    if (strokes[k - 1]?.player !== stroke.player) one.visits++;
+    one.points += stroke.points;
+    one.best = Math.max(one.best, stroke.break);
+    one.fouls += foul;
+    if (stroke.points || nearest(stroke, falls) < NEAR) { one.tries++; one.pots += stroke.points > 0; return; }
+    one.safeties++;
+    one.safe += !foul && !(next && next.player !== stroke.player && next.points);
+  });
+  return counts;
+}
+
+export class Stats {
+  constructor(app) {
+    this.app = app;
+    this.times = new Map();  // of a person's stroke, by its number: seconds
+    this.since = null;
+    by("stats-open").onclick = by("over-stats").onclick = () => this.open();
+    setting("limit", LIMITS, "off", () => this.show());
+    setInterval(() => this.show(), 200);
+  }
+
+  /** A stroke is asked of a person, or no longer. */
+  turn(asked) {
+    const key = asked ? `${this.app.state.strokes} ${this.app.state.striker}` : null;
+    if (key !== this.key) this.since = asked ? performance.now() : null;
+    this.key = key;
+    this.show();
+  }
+
+  /** A person has played. */
+  played() {
+    if (this.since !== null) this.times.set(this.app.state.strokes, (performance.now() - this.since) / 1000);
+  }
+
+  /** The shot clock; when it has run down, the stroke is played as it is aimed. */
+  show() {
+    const limit = Number(by("limit").value), clock = by("clock");
+    clock.hidden = !limit || this.since === null || document.hidden;
+    if (clock.hidden) return;
+    const left = limit - (performance.now() - this.since) / 1000;
+    clock.textContent = Math.max(0, Math.ceil(left));
+    clock.classList.toggle("late", left < 5);
+    if (left <= 0) { this.app.aim.held = null; this.app.play(); }
+  }
+
+  async open() {
+    const { app } = this, { labels } = app.state;
+    const { strokes } = await ask("strokes");
+    const decoded = strokes.length ? decode({ format: "snooker-replay", version: 1, R: app.R, spin_decel: app.spin_decel, strokes }).strokes : [];
+    const counts = counted(decoded, app.scene.falls), share = (part, all) => (all ? `${Math.round(100 * part / all)} % (${part} of ${all})` : "–");
+    const spent = [0, 1].map(seat => strokes.flatMap((one, k) => (one.player === seat && this.times.has(k) ? [this.times.get(k)] : [])));
+    const rows = [
+      ["pots", one => share(one.pots, one.tries)], ["safeties", one => share(one.safe, one.safeties)], ["points a visit", one => (one.visits ? (one.points / one.visits).toFixed(1) : "–")],
+      ["highest break", one => one.best], ["fouls", one => one.fouls],
+      ["time a stroke", (_, k) => (spent[k].length ? `${(spent[k].reduce((a, b) => a + b) / spent[k].length).toFixed(0)} s` : "–")],
+    ];
+    for (const k of [0, 1]) by(`stats-${k}`).textContent = labels[k];
+    by("stats-rows").replaceChildren(...rows.map(([name, what]) => make("tr", {}, make("td", { textContent: name }), ...counts.map((one, k) => make("td", { textContent: what(one, k) })))));
+    by("stats").showModal();
+  }
+}
