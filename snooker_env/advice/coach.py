@@ -29,7 +29,7 @@ import numpy as np
 from .._check import choice
 from .._types import Floats, Ints
 from ..planning import Positions, clear_paths, pots, sobol_points, strokes_at
-from ..planning.worth import lead_of
+from ..planning.worth import lead_of, passed
 from ..tasks.noise import LEVELS, NoiseLike
 from .errors import BASE, SCALES, Estimate, Fitted, PlayerErrors, checked, fitted
 from .practice import JUDGING, Practice, keys, one_position, practice_of
@@ -350,9 +350,9 @@ def best_at(bench: Practice, at: Positions, one: Recorded, seed: int) -> tuple[f
     if not went[k].any():
         return None
     made = float(worth[k][went[k]].mean())
-    # where it is never missed, what a miss leaves does not count
-    missed = float(worth[k][~went[k]].mean()) if not went[k].all() else made
-    return float(went[k].mean()), made, missed
+    # where it is never missed: a miss would leave the balls about as they lie
+    left = float(worth[k][~went[k]].mean()) if not went[k].all() else -float(asked.worth(passed(at))[0])
+    return float(went[k].mean()), made, left
 
 
 def drills_for(
