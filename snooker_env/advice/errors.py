@@ -20,9 +20,7 @@ professional's.
   off to the side, pockets that are narrow for hard balls. Without an ``intended`` stroke it is played in the middle of the
   ball with the ``speed`` recorded, or at 1.5 m/s: then a player who strikes harder is said to err more than he does.
 
-Where the cue ball stopped is not used for the speed: the tip's errors move that place about as much. Likelihoods of places
-under simulated errors gave estimates that were a quarter to a half off after 100 strokes, and intervals that held the truth
-in 62 to 96 % of the players.
+Where the cue ball stopped is not used for the speed: the tip's errors move that place about as much.
 
 **The estimate** is the median of the posterior for a prior that is flat in log s from ``LEAST`` to ``MOST``, the interval
 its quantiles 2.5 and 97.5 %. For strokes meant and played that is the classical interval, sqrt(sum e^2 / chi^2_n), exact

@@ -18,7 +18,7 @@ from snooker_env.advice import (
 )
 from snooker_env.advice import errors as estimating
 from snooker_env.advice.__main__ import main
-from snooker_env.advice.coach import lost
+from snooker_env.advice.costs import lost, values
 from snooker_env.advice.practice import practice_of
 from snooker_env.planning import Planner, pot_aim, pots
 from snooker_env.tasks import LEVELS
@@ -166,7 +166,9 @@ def test_costs_have_the_signs_of_what_happened():
     bench = practice_of("professional", of_frames=True)
     missed, made = missed_and_made()
     parts = lost([missed, made], bench, 0).parts
-    assert parts[0, 0] > 1.0 > 0.0 >= parts[1, 0]  # a pot missed costs, one that the target makes too gains nothing
+    assert (
+        parts[0, 0] > 1.0 > 0.0 >= parts[1, 0]
+    )  # a pot missed costs, one that the target makes too gains nothing
     # both of a stroke sum to what it was worth to the target, less what it brought
     assert parts[0].sum() - parts[1].sum() == pytest.approx(7.0 - values_of(bench, missed), abs=1e-9)
     assert parts[1, 2] == parts[0, 1] == 0.0
@@ -180,8 +182,6 @@ def test_costs_have_the_signs_of_what_happened():
 
 
 def values_of(bench, one):
-    from snooker_env.advice.coach import values
-
     return float(values(bench, [one])[0])
 
 
