@@ -1,15 +1,14 @@
 """Does the coach find a player's errors? Simulated players with known errors, 100 strokes each.
 
-    python -m benchmarks.coach [--players 200] [--strokes 100] [--pool 300] [--levels club custom ...] [--no-places]
+    python -m benchmarks.coach [--players 200] [--strokes 100] [--pool 100] [--levels club ...]
     [--seed 0] [--json FILE] [--out FOLDER]
 
 The strokes are pots that ``search_30`` means in visits from opened tables; each player plays such strokes with errors of
 its own. The errors are then estimated from what is known: the stroke meant and played; the pot meant and the stroke
-played; the stroke meant, and whether the pot went in; the same and where the cue ball stopped, which a person marks to
-a ball's radius. Printed: the root mean square of the estimates' errors in per cent, the share of players whose estimate
-is within 15 %, and how often the 95 % interval holds the truth, with 95 % intervals of these shares (Wilson). "drill"
-is one straight pot that the player makes 7 to 9 times of ten. Tolerances of pots and clouds of the cue ball are
-simulated once for the pool; a cloud belongs to the nearest of three errors of direction.
+played; the stroke meant, and whether the pot went in. "drill" is the straight long blue from the one of six distances
+at which the player makes nearest to 85 %. Printed: medians, the root mean square of the estimates' errors, half of the
+median width of the 95 % intervals, the share of players whose estimate is within 15 %, and how often the interval holds
+the truth, with 95 % intervals of both shares (Wilson). Tolerances of pots are simulated once for the pool.
 """
 
 from dataclasses import asdict
@@ -28,7 +27,8 @@ from snooker_env.tasks.noise import LEVELS, Noise
 
 from ._common.command import Command, at_least, run, save_json
 
-MEANS = "search_30"
+MEANS, COPIES = "search_30", 50
+"""Who means the strokes; how often the tolerance of each pot of the drill is found, with other errors each time."""
 BASE = LEVELS[coaching.BASE]
 
 
@@ -91,7 +91,7 @@ def drill():
     pocket = np.array((0.874, 1.769))
     to = pocket / hypot(*pocket)
     made = []
-    for distance in np.geomspace(0.12, 1.2, 8):
+    for distance in np.geomspace(0.4, 1.2, 6):
         at = sn.Position(cue=tuple((-distance * to).tolist()), blue=(0.0, 0.0), on="blue")
         stroke = CueStroke(speed=2.0, aim=atan2(to[1], to[0]), top=-0.2)
         made.append(Recorded(position=at, intended=stroke, ball=19, pocket=3))
@@ -99,7 +99,7 @@ def drill():
 
 
 def played(pool, rows, noise, rng):
-    """Strokes of the pool as played with errors: the cue ball's executed strokes, pots, and places, NaN if it fell."""
+    """Strokes of the pool as played with errors: the strokes as executed, (n, 5), and whether the pots were made."""
     planner = Planner({"noise": noise})
     at = Positions.of([pool[k].position for k in rows])
     strokes = np.stack([pool[k].intended.numbers() for k in rows])
@@ -107,8 +107,7 @@ def played(pool, rows, noise, rng):
     stops = planner.stops(at, np.arange(len(rows)), strokes=strokes, errors=z)
     balls, pockets = np.array([(pool[k].ball, pool[k].pocket) for k in rows]).T
     made = (stops.potted[np.arange(len(rows)), balls] == pockets) & (stops.penalty == 0)
-    places = np.where(stops.potted[:, :1] >= 0, np.nan, stops.places[:, 0])
-    return executed(strokes, z, noise), made, places
+    return executed(strokes, z, noise), made
 
 
 def executed(strokes, z, noise):
@@ -127,7 +126,7 @@ def executed(strokes, z, noise):
     )
 
 
-def told(one, *, cue=None, made=None, place=None, intended=True):
+def told(one, *, cue=None, made=None, intended=True):
     """A stroke of the pool with what is known of it after it was played."""
     names = ("speed", "side", "top", "aim", "elevation")
     return Recorded(
@@ -137,7 +136,6 @@ def told(one, *, cue=None, made=None, place=None, intended=True):
         ball=one.ball,
         pocket=one.pocket,
         potted=None if made is None else bool(made),
-        stopped=place,
     )
 
 
@@ -151,19 +149,18 @@ def found(weights, unit, n):
     return ends(coaching.estimate(weights, unit, n))
 
 
-def level(name, noise, pool, chances, blues, clouds_at, args):
+def level(name, noise, pool, chances, blues, args):
     """What is found of players with one level's errors: {kind: (players, 3)}, {kind: truth}."""
-    practice, rng = practice_of(coaching.BASE), np.random.default_rng((args.seed, *name.encode()))
+    rng = np.random.default_rng((args.seed, *name.encode()))
     unit, truth = BASE.direction_deg(), noise.direction_deg()
     out = {kind: [] for kind in ("meant, played", "pot, played", "pot made or not", "drill")}
-    speeds = {kind: [] for kind in ("meant, played", "place")}
-    scales = truth / unit * np.array([0.8, 1.0, 1.25])
-    clouds = [coaching.clouds(pool, practice, scale, args.seed) for scale in scales] if clouds_at else []
-    best = int(np.abs(blues.chances[:, np.abs(coaching.SCALES - truth / unit).argmin()] - 0.85).argmin())
-    blue = drill()
+    speeds = {"meant, played": []}
+    blue, here = drill(), np.abs(coaching.SCALES - truth / unit).argmin()
+    rates = blues.reshape(len(blue), COPIES, -1).mean(axis=1)
+    best = int(np.abs(rates[:, here] - 0.85).argmin())
     for _ in range(args.players):
-        rows = rng.choice(len(pool), args.strokes, replace=args.strokes > len(pool))
-        cues, made, places = played(pool, rows, noise, rng)
+        rows = rng.choice(len(pool), args.strokes)
+        cues, made = played(pool, rows, noise, rng)
         both = [told(pool[k], cue=cue) for k, cue in zip(rows, cues, strict=True)]
         errors = coaching.estimate_errors(both)
         out["meant, played"].append(ends(errors.direction))
@@ -174,21 +171,9 @@ def level(name, noise, pool, chances, blues, clouds_at, args):
         out["pot, played"].append(ends(line.direction))
         weights = coaching.posterior(coaching.outcome(chances[rows], made).sum(axis=0))
         out["pot made or not"].append(found(weights, unit, len(rows)))
-        if clouds:
-            scale = out["pot made or not"][-1][0] / unit
-            near = clouds[int(np.abs(np.log(scales / scale)).argmin())]
-            seen = np.flatnonzero(~np.isnan(places[:, 0]))
-            marked = places[seen] + rng.normal(0.0, coaching.PLACE, (len(seen), 2))
-            known = [
-                told(pool[rows[k]], made=made[k], place=tuple(place))
-                for k, place in zip(seen, marked, strict=True)
-            ]
-            mine = coaching.Clouds(near.places[rows[seen]], near.made[rows[seen]], near.weights)
-            log_l = coaching.places_tell(known, mine)
-            speeds["place"].append(found(coaching.posterior(log_l), BASE.speed_rel, len(seen)))
         same = np.full(args.strokes, best)
-        _, made, _ = played(blue, same, noise, rng)
-        weights = coaching.posterior(coaching.outcome(blues.chances[same], made).sum(axis=0))
+        _, made = played(blue, same, noise, rng)
+        weights = coaching.posterior(coaching.outcome(rates[same], made).sum(axis=0))
         out["drill"].append(found(weights, unit, args.strokes))
     kinds = {f"direction: {kind}": (truth, rows) for kind, rows in out.items()}
     return kinds | {f"speed: {kind}": (noise.speed_rel, rows) for kind, rows in speeds.items() if rows}
@@ -214,20 +199,20 @@ def main():
     add = parser.add_argument
     add("--players", type=at_least(2), default=200, help="players of each level [200]")
     add("--strokes", type=at_least(5), default=100, help="strokes of each player [100]")
-    add("--pool", type=at_least(5), default=300, help="different strokes [300]")
+    add("--pool", type=at_least(5), default=100, help="different strokes [100]")
     add("--levels", nargs="+", choices=PLAYERS, default=tuple(PLAYERS), help="whose errors [all]")
-    add("--no-places", action="store_true", help="without where the cue ball stopped")
     args = parser.options()
     pool, practice = pool_of(args.pool, args.seed), practice_of(coaching.BASE)
     mark = [told(one, made=True) for one in pool]
     chances = coaching.tolerances(mark, practice, args.seed).chances
-    blues = coaching.tolerances([told(one, made=True) for one in drill()], practice, args.seed)
+    blue = [told(one, made=True) for one in drill() for _ in range(COPIES)]
+    blues = coaching.tolerances(blue, practice, args.seed).chances
     print(f"{args.players} players, {args.strokes} strokes each, of {len(pool)}\n")
     print(f"{'':50s}{'median':>9s}{'rms':>7s}{'+-':>7s}  within 15 %        interval holds the truth")
     figures = {}
     for name in args.levels:
         noise = PLAYERS[name]
-        kinds = level(name, noise, pool, chances, blues, not args.no_places, args)
+        kinds = level(name, noise, pool, chances, blues, args)
         figures[name] = {"noise": asdict(noise)} | {kind: summary(*both) for kind, both in kinds.items()}
         print(f"{name}: {noise.direction_deg():.4f} deg, speed {100 * noise.speed_rel:.1f} %")
         for kind in kinds:

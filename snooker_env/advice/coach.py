@@ -1,22 +1,8 @@
 """What costs a player most, and what should he practise? ``coach``: errors, pots made and expected, costs, drills.
 
-**Costs** are counted in points of a frame (those of the player, less those of the other, that are expected from there on)
-against a player of the ``target`` level, as golf counts strokes gained. What a position is worth is the ``tactician``'s
-learned worth, between two players of that level. Of each stroke with a called pot the target's best stroke at that same pot
-is found by simulation: it is made with the chance p, and is worth M on average if made, N if missed. What the player did
-was worth W: his points, less penalties, and the worth of what was left, to him or, with the opposite sign, to the other.
-Then W - (p M + (1 - p) N), what he gained on the target, is the sum of
-
-    potting   (made - p) (M - N)     that he made or missed the pot
-    position  W - M, where made      what he left himself
-    safety    W - N, where missed    what his miss left the other
-
-A stroke without a called pot counts as safety, with W less the worth of the position that it was played from: there the
-target had its free choice. A cost is a loss, so it is positive where the player does worse than the target.
-
-Which strokes were chosen is not judged. Miss calls, free balls and decisions after a foul are not known: who comes next
-plays from where the balls lie. Each cost has the 95 % interval of a bootstrap over strokes. It holds luck: whether as many
-pots were made as such errors make says ``expected``.
+Costs are those of ``costs``, each with the 95 % interval of a bootstrap over strokes. They hold luck: whether as many pots
+were made as such errors make says ``expected``. Which strokes were chosen is not judged. Miss calls, free balls and
+decisions after a foul are not known: who comes next plays from where the balls lie.
 """
 
 from collections.abc import Sequence
@@ -27,19 +13,14 @@ from typing import Any
 import numpy as np
 
 from .._check import choice
-from .._types import Floats, Ints
-from ..planning import Positions, clear_paths, pots, sobol_points, strokes_at
-from ..planning.worth import lead_of
+from .._types import Floats
+from ..planning import clear_paths, pots
 from ..tasks.noise import LEVELS, NoiseLike
+from .costs import PARTS, lost
 from .errors import BASE, SCALES, Estimate, Fitted, PlayerErrors, checked, fitted
-from .practice import JUDGING, Practice, keys, one_position, practice_of
+from .practice import Practice, practice_of
 from .recorded import Recorded
 
-PARTS = ("potting", "position", "safety")
-LOOKS, BEST, SAMPLES = 24, 4, 24
-"""Strokes at a called pot that are tried without errors, the best of them that are then played so many times with."""
-SLOW, FAST, TIP = 0.8, 4.5, 0.35
-"""Of these strokes: cue speeds [m/s], and the largest height of the tip over R."""
 WIDE, NARROW = 0.23, 0.06
 """Tolerances [deg] above which a pot is easy, and below which it is hard, as of the layouts ``pots:D``."""
 RESAMPLES = 2000
@@ -209,7 +190,8 @@ def coach(
     }
     first = max(parts, key=lambda name: parts[name].value) if parts else None
     most = first if first is not None and parts[first].value > 0.0 else None
-    sure = 0.0 if most is None else float((drawn.argmax(axis=1) == PARTS.index(most)).mean())
+    largest = (drawn.argmax(axis=1) == PARTS.index(most)) & (drawn.max(axis=1) > 0.0) if most else np.zeros(1)
+    sure = float(largest.mean())
     return Coaching(
         errors=found.errors,
         strokes=len(kept),
@@ -255,104 +237,6 @@ def _counted(chances: Floats, weights: Floats) -> Estimate:
     half = 1.96 * sqrt(max(0.0, float(spread @ weights + counts**2 @ weights) - mean * mean))
     low, high = max(0.0, mean - half), min(float(len(chances)), mean + half)
     return Estimate(value=mean, low=low, high=high, strokes=len(chances))
-
-
-@dataclass(frozen=True, eq=False)
-class Lost:
-    """Points that each stroke lost, (n, 3) in the order of ``PARTS``, and how many strokes tell each part, (3,)."""
-
-    parts: Floats
-    counts: Ints
-
-
-def lost(strokes: list[Recorded], bench: Practice, seed: int) -> Lost:
-    """What strokes cost against a player with the errors of ``bench``."""
-    parts, counts = np.zeros((len(strokes), 3)), np.zeros(3, np.int64)
-    known = [k for k, one in enumerate(strokes) if one.after is not None]
-    at = {k: one_position(strokes[k].position, strokes[k].scores) for k in known}
-    worths = worth_of(bench, [at[k] for k in known])
-    left = values(bench, [strokes[k] for k in known])
-    for k, worth, value in zip(known, worths, left, strict=True):
-        one = strokes[k]
-        if one.ball is None:
-            parts[k, 2] = worth - value
-            counts[2] += 1
-            continue
-        best = best_at(bench, at[k], one, seed) if one.potted is not None else None
-        if best is None:
-            continue
-        p, made, missed = best
-        parts[k, 0] = (p - bool(one.potted)) * (made - missed)
-        parts[k, 1 if one.potted else 2] = (made if one.potted else missed) - value
-        counts += [1, bool(one.potted), not one.potted]
-    return Lost(parts, counts)
-
-
-def worth_of(bench: Practice, at: list[Positions]) -> Floats:
-    """What positions of frames are worth to their strikers (n,)."""
-    if not at:
-        return np.empty(0)
-    return np.asarray(bench.judge.worth(joined(at)), np.float64)
-
-
-def joined(at: list[Positions]) -> Positions:
-    """Positions of frames, each of one row, as the rows of one."""
-    places, present, game = zip(*((one.positions, one.on_table, one.game) for one in at), strict=True)
-    return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game))
-
-
-def values(bench: Practice, strokes: list[Recorded]) -> Floats:
-    """What strokes were worth as they came (n,): points, and the worth of what they left."""
-    out = np.array([float(one.points - one.penalty) for one in strokes])
-    going = [k for k, one in enumerate(strokes) if one.after is not None and not one.after.over]
-    after = []
-    for k in going:
-        one = strokes[k]
-        mine, others = one.scores[0] + one.points, one.scores[1] + one.penalty
-        scores = (mine, others) if one.goes_on else (others, mine)
-        assert one.after is not None
-        after.append(one_position(one.after, tuple(min(score, 1000) for score in scores)))
-    signs = np.array([1.0 if strokes[k].goes_on else -1.0 for k in going])
-    out[going] += signs * worth_of(bench, after)
-    return out
-
-
-def best_at(bench: Practice, at: Positions, one: Recorded, seed: int) -> tuple[float, float, float] | None:
-    """The target's best stroke at the called pot: its chance, and what it is worth if made and if missed. None where no
-    direct pot is the called one."""
-    direct = pots(at, 16)
-    which = np.flatnonzero((direct.ball[0] == one.ball) & (direct.pocket[0] == one.pocket))
-    if not len(which):
-        return None
-    u = sobol_points(LOOKS, 2, seed)
-    tips = np.column_stack([SLOW * (FAST / SLOW) ** u[:, 0], np.zeros(LOOKS), TIP * (2.0 * u[:, 1] - 1.0)])
-    asked, before = bench.judge, lead_of(at)
-    proposed = strokes_at(
-        at.as_visits(), np.full((1, LOOKS), which[0]), tips[None], asked.spread, asked.dynamics
-    )
-    strokes, chances = proposed.strokes[0], proposed.chances[0]
-
-    def outcomes(tried: Floats, samples: Any) -> tuple[Any, Floats]:
-        rows = np.zeros(len(tried), np.int64)
-        stops = bench.play(at, rows, tried, samples)
-        went = (stops.potted[:, one.ball] == one.pocket) & (stops.penalty == 0)
-        return went, asked.valued(np.repeat(before, len(tried)), stops.afterstates)[:, 1]
-
-    went, worth = outcomes(strokes, None)
-    looks = np.where(went, chances * worth, -np.inf)
-    best = np.argsort(-looks, kind="stable")[:BEST]
-    many = 1 if bench.sure else SAMPLES
-    samples = None if bench.sure else np.tile(keys(seed, JUDGING, many), len(best))
-    went, worth = (
-        part.reshape(len(best), many) for part in outcomes(np.repeat(strokes[best], many, 0), samples)
-    )
-    k = int(worth.mean(axis=1).argmax())
-    if not went[k].any():
-        return None
-    made = float(worth[k][went[k]].mean())
-    # where it is never missed, what a miss leaves does not count
-    missed = float(worth[k][~went[k]].mean()) if not went[k].all() else made
-    return float(went[k].mean()), made, missed
 
 
 def drills_for(

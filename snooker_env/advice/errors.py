@@ -9,7 +9,8 @@ professional's.
 
 * *Meant and played.* The error e in standard deviations of a professional is seen itself: L = exp(-(e/s)^2 / 2) / s. Where
   only the pot that was meant is known, the line that the stroke should have had is solved, for its own speed and spin, to
-  the middle of the pocket: who plays for a side of the pocket is said to err. If the pot was only guessed from the line,
+  the middle of the pocket: who plays for a side of the pocket is said to err. The tip's error moves that line, too, by the
+  throw of its spin, and counts with it (``line_of``). If the pot was only guessed from the line,
   the stroke may have been a safety: it is one with an unknown share of chances, and its line then is anywhere within
   ``CALLED`` of the pot's. Those that are likelier to be safeties count as such from there on.
 * *Meant, and potted or not.* The pot's tolerance is found by simulation: strokes are played in error by ``RADII``, times
@@ -18,9 +19,8 @@ professional's.
   degrees of freedom, times s; L = P or 1 - P. It bears what a half-width in degrees does not: jaws, throw by a tip that is
   off to the side, pockets that are narrow for hard balls. Without an ``intended`` stroke it is played in the middle of the
   ball with the ``speed`` recorded, or at 1.5 m/s: then a player who strikes harder is said to err more than he does.
-* *Where the cue ball stopped*, if the stroke was meant and nobody measured its speed. ``STOPS`` strokes are played with the
-  direction's errors as estimated, and errors of speed of all sizes; L(s) is the mean density of their places at the one
-  seen, each with its weight under s, and a place is taken to be ``PLACE`` off.
+
+Where the cue ball stopped is not used for the speed: the tip's errors move that place about as much.
 
 **The estimate** is the median of the posterior for a prior that is flat in log s from ``LEAST`` to ``MOST``, the interval
 its quantiles 2.5 and 97.5 %. For strokes meant and played that is the classical interval, sqrt(sum e^2 / chi^2_n), exact
@@ -32,14 +32,13 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from math import erf, pi, remainder, sqrt
 from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from .._check import integer, refuse_what
 from .._types import Floats
-from ..game.balls import CUE
-from ..geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
 from ..planning import Positions
 from ..planning.sobol import sobol_points
 from ..tasks.noise import LEVELS, POT_SPEED, TWICE, Noise
@@ -55,14 +54,8 @@ SHARES = np.linspace(0.005, 0.9, 40)
 """Shares of safeties among guessed pots that are thought of, each alike."""
 RADII = np.geomspace(0.12, 60.0, 27)
 """Sizes of errors that are tried in the tolerance of a pot, in standard deviations of a professional."""
-WAYS, STOPS = 32, 1024
-"""Errors tried of each radius, and of each stroke of which is known where the cue ball stopped."""
-SIZES = 0.3, 15.0
-"""Sizes of the errors of speed that are tried, over a professional's."""
-PLACE, STRAY = 0.026, 0.01
-"""By how much a place of the cue ball errs, along each axis [m]: a ball's radius, as a person marks it; share of places
-that no error explains: anywhere on the table."""
-AREA = 4.0 * HALF_LENGTH * HALF_WIDTH
+WAYS = 32
+"""Errors of each radius that are tried."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,11 +205,7 @@ def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
         weights = posterior(log_l)
         direction = estimate(weights, base.direction_deg(practice.options.rules.physics), len(e) + len(told))
     v = speeds[~np.isnan(speeds)]
-    many = 1.0 if direction is None else direction.value / base.direction_deg()
-    log_v, seen = stops_tell(strokes, practice, many, seed)
-    speed = None
-    if len(v) + seen:
-        speed = estimate(posterior(direct(v) + log_v), base.speed_rel, len(v) + seen)
+    speed = estimate(posterior(direct(v)), base.speed_rel, len(v)) if len(v) else None
     if direction is None and speed is None:
         what = "none that tells an error"
         allowed = (
@@ -264,11 +253,15 @@ def posterior(log_likelihood: Floats) -> Floats:
     return weights / weights.sum()
 
 
+def quantiles(weights: Floats, shares: Sequence[float]) -> Floats:
+    """Quantiles of a posterior over ``SCALES``."""
+    return np.exp(np.interp(shares, np.cumsum(weights) - 0.5 * weights, np.log(SCALES)))
+
+
 def estimate(weights: Floats, unit: float, strokes: int) -> Estimate:
     """Median and 95 % interval of a posterior, in units of a professional's error."""
-    summed = np.cumsum(weights) - 0.5 * weights
-    value, low, high = np.exp(np.interp((0.5, 0.025, 0.975), summed, np.log(SCALES))) * unit
-    return Estimate(value=float(value), low=float(low), high=float(high), strokes=strokes)
+    value, low, high = (unit * quantiles(weights, (0.5, 0.025, 0.975))).tolist()
+    return Estimate(value=value, low=low, high=high, strokes=strokes)
 
 
 def mean_of(e: Floats, unit: float) -> Estimate | None:
@@ -290,20 +283,43 @@ def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Float
     base, physics = LEVELS[BASE], practice.options.rules.physics
     unit = np.radians(base.direction_deg(physics, speed=0.0))
     for k, one in enumerate(strokes):
+        tipped = 1.0
         if one.played is None:
             continue
         if one.intended is not None:
             aim, speed = one.intended.aim, one.intended.speed
             speeds[k] = (one.played["speed"] - speed) / (base.speed_rel * speed)
         elif one.ball is not None:
-            aim, speed = float(solved([one], practice)[0, 3]), one.played["speed"]
+            speed, aim, tipped = one.played["speed"], *line_of(one, practice)
         else:
             continue
         raised = one.played["elevation"] / TWICE if practice.options.cue == "real" else 0.0
-        more = sqrt(1.0 + (base.growth * speed) ** 2) * (1.0 + raised)
+        more = sqrt(1.0 + (base.growth * speed) ** 2) * (1.0 + raised) * tipped
         aside = remainder(direction_of(one.played, physics) - aim, 2.0 * pi)
         directions[k], widths[k] = aside / (unit * more), CALLED / (unit * more)
     return directions, speeds, widths
+
+
+def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
+    """The line that a stroke at a pot should have had, for the tip as it was played [rad], and how much more the direction
+    differs from it than it errs: the tip's own error moves the line, too, by the throw of its spin."""
+    physics, base = practice.options.rules.physics, LEVELS[BASE]
+    assert one.played is not None
+    step = 0.02
+    moved = [
+        replace(one, played=one.played | {name: one.played[name] + by * step})
+        for name, by in (("side", 0.0), ("side", 1.0), ("side", -1.0), ("top", 1.0), ("top", -1.0))
+    ]
+    aim, right, left, up, down = solved(moved, practice)[:, 3].tolist()
+    tip = base.offset_mm * 1e-3 / physics.R
+    squirted = direction_of({"aim": 0.0, "side": step}, physics) / step
+    parts = (
+        np.radians(base.aim_deg),
+        tip * (squirted - remainder(right - left, 2.0 * pi) / (2.0 * step)),
+        tip * remainder(up - down, 2.0 * pi) / (2.0 * step),
+    )
+    whole = float(np.linalg.norm(parts))
+    return aim, whole / float(np.radians(base.direction_deg(physics, speed=0.0)))
 
 
 def solved(strokes: list[Recorded], practice: Practice) -> Floats:
@@ -333,12 +349,13 @@ def tolerances(strokes: list[Recorded], practice: Practice, seed: int) -> Pots:
         return Pots([], np.empty((0, len(SCALES))), np.empty(0, np.bool_))
     called = [strokes[k] for k in rows]
     meant, many = solved(called, practice), len(RADII) * WAYS
-    ways = normal_points(WAYS, seed)
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
-    errors = (RADII[:, None, None] * ways).reshape(-1, 5)
+    # each stroke has errors of its own, so that equal strokes tell more together
+    ways = np.stack([normal_points(WAYS, seed + k) for k in range(len(called))])
+    ways /= np.linalg.norm(ways, axis=2)[..., None]
+    errors = (RADII[:, None, None] * ways[:, None]).reshape(-1, 5)
     at = Positions.of([one.position for one in called])
     each = np.repeat(np.arange(len(called)), many)
-    stops = practice.noisy.stops(at, each, strokes=meant[each], errors=np.tile(errors, (len(called), 1)))
+    stops = practice.noisy.stops(at, each, strokes=meant[each], errors=errors)
     balls, pockets = np.array([(one.ball, one.pocket) for one in called]).T
     went = (stops.potted[np.arange(len(each)), balls[each]] == pockets[each]) & (stops.penalty == 0)
     shares = went.reshape(len(called), len(RADII), WAYS).mean(axis=2)
@@ -361,55 +378,3 @@ def chi5(x: Floats) -> Floats:
 def normal_points(n: int, seed: int) -> Floats:
     """n evenly spread standard normal points (n, 5)."""
     return np.vectorize(NormalDist().inv_cdf)(sobol_points(n, 5, seed))
-
-
-def stops_tell(
-    strokes: list[Recorded], practice: Practice, direction: float, seed: int
-) -> tuple[Floats, int]:
-    """Log-likelihood (scales,) of the places where cue balls stopped, and the number of such strokes; ``direction``: the
-    error of direction over a professional's."""
-    rows = [one for one in strokes if one.intended and one.stopped and one.played is None]
-    if not rows:
-        return np.zeros(len(SCALES)), 0
-    return places_tell(rows, clouds(rows, practice, direction, seed)), len(rows)
-
-
-class Clouds(NamedTuple):
-    """Where the cue ball of n strokes may stop: ``places`` (n, stops, 2), NaN where it fell; ``made`` (n, stops), whether
-    the called pot was; ``weights`` (stops, scales) of the samples for each error of speed."""
-
-    places: Floats
-    made: Any
-    weights: Floats
-
-
-def clouds(strokes: list[Recorded], practice: Practice, direction: float, seed: int) -> Clouds:
-    """The clouds of strokes that were meant; see ``stops_tell``."""
-    errors = normal_points(STOPS, seed) * direction
-    # of all sizes, each as often: a mixture, whose density is the mean of those of its parts
-    sizes = np.geomspace(*SIZES, STOPS)
-    faster = np.random.default_rng((seed, STOPS)).standard_normal(STOPS) * sizes
-    errors[:, 0] = faster
-    drawn = (np.exp(-0.5 * (faster[:, None] / sizes) ** 2) / sizes).mean(axis=1)
-    weights = np.exp(-0.5 * (faster[:, None] / SCALES) ** 2) / SCALES / drawn[:, None]
-    at, meant = Positions.of([one.position for one in strokes]), solved(strokes, practice)
-    places, made = np.empty((len(strokes), STOPS, 2)), np.zeros((len(strokes), STOPS), np.bool_)
-    for k, one in enumerate(strokes):
-        rows = np.full(STOPS, k)
-        stops = practice.noisy.stops(at, rows, strokes=meant[rows], errors=errors)
-        fell = stops.potted[:, CUE] >= 0
-        places[k] = np.where(fell[:, None], np.nan, stops.places[:, CUE])
-        made[k] = one.ball is not None and (stops.potted[:, one.ball or 0] == one.pocket)
-    return Clouds(places, made, weights)
-
-
-def places_tell(strokes: list[Recorded], found: Clouds) -> Floats:
-    """Log-likelihood (scales,) of the places where the cue balls of strokes stopped."""
-    log_l = np.zeros(len(SCALES))
-    for one, places, made in zip(strokes, found.places, found.made, strict=True):
-        apart = np.hypot(*(places - one.stopped).T) / PLACE
-        near = np.nan_to_num(np.exp(-0.5 * np.minimum(apart, 30.0) ** 2)) / (2.0 * pi * PLACE**2)
-        if one.potted is not None:
-            near *= made == one.potted
-        log_l += np.log((1.0 - STRAY) * near @ found.weights / STOPS + STRAY / AREA)
-    return log_l

@@ -68,7 +68,7 @@ class Tried(NamedTuple):
 
 def tried(practice: Practice, at: Positions, strokes: list[CueStroke]) -> list[Tried]:
     """What strokes do without errors in the one position ``at``."""
-    starts = _joined([played_from(at, stroke) for stroke in strokes])
+    starts = joined([played_from(at, stroke) for stroke in strokes])
     stops = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
     hidden = ~clear_paths(starts).any_part
     ends = lies(stops) if at.of_frames else [""] * len(strokes)
@@ -78,7 +78,7 @@ def tried(practice: Practice, at: Positions, strokes: list[CueStroke]) -> list[T
     ]
 
 
-def _joined(positions: list[Positions]) -> Positions:
+def joined(positions: list[Positions]) -> Positions:
     """Several positions of one table as the rows of one."""
     places, present, game = zip(*((one.positions, one.on_table, one.game) for one in positions), strict=True)
     own = [one.conditions for one in positions if one.conditions is not None]
@@ -171,7 +171,7 @@ def judged(
     """Strokes with their outcomes under execution errors, in their order."""
     n = len(strokes)
     tries, again = (1, min(1, visits)) if practice.sure else (samples, visits)
-    rows, starts = [one.stroke.numbers() for one in strokes], _joined([one.start for one in strokes])
+    rows, starts = [one.stroke.numbers() for one in strokes], joined([one.start for one in strokes])
     each, noise = np.repeat(np.arange(n), tries), np.tile(keys(seed, JUDGING, tries), n)
     stops = practice.play(starts, each, np.repeat(rows, tries, 0), noise)
     groups = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries]) for k in range(n)]

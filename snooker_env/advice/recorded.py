@@ -20,9 +20,9 @@ from typing import Any
 
 import numpy as np
 
-from .._check import array, choice, integer, number, refuse, refuse_what, truth
+from .._check import choice, integer, number, refuse, refuse_what, truth
 from .._files import write_atomic
-from .._types import Floats, Place
+from .._types import Floats
 from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
 from ..geometry import POCKETS
 from ..physics import cloth
@@ -64,8 +64,6 @@ class Recorded:
         Whether that ball went into that pocket without a foul.
     guessed : bool
         Whether ``ball`` and ``pocket`` were only told from the line of the stroke: it may have been a safety. Default False.
-    stopped : (float, float), optional
-        Where the cue ball stopped [m]; None if it was potted, or nobody looked.
     points, penalty : int
         What the stroke scored, in [0, 16], and what it gave away, in [0, 7].
     after : Position, optional
@@ -90,7 +88,6 @@ class Recorded:
     pocket: int | None = None
     potted: bool | None = None
     guessed: bool = False
-    stopped: Place | None = None
     points: int = 0
     penalty: int = 0
     after: Position | None = None
@@ -127,8 +124,6 @@ class Recorded:
             raise refuse(
                 "guessed", True, "must be False without a pot, and the stroke played, which it is told from"
             )
-        if self.stopped is not None:
-            put("stopped", tuple(array("stopped", self.stopped, (2,)).tolist()))
         put("points", integer("points", self.points, 0, MOST_POINTS))
         put("penalty", integer("penalty", self.penalty, 0, MOST_PENALTY))
         if not isinstance(self.scores, list | tuple) or len(self.scores) != 2:
@@ -145,8 +140,7 @@ class Recorded:
         kept: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self)}
         for name in ("position", "intended", "after"):
             kept[name] = kept[name] and kept[name].to_dict()
-        for name in ("stopped", "scores"):
-            kept[name] = kept[name] and list(kept[name])
+        kept["scores"] = list(self.scores)
         if self.pocket is not None:
             kept["pocket"] = POCKETS[self.pocket]
         return {name: value for name, value in kept.items() if value is not None}
@@ -312,7 +306,6 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
     rest, left = start.copy(), here.copy()
     for ball, state, row in zip(which, states, _numbers(one["paths"]["f8"], "f8", 7), strict=True):
         rest[ball], left[ball] = row[1:3], state != cloth.GONE
-    stopped = tuple(rest[CUE].tolist()) if left[CUE] else None
     if one["after"] is not None:
         rest, left = _numbers(one["after"]["places"], "f8", 2), _present(one["after"]["on_table"])
     scored = one["points"] > 0 and not one["penalty"]
@@ -337,7 +330,6 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
         pocket=pocket,
         potted=None if ball is None else ball in down and not one["penalty"],
         guessed=ball is not None and intended is None,
-        stopped=stopped,
         points=one["points"],
         penalty=one["penalty"],
         after=after,

@@ -31,6 +31,7 @@ SHORT = {
     "benchmarks.diagrams": "--out {tmp}",
     "benchmarks.planning": "--strokes 100 --repeats 2",
     "benchmarks.value_inputs": "--positions 1000 --steps 20",
+    "benchmarks.coach": "--players 2 --strokes 10 --pool 10 --levels club",
     "benchmarks.decisions": "--agents ghost_ball planner_30 --tables 1 4 --repeats 2",
     "benchmarks.learner": "--rounds 1 --steps 2",
     "benchmarks.temperature": "--visits 2 --temperatures 4 8",

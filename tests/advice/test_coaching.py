@@ -1,0 +1,257 @@
+"""Does the coach find the errors of players whose errors are known, and what costs them most?"""
+
+import json
+from math import atan2
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.advice import (
+    CueStroke,
+    Recorded,
+    coach,
+    estimate_errors,
+    read_strokes,
+    strokes_of,
+    write_strokes,
+)
+from snooker_env.advice import errors as estimating
+from snooker_env.advice.__main__ import main
+from snooker_env.advice.costs import lost, values
+from snooker_env.advice.practice import practice_of
+from snooker_env.planning import Planner, pot_aim, pots
+from snooker_env.tasks import LEVELS
+from tests.refusals import refused
+
+AT = sn.Position(cue=(0.1, 0.2), reds=[(-0.3, 1.0)], black=(0.0, 1.4605), on="red")
+ALONE = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+
+
+def pot_of(position):
+    """Ball, pocket and stroke of the widest pot."""
+    direct = pots(position)
+    ball, pocket = int(direct.ball[0, 0]), int(direct.pocket[0, 0])
+    target = sn.geometry.POCKET_AIMS[pocket, :2]
+    aim = float(pot_aim(position, [0], [ball], [target], 2.0)[0])
+    return ball, pocket, CueStroke(speed=2.0, aim=aim)
+
+
+def played_by(noise, n, seed):
+    """n strokes at the pot of ``ALONE``: strokes played with errors, and whether the ball went in."""
+    ball, pocket, meant = pot_of(ALONE)
+    z = np.random.default_rng(seed).standard_normal((n, 5))
+    stops = Planner({"noise": noise}).stops(
+        ALONE, np.zeros(n, int), strokes=np.repeat(meant.numbers()[None], n, 0), errors=z
+    )
+    made = (stops.potted[:, ball] == pocket) & (stops.penalty == 0)
+    its, more = LEVELS[noise], np.sqrt(5.0)
+    tip = its.offset_mm * 1e-3 / sn.Physics().R
+    cues = [
+        {
+            "speed": 2.0 * (1.0 + its.speed_rel * a),
+            "side": tip * more * b,
+            "top": tip * more * c,
+            "aim": meant.aim + np.radians(its.aim_deg) * more * d,
+        }
+        for a, b, c, d in z[:, :4].tolist()
+    ]
+    return ball, pocket, meant, cues, made
+
+
+@pytest.mark.parametrize("noise", ["club", "professional"])
+def test_errors_of_strokes_meant_and_played(noise):
+    _, _, meant, cues, _ = played_by(noise, 3000, 1)
+    found = estimate_errors([Recorded(position=ALONE, intended=meant, played=cue) for cue in cues])
+    assert found.direction.value == pytest.approx(LEVELS[noise].direction_deg(), rel=0.04)
+    assert found.speed.value == pytest.approx(LEVELS[noise].speed_rel, rel=0.04)
+    for one, spread in ((found.aside, found.direction), (found.faster, found.speed)):
+        assert abs(one.value) < 4.0 * spread.value / np.sqrt(3000)
+        assert one.high - one.low == pytest.approx(2.0 * 1.96 * spread.value / np.sqrt(3000), rel=0.05)
+    assert found.noise.direction_deg() == pytest.approx(found.direction.value)
+
+
+def test_the_interval_is_that_of_chi_square():
+    """20 errors whose squares sum to 20: quantiles 0.025, 0.5, 0.975 of chi^2 with 20 degrees, from tables."""
+    weights = estimating.posterior(estimating.direct(np.ones(20)))
+    one = estimating.estimate(weights, 1.0, 20)
+    expected = [np.sqrt(20 / q) for q in (19.337, 34.170, 9.591)]
+    assert [one.value, one.low, one.high] == pytest.approx(expected, rel=2e-3)
+
+
+def test_the_law_of_the_radius():
+    assert estimating.chi5(np.sqrt([0.831, 4.351, 11.070])) == pytest.approx([0.025, 0.5, 0.95], abs=1e-3)
+    assert estimating.radius_weights().sum(axis=0) == pytest.approx(1.0)
+
+
+def test_a_bias_is_told_apart():
+    meant = CueStroke(speed=2.0, aim=1.0)
+    errors = np.random.default_rng(0).normal(0.004, 0.002, 60)
+    cues = [{"speed": 2.1, "aim": 1.0 + e} for e in errors.tolist()]
+    found = estimate_errors([Recorded(position=ALONE, intended=meant, played=cue) for cue in cues])
+    unit = np.sqrt((1 + 1.5**2) / (1 + 2.0**2))
+    assert found.aside.value == pytest.approx(np.degrees(errors.mean()) * unit) and found.aside.low > 0
+    assert found.faster.value == pytest.approx(0.05)
+    text = str(coach([Recorded(position=ALONE, intended=meant, played=cue) for cue in cues]))
+    assert "on average aims" in text and "left" in text and "too hard" in text
+
+
+@pytest.mark.parametrize("noise", ["club", "amateur"])
+def test_pots_and_misses_alone_tell_the_direction(noise):
+    ball, pocket, meant, cues, made = played_by(noise, 1500, 2)
+    known = [
+        Recorded(position=ALONE, intended=meant, ball=ball, pocket=pocket, potted=bool(one)) for one in made
+    ]
+    found = estimate_errors(known[:200])
+    truth = LEVELS[noise].direction_deg()
+    assert found.direction.low < truth < found.direction.high and found.speed is None
+    assert 0.15 < found.direction.high / found.direction.low - 1.0 < 1.0
+    practice = practice_of("professional")
+    p = estimating.tolerances(known[:40], practice, 0).chances.mean(axis=0)
+    here = np.abs(estimating.SCALES * LEVELS["professional"].direction_deg() - truth).argmin()
+    assert p[here] == pytest.approx(made.mean(), abs=0.04)
+    line = estimate_errors(
+        [Recorded(position=ALONE, ball=ball, pocket=pocket, played=cue) for cue in cues[:400]]
+    )
+    assert line.direction.value == pytest.approx(truth, rel=0.1)
+
+
+def test_safeties_among_guessed_pots_are_no_errors():
+    rng = np.random.default_rng(5)
+    pots_, width = rng.normal(0.0, 2.0, 70), np.full(100, 15.0)
+    e = np.concatenate([pots_, rng.uniform(-15.0, 15.0, 30)])
+    log_l, meant = estimating.guesses(e, width)
+    one = estimating.estimate(estimating.posterior(log_l), 1.0, 100)
+    assert one.low < 2.0 < one.high < 3.5
+    assert meant[:70].mean() > 0.9 and meant[70:].mean() < 0.6
+    naive = estimating.estimate(estimating.posterior(estimating.direct(e)), 1.0, 100)
+    assert naive.low > 3.5
+
+
+def test_a_replay_and_a_file_give_the_same_strokes(tmp_path):
+    env = sn.SnookerEnv(task="frame", opponent="ghost_ball", noise="club", action="discrete")
+    env.keep_history = True
+    env.reset(seed=3)
+    for _ in range(6):
+        choices = np.flatnonzero(env.action_masks())
+        env.step(int(choices[len(choices) // 3]))
+    mine = strokes_of(env, player=0)
+    assert len(mine) == sum(one.player == 0 for one in env.history) > 3
+    first = next(one for one in env.history if one.player == 0)
+    assert mine[0].played == pytest.approx(first.cue) and mine[0].points == first.points
+    assert np.allclose(mine[0].after.cue, first.positions[0])
+    for suffix in (".json", ".html"):
+        sn.replay(env, tmp_path / f"replay{suffix}")
+        assert read_strokes(tmp_path / f"replay{suffix}", player=0) == mine
+    write_strokes(tmp_path / "mine.json", mine)
+    assert read_strokes(tmp_path / "mine.json") == mine
+    meant = [CueStroke(speed=2.0, aim=0.3)] * len(env.history)
+    assert strokes_of(env, player=0, intended=meant)[0].intended == meant[0]
+    refused(lambda: strokes_of(env), "player", "None", "must be 0 or 1: the replay is of two players")
+    refused_ = lambda: strokes_of(env, player=0, intended=meant[:1])  # noqa: E731
+    refused(refused_, "intended", "1 strokes", "one for each stroke")
+
+
+def missed_and_made():
+    """A pot missed so that the black hangs over the pocket, and the same pot made: both ends of a frame's black."""
+    ball, pocket, _ = pot_of(ALONE)
+    left = sn.Position(cue=(0.0, 1.0), black=(-0.80, 1.65))
+    same = {"position": ALONE, "ball": ball, "pocket": pocket}
+    return Recorded(**same, potted=False, after=left), Recorded(
+        **same, potted=True, points=7, after=sn.Position(over=True)
+    )
+
+
+def test_costs_have_the_signs_of_what_happened():
+    bench = practice_of("professional", of_frames=True)
+    missed, made = missed_and_made()
+    parts = lost([missed, made], bench, 0).parts
+    assert (
+        parts[0, 0] > 1.0 > 0.0 >= parts[1, 0]
+    )  # a pot missed costs, one that the target makes too gains nothing
+    # both of a stroke sum to what it was worth to the target, less what it brought
+    assert parts[0].sum() - parts[1].sum() == pytest.approx(7.0 - values_of(bench, missed), abs=1e-9)
+    assert parts[1, 2] == parts[0, 1] == 0.0
+    hanging = Recorded(position=AT, after=sn.Position(cue=(-0.5, 1.3), reds=[(-0.80, 1.66)]))
+    hidden = Recorded(
+        position=AT,
+        after=sn.Position(cue=(0.0, -1.6), reds=[(0.0, 1.74)], brown=(0.0, -1.5), yellow=(0.7, -1.7)),
+    )
+    easy, safe = lost([hanging, hidden], bench, 0).parts[:, 2]
+    assert easy > safe
+
+
+def values_of(bench, one):
+    return float(values(bench, [one])[0])
+
+
+def test_the_drill_is_that_of_the_largest_cost():
+    missed, made = missed_and_made()
+    found = coach([missed] * 9 + [made])
+    assert found.visits == 10 and (found.called, found.made) == (10, 1)
+    assert found.expected.low <= found.made <= found.expected.high < found.likely.value
+    assert found.most == "potting" and found.drills[0].layout.startswith("pots:")
+    assert found.costs["potting"].low > 0.0 and found.sure > 0.5
+    assert found.drills[0].layout in {"pots:easy", "pots:medium", "pots:hard"}
+    assert json.loads(json.dumps(found.to_dict(), allow_nan=False))["most"] == "potting"
+    same = coach([missed] * 9 + [made])
+    assert same == found
+
+
+def test_the_command(tmp_path, capsys):
+    missed, made = missed_and_made()
+    write_strokes(tmp_path / "mine.json", [missed, made])
+    assert main(["coach", str(tmp_path / "mine.json")]) == 0
+    assert "pots: 1 of 2 made" in capsys.readouterr().out
+    assert main(["coach", str(tmp_path / "mine.json"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["called"] == 2
+    for text, words in (
+        ("{", "must be a file of strokes or a replay"),
+        ('{"format": "other"}', "must be a file of strokes ('snooker-strokes') or a replay"),
+        ('{"format": "snooker-strokes", "version": 2, "strokes": []}', "must be 1"),
+        ('{"format": "snooker-strokes", "version": 1, "strokes": []}', "must hold at least one stroke"),
+        ('{"format": "snooker-strokes", "version": 1, "strokes": [{"colour": 1}]}', "strokes[0]"),
+        ('{"format": "snooker-replay", "version": 1, "strokes": [{}]}', "a damaged file"),
+    ):
+        (tmp_path / "bad.json").write_text(text)
+        assert main(["coach", str(tmp_path / "bad.json")]) == 2
+        said = capsys.readouterr()
+        assert said.out == "" and words in said.err and said.err.count("\n") == 1, text
+    assert main(["coach", str(tmp_path / "none.json")]) == 2
+    assert main(["coach", str(tmp_path / "mine.json"), "--target", "best"]) == 2
+    assert "target = 'best'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"ball": 21}, "pocket = None"),
+        ({"ball": 3, "pocket": 0}, "ball = 3"),
+        ({"potted": True}, "potted = True"),
+        ({"points": 17}, "points = 17"),
+        ({"played": {"speed": 1.0}}, "without 'aim'"),
+        ({"scores": (1,)}, "scores"),
+        ({"guessed": True}, "guessed = True"),
+        ({"speed": 9.0}, "speed = 9.0"),
+    ],
+)
+def test_bad_records_are_refused(fields, words):
+    with pytest.raises(ValueError, match="must") as error:
+        Recorded(position=ALONE, **fields)
+    assert words in str(error.value)
+
+
+def test_strokes_that_tell_nothing_are_refused():
+    with pytest.raises(ValueError, match="none that tells an error"):
+        estimate_errors([Recorded(position=ALONE)])
+    with pytest.raises(ValueError, match="must hold at least one stroke"):
+        coach([])
+
+
+def test_called_is_the_nearest_line():
+    from snooker_env.advice.recorded import called
+
+    ball, pocket, meant = pot_of(ALONE)
+    assert called(ALONE, meant.aim + 0.005) == (ball, pocket)
+    x, y = ALONE.cue
+    assert called(ALONE, atan2(-1.0 - y, -x)) is None
