@@ -28,7 +28,7 @@ with needs("agents.dataset"):
     from snooker_env.players import FRAMES, VISITS, decided, decision_seeds
     from snooker_env.players.resolver import is_name
     from snooker_env.progress import Progress
-    from snooker_env.tasks.discrete_actions import POTS, SIDES, SPEEDS, TOPS, choice_of
+    from snooker_env.tasks import POTS, SIDES, SPEEDS, TOPS, choice_of
 
     from ..cluster.keep import packed, unpacked
 
