@@ -12,8 +12,9 @@ folder=${1:-runs/experiments} jobs=${2:-2}
 export folder
 
 runs() { # name, then the options of train.py
-    echo "ppo_value-0 --seed 0"
-    for noise in none amateur club; do echo "ppo_value_$noise --noise $noise"; done
+    local long="--imitate 153600 --steps 1507328"
+    echo "ppo_value-0 --seed 0 $long"
+    for noise in none amateur club; do echo "ppo_value_$noise --noise $noise $long"; done
 }
 
 train() {

@@ -40,7 +40,14 @@ def test_the_list_of_what_nothing_proves():
     assert re.findall(r"`([\w.]+)`", words) == list(UNPROVED)
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+SLOW = "SnookerFrame-v0"
+"""A task whose strokes are checked by asking the opponent again: 100 s a file."""
+
+
+@pytest.mark.parametrize(
+    "file",
+    [pytest.param(one, id=one.stem, marks=[pytest.mark.slow] * one.stem.startswith(SLOW)) for one in FILES],
+)
 def test_what_stands_on_the_leaderboard_is_sound_and_official(file):
     record = read_result(file)
     if record["machine"]["arithmetic"] != arithmetic():

@@ -137,7 +137,9 @@ def test_of_two_equal_jobs_at_once_the_second_is_refused(tmp_path, environment, 
     command, kept = [*EVALUATE, "--ray", nodes[0].address], tmp_path / "runs" / "kept"
     with running([*command, "--json", tmp_path / "out.json"], environment, tmp_path) as first:
         until(lambda: len(list(kept.glob("*/parts/*.npz"))) >= 1, first)
+        first.send_signal(signal.SIGSTOP)  # so that it does not end before the second has begun
         code, _, err = finished(command, environment, tmp_path)
+        first.send_signal(signal.SIGCONT)
         says = f"must be a folder that no other process uses: process {first.pid} on "
         assert code == 2 and says in err.splitlines()[-1], err
         _, err = first.communicate(timeout=300)
