@@ -385,12 +385,12 @@ def judge(out, settings, recipe, model, callback, imitation, part_of):
         "imitation": imitation,
     }
     best = f"planner@{out}" if "planner" in figures else str(out)
-    report(out, results, learned, figures, best)
+    report(out, results, learned, figures, best, recipe.env_kwargs["noise"])
     print(f"Curves: tensorboard --logdir {out / 'tb'}")
 
 
-def report(out, results, learned, figures, best):
-    """Write and print what a run has brought, and how the player ``best`` is seen."""
+def report(out, results, learned, figures, best, noise):
+    """Write and print what a run has brought, and how the player ``best`` is seen under these errors."""
     results |= {"learned": learned, "evaluation": figures, "versions": software()}
     results |= {"git_commit": commit(), "processors": os.cpu_count()}
     write_atomic(out / "results.json", text := json.dumps(results, indent=1).encode())
@@ -398,7 +398,8 @@ def report(out, results, learned, figures, best):
     show(figures)
     # half of the longest break: other visits than those of the evaluation are played to find it
     points = figures["planner" if "planner" in figures else "trained"]["longest_break"] // 2
-    watch = shlex.join(["python", "-m", "snooker_env.watch", "--agent", best, "--at-least", str(points)])
+    words = ["--agent", best, "--noise", str(noise), "--at-least", str(points)]
+    watch = shlex.join(["python", "-m", "snooker_env.watch", *words])
     print(f"{learned}\nFigures: {out / 'results.json'}\nWatch a break:  {watch}")
 
 
@@ -467,7 +468,7 @@ def train_strokes(parser, given, rest, settings):
                 "fit": fit,
                 "curve": training.curve,
             }
-            report(out, results, learned, figures, best)
+            report(out, results, learned, figures, best, shared["noise"])
         except KeyboardInterrupt:
             print(f"Interrupted. {go_on(out)}", file=sys.stderr)
             return 130

@@ -23,7 +23,7 @@ tags:
 """
 OWN = {
     STROKES: "`stroke_value`: what strokes at direct pots are worth, for errors from 0.7 to 4.5 times a professional's "
-    "(`python -m agents.learn_strokes --export`)",
+    "(`python train.py --agent stroke_value`)",
     WORTH: "`tactician`: what positions of frames are worth, for all levels of errors (`python -m agents.learn_worth`)",
 }
 """Of the files that are of no single level: who plays with them, and how they are made."""

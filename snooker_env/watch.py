@@ -136,6 +136,8 @@ def _checked(args: argparse.Namespace) -> dict[str, Any]:
     integer("seed", args.seed, 0, 2**63)
     integer("tries", args.tries, 1, 10**9)
     if args.out:
+        if args.out.is_dir():
+            raise refuse("out", str(args.out), "must be a file, not a folder")
         try:
             args.out.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:

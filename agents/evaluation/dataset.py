@@ -213,8 +213,8 @@ data = minari.load_dataset("{name}")  # with MINARI_DATASETS_PATH set to the fol
 env = data.recover_environment()  # {spec.id}, after `import snooker_env`
 ```
 
-**Made by** `python -m agents.dataset --task {task.id} --player {player} --form {form}`, snooker_env {origin["version"]}, commit
-{origin["commit"]}, {origin["machine"]}.
+**Made by** `python -m agents.dataset --task {task.id} --player {player} --form {form} --out FOLDER`, snooker_env {origin["version"]},
+commit {origin["commit"]}, {origin["machine"]}.
 
 **What it does not hold.** Strokes of other players, tables of the judging (seeds from {HELD_OUT_SEED:,} on, layouts `held_out`),
 pictures. The player sees more than the observation says: it simulates or predicts strokes. The physics is the

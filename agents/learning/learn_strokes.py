@@ -184,7 +184,7 @@ class StrokeSettings:
         made = cls(seed, **changes_of(changes, ("rounds", "tables", "cue")))
         integer("seed", made.seed, 0, 80)
         integer("rounds", made.rounds, 1, 99)
-        integer("tables", made.tables, PARTS, 100_000)
+        integer("tables", made.tables, HELD, 100_000)
         choice("cue", made.cue, ("real", "free"))
         return made
 

@@ -30,7 +30,7 @@ not says at most 0.65 as much (P = 0.87 is best), one that always or never goes 
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from math import erf, pi, remainder, sqrt
+from math import erf, hypot, pi, remainder, sqrt
 from statistics import NormalDist
 from typing import Any
 
@@ -325,13 +325,15 @@ def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
 def solved(strokes: list[Recorded], practice: Practice) -> Floats:
     """The strokes (n, 5) that were meant: as recorded, or at the middle of the pocket with the speed and tip played, else
     in the middle of the ball with the speed recorded, or ``POT_SPEED``."""
-    out = np.zeros((len(strokes), 5))
+    out, most = np.zeros((len(strokes), 5)), practice.options.rules.physics.max_offset
     for k, one in enumerate(strokes):
         if one.intended is not None:
             out[k] = one.intended.numbers()
             continue
         cue = one.played or {"speed": one.speed or POT_SPEED, "side": 0.0, "top": 0.0}
-        out[k, :3] = np.clip([cue["speed"], cue["side"], cue["top"]], (0.2, -0.35, -0.35), (7.0, 0.35, 0.35))
+        tip = hypot(cue["side"], cue["top"])
+        inside = min(1.0, most / tip) if tip > 0.0 else 1.0
+        out[k] = min(max(cue["speed"], 0.2), 7.0), inside * cue["side"], inside * cue["top"], 0.0, 0.0
     rows = [k for k, one in enumerate(strokes) if one.intended is None]
     if rows:
         at = Positions.of([strokes[k].position for k in rows])

@@ -24,7 +24,7 @@ from .._check import choice, integer, number, refuse, refuse_what, truth
 from .._files import write_atomic
 from .._types import Floats
 from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
-from ..geometry import POCKETS
+from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
 from ..physics import cloth
 from ..physics.cue import strike
 from ..physics.parameters import Physics
@@ -306,6 +306,7 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
     rest, left = start.copy(), here.copy()
     for ball, state, row in zip(which, states, _numbers(one["paths"]["f8"], "f8", 7), strict=True):
         rest[ball], left[ball] = row[1:3], state != cloth.GONE
+    fell = {ball: _pocket_at(rest[ball]) for ball in one["pots"]}
     if one["after"] is not None:
         rest, left = _numbers(one["after"]["places"], "f8", 2), _present(one["after"]["on_table"])
     scored = one["points"] > 0 and not one["penalty"]
@@ -320,7 +321,7 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
     ids = np.flatnonzero(here).tolist()
     # a position numbers its reds anew
     reds = {ball: 1 + k for k, ball in enumerate(ball for ball in ids if 1 <= ball <= 15)}
-    down = {reds.get(ball, ball) for ball in one["pots"]}
+    down = {(reds.get(ball, ball), into) for ball, into in fell.items()}
     ball, pocket = (None, None) if meant is None else meant
     return Recorded(
         position=position,
@@ -328,7 +329,7 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
         played=played,
         ball=ball,
         pocket=pocket,
-        potted=None if ball is None else ball in down and not one["penalty"],
+        potted=None if ball is None else (ball, pocket) in down and not one["penalty"],
         guessed=ball is not None and intended is None,
         points=one["points"],
         penalty=one["penalty"],
@@ -341,6 +342,11 @@ def _numbers(text: str, kind: str, columns: int) -> Floats:
     """Numbers (n, columns) of base64, little-endian."""
     raw = base64.b64decode(text, validate=True)
     return np.frombuffer(raw, np.dtype(kind).newbyteorder("<")).reshape(-1, columns).astype(np.float64)
+
+
+def _pocket_at(place: Floats) -> int:
+    """The pocket that is nearest to where a ball fell."""
+    return int(np.argmin(np.hypot(*(POCKET_AIMS[:, [AIM_X, AIM_Y]] - place).T)))
 
 
 def _present(ids: Sequence[int]) -> Any:

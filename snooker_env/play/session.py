@@ -223,7 +223,7 @@ class Session:
         """Raise ValueError unless a stroke may be played now, and that colour be nominated."""
         frame = self.frame
         if frame.phase != "stroke":
-            choose = 'must be "stroke": choose first (play, play_again or replace)'
+            choose = 'must be "stroke": choose first (play, play_again, replace or anywhere)'
             raise refuse("phase", frame.phase, choose if frame.phase == "choice" else "must not be over")
         declined = nominated == DECLINED and frame.free_ball
         if nominated != AUTO and not declined and nominated not in self.nominations():
@@ -359,8 +359,8 @@ class Session:
         try:
             self.tables.set_state(0, self._checked(state))
         except ValueError:
-            self.tables = tables
-            self._play_by(before)
+            self.tables, self._options, self._with = tables, before, {}
+            self.tables.rules = before.rules
             raise
         self.practice, self.cue = practice, cast(CueKind, cue)
         self.noise[:], self.best_of, self.won = levels, 1, [0, 0]

@@ -246,12 +246,12 @@ class Page {
 
   /** Begin a game as it is chosen. */
   begin() {
-    this.drills.stop();
     this.go("new", { layout: by("layout").value, game: by("rules").value, best_of: Number(by("best-of").value), seed: seed() });
     by("start").open = false;
   }
 
   go(name, body) {
+    this.drills.stop();
     this.held = false;
     this.try(() => ask(name, body));
   }

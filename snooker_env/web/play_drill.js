@@ -64,7 +64,7 @@ export class Drills {
     const drill = DRILLS[this.now];
     if (!drill || this.over) return;
     const got = drill.score(stroke, this.app.state);
-    this.score += got;
+    if (got) this.score = drill.run ? stroke.break : this.score + got;
     this.tries++;
     this.over = drill.run ? !got || this.app.state.phase === "over" : this.tries === TRIES;
     if (this.over) {

@@ -53,7 +53,8 @@ export class Stats {
 
   /** A stroke is asked of a person, or no longer. */
   turn(asked) {
-    const key = asked ? `${this.app.state.strokes} ${this.app.state.striker}` : null;
+    const { strokes, striker } = this.app.state, key = asked ? `${strokes} ${striker}` : null;
+    if (!strokes) this.times.clear();
     if (key !== this.key) this.since = asked ? performance.now() : null;
     this.key = key;
     this.show();

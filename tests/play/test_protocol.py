@@ -525,10 +525,16 @@ def test_in_the_shoot_out_a_clock_runs_and_after_a_foul_the_cue_ball_goes_anywhe
     assert {k: again[k] for k in ("time_left", "positions", "scores")} == {
         k: state[k] for k in ("time_left", "positions", "scores")
     }
-    saved["state"]["frame"]["rules"] = "pool"
-    with pytest.raises(ValueError, match="'pool'"):
-        game("load", saved=saved)
-    assert game.get("state")["game"] == "shoot_out"
+    game("new", game="snooker")
+    before = game.get("state")
+    for key, value in (("positions", "?"), ("frame", saved["state"]["frame"] | {"rules": "pool"})):
+        wrong = saved | {"state": saved["state"] | {key: value}}
+        with pytest.raises(ValueError):
+            game("load", saved=wrong)
+        kept = game.get("state")
+        assert {k: kept[k] for k in ("game", "positions", "scores")} == {
+            k: before[k] for k in ("game", "positions", "scores")
+        }
 
 
 def test_after_a_foul_the_advice_says_what_to_choose(game):
