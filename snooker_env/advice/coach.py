@@ -167,6 +167,17 @@ def coach(
     -------
     Coaching
         ValueError if an argument is invalid, or no stroke says anything of an error.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import Recorded, coach
+    >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+    >>> pot = {"position": at, "ball": 21, "pocket": 4, "speed": 2.0}
+    >>> after = sn.Position(over=True)
+    >>> report = coach([Recorded(**pot, potted=True, points=7, after=after) for _ in range(3)])
+    >>> report.made, report.errors.speed is None
+    (3, True)
     """
     kept = checked(strokes)
     if isinstance(target, str):

@@ -169,6 +169,16 @@ def estimate_errors(strokes: Sequence[Recorded], *, options: Any = None, seed: i
     -------
     PlayerErrors
         ValueError if no stroke says anything, or an argument is invalid.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import Recorded, estimate_errors
+    >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+    >>> pot = {"position": at, "ball": 21, "pocket": 4, "speed": 2.0}
+    >>> found = estimate_errors([Recorded(**pot, potted=k > 0) for k in range(6)])
+    >>> found.direction.low < found.direction.value < found.direction.high
+    True
     """
     return fitted(checked(strokes), practice_of(BASE, options), seed).errors
 

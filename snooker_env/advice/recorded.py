@@ -183,7 +183,24 @@ def _cue(played: Any) -> dict[str, float]:
 
 
 def write_strokes(path: str | Path, strokes: Iterable[Recorded]) -> None:
-    """Write strokes as JSON, whole or not at all; ``read_strokes`` reads them. OSError if it cannot be written."""
+    """Write strokes as JSON, whole or not at all; ``read_strokes`` reads them.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file. OSError if it cannot be written.
+    strokes : iterable of Recorded
+        The strokes of one player, in order.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import Recorded, write_strokes
+    >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_strokes(f"{folder}/mine.json", [Recorded(position=at, ball=21, pocket=4, potted=True)])
+    """
     kept = {"format": FORMAT, "version": VERSION, "strokes": [one.to_dict() for one in strokes]}
     write_atomic(path, json.dumps(kept, allow_nan=False) + "\n")
 
@@ -202,6 +219,17 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
     -------
     list of Recorded
         At least one. ValueError names what is wrong in the file; OSError if it cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import Recorded, read_strokes, write_strokes
+    >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_strokes(f"{folder}/mine.json", [Recorded(position=at, ball=21, pocket=4, potted=True)])
+    ...     read_strokes(f"{folder}/mine.json")[0].potted
+    True
     """
     try:
         text = Path(path).read_text(encoding="utf-8")

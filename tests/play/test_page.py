@@ -459,6 +459,7 @@ def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
     shown.until("document.querySelectorAll('#advice button').length")
     assert shown.page.inner_text("#advice-order") == "By chance to win:"
     assert "95 % interval" in shown.page.get_attribute("#advice li:first-child button", "title")
+    shown.until("!document.querySelector('#pockets').hidden")
     names = shown(
         "[...document.querySelectorAll('#pockets span')].map(one => [one.textContent, one.offsetLeft, one.offsetTop])"
     )

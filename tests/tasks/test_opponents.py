@@ -39,7 +39,7 @@ def test_any_callable_may_play_and_sees_the_table_from_its_own_side():
     [
         (np.zeros(3), r"opponent's action = array of shape \(3,\): must have shape \(7,\), real numbers"),
         (None, r"opponent's action = None: must have shape \(7,\), real numbers"),
-        ([2.0] * 7, r"opponent's action = \[2.0.*\]: must be finite and within \[-1, 1\]"),
+        ([2.0] * 7, r"opponent's action = \[2.0.*\]: must be finite and within \[-1, 1\]; .*ClipAction.*"),
     ],
 )
 def test_what_a_callable_answers_is_checked(answer, says):
