@@ -1,8 +1,8 @@
 """How is an agent trained to play Snooker-v0? Train one, evaluate it on held-out tables beside simple
 players, and report the result.
 
-    python train.py                                    about 25 minutes on one busy core: a value and a policy by expert iteration, then PPO
-    python train.py --steps 1 --imitate 4096           the same, shortened to a few minutes
+    python train.py                                    six minutes on two cores: a value and a policy by expert iteration, then PPO
+    python train.py --steps 1507328 --imitate 153600   the weights of the package: 17 minutes
     python train.py --agent ppo_mask --seed 1 --out runs/mine
     python train.py --agent stroke_value               a player that simulates no shot, in six minutes
     python train.py --resume --out runs/mine           continue from the last checkpoint after Ctrl-C, a kill or a power cut
