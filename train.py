@@ -385,7 +385,7 @@ def judge(out, settings, recipe, model, callback, imitation, part_of):
         "imitation": imitation,
     }
     best = f"planner@{out}" if "planner" in figures else str(out)
-    report(out, results, learned, figures, best, recipe.env_kwargs["noise"])
+    report(out, results, learned, figures, best, recipe.env_kwargs.get("noise", "none"))
     print(f"Curves: tensorboard --logdir {out / 'tb'}")
 
 
