@@ -69,10 +69,8 @@ class Batch:
         """Positions and velocities as ``simulate_batch`` takes them, (b, n, 3) where balls fly."""
         if not self.physics.flight:
             return self.positions, self.velocities
-        return tuple(
-            np.concatenate([part, self.aloft[..., c, None]], axis=-1)
-            for c, part in enumerate((self.positions, self.velocities))
-        )
+        up = self.aloft[..., :1], self.aloft[..., 1:]
+        return np.concatenate([self.positions, up[0]], -1), np.concatenate([self.velocities, up[1]], -1)
 
 
 def _mouth(table):
