@@ -384,8 +384,10 @@ class Fuzzed:
 
 def compare_public(one, found, threads):
     """Does ``simulate_batch`` give the same bits? It also checks every layout."""
+    places, velocities = one.states()
     batch = sn.simulate_batch(
-        *one.states(),
+        places,
+        velocities,
         one.spins,
         one.table,
         one.physics,
