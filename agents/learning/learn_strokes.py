@@ -217,14 +217,13 @@ class StrokeSettings:
 
 
 class StrokeTraining:
-    """The rounds of a run in the folder ``out``; those that it holds already are read. ``round`` does the next one."""
+    """The rounds of a run in the folder ``out``; those that it holds already are read."""
 
     def __init__(self, out, settings):
         self.out, self.settings, self.rounds, self.curve, self.layers = out, settings, [], [], None
-        # (sizes that files of another version may have otherwise)
-        self._asked = [settings.tables, settings.seed, settings.cue, LOOKS, SAMPLES, SIZE, SCALES]
-        self._asked = list(map(str, self._asked))
-        while len(self.rounds) < settings.rounds and (self._file("round").is_file()):
+        asked = settings.tables, settings.seed, settings.cue, LOOKS, SAMPLES, SIZE, SCALES
+        self._asked = list(map(str, asked))
+        while len(self.rounds) < settings.rounds and self._file("round").is_file():
             rows = _kept(self._file("round"))
             if rows.pop("asked").tolist() != self._asked:
                 raise refuse("out", str(out), "must hold rounds of this version and of the same settings")

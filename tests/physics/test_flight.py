@@ -250,3 +250,27 @@ def test_a_jaw_is_met_in_the_air_where_its_edge_is():
     met = shot.events[0]
     assert (EventKind(met["kind"]), met["j"]) == (EventKind.JAW, 0)
     assert met["time"] == pytest.approx(0.05 / speed, abs=2e-6)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_shot_goes_the_same_way_if_the_run_with_flight_plays_it_from_the_start(seed):
+    """A far ball that is in the air for an instant sends the shot there at once; else it begins in the run without flight."""
+    rng = np.random.default_rng(seed)
+    balls = [
+        (rng.uniform(-0.3, 0.3), -0.8),
+        *((x, y) for y in (0.1, 0.4) for x in (-0.2, 0.0, 0.15)),
+        (0.8, 1.7),
+    ]
+    places = np.column_stack([balls, np.zeros(len(balls))])
+    velocities, spins = np.zeros((len(balls), 3)), np.zeros((len(balls), 3))
+    aim = math.atan2(0.9, balls[2][0] - balls[0][0]) + rng.uniform(-0.04, 0.04)
+    velocities[0, :2] = 5.0 * math.cos(aim), 5.0 * math.sin(aim)
+    ways = []
+    for up in (0.0, 1e-12):
+        velocities[-1, 2] = up
+        shot = sn.simulate(
+            places, velocities, spins, physics=sn.Physics.preset("match", flight=True), table="match"
+        )
+        ways.append((shot.positions, [tuple(one)[:4] for one in shot.events if len(balls) - 1 != one["i"]]))
+    assert np.array_equal(ways[0][0], ways[1][0]) and ways[0][1] == ways[1][1]
+    assert len(ways[0][1]) > 10
