@@ -40,8 +40,6 @@ def _classes(name: str) -> tuple[type[TaskEnv], type[TaskVectorEnv]]:
 
 BreakEnv, BreakVectorEnv = _classes("Break")
 BreakClubEnv, BreakClubVectorEnv = _classes("BreakClub")
-LineUpEnv, LineUpVectorEnv = _classes("LineUp")
-ColoursEnv, ColoursVectorEnv = _classes("Colours")
 PotHardEnv, PotHardVectorEnv = _classes("PotHard")
 EscapeEnv, EscapeVectorEnv = _classes("Escape")
 SafetyEnv, SafetyVectorEnv = _classes("Safety")

@@ -104,7 +104,6 @@ class Task:
 
 _USUAL = {f.name: f.default for f in fields(Options) if f.init} | dict.fromkeys(SAYS, False)
 _BREAK = (1, 10, 25, 50, 75, 100, 147)
-_COLOURS = (2, 5, 9, 14, 20, 27)
 _LEAD = (-60, -40, -20, -10, -4, 0, 1)
 _MEASURES = {"points": ("points a visit", 500), "pots": ("share of balls potted", 1000)}
 _MEASURES |= {"legal": ("share of escapes", 500), "won": ("share of frames won", 200)}
@@ -128,8 +127,6 @@ _SAFE = {"changes": _FRAME | {"one_stroke": True}, "thresholds": _LEAD}
 _ALL = (
     _task("Break", "build a break on an opened table", "opened", "points", "held_out", thresholds=_BREAK),
     _task("BreakClub", "the same with a club player's errors", "opened", "points", "held_out", **_CLUB),
-    _task("LineUp", "clear the line-up", "line_up", "points", thresholds=_BREAK),
-    _task("Colours", "clear the six colours", "colours", "points", thresholds=_COLOURS),
     _task("PotHard", "pot one hard ball", "pots:hard", "pots", changes={"reward": "pots"}),
     _task(
         "Escape", "one stroke out of a snooker, no foul", "escape", "legal", "held_out_escape", changes=_LEGAL
@@ -156,8 +153,8 @@ def task_of(name: Any) -> Task:
     Examples
     --------
     >>> from snooker_env.benchmark import task_of
-    >>> task_of("SnookerColours-v0").title
-    'clear the six colours'
+    >>> task_of("SnookerPotHard-v0").title
+    'pot one hard ball'
     """
     return TASKS[choice("task", name, tuple(TASKS))]
 

@@ -19,9 +19,9 @@ HUGE = 10**400
 
 @cache
 def sound():
-    """All episodes of random on the colours, by a name that ``check`` does not ask again."""
+    """All episodes of random with a club player's errors, by a name that ``check`` does not ask again."""
     agent = Agent(label="any", sources=(sn.player("random"),), training_shots=0)
-    return judge(TASKS["SnookerColours-v0"], agent)
+    return judge(TASKS["SnookerBreakClub-v0"], agent)
 
 
 def changed(**fields):
@@ -86,7 +86,7 @@ WRONG = [
     ("agent.sources", ["search_60"], BEGINS),
     ("agent.label", "random", f"agent.label = 'random': {OTHER}"),
     ("agent.label", "lookahead_120", f"agent.label = 'lookahead_120': {OTHER}"),
-    ("protocol.episodes", 200_000, "protocol.episodes = 200000: must be at most 500 on SnookerColours-v0"),
+    ("protocol.episodes", 200_000, "protocol.episodes = 200000: must be at most 500 on SnookerBreakClub-v0"),
     *(("agent.label", name, "agent.label = ") for name in ALIKE),
     *(("command", text, "command = ") for text in TEXTS),
     *(("agent.sources", [text], "agent.sources: must be texts, one for each") for text in TEXTS),
@@ -166,11 +166,11 @@ def test_no_text_of_a_file_is_markup_of_the_page():
 
 def test_a_share_that_was_always_or_never_seen_stands_as_its_bound():
     """In the profile: at least the lower bound if always, at most the upper one if never."""
-    task = TASKS["SnookerColours-v0"]
+    task = TASKS["SnookerBreakClub-v0"]
     for row, shares, best in (
-        ([27, 6, 27, 6, 0, 1, 0, 1], ">= 90.5", "27"),
+        ([147, 36, 147, 36, 0, 1, 0, 1], ">= 90.5", "147"),
         ([0, 1, 0, 0, 0, 0, 0, 1], "<= 9.5", "0"),
     ):
         rows = [[0, seed, *row] for seed in task.seeds(30)]
         record = changed(rows=rows, figures=figures_of(task, "random", rows))
-        assert profile([record], task)[1][0][1:] == [shares] * 6 + [best]
+        assert profile([record], task)[1][0][1:] == [shares] * 7 + [best]

@@ -24,7 +24,7 @@ from snooker_env.players import VISITS, Strokes
 from tests.benchmark.records import at, put
 
 OTHER_STROKE = "strokes: run {}, table 1000000: {} begins with another stroke than the file"
-COLOURS, BREAK, HARD = (TASKS[f"Snooker{name}-v0"] for name in ("Colours", "Break", "PotHard"))
+CLUB, BREAK, HARD = (TASKS[f"Snooker{name}-v0"] for name in ("BreakClub", "Break", "PotHard"))
 
 
 class Aims:
@@ -47,8 +47,8 @@ def agent(maker=Aims):
 
 @pytest.fixture(scope="module")
 def official():
-    """All 500 episodes of ghost_ball on the colours."""
-    return judge(COLOURS, Agent.of("ghost_ball"), command="a test")
+    """All 500 episodes of ghost_ball with a club player's errors."""
+    return judge(CLUB, Agent.of("ghost_ball"), command="a test")
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_rows_101_to_500(official):
     record = copy.deepcopy(official)
     for row in record["rows"][100:]:
         row[2:] = [27, 6, 27, 6, 0, 1, 0, 1]
-    assert faults(consistent(COLOURS, record))[0].startswith("strokes.data = ")
+    assert faults(consistent(CLUB, record))[0].startswith("strokes.data = ")
     strokes = strokes_of(official)
     record["strokes"] = packed(strokes[:100] + [np.resize(one, (6, one.shape[1])) for one in strokes[100:]])
     refused = faults(record)

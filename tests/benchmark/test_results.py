@@ -187,7 +187,7 @@ def test_budgets_are_limits_with_room_for_a_rollout():
 
 
 def test_randomness_is_repeated():
-    task = TASKS["SnookerColours-v0"]
+    task = TASKS["SnookerBreakClub-v0"]
     first, second = (judge(task, Agent.of("random"), episodes=12)["rows"] for _ in range(2))
     assert first == second == play_episodes(task, "random", task.seeds(12)).rows
     assert play_episodes(task, "random", task.seeds(12), run=1).rows != [[1, *row[1:]] for row in first]
@@ -195,7 +195,7 @@ def test_randomness_is_repeated():
 
 def test_bounds_of_what_was_always_or_never_seen():
     """Several runs on the same tables are no more trials than one."""
-    task, bound = TASKS["SnookerColours-v0"], unseen(30)
+    task, bound = TASKS["SnookerBreakClub-v0"], unseen(30)
     always = [[run, table, 27, 6, 27, 6, 0, 1, 0, 1] for run in range(3) for table in range(30)]
     never = [[run, table, 0, 1, 0, 0, 0, 0, 0, 1] for run in range(3) for table in range(30)]
     assert bound == pytest.approx(1 - 0.05 ** (1 / 30))
@@ -206,7 +206,7 @@ def test_bounds_of_what_was_always_or_never_seen():
 
 def test_agents_draw_their_runs_apart():
     """With another label other training seeds are drawn; with the same label the same."""
-    task, points = TASKS["SnookerColours-v0"], np.random.default_rng(0).integers(0, 9, 40)
+    task, points = TASKS["SnookerBreakClub-v0"], np.random.default_rng(0).integers(0, 9, 40)
     rows = [[k, table, x, 1, x, 0, 0, 0, 0, 1] for k in range(5) for table, x in enumerate(points + 5 * k)]
     one, same, other = (figures_of(task, label, rows)["score"] for label in ("a", "a", "b"))
     assert one == same and one["value"] == other["value"]

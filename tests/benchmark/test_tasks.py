@@ -106,7 +106,7 @@ def test_what_is_free_is_taken():
     free = {"aim": "target", "observation": "balls", "elevation": True, "placement": True}
     env = gymnasium.make("SnookerBreak-v0", render_mode="ansi", **free)
     assert env.action_space.shape == (7,) and env.observation_space["state"].shape == (11,)
-    assert gymnasium.make("SnookerLineUp-v0", action="discrete").action_space.n > 100
+    assert gymnasium.make("SnookerBreakClub-v0", action="discrete").action_space.n > 100
     assert gymnasium.make("SnookerFrame-v0", decision=True, placement=True).action_space.shape == (7,)
     envs = many("SnookerEscape-v0", 3, threads=1, autoreset_mode="SameStep", aim="target")
     assert envs.reset(seed=1)[0].shape == (3, OBSERVATION_SIZE) and envs.threads == 1
