@@ -120,10 +120,11 @@ class Recorded:
             if self.ball is None:
                 raise refuse("potted", self.potted, "must be left out: no pot was meant")
         put("guessed", truth("guessed", self.guessed))
-        if self.guessed and (self.ball is None or self.played is None):
-            raise refuse(
-                "guessed", True, "must be False without a pot, and the stroke played, which it is told from"
+        if self.guessed and (self.ball is None or self.played is None or self.intended is not None):
+            allowed = (
+                "must be False without a pot and the stroke played, which it is told from, and with intended"
             )
+            raise refuse("guessed", True, allowed)
         put("points", integer("points", self.points, 0, MOST_POINTS))
         put("penalty", integer("penalty", self.penalty, 0, MOST_PENALTY))
         if not isinstance(self.scores, list | tuple) or len(self.scores) != 2:
@@ -338,7 +339,8 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
     if one["after"] is not None:
         rest, left = _numbers(one["after"]["places"], "f8", 2), _present(one["after"]["on_table"])
     scored = one["points"] > 0 and not one["penalty"]
-    colour = scored and word == "red" and bool(left[16:].any())
+    red = word == "red" or (word == "free_ball" and here[1:16].any())  # that a free ball stood for
+    colour = scored and red and bool(left[16:].any())
     if left[1:].any() and left[CUE]:
         after: Position | None = _position(rest, left, "any_colour" if colour else None)
     else:

@@ -59,6 +59,10 @@ def parser() -> argparse.ArgumentParser:
     help_ = "have --agent play N episodes on fresh seeds: the same mean?"
     check.add_argument("--fresh", type=int, metavar="N", help=help_)
     _agent(check, required=False)
+    for one in (run, check):
+        one.add_argument(
+            "--threads", type=int, help="threads that play the tables (default: one for each core)"
+        )
     table = commands.add_parser("table", help="print the leaderboard of result files")
     table.add_argument("files", nargs="*", metavar="FILE")
     table.add_argument("--markdown", metavar="FILE", help="write it as a page")
@@ -78,7 +82,6 @@ def _agent(p: argparse.ArgumentParser, required: bool) -> None:
     p.add_argument("--trust", action="store_true", help="run the pickled code in a model's file")
     how = "seconds that a program has for a stroke (default: 60)"
     p.add_argument("--timeout", type=float, default=60.0, help=how)
-    p.add_argument("--threads", type=int, help="threads that play the tables (default: one for each core)")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

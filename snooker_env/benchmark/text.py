@@ -120,6 +120,8 @@ def judge_text(
     played is kept, and ``resume`` goes on with it.
     """
     integer("visits", visits, 2, MOST)
+    if len(agent.texts) > 1:
+        raise refuse("agent", ", ".join(agent.texts), "must be one: this track has no training seeds")
     out = Path(out)
     head = {"track": "text", "agent": agent.label, "source": agent.texts[0], "visits": visits}
     head["budget"] = {"strokes": STROKES, "tries": TRIES, "timeout": agent.timeout}

@@ -20,12 +20,15 @@ from snooker_env.advice import errors as estimating
 from snooker_env.advice.__main__ import main
 from snooker_env.advice.costs import lost, values
 from snooker_env.advice.practice import practice_of
+from snooker_env.advice.recorded import _from_replay
 from snooker_env.planning import Planner, pot_aim, pots
+from snooker_env.players import VISITS
 from snooker_env.tasks import LEVELS
 from tests.refusals import refused
 
 AT = sn.Position(cue=(0.1, 0.2), reds=[(-0.3, 1.0)], black=(0.0, 1.4605), on="red")
 ALONE = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+CUE, MEANT = {"speed": 2.0, "aim": 0.8}, CueStroke(speed=2.0, aim=0.8)
 
 
 def pot_of(position):
@@ -232,6 +235,7 @@ def test_the_command(tmp_path, capsys):
         ({"played": {"speed": 1.0}}, "without 'aim'"),
         ({"scores": (1,)}, "scores"),
         ({"guessed": True}, "guessed = True"),
+        ({"guessed": True, "ball": 21, "pocket": 4, "played": CUE, "intended": MEANT}, "guessed = True"),
         ({"speed": 9.0}, "speed = 9.0"),
     ],
 )
@@ -246,6 +250,22 @@ def test_strokes_that_tell_nothing_are_refused():
         estimate_errors([Recorded(position=ALONE)])
     with pytest.raises(ValueError, match="must hold at least one stroke"):
         coach([])
+
+
+@pytest.mark.parametrize(("reds", "on"), [([(-0.3, 1.0), (0.6, -0.8)], "any_colour"), ([], "black")])
+def test_a_potted_free_ball_counts_as_the_ball_on(reds, on):
+    """As a red while one is on the table: then a colour is on; later the lowest ball is."""
+    env = sn.SnookerEnv(**VISITS, noise="none")
+    env.keep_history = True
+    env.reset(
+        options={"position": sn.Position(cue=(0.1, 0.2), reds=reds, pink=(-0.3, 0.9), black=(0.0, 1.46))}
+    )
+    env.step(sn.player("search").at(env).play(env, [1]).actions(env.options, sn.Positions.of(env))[0])
+    kept = sn.replay(env).to_dict()
+    assert kept["strokes"][0]["points"] > 0
+    kept["strokes"][0]["ball_on"] = "free ball"
+    (made,) = _from_replay(kept, None)
+    assert made.after.on == on
 
 
 def test_called_is_the_nearest_line():

@@ -115,3 +115,12 @@ def test_wrong_numbers_of_visits(tmp_path, visits, capsys):
         main(["text", "--agent", "random", "--visits", str(visits), "--out", str(tmp_path / "a.json")]) == 2
     )
     assert f"visits = {visits}: must be an integer in [2, 200]" in capsys.readouterr().err
+
+
+def test_training_seeds_and_threads_are_refused(tmp_path, capsys):
+    two = Agent(label="a", sources=("random", "ghost_ball"))
+    with pytest.raises(ValueError, match=r"^agent = 'random, ghost_ball': must be one"):
+        judge_text(two, visits=2, out=tmp_path / "a.json")
+    with pytest.raises(SystemExit):
+        main(["text", "--agent", "random", "--threads", "2"])
+    assert "--threads" in capsys.readouterr().err
