@@ -19,6 +19,18 @@ judge() {  # its name, all simulated shots of its training
     $bench run all --agent "$1" --training-shots "$2" --out leaderboard --resume
 }
 
+judge_each() {  # the same, of models that are trained on each task
+    labels+=("$1")
+    if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
+    for task in $(python -c "from snooker_env.benchmark import TASKS; print(*TASKS)"); do
+        file=leaderboard/$task.$1.json
+        if [ -e "$file" ] && grep -q '"incomplete": null' "$file"; then continue; fi
+        python leaderboard/baseline.py "$task" || return
+        models=$(seq -s, -f "runs/baseline/$task.%g.zip" 0 4)
+        $bench run "$task" --agent "$1=$models" --trust --training-shots "$2" --out "$file" --resume
+    done
+}
+
 judge random 0
 judge ghost_ball 0
 judge best_pot 0
@@ -31,5 +43,8 @@ judge tactician 46113664
 # The values of three levels, and 4.6 million strokes that are tried.
 judge stroke_value 60000000
 judge ppo_value 18415616
+
+# Plain PPO on each task, five training seeds.
+judge_each ppo_50k 49152
 
 $bench table leaderboard/*.json --markdown docs/leaderboard.md --awaited "${labels[@]}"
