@@ -33,6 +33,7 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
     assert faults(found) == [] and found["incomplete"] is None
     assert [p["label"] for p in found["players"]] == ["ghost_ball", "random", "Softly"]
     assert found["protocol"]["anchor"] == "ghost_ball" and found["game"]["noise"] == "professional"
+    assert found["game"]["cue"] == "real"
     assert len(found["rows"]) == 2 + 6 + 2
     assert {(row[2], row[3]) for row in found["rows"]} == {(s, o) for s in range(3) for o in (0, 1)}
     first, second = COLUMNS.index("strokes_first"), COLUMNS.index("strokes_second")
