@@ -3,10 +3,12 @@ errors of several sizes, and the frames are compared with those of professionals
 
     python -m agents.calibrate FILE [--scales 0.9 1.0 1.1] [--frames 400] [--ray local] [--picture FILE] [--json FILE]
 
-FILE: frames of professionals, each with every scoring visit and foul, in the format of its first lines. A scale is
-a factor of the errors of ``noise="professional"`` (``commands.noise_option``). A visit scores if
-it pots a ball; its points are its break. Frames that are lost are conceded, as in matches. Standard errors are over
-frames. The chance to win that the ``tactician`` sees before each stroke is compared with who won.
+FILE: frames of professionals, a line for each: VISITS/VISITS/MINUTES:SECONDS. VISITS are the points of a player's
+scoring visits, and F4 for 4 points from the other's foul. Before the frames of a match a line M A B may say how many
+seconds both players take for a stroke, 0 where it is not known; lines with # are comments. A scale is a factor of the
+errors of ``noise="professional"`` (``commands.noise_option``). A visit scores if it pots a ball; its points are its
+break. Frames that are lost are conceded, as in matches. Standard errors are over frames. The chance to win that the
+``tactician`` sees before each stroke is compared with who won.
 """
 
 import re

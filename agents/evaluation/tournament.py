@@ -64,7 +64,7 @@ def parser():
     what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
     p.add_argument("--physics", default="paper", help=what)
     p.add_argument("--miss", default="off", help="rule for a foul and a miss [off]")
-    p.add_argument("--cue", default="free", help="the option cue of frames: free or real [free]")
+    p.add_argument("--cue", default="real", help="the option cue of frames: free or real [real]")
     p.add_argument("--rules", default="snooker", help="the option game of frames: which rules [snooker]")
     what = "strokes after which a frame is stopped, half a win for each [1000]"
     p.add_argument("--max-strokes", type=int, default=1000, help=what)

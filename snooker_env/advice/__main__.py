@@ -23,7 +23,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _coach(argv: Sequence[str]) -> int:
-    about = "A player's errors, the pots he made and was expected to make, what costs him most, and drills."
+    about = "A player's errors, pots made and expected, what costs most, and drills."
     parser = argparse.ArgumentParser("python -m snooker_env.advice coach", description=about)
     parser.add_argument("file", metavar="FILE", help="recorded strokes (JSON), or a replay (JSON or page)")
     parser.add_argument("--player", type=int, choices=(0, 1), help="of a replay of a frame: whose strokes")

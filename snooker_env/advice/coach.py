@@ -1,4 +1,4 @@
-"""What costs a player most, and what should he practise? ``coach``: errors, pots made and expected, costs, drills.
+"""What costs a player most, and what should be practised? ``coach``: errors, pots made and expected, costs, drills.
 
 Costs are those of ``costs``, each with the 95 % interval of a bootstrap over strokes. They hold luck: whether as many pots
 were made as such errors make says ``expected``. Which strokes were chosen is not judged. Miss calls, free balls and

@@ -18,7 +18,7 @@ professional's.
   the share of each radius that is potted is kept. P(pot | s) is its mean over the law of the radius, which is chi with five
   degrees of freedom, times s; L = P or 1 - P. It bears what a half-width in degrees does not: jaws, throw by a tip that is
   off to the side, pockets that are narrow for hard balls. Without an ``intended`` stroke it is played in the middle of the
-  ball with the ``speed`` recorded, or at 1.5 m/s: then a player who strikes harder is said to err more than he does.
+  ball with the ``speed`` recorded, or at 1.5 m/s: then one who strikes harder is said to err more than in truth.
 
 Where the cue ball stopped is not used for the speed: the tip's errors move that place about as much.
 

@@ -1,5 +1,5 @@
 """What does a stroke of a frame lead to, for both players? ``Outlook``: the chance to win, and the other's next visit,
-by the samples in which he comes to the table."""
+by the samples in which the opponent comes to the table."""
 
 from math import hypot, sqrt
 from typing import NamedTuple
@@ -74,7 +74,7 @@ def others_next(after: Positions) -> np.ndarray:
 
 
 def met(after: Positions) -> Positions:
-    """What the other meets: as he plays, after a foul as the balls lie, with a cue ball in hand where it is good."""
+    """What the opponent meets: as it plays, after a foul as the balls lie, with a cue ball in hand where it is good."""
     return placed(chosen(turned(after), columns.PLAY), np.zeros(len(after), np.int64))[0]
 
 

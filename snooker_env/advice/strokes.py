@@ -171,11 +171,11 @@ class Suggestion(CueStroke):
         Of the first stroke: the chance to win of the best stroke of the other sort, a pot or none, or if none was
         ranked of the next best.
     replies, leaves : float or None
-        Where the stroke brings the other to the table: the share of his next visits in which he pots, and their
-        mean points, played by the same fast player from the first ``visits`` of these samples. After a foul he
+        Where the stroke brings the opponent to the table: the share of its next visits in which it pots, and
+        their mean points, played by the same fast player from the first ``visits`` of these samples. After a foul it
         plays from where the balls lie; penalties do not count. None if no such visit was played.
     snookers : float or None
-        The share of these samples in which he has no straight path to a ball on.
+        The share of these samples in which the opponent has no straight path to a ball on.
     words : str
         All this in one line of text.
 

@@ -152,13 +152,13 @@ def figures_words(kind: str, chance: float, points: float, judged: bool = False)
 
 
 def reply_words(kind: str, replies: float | None, leaves: float | None, snookers: float | None) -> str:
-    """What the other finds where a stroke brings him to the table: "" where it never did."""
+    """What the opponent finds where a stroke brings it to the table: "" where it never did."""
     if replies is None or leaves is None:
         return ""
     if kind == "pot":
-        return f"leaves him {points_words(leaves)} if missed"
+        return f"leaves the opponent {points_words(leaves)} if missed"
     hidden = f", snookered in {percent(snookers)}" if snookers is not None and snookers >= 0.01 else ""
-    return f"he pots next in {percent(replies)}, leaves him {points_words(leaves)}{hidden}"
+    return f"the opponent pots next in {percent(replies)}, leaves the opponent {points_words(leaves)}{hidden}"
 
 
 def against_words(win: float, other: str) -> str:

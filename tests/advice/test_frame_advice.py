@@ -75,12 +75,12 @@ def test_strokes_are_ordered_by_it_and_the_best_is_compared():
 
 
 def test_what_the_other_finds_is_said_and_is_so():
-    """Without errors he pots whatever goes: the black after a soft stroke, which is then the frame's."""
+    """Without errors the opponent pots whatever goes: the black after a soft stroke, which is then the frame's."""
     (one,) = sn.advise(LAST, agent=Given(CueStroke(speed=0.7, aim=np.pi / 2)), noise="none", scores=(10, 8))
     assert (one.kind, one.replies, one.leaves, one.snookers) == ("safety", 1.0, 7.0, 0.0)
-    assert "he pots next in 100 %, leaves him 7 points; win chance" in one.words
+    assert "the opponent pots next in 100 %, leaves the opponent 7 points; win chance" in one.words
     never = sn.advise(LAST, agent=Given(CueStroke(speed=0.7, aim=np.pi / 2)), **QUICK | {"visits": 0})[0]
-    assert never.replies is None and never.leaves is None and "he pots" not in never.words
+    assert never.replies is None and never.leaves is None and "pots next" not in never.words
     made = sn.advise(Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), noise="none", n=1, scores=(8, 12))[0]
     assert (made.kind, made.win, made.replies, made.leaves) == ("pot", 1.0, None, None) and made.chance == 1.0
 
@@ -89,7 +89,10 @@ def test_a_missed_pot_says_what_it_leaves():
     far = Position(cue=(0.3, -1.5), pink=(-0.5, 1.2), black=(0.0, 1.4605))
     (one, *_) = sn.advise(far, agent="search", n=1, noise="club", **QUICK | {"samples": 200, "visits": 60})
     assert one.kind == "pot" and one.chance < 0.8
-    assert f"leaves him {words.points_words(one.leaves)} if missed" in one.words and 0.0 < one.leaves < 13.0
+    assert (
+        f"leaves the opponent {words.points_words(one.leaves)} if missed" in one.words
+        and 0.0 < one.leaves < 13.0
+    )
 
 
 def test_how_often_he_is_snookered_is_as_in_the_environment():
@@ -165,10 +168,14 @@ def test_a_touching_ball_is_played_away_from():
 
 def test_figures_in_words():
     say = words.reply_words
-    assert say("safety", 0.12, 3.04, 0.34) == "he pots next in 12 %, leaves him 3 points, snookered in 34 %"
-    assert say("escape", 0.5, 12.6, 0.004) == "he pots next in 50 %, leaves him 13 points"
     assert (
-        say("pot", 0.5, 18.2, 0.0) == "leaves him 18 points if missed" and say("pot", None, None, None) == ""
+        say("safety", 0.12, 3.04, 0.34)
+        == "the opponent pots next in 12 %, leaves the opponent 3 points, snookered in 34 %"
+    )
+    assert say("escape", 0.5, 12.6, 0.004) == "the opponent pots next in 50 %, leaves the opponent 13 points"
+    assert (
+        say("pot", 0.5, 18.2, 0.0) == "leaves the opponent 18 points if missed"
+        and say("pot", None, None, None) == ""
     )
     assert words.against_words(0.55, "pot") == " against 55 % for the best pot"
     assert words.against_words(0.55, "") == " against 55 % for the next best"
