@@ -9,7 +9,9 @@ from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.schema import FIELDS, NUMBER, UNPROVED
 from tests.processes import ROOT
 
-TEXT, HOLDS = ((ROOT / f"docs/{name}.md").read_text(encoding="utf-8") for name in ("benchmark", "benchmark_files"))
+TEXT, HOLDS = (
+    (ROOT / f"docs/{name}.md").read_text(encoding="utf-8") for name in ("benchmark", "benchmark_files")
+)
 FILES = sorted((ROOT / "leaderboard").glob("*.json"))
 KINDS = {str: "text", int: "integer", bool: "boolean", list: "list", dict: "object", NUMBER: "number"}
 
