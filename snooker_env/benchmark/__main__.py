@@ -22,7 +22,7 @@ from .checking import afresh, faults, replayed
 from .leaderboard import lines, page, profile
 from .results import missing, read_result
 from .run import judge
-from .tasks import FREE, HELD_OUT_SEED, TASKS, Task, task_of
+from .tasks import FREE, FRESH_SEED, SEEDS_END, TASKS, Task, task_of
 from .text import VISITS, judge_text
 
 NAME = "python -m snooker_env.benchmark"
@@ -242,8 +242,8 @@ def _by_agent(args: Any, result: dict[str, Any]) -> list[str]:
     if args.replay is not None:
         wrong = replayed(result, agent, integer("replay", args.replay, 1, 2**20), args.threads)
     if args.fresh is not None and not wrong:
-        seed = int(np.random.default_rng().integers(2 * HELD_OUT_SEED, 2**31))
-        many = integer("fresh", args.fresh, 2, 2**20)
+        many = integer("fresh", args.fresh, 2, 100_000)
+        seed = int(np.random.default_rng().integers(FRESH_SEED, SEEDS_END - many, endpoint=True))
         mean, error, wrong = afresh(result, agent, many, seed, args.threads)
         old = result["figures"]["score"]["value"]
         print(f"fresh seeds from {seed} on: {mean:.4g}, the file has {old:.4g}, +- {error:.2g} apart")

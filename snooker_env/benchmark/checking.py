@@ -254,7 +254,7 @@ def afresh(
     --------
     >>> from snooker_env.benchmark import TASKS, Agent, afresh, judge
     >>> agent = Agent.of("random")
-    >>> afresh(judge(TASKS["SnookerPotHard-v0"], agent, episodes=60), agent, 60, 2_000_000)[2]
+    >>> afresh(judge(TASKS["SnookerPotHard-v0"], agent, episodes=60), agent, 60, 1_500_000)[2]
     []
     """
     if record["figures"] is None:

@@ -21,7 +21,7 @@ BATCH = 100
 """Episodes that are played side by side."""
 SUMS = ("strokes", "points", "pots", "fouls")
 COLUMNS = ("run", "table", "score", *SUMS, "cleared", "opponent_points", "ended")
-"""Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark.md)."""
+"""Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark_files.md)."""
 STROKES = COLUMNS.index("strokes")
 Kept = list[NDArray[np.float32]]
 """The strokes of each episode: its actions, one row each."""

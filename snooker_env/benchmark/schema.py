@@ -1,4 +1,4 @@
-"""What is a result file? Its fields with types and meanings; ``docs/benchmark.md`` prints this table."""
+"""What is a result file? Its fields with types and meanings; ``docs/benchmark_files.md`` prints this table."""
 
 import re
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ _ALIKE = "machines with the same one play strokes alike, bit for bit"
 FIELDS: dict[str, tuple[Any, bool, str]] = {
     "schema.name": (str, False, f'"{NAME}"'),
     "schema.version": (int, False, f"{VERSION}; another number means other fields"),
-    "protocol.version": (int, False, f"{PROTOCOL}: version of the rules on this page"),
+    "protocol.version": (int, False, f"{PROTOCOL}: version of the benchmark's rules"),
     "protocol.episodes": (int, False, "episodes asked for, for each training seed"),
     "protocol.official": (bool, False, "whether the rules for a leaderboard entry are kept"),
     "task": (str, False, "id of the task, with its version"),
