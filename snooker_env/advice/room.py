@@ -55,7 +55,13 @@ class Room:
     @property
     def words(self) -> str:
         """What is done to the stroke, in words; "" for nothing, and for less than half a degree."""
-        over = "" if self.over is None else f" over the {self.over}"
+        over = (
+            ""
+            if self.over is None
+            else " over a red"
+            if self.over.startswith("red")
+            else f" over the {self.over}"
+        )
         if self.unplayable:
             return f"no room for the cue{over}: raised to {degrees(self.elevation):.0f} degrees, nobody plays that"
         parts = []

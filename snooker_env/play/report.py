@@ -47,8 +47,11 @@ def scene(service: Service) -> dict[str, Any]:
     }
 
 
-def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> dict[str, Any]:
-    """The table and the scoreboard after an act; ``win_chance``: how likely seat 0 wins, None for unknown."""
+def table_after(
+    act: Act, labels: tuple[str, str], win_chance: float | None, before: Act | None = None
+) -> dict[str, Any]:
+    """The table and the scoreboard after an act; ``win_chance``: how likely seat 0 wins, None for unknown; ``before``: the
+    act before it."""
     state, frame = act.state, Frame.from_dict(act.state["frame"])
     present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"
@@ -63,7 +66,7 @@ def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> 
         "time_left": (clock - frame.clock) / 1000 if (clock := rule_set(frame.rules).clock) else None,
         "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present},
         "words": asked_words(frame, labels),
-        "last": last_words(act, labels),
+        "last": last_words(act, labels, before),
     }
 
 
@@ -85,7 +88,8 @@ def report(service: Service) -> dict[str, Any]:
     on = tables.on(0) if frame.phase == "stroke" else 0
     hidden, lines = (_snookered(session, frame, on), _lines(session, frame, on)) if on else (False, [])
     act = session.acts[session.at - 1]
-    state = table_after(act, seats.labels, service.win_chances([act])[0])
+    before = session.acts[session.at - 2] if session.at > 1 else None
+    state = table_after(act, seats.labels, service.win_chances([act])[0], before)
     state |= {
         "revision": service.revision,
         "players": list(seats.who),

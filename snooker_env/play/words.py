@@ -128,9 +128,20 @@ def asked_words(frame: Frame, labels: tuple[str, str]) -> str:
     return f"{yours}: {on} on{placing}."
 
 
-def last_words(act: Act, labels: tuple[str, str]) -> str:
-    """An act in a sentence."""
+_DECIDED = {
+    "play": "played on",
+    "play_again": "asked for another stroke from there",
+    "replace": "had the balls put back",
+    "anywhere": "took the cue ball in hand",
+}
+
+
+def last_words(act: Act, labels: tuple[str, str], before: Act | None = None) -> str:
+    """An act in a sentence; ``before``: the act before it, whose foul a choice answers."""
     who = "" if act.player is None else labels[act.player]
+    if act.what == "choice":
+        said = f"{who} {_DECIDED[act.detail]}."
+        return said if before is None or before.played is None else f"{last_words(before, labels)} {said}"
     if act.played is not None:
         nominated = f" ({act.detail} nominated)" if act.detail else ""
         said = f"{who}{nominated}: {sentence(act.played, labels)}"
@@ -139,9 +150,8 @@ def last_words(act: Act, labels: tuple[str, str]) -> str:
         )
         return f"{said} {room[:1].upper()}{room[1:]}." if room else said
     return {
-        "choice": f"{who}: {act.detail.replace('_', ' ')}.",
-        "concede": f"{who} concede{'' if who == 'You' else 's'} the frame.",
-        "claim": f"{who} claim{'' if who == 'You' else 's'} the frame.",
+        "concede": f"{who} conceded the frame.",
+        "claim": f"{who} claimed the frame.",
         "set_up": "Position set up.",
         "load": "Game loaded.",
         "new": "New frame.",

@@ -63,7 +63,7 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
         if played.break_before:
             words += f", break of {played.break_before + played.points}"
     else:
-        words = "Nothing potted"
+        words = "No ball potted"
     if played.winner is not None and len(players) > played.winner:
         winner = played.winner
         words += f". Frame to {players[winner]}, {played.scores[winner]}-{played.scores[1 - winner]}"

@@ -120,4 +120,4 @@ def test_words_of_a_room():
     assert Room(elevation=0.008, side=0.0, top=0.0, **hardly).words == ""
     moved = nothing | {"moved": True, "over": "red 3"}
     said = Room(elevation=0.5, side=-0.1, top=0.2, **moved).words
-    assert said == "tip moved up to 0.20 above the middle, 0.10 left over the red 3"
+    assert said == "tip moved up to 0.20 above the middle, 0.10 left over a red"

@@ -207,6 +207,8 @@ def test_a_foul_asks_for_a_choice_and_a_nomination_counts(game):
     with pytest.raises(ValueError, match='must be "play" in a request that holds a stroke'):
         game("stroke", speed=1.0, aim=0.0, choice="replace")
     back = game("stroke", choice="replace")
+    foul = state["last"]
+    assert "Foul, 7" in foul and back["state"]["last"] == f"{foul} Player 2 had the balls put back."
     assert back["stroke"] is None and back["state"]["striker"] == 0
     assert back["state"]["positions"]["cue"] == COVERED["cue"]
     both = game("undo") and game("stroke", choice="play", speed=1.0, aim=1.0)
@@ -345,7 +347,7 @@ def test_an_agent_nominates_concedes_and_claims(game):
     game("position", position=black, scores=[0, 20], striker=1)
     game("go")
     state = waited(game, lambda s: not s["thinking"])
-    assert state["winner"] == 1 and state["last"] == "deciding claims the frame."
+    assert state["winner"] == 1 and state["last"] == "deciding claimed the frame."
 
 
 def test_only_agents_of_the_start_may_be_named(game):

@@ -109,7 +109,7 @@ def test_what_the_referee_said_is_recorded(strokes, fouls):
         elif played.points:
             assert f"potted, {played.points}" in stroke["words"]
         else:
-            assert stroke["words"] == "Nothing potted."
+            assert stroke["words"] == "No ball potted."
     assert {bool(s["fouls"]) for s in data["strokes"]} == {True, False}
     assert set(FOUL_WORDS) == set(Foul)
 
