@@ -74,7 +74,8 @@ def _advice(argv: Sequence[str]) -> int:
         names = ("agent", "scores", "noise", "n", "samples", "visits", "seed", "trust")
         how: dict[str, Any] = {name: getattr(args, name) for name in names}
         if args.options:
-            (how["agent"],) = named([args.agent or ""], args.trust, options_of_words(args.options))
+            asked = [args.agent] if args.agent else []
+            (how["agent"],) = named(asked, args.trust, options_of_words(args.options))
         advice = advise(Position.load(args.position), options={"cue": args.cue}, **how)
     except (ValueError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
