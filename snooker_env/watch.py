@@ -111,8 +111,8 @@ def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
     name = args.agent or (TACTICIAN if args.frame else USUAL)
     other = args.opponent or name
     # a model of others opposite acts as it was trained to, not as the table's options say
-    names = dict.fromkeys([name, *([other] if args.frame and of_others(other) else [])])
-    players = dict(zip(names, named(list(names), args.trust, options_of_words(args.options)), strict=True))
+    names: list[str] = [name, other] if args.frame and other != name and of_others(other) else [name]
+    players = dict(zip(names, named(names, args.trust, options_of_words(args.options)), strict=True))
     who, label = players[name], name.rpartition(":")[2]
     if args.frame:
         opposite = players[other] if of_others(other) else other

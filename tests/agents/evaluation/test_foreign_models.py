@@ -125,7 +125,7 @@ ACTIONS += "for example placement=True"
 @pytest.mark.parametrize(
     ("name", "options", "says"),
     [
-        ("ppo", [], CONSENT + "with trust=True"),
+        ("ppo", [], CONSENT + "with trust=True, or --trust on the command line"),
         ("ppo", ["--trust", "--options", "placement=True"], ACTIONS.format(6)),
         ("sac", ["--trust"], ACTIONS.format(4)),
         ("dqn", ["--trust", "--options", "action=box"], ACTIONS.format(4)),
