@@ -28,7 +28,7 @@ def installs(extra):
 
 def python():
     """How a command to paste starts this interpreter: "python" if that is it, else its path, as short as may be."""
-    mine, usual = Path(sys.executable), shutil.which("python")
+    mine, usual = Path(sys.executable or "python"), shutil.which("python")
     if usual and mine.parent.resolve() == Path(usual).parent.resolve() and mine.samefile(usual):
         return "python"
     return str(mine.relative_to(Path.cwd()) if mine.is_relative_to(Path.cwd()) else mine)

@@ -1,5 +1,7 @@
 """Does ``train.py`` train by expert iteration, judge what it learned honestly, and resume at any moment?"""
 
+import pickle
+import shutil
 import signal
 
 import numpy as np
@@ -57,7 +59,7 @@ def test_the_run_says_what_the_planner_gains(finished):
 
 
 @pytest.mark.parametrize("at", [8, 40])
-def test_a_signal_in_expert_iteration_loses_nothing(finished, tmp_path, monkeypatch, capsys, at):
+def test_a_signal_in_expert_iteration_loses_nothing(finished, tmp_path, monkeypatch, capsys, at, refused):
     """Before and after the value has begun to learn."""
     original = expert_iteration.ExpertIteration.round
 
@@ -70,6 +72,11 @@ def test_a_signal_in_expert_iteration_loses_nothing(finished, tmp_path, monkeypa
         patch.setattr(expert_iteration.ExpertIteration, "round", interrupted)
         assert run(tmp_path) == 128 + signal.SIGTERM
     assert f"Saved at {at} of 64 positions" in capsys.readouterr().out
+    uncounted = shutil.copytree(tmp_path, tmp_path / "uncounted") / "checkpoint.pkl"
+    state = pickle.loads(uncounted.read_bytes())
+    del state["imitating"]["shots"]  # as in an older version
+    uncounted.write_bytes(pickle.dumps(state))
+    assert "start the run again" in refused(train.main, "--resume", "--out", uncounted.parent)
     assert resume(tmp_path) == 0
     assert np.array_equal(weights(tmp_path), weights(finished))
     shots = results(finished)["simulated_shots"]
