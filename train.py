@@ -33,7 +33,7 @@ from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 
-from commands.lifecycle import command, needs, of_disk
+from commands.lifecycle import command, needs, of_disk, python
 
 with needs("train.py"):
     import sb3_contrib  # noqa: F401 - imported here so that a missing package is reported before anything starts
@@ -360,6 +360,13 @@ def trained_parts(recipe, model, seconds, imitation):
     ]
 
 
+def simulated(model, imitation):
+    """All simulated shots of the training, those of the weights it began with too; None: not known."""
+    parts = [model.num_timesteps]
+    parts += [one.get("simulated_shots") for one in (*imitation[-1:], model.start) if one]
+    return None if None in parts else sum(parts)
+
+
 def judge(out, settings, recipe, model, callback, imitation, part_of):
     """Play held-out visits, write the model and every figure, print the conclusion."""
     steps, parts = model.num_timesteps, trained_parts(recipe, model, callback.seconds_before, imitation)
@@ -378,6 +385,7 @@ def judge(out, settings, recipe, model, callback, imitation, part_of):
         "command": command_of(settings),
         "settings": asdict(settings),
         "steps": steps,
+        "simulated_shots": simulated(model, imitation),
         "seconds": sum(part["seconds"] for part in parts),
         "parts": parts,
         "start": model.start,
@@ -389,8 +397,9 @@ def judge(out, settings, recipe, model, callback, imitation, part_of):
     print(f"Curves: tensorboard --logdir {out / 'tb'}")
 
 
-def report(out, results, learned, figures, best, noise):
-    """Write and print what a run has brought, and how the player ``best`` is seen under these errors."""
+def report(out, results, learned, figures, best, noise, without=""):
+    """Write and print what a run has brought, and how the player ``best`` is seen under these errors; ``without``:
+    what its simulated shots do not hold."""
     results |= {"learned": learned, "evaluation": figures, "versions": software()}
     results |= {"git_commit": commit(), "processors": os.cpu_count()}
     write_atomic(out / "results.json", text := json.dumps(results, indent=1).encode())
@@ -399,8 +408,11 @@ def report(out, results, learned, figures, best, noise):
     # half of the longest break: other visits than those of the evaluation are played to find it
     points = figures["planner" if "planner" in figures else "trained"]["longest_break"] // 2
     words = ["--agent", best, "--noise", str(noise), "--at-least", str(points)]
-    watch = shlex.join(["python", "-m", "snooker_env.watch", *words])
-    print(f"{learned}\nFigures: {out / 'results.json'}\nWatch a break:  {watch}")
+    watch = shlex.join([python(), "-m", "snooker_env.watch", *words])
+    shots = results["simulated_shots"]
+    known = "not known" if shots is None else f"{shots:,}"
+    print(f"{learned}\nAll simulated shots of the training{without}: {known}.")
+    print(f"Figures: {out / 'results.json'}\nWatch a break:  {watch}")
 
 
 def strokes_of(parser, given, rest):
@@ -465,10 +477,12 @@ def train_strokes(parser, given, rest, settings):
                 "command": shlex.join(["python", "train.py", *settings.words()]),
                 "settings": asdict(settings),
                 "steps": training.shots,
+                "simulated_shots": training.simulated,
                 "fit": fit,
                 "curve": training.curve,
             }
-            report(out, results, learned, figures, best, shared["noise"])
+            without = ", without those of the planner that it learned from"
+            report(out, results, learned, figures, best, shared["noise"], without)
         except KeyboardInterrupt:
             print(f"Interrupted. {go_on(out)}", file=sys.stderr)
             return 130

@@ -9,8 +9,10 @@ import errno
 import functools
 import io
 import os
+import shutil
 import sys
 import threading
+from pathlib import Path
 
 EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "rllib"}
 """The extra of pyproject.toml that brings a package which is not in [train]."""
@@ -22,6 +24,14 @@ DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 def installs(extra):
     """The line that installs an extra: a command of this repository runs in a clone."""
     return f'pip install -e ".[{extra}]"'
+
+
+def python():
+    """How a command to paste starts this interpreter: "python" if that is it, else its path, as short as may be."""
+    mine, usual = Path(sys.executable or "python"), shutil.which("python")
+    if usual and mine.parent.resolve() == Path(usual).parent.resolve() and mine.samefile(usual):
+        return "python"
+    return str(mine.relative_to(Path.cwd()) if mine.is_relative_to(Path.cwd()) else mine)
 
 
 def what_is_missing(error):

@@ -6,8 +6,8 @@
 
 The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the
 replay is written to a temporary file and opened in the browser. The cue is real. Visits are played on held-out tables, the
-seeds one after the other; --at-least takes the first of --tries visits with so many points. The same seed
-gives the same visit as ``benchmark.play_visits`` plays on that table. With --frame: a whole frame, against
+seeds one after the other; --at-least takes the first of --tries visits with so many points, else the longest. The
+same seed gives the same visit as ``benchmark.play_visits`` plays on that table. With --frame: a whole frame, against
 --opponent, with the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The
 replay shows how likely each player was to win, by the ``tactician``.
 """
@@ -28,6 +28,8 @@ from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
 from .planning import Positions
 from .players import FRAMES, VISITS, Player, decision_seeds, player
+from .players.model_options import add_model_options, of_others, options_of_words
+from .players.resolver import named
 from .replays import Replay, replay
 
 NAME = "snooker_env.watch"
@@ -75,13 +77,13 @@ def parser() -> argparse.ArgumentParser:
     add("--layout", default="held_out", help="of the tables, as for Snooker-v0")
     add("--noise", default="professional", help="execution noise")
     add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
-    what = "show the first visit with so many points"
+    what = "show the first visit with so many points, or the longest"
     add("--at-least", type=int, default=0, metavar="POINTS", help=what)
     add("--tries", type=int, default=200, help="most visits played to find it")
     add("--speed", type=float, default=1.0, help="of a film, over that of the play")
     add("--size", help="of a film, WIDTHxHEIGHT, both even")
     add("--fps", type=float, help="pictures a second of a film")
-    add("--trust", action="store_true", help="let code in a model's file run")
+    add_model_options(p)
     return p
 
 
@@ -105,24 +107,28 @@ def _film(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
-    """The environment after the visit or frame that is wanted, its seed and its players. SystemExit if there is none."""
+    """The environment after the visit or frame that is wanted, or the longest visit; its seed and its players."""
     name = args.agent or (TACTICIAN if args.frame else USUAL)
-    who = player(name, trust=args.trust)
-    label = name.rpartition(":")[2]
+    other = args.opponent or name
+    # a model of others opposite acts as it was trained to, not as the table's options say
+    names: list[str] = [name, other] if args.frame and other != name and of_others(other) else [name]
+    players = dict(zip(names, named(names, args.trust, options_of_words(args.options)), strict=True))
+    who, label = players[name], name.rpartition(":")[2]
     if args.frame:
-        other = args.opponent or name
-        options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": other, "trust": args.trust}
+        opposite = players[other] if of_others(other) else other
+        options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": opposite, "trust": args.trust}
         env = episode(who, args.seed, **options)
         both = [f"{label} A", f"{label} B"] if other == name else [label, other]
         return env, args.seed, both
-    longest = -1
+    longest, its = None, args.seed
     for seed in range(args.seed, args.seed + args.tries):
         env = episode(who, seed, layout=args.layout, noise=args.noise, cue="real")
+        if longest is None or env.points > longest.points:
+            longest, its = env, seed
         if env.points >= args.at_least:
-            return env, seed, [label]
-        longest = max(longest, int(env.points))
-    why = f"no visit of {args.at_least} points in {args.tries} tries; the longest had {longest}"
-    raise SystemExit(f"{NAME}: {why}")
+            break
+    assert longest is not None  # there is one try at least
+    return longest, its, [label]
 
 
 def _checked(args: argparse.Namespace) -> dict[str, Any]:
@@ -161,6 +167,8 @@ def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
     played = replay(env, title=title, players=names, judge=judge)
     print(*described(played), sep="\n")
     print(f"{made} in {len(played)} strokes ({where})")
+    if env.points < args.at_least:
+        print(f"No visit of {args.at_least} points in {args.tries} tries: this one is the longest.")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
     played.save(file, **film)
     print(f"written: {file}", flush=True)

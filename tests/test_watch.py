@@ -58,8 +58,19 @@ def test_the_first_visit_that_is_long_enough_is_taken(capsys):
     for earlier in range(HELD_OUT_SEED, seed):
         options = {"layout": "held_out", "noise": "club", "cue": "real"}
         assert watch.episode(player("ghost_ball"), earlier, **options).points < 1
-    with pytest.raises(SystemExit, match="no visit of 140 points in 3 tries"):
-        watch.main([*SHORT, "--at-least", "140", "--tries", "3"])
+
+
+def test_the_longest_visit_is_shown_where_none_is_long_enough(tmp_path, capsys):
+    seeds, out = range(HELD_OUT_SEED, HELD_OUT_SEED + 6), tmp_path / "visit.json"
+    options = {"layout": "held_out", "noise": "club", "cue": "real"}
+    points = [watch.episode(player("ghost_ball"), seed, **options).points for seed in seeds]
+    assert 0 < max(points) > points[0]
+    assert watch.main([*SHORT, "--at-least", "140", "--tries", "6", "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert (
+        f"table {seeds[int(np.argmax(points))]}, " in said and f"ghost_ball: {max(points)} points in " in said
+    )
+    assert "No visit of 140 points in 6 tries: this one is the longest." in said and out.is_file()
 
 
 def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
@@ -91,6 +102,8 @@ def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
         ("--out a.gif --fps 0", "fps"),
         ("--layout nowhere", "layout"),
         ("--noise loud", "noise"),
+        ("--options aim=target", "options = {'aim': 'target'}: must be left out"),
+        ("--options aim", "options = 'aim': must be KEY=VALUE"),
     ],
 )
 def test_wrong_arguments_are_named(wrong, words, tmp_path, monkeypatch, capsys):

@@ -10,11 +10,11 @@ from commands.physics_option import physics_text
 from snooker_env import Options, player, players
 from snooker_env.checks import integer, number, refuse
 from snooker_env.players import SeenPlayer
+from snooker_env.players.model_options import options_of_words
 from snooker_env.players.resolver import is_name
 from snooker_env.players.saved import saved_player
 from snooker_env.tasks.saved_models import SavedModel
 
-from ..learning.hyperparameters import ACTION_OPTIONS, value_of
 from ..learning.model_files import Trained
 from ..learning.models import POLICY, PRETRAINED, file_of, pretrained
 from ..players.trained import read_model
@@ -33,7 +33,7 @@ class Entrant:
     trust: bool = False
     """May code in its files run? Models of Stable-Baselines3 that train.py did not make need it."""
     options: tuple = ()
-    """How the actions of such models are read: (key, value) of ``hyperparameters.ACTION_OPTIONS``."""
+    """How the actions of such models are read: (key, value) of ``model_options.KEYS``."""
 
     @classmethod
     def of(cls, text, trust=False, options=()):
@@ -106,30 +106,9 @@ class Entrant:
         }
 
 
-def options_of(changes):
-    """What the "key=value" of --options say, as ``Entrant.options``. Raises ValueError."""
-    chosen = {}
-    for change in changes:
-        key, equals, value = change.partition("=")
-        if not equals or key not in ACTION_OPTIONS or key in chosen:
-            keys = f"KEY once each of {', '.join(ACTION_OPTIONS)}"
-            raise refuse("options", change, f"must be KEY=VALUE, {keys}")
-        chosen[key] = value_of(value)
-    Options(**chosen)  # makes sure of the values
-    return tuple(chosen.items())
-
-
-def add_models(p):
-    """Add ``--trust`` and ``--options`` to a parser."""
-    trusted = "run the pickled code in models of Stable-Baselines3 that train.py did not make"
-    p.add_argument("--trust", action="store_true", help=trusted)
-    how = "how the actions of such models are read, for example aim=target"
-    p.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
-
-
 def entrants_of(texts, args, field):
     """The entrants of a command line, with labels of their own and readable models. Raises ValueError."""
-    options = options_of(args.options)
+    options = tuple(options_of_words(args.options).items())
     entrants = [Entrant.of(text, args.trust, options) for text in texts]
     labels = [entrant.label for entrant in entrants]
     for entrant in entrants:

@@ -5,13 +5,13 @@ several training seeds.
     python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against "pots only" \\
         --json agents/results/main.json --markdown agents/results/main.md --picture
     python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/ref-*" --fidelity fast reference
-    python -m agents.evaluate --agent search_2000 --visits 50 --layouts held_out --noise professional
+    python -m agents.evaluate --agent search_2000 --visits 50 --noise professional
 
 Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that
-are never used in training, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every
-agent plays under every value of --noise, --fidelity, --physics and --cue, so agents that were trained under A and B
-make a table of A against B. (The aim of a discrete choice is solved with the physics that is played.) Results
-for the leaderboard are made by ``python -m snooker_env.benchmark`` instead.
+are never used in training, no two of them equal or mirrored; --layouts names others. Every agent plays under
+every value of --noise, --fidelity, --physics and --cue, so agents that were trained under A and B make a table
+of A against B. (The aim of a discrete choice is solved with the physics that is played.) Results for the
+leaderboard are made by ``python -m snooker_env.benchmark`` instead.
 
 An agent is a ``NAME`` (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH,PATH,... with
 one PATH for each training seed (a PATH may be a pattern), or MODULE:CLASS for a player of your own, whose
@@ -41,20 +41,21 @@ with needs("agents.evaluate"):
     from snooker_env.benchmark import HELD_OUT_SEED, RESAMPLES, counts, play_visits, tables_of
     from snooker_env.checks import choice, integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
+    from snooker_env.players.model_options import add_model_options
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 
     from ..cluster.job import ClusterError, Here, ended, in_order
     from ..cluster.keep import Keep, digest_of
     from ..cluster.ray_cluster import add_ray, checked_ray, place, software
-    from .entrants import Entrant, add_models, entrants_of
+    from .entrants import Entrant, entrants_of
     from .metrics import EntrantMetrics
-    from .report import AXES, PICTURE, main_condition, markdown, parts
+    from .report import AXES, PICTURE, main_condition, markdown, parts, verdict
     from .travel import sent
     from .visits import joined, parts_of
 
-PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
-"""Visits on each layout."""
+LAYOUT, VISITS, OTHERS = "held_out", 2000, 500
+"""The layout of an evaluation and its visits, and the visits on others that are asked for."""
 NOISES = ("none", "professional", "amateur", "club")
 REFERENCE = "ghost_ball"
 
@@ -118,11 +119,11 @@ def parser():
     what = "NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... "
     what += f"or MODULE:CLASS; NAME: {', '.join(snooker_env.players())}"
     add("--agent", nargs="+", required=True, metavar="AGENT", help=what)
-    add_models(p)
+    add_model_options(p)
     what = f"agents to compare the others with [{REFERENCE}]"
     add("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=what)
-    usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
-    add("--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]")
+    what = f"LAYOUT or LAYOUT=VISITS [{LAYOUT}={VISITS}; others {OTHERS} visits]"
+    add("--layouts", nargs="+", default=[LAYOUT], metavar="LAYOUT", help=what)
     add("--visits", type=int, help="so many on every layout, for a quick trial or a slow player")
     add("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
     what = "fast, standard, reference or euler:N [standard]"
@@ -160,7 +161,7 @@ def checked(args):
     for text in args.layouts:
         name, _, n = text.partition("=")
         plan_of(name)
-        visits = args.visits if args.visits is not None else n or PROTOCOL.get(name, PROTOCOL["line_up"])
+        visits = args.visits if args.visits is not None else n or (VISITS if name == LAYOUT else OTHERS)
         if isinstance(visits, str) and not visits.isdecimal():
             raise refuse("layouts", text, "must be LAYOUT or LAYOUT=VISITS")
         sizes[name] = integer("visits", int(visits), 2, 2**20)
@@ -169,7 +170,7 @@ def checked(args):
         for value in values:
             check(value)
     integer("resamples", args.resamples, 100, 10**6)
-    if args.picture and "held_out" not in sizes:
+    if args.picture and LAYOUT not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
     checked_ray(args.ray)
     for name in ("json", "markdown", "picture"):
@@ -289,5 +290,6 @@ def write(report, shown, args):
     for name, file in files.items():
         if file:
             print(f"{name}: {file}")
+    show(verdict(report))
     if failed:
         raise SystemExit(f"agents.evaluate: {'; '.join(failed)}")

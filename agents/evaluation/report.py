@@ -82,6 +82,13 @@ def main_condition(report):
     }
 
 
+def verdict(report):
+    """The points of each agent in the main condition, as one sentence; none if that was not played."""
+    at = main_condition(report)
+    made = [f"{row['agent']} {_pm(row['figures']['points_a_visit'])}" for row in _picked(report, **at)]
+    return [f"Points a visit on {at['layout']}, noise {at['noise']}: {', '.join(made)}."] if made else []
+
+
 def _listed(words):
     """Words as a sentence lists them."""
     *others, last = map(str, words)

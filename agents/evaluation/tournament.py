@@ -30,12 +30,13 @@ with needs("agents.tournament"):
     from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
     from snooker_env.checks import choice, integer, refuse
     from snooker_env.players import FRAMES
+    from snooker_env.players.model_options import add_model_options
     from snooker_env.progress import Progress
 
     from ..cluster.job import ClusterError, Part, ended
     from ..cluster.ray_cluster import add_ray, checked_ray, place
     from . import tournament_play
-    from .entrants import add_models, entrants_of
+    from .entrants import entrants_of
     from .tournament_figures import ANCHOR_ELO, PRIOR, schedule
     from .tournament_file import faults, kept, result_of, seeds_of
     from .tournament_play import CHUNK, TABLES, drawn
@@ -72,7 +73,7 @@ def parser():
     what = f"the player whose Elo is {ANCHOR_ELO:.0f} [{ANCHOR}, else the first]"
     p.add_argument("--anchor", metavar="LABEL", help=what)
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
-    add_models(p)
+    add_model_options(p)
     p.add_argument("--threads", type=int, help="threads that play the tables [one for each core]")
     add_ray(p)
     p.add_argument("--out", type=Path, metavar="FILE", help="write every frame and figure here, as JSON")

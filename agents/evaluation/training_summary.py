@@ -94,10 +94,10 @@ def _of_the_planner(figures):
     shots = f"with {BUDGET} simulated shots a decision the planner makes {points}"
     if _better(learned, rule):
         times = learned["points_a_visit"] / rule["points_a_visit"]
-        return f" Its value and its proposals are worth {times:.2f} times a rule by hand: {shots}."
+        return f" Its value and its proposals are worth {times:.2f} times a hand-written rule: {shots}."
     unsure = f"are not shown by {learned['visits']} visits to be worth more than"
     how = "are worth less than" if _better(rule, learned) else unsure
-    return f" Its value and its proposals {how} a rule by hand: {shots}."
+    return f" Its value and its proposals {how} a hand-written rule: {shots}."
 
 
 def show(figures):

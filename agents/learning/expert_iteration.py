@@ -83,7 +83,7 @@ class ExpertIteration:
         self._starts = Starts(seed, tables.options.layout, options)
         self._value = ValueLearning(model.policy.position_value, search.spread, self._n, self._rng)
         self._choices = JudgedChoices(model.policy, options, threads, self._n, self._rng, self._where)
-        self.done, self.curve, self._seconds = 0, [], 0.0
+        self.done, self.curve, self._seconds, self._shots = 0, [], 0.0, 0
         if before is None:
             venv.seed(seed)
         venv.reset()  # the tables wait for PPO; of a resumed run this takes the state that they were given
@@ -95,6 +95,7 @@ class ExpertIteration:
             self._value.set_state(before["value"])
             self._choices.set_state(before["choices"])
             self.done, self.curve, self._seconds = (before[name] for name in ("done", "curve", "seconds"))
+            self._shots = before["shots"]
         self._began = time.perf_counter()
 
     @property
@@ -105,7 +106,7 @@ class ExpertIteration:
     def get_state(self):
         """The state, beside the model and the process's random generators; most of it are positions."""
         made = {name: getattr(self, name) for name in ("done", "curve", "seconds")}
-        made |= {"rng": self._rng.bit_generator.state, "at": positions_given(self._at)}
+        made |= {"rng": self._rng.bit_generator.state, "at": positions_given(self._at), "shots": self._shots}
         return made | {"value": self._value.get_state(), "choices": self._choices.get_state()}
 
     def round(self):
@@ -123,7 +124,8 @@ class ExpertIteration:
         if self.done > hand:
             self._value.fit(remaining)
         if self.done * 20 // self.states > len(self.curve):
-            self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), **self._figures()})
+            so_far = {"states": self.done, "simulated_shots": self._shots + self._choices.shots}
+            self.curve.append({**so_far, "seconds": round(self.seconds, 1), **self._figures()})
 
     def _figures(self):
         """Mean losses of the last gradient steps, and the points that the value expects; None before any."""
@@ -154,6 +156,7 @@ class ExpertIteration:
         ]
         played = self._where.map("agents.learning.self_play:strokes", self._sent, slices)
         made = {name: np.concatenate([one[name] for one in played]) for name in played[0]}
+        self._shots += int(made["simulated"].sum())
         follows = made["follows"]
         self._value.add(made["seen"], made["after"], made["points"], made["goes_on"], follows & ~explored)
         # a visit keeps its table

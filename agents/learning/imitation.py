@@ -18,6 +18,7 @@ from collections import deque
 import numpy as np
 import torch
 
+from snooker_env.benchmark import simulated
 from snooker_env.planning import Positions, spread_of
 
 from ..cluster.job import Here
@@ -45,6 +46,8 @@ class Expert:
         rules, options = tables.options.rules, {name: getattr(tables.options, name) for name in USED}
         self._sent = {"run": uuid.uuid4().hex, "options": options, "ahead": ahead}
         self._sent["spread"] = spread_of(rules.noise, rules.physics)
+        self.shots = 0
+        """Simulated so far."""
 
     def worth(self, picks, valid):
         """Values [points] of the ``valid`` choices among ``picks`` (n, k), each simulated once; else 0."""
@@ -52,7 +55,8 @@ class Expert:
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         worth, at = np.zeros(picks.shape, np.float32), Positions.of(self._tables)
         chosen = row, picks[row, column], keys
-        worth[row, column] = judged(self._where, self._sent, at, *chosen, task="trials", of="worth")
+        worth[row, column], shots = judged(self._where, self._sent, at, *chosen, task="trials", of="worth")
+        self.shots += shots
         return worth
 
 
@@ -88,6 +92,7 @@ class Imitation:
             self.done, self.curve = before["done"], before["curve"]
             self._kept, self._seconds = before["kept"], before["seconds"]
             self._losses.extend(before["losses"])
+            self._expert.shots = before["shots"]
         self._seen = venv.reset()
         self._began = time.perf_counter()
 
@@ -100,7 +105,7 @@ class Imitation:
         """The state beside model, tables and random generators; most of it is the buffer of positions."""
         made = {name: getattr(self, name) for name in ("done", "curve", "seconds")}
         made |= {"kept": self._kept, "losses": list(self._losses), "rng": self._rng.bit_generator.state}
-        return made | {"optimizer": self._optimizer.state_dict()}
+        return made | {"optimizer": self._optimizer.state_dict(), "shots": self._expert.shots}
 
     @property
     def figures(self):
@@ -125,12 +130,15 @@ class Imitation:
             rounds = self._rng.integers(len(self._kept), size=max(1, BATCH // n))
             batch = (np.concatenate(column) for column in zip(*(self._kept[i] for i in rounds), strict=True))
             self._losses.append(fit_values(policy, self._optimizer, *batch))
+        before = simulated()
         self._seen, _, _, infos = self._venv.step(np.where(masks, scores, -np.inf).argmax(1))
+        self._expert.shots += simulated() - before
         self._points.extend(info["episode"]["r"] for info in infos if "episode" in info)
         self.done += n
         if self.done * 20 // self.states > len(self.curve):
             loss = round(float(np.mean(self._losses)), 3)
-            self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), "loss": loss})
+            so_far = {"states": self.done, "simulated_shots": self._expert.shots}
+            self.curve.append({**so_far, "seconds": round(self.seconds, 1), "loss": loss})
 
 
 def round_of(done, total, n):

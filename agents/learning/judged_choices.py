@@ -22,14 +22,16 @@ _PARTS = 4
 
 
 class JudgedChoices:
-    """Fits ``policy`` to values of choices in rounds of n positions; ``where`` simulates each choice once."""
+    """Fits ``policy`` to values of choices in rounds of n positions; ``where`` simulates each choice once.
+
+    ``shots``: simulated so far."""
 
     def __init__(self, policy, options, threads, n, rng, where=None):
         self._policy, self._rng, self._n, self._where = policy, rng, n, where or Here(threads)
         self._sent, self._cue = {"run": uuid.uuid4().hex, "options": options}, options.get("cue", "free")
         learned = [p for name, p in policy.named_parameters() if not name.startswith("position_value.")]
         self._optimizer, self._rounds = torch.optim.Adam(learned, RATE), []
-        self.losses = deque(maxlen=100)
+        self.losses, self.shots = deque(maxlen=100), 0
 
     def round(self, at, value, remaining):
         """Try choices in ``Positions``, judge what they leave by ``value``, learn; ``remaining``: share."""
@@ -41,7 +43,8 @@ class JudgedChoices:
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         worths = np.zeros(picks.shape, np.float32)
         sent = self._sent | {"value": value}
-        worths[row, column] = judged(self._where, sent, at, row, picks[row, column], keys)
+        worths[row, column], shots = judged(self._where, sent, at, row, picks[row, column], keys)
+        self.shots += shots
         kept = seen, np.packbits(masks, axis=1), picks.astype(np.int16), valid, worths
         # sums depend on the layout, and a saved array comes back in this one
         self._rounds.append(tuple(map(np.ascontiguousarray, kept)))
@@ -63,11 +66,11 @@ class JudgedChoices:
 
     def get_state(self):
         """Everything but the policy."""
-        state = {"rounds": self._rounds, "losses": list(self.losses)}
+        state = {"rounds": self._rounds, "losses": list(self.losses), "shots": self.shots}
         return state | {"optimizer": self._optimizer.state_dict()}
 
     def set_state(self, state):
         """Go on from a state of ``get_state``."""
-        self._rounds = list(state["rounds"])
+        self._rounds, self.shots = list(state["rounds"]), state["shots"]
         self.losses.extend(state["losses"])
         self._optimizer.load_state_dict(state["optimizer"])

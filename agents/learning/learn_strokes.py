@@ -20,6 +20,7 @@ from torch import nn
 import snooker_env as sn
 from commands.files import write_atomic
 from commands.noise_option import noise_option
+from snooker_env.benchmark import simulated
 from snooker_env.checks import choice, integer, refuse
 from snooker_env.planning import Planner, Positions
 from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SAMPLES, SIZE, StrokeValue
@@ -238,6 +239,12 @@ class StrokeTraining:
         return sum(one["worth"].size * ERRORS for one in self.rounds)
 
     @property
+    def simulated(self):
+        """All shots that the rounds simulated, visits and the planner's decisions too; None: not known."""
+        shots = [one.get("shots") for one in self.rounds]
+        return None if any(one is None for one in shots) else int(sum(shots))
+
+    @property
     def total(self):
         """Tables of all rounds."""
         return self.settings.rounds * self.settings.tables
@@ -255,7 +262,7 @@ class StrokeTraining:
     def _round(self, progress, stop):
         one, k = self.settings, len(self.rounds)
         first = FIRST_SEED + 10_000_000 * one.seed + 100_000 * k
-        rng, parts, played_on = np.random.default_rng([one.seed, k]), [], self.done
+        rng, parts, played_on, before = np.random.default_rng([one.seed, k]), [], self.done, simulated()
         shares = (np.arange(PARTS) + rng.random(PARTS)) / PARTS
         for share, seeds in zip(
             shares, np.array_split(np.arange(first, first + one.tables), PARTS), strict=True
@@ -267,7 +274,7 @@ class StrokeTraining:
             if stop.signal is not None:
                 return
         seen, worth, table = map(np.concatenate, zip(*parts, strict=True))
-        rows = {"seen": seen, "worth": worth, "table": table}
+        rows = {"seen": seen, "worth": worth, "table": table, "shots": np.array(simulated() - before)}
         write_atomic(self._file("round"), packed(rows | {"asked": np.array(self._asked)}))
         self._learn(rows)
 

@@ -1,6 +1,7 @@
 """Where are trained models? Pre-trained ones, the model of a run's folder, and weights to start from."""
 
 import io
+import json
 from pathlib import Path
 
 from snooker_env.checks import refuse
@@ -66,7 +67,19 @@ def load_weights(model, path):
     weights = other.policy.state_dict()
     model.policy.load_state_dict({name: weights[name] for name in model.policy.state_dict()})
     model.start = {"model": str(path), "shots": other.num_timesteps}
-    model.start |= {"imitated": other.imitated, "start": other.start}
+    model.start |= {"imitated": other.imitated, "start": other.start, "simulated_shots": _simulated(path)}
+
+
+def _simulated(path):
+    """All simulated shots of the training of a run's model, by the run's figures; None: not known."""
+    file = path / "results.json" if path.is_dir() else path.with_name("results.json")
+    if not path.is_dir() and path.name != "model.zip":
+        return None
+    try:
+        shots = json.loads(file.read_text())["simulated_shots"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return shots if isinstance(shots, int) else None
 
 
 def zipped(model):

@@ -10,6 +10,7 @@ import torch
 from stable_baselines3.common.save_util import load_from_zip_file
 
 from commands.files import UNFINISHED, write_atomic
+from commands.lifecycle import python
 from commands.lock import NAME as LOCK
 from commands.lock import Lock
 from snooker_env.checks import refuse
@@ -53,7 +54,7 @@ def _check(out, resume, checkpoint):
 
 def go_on(out):
     """The command that continues the run saved there, as a sentence."""
-    return f"Continue with:  python train.py --resume --out {shlex.quote(str(out))}"
+    return f"Continue with:  {shlex.join([python(), 'train.py', '--resume', '--out', str(out)])}"
 
 
 def kept(out):
@@ -94,7 +95,7 @@ def read_checkpoint(out, settings):
         state.setdefault("imitating", state.get("teaching"))  # its name before 0.3, and later than the rest
         was = settings(**state["settings"])
         wanted = {"model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"}
-        if not state.keys() >= wanted:
+        if not state.keys() >= wanted or "shots" not in (state["imitating"] or {"shots": 0}):
             raise KeyError
     except Exception:  # any error of pickle on a file of another kind
         raise stale(out) from None

@@ -5,11 +5,13 @@ a training does not depend on the number of workers, nor on one that dies and wh
 """
 
 from copy import copy
+from functools import wraps
 from itertools import pairwise
 
 import numpy as np
 
 from snooker_env import Options
+from snooker_env.benchmark import simulated
 from snooker_env.planning import Planner, Positions, StrokeSearch, prospects_of
 from snooker_env.planning.learned.value_features import SIZE, value_features
 
@@ -33,6 +35,19 @@ def policy_for(model, where):
     return {"recipe": model.recipe, "env_options": model.env_options, "weights": weights}
 
 
+def counted(task):
+    """The task, whose result also has "simulated" (1,): the shots that it has simulated."""
+
+    @wraps(task)
+    def run(shared, args, threads):
+        before = simulated()
+        made = task(shared, args, threads)
+        return made | {"simulated": np.array([simulated() - before])}
+
+    return run
+
+
+@counted
 def strokes(shared, args, threads):
     """The task: the best stroke of each position under fresh noise samples, and where play goes on.
 
@@ -67,6 +82,7 @@ def strokes(shared, args, threads):
     return made | {"on_table": left.on_table, "game": left.game}
 
 
+@counted
 def choices(shared, args, threads):
     """The task: discrete choices' points and the value of what they leave, each simulated once.
 
@@ -80,6 +96,7 @@ def choices(shared, args, threads):
     return {"gains": gains}
 
 
+@counted
 def trials(shared, args, threads):
     """The task: what choices are worth by the search's rule of thumb, each simulated once, "worth" (k,).
 
@@ -97,14 +114,15 @@ def in_slices(n):
 
 
 def judged(where, shared, at, rows, picks, keys, task="choices", of="gains"):
-    """What a task says of choices in the sorted ``rows`` (k,): ``choices`` "gains", ``trials`` "worth"."""
+    """What a task says of choices in the sorted ``rows`` (k,): ``choices`` "gains", ``trials`` "worth"; and the
+    shots simulated for it."""
     many, cut = [], in_slices(len(at))
     ends = np.searchsorted(rows, [0, *(one.stop for one in cut)]).tolist()
     for one, (first, end) in zip(cut, pairwise(ends), strict=True):
         its = {"picks": picks[first:end], "keys": keys[first:end]}
         many.append({"at": positions_given(at[one]), "rows": rows[first:end] - one.start, **its})
     made = where.map(f"{__name__}:{task}", shared, many)
-    return np.concatenate([one[of] for one in made])
+    return np.concatenate([one[of] for one in made]), sum(int(one["simulated"][0]) for one in made)
 
 
 def search_of(shared, threads):

@@ -9,6 +9,8 @@ from typing import Any
 
 from ..planning import Position
 from ..players import players
+from ..players.model_options import add_model_options, options_of_words
+from ..players.resolver import named
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from .ask import AGENT, OF_FRAMES, advise
@@ -66,11 +68,14 @@ def _advice(argv: Sequence[str]) -> int:
     cue = "whether rails and balls are in the way of the cue (default: free)"
     parser.add_argument("--cue", choices=CUES, default="free", help=cue)
     parser.add_argument("--json", action="store_true", help="print all figures as JSON")
-    parser.add_argument("--trust", action="store_true", help="let code in a model's file run")
+    add_model_options(parser)
     args = parser.parse_args(argv)
     try:
         names = ("agent", "scores", "noise", "n", "samples", "visits", "seed", "trust")
         how: dict[str, Any] = {name: getattr(args, name) for name in names}
+        if args.options:
+            asked = [args.agent] if args.agent else []
+            (how["agent"],) = named(asked, args.trust, options_of_words(args.options))
         advice = advise(Position.load(args.position), options={"cue": args.cue}, **how)
     except (ValueError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)

@@ -16,8 +16,9 @@ from .._files import write_atomic
 from .._tables import shown, text_table
 from .._warmup import warmup
 from ..play.program import AgentError
+from ..players.model_options import add_model_options, options_of_words
 from ..progress import Progress
-from .agents import Agent, options_of_words, seated
+from .agents import Agent, seated
 from .checking import afresh, faults, replayed
 from .leaderboard import lines, page, profile
 from .results import missing, read_result
@@ -77,9 +78,7 @@ def _agent(p: argparse.ArgumentParser, required: bool) -> None:
     """Arguments that name an agent."""
     what = 'a name, a .zip of Stable-Baselines3, LABEL=ZIP,ZIP (training seeds), MODULE:CLASS or program:"COMMAND"'
     p.add_argument("--agent", required=required, help=what)
-    how = "how a model's actions are read, as aim=target"
-    p.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
-    p.add_argument("--trust", action="store_true", help="run the pickled code in a model's file")
+    add_model_options(p)
     how = "seconds that a program has for a stroke (default: 60)"
     p.add_argument("--timeout", type=float, default=60.0, help=how)
 
@@ -138,11 +137,8 @@ def _run(args: Any) -> int:
             raise refuse("out", str(file), f"must be a new file; {how}")
         if args.episodes is not None:
             integer("episodes", args.episodes, 2, task.episodes)
-        with seated(agent, task, 0) as player:
-            seen = getattr(player, "sees", {})
-        if task is tasks[0] and agent.texts[0].endswith(".zip") and not {"action", "aim"} & set(seen):
-            assumed = 'aim=absolute is assumed, as in Snooker-v0: give "--options aim=target" to a model trained with that'
-            print(assumed, file=sys.stderr)
+        with seated(agent, task, 0):
+            pass
     for file in files:
         file.parent.mkdir(parents=True, exist_ok=True)
     warmup()

@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .._check import choice, integer, number, refuse
+from .._check import integer, number, refuse
 from ..play.program import ProgramPlayer
 from ..players import Player
 from ..players import player as player_named
+from ..players.model_options import LEFT_OUT, checked
 from ..players.resolver import PROGRAM, RENAMED, is_name
-from ..players.saved import saved_player
 from ..players.weights import levels
 from .playing import BATCH
 from .schema import LABEL
-from .tasks import FREE, Task
+from .tasks import Task
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,8 +29,8 @@ class Agent:
         Its name in tables, 1 to 20 letters, digits or . + - _; and for each training seed what ``sn.player``
         makes a player of.
     options, trust : dict, bool
-        Options of ``FREE`` with which the actions of models of Stable-Baselines3 are read, and whether code
-        in models may run.
+        How the actions of models of Stable-Baselines3 are read, and whether code in models may run, as of
+        ``sn.player``.
     timeout : float
         The longest time of a program for one stroke [s].
     training_shots, shots_declared : int, optional
@@ -84,8 +84,8 @@ class Agent:
             if shots is not None:
                 integer(name, shots, 0, 2**53)
         number("timeout", made.timeout, 0.0, 1e6, open_low=True)
-        if made.options and any(is_name(text) for text in made.texts):
-            raise refuse("options", made.options, "must be left out: it is for models of Stable-Baselines3")
+        if checked(made.options) and any(is_name(text) for text in made.texts):
+            raise refuse("options", made.options, LEFT_OUT)
         if training_shots is None and made.known:
             shots = getattr(player_named(sources[0]), "training_shots", None)
             object.__setattr__(made, "training_shots", shots)
@@ -117,8 +117,7 @@ class Agent:
         source = self.sources[run]
         if self.program and isinstance(source, str):
             return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)
-        made = saved_player(Path(source), self.options, self.trust) if self.options else None
-        made = made or player_named(source, trust=self.trust)
+        made = player_named(source, trust=self.trust, options=self.options)
         if getattr(made, "frames", False) and not task.frame:
             raise refuse("player", source, "must see visits to play them: it sees frames")
         made.at(task.judged())
@@ -160,19 +159,6 @@ def is_reserved(label: str, sources: Sequence[str]) -> bool:
     """Whether the label is, or looks like, the name of a known player that these sources are not."""
     alike = re.sub("[.+-]", "_", label.lower()).strip("_")  # what a reader would take for it
     return (is_known(label) or is_known(alike)) and [present(one) for one in sources] != [present(label)]
-
-
-def options_of_words(words: Sequence[str]) -> dict[str, Any]:
-    """Options from words like "aim=target" and "placement=True"; ValueError for others."""
-    options: dict[str, Any] = {}
-    for word in words:
-        name, equals, value = word.partition("=")
-        if not equals or name not in FREE or name in options:
-            raise refuse("options", word, f"must be KEY=VALUE, KEY once each of {', '.join(FREE)}")
-        options[name] = value
-        if name in ("elevation", "placement", "decision"):
-            options[name] = choice(f"options.{name}", value.capitalize(), ("True", "False")) == "True"
-    return options
 
 
 def _label(source: Any) -> str:

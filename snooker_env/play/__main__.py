@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .._check import refuse_what
+from ..players.model_options import add_model_options, options_of_words
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 
@@ -27,7 +28,7 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     agent = """an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or
         MODULE:CLASS; the first one is your opponent (default: tactician_500); may be given more than once"""
     add("--agent", action="append", default=[], metavar="NAME", help=agent)
-    add("--trust", action="store_true", help="let code in an --agent's model file run")
+    add_model_options(parser)
     noise = "execution errors of the agent (default: %(default)s)"
     add("--noise", choices=list(LEVELS), default="professional", help=noise)
     add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
@@ -47,7 +48,7 @@ def service_of(args: argparse.Namespace) -> Any:
     """The game for the command line's arguments; ValueError or OSError if something is invalid."""
     import numpy as np
 
-    from ..players import player
+    from ..players.resolver import named
     from .routes import position_of
     from .service import OPPONENT, PERSON, Seats, Service
     from .session import Session
@@ -55,7 +56,7 @@ def service_of(args: argparse.Namespace) -> Any:
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
     session = Session(layout=args.layout, seed=seed, cue=args.cue, flight=args.flight)
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
-    players = [player(name, trust=args.trust) for name in args.agent]
+    players = named(args.agent, args.trust, options_of_words(args.options))
     agents = dict(zip(shown, players, strict=True))
     seats = Seats(agents)
     seats.sit([PERSON, next(iter(agents), OPPONENT)])
@@ -128,8 +129,8 @@ def main(argv: list[str] | None = None) -> int:
     try:
         print(f"Snooker is played at\n\n    {server.address}\n")
         print("Programs play at its api/ (documentation: The protocol). Ctrl-C ends it.", flush=True)
-        if not args.no_browser:
-            webbrowser.open(server.address)
+        if not args.no_browser and not webbrowser.open(server.address):
+            print(f"No browser was found: open {server.address} in one.", flush=True)
         server.serve_forever(poll_interval=0.2)
     except KeyboardInterrupt:
         print()

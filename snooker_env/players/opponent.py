@@ -15,8 +15,8 @@ from ..tasks.carry_out import carry_out
 from ..tasks.frame import Frames, Opponent
 from ..tasks.opponents import SIDE, drawn
 from ..tasks.options import Options
-from ..tasks.saved_models import by_train, entries
 from ..tasks.stroke import ShotBuffers
+from .model_options import of_others
 from .player import Player, Strokes
 from .resolver import player as player_of
 from .saved import FittingModel, SavedNetwork
@@ -69,7 +69,7 @@ def seated(player: Any, options: Options) -> PlayerOpponent:
 
 def _named(name: str, options: Options) -> Player:
     """The player with a name; errors say that it is the opponent's."""
-    if Path(name).suffix == ".zip" and not _of_train(name):
+    if Path(name).suffix == ".zip" and (of_others(name) or not Path(name).is_file()):
         return _model(name, options)
     try:
         return player_of(name, trust=options.trust)
@@ -79,14 +79,6 @@ def _named(name: str, options: Options) -> Player:
             raise ValueError(f"opponent = {name!r}: {text}") from error
         others = text.removeprefix("player").replace("must be one of ", "must be one of 'none', ", 1)
         raise ValueError(f"opponent{others}") from error
-
-
-def _of_train(name: str) -> bool:
-    """Whether that is a model of this repository's ``train.py``; False for what is no sound model's file."""
-    try:
-        return by_train(entries(name))
-    except Exception:  # ``SavedModel`` says what is wrong with it
-        return False
 
 
 def _model(path: str, options: Options) -> Player:

@@ -4,13 +4,14 @@ import importlib
 import importlib.util
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any
 
 from .._check import refuse, refuse_what, truth
 from .choices import GhostBall, Random
+from .model_options import LEFT_OUT, checked, of_others
 from .player import Player
 from .search import BUDGET, LEAST, MOST, SearchPlayer
 from .stroke_value import StrokeValuePlayer
@@ -55,7 +56,7 @@ def players() -> list[str]:
     return [*BUILT_IN, *(name for name in _installed() if name not in BUILT_IN)]
 
 
-def player(name: Any, *, trust: bool = False) -> Player:
+def player(name: Any, *, trust: bool = False, options: Mapping[str, Any] | None = None) -> Player:
     """Return the player with a name.
 
     Parameters
@@ -72,23 +73,34 @@ def player(name: Any, *, trust: bool = False) -> Player:
         * a player, or an object with ``options`` and ``act(observations, masks, seeds)``.
     trust : bool
         Whether code in a model's ``.zip`` may run.
+    options : dict, optional
+        How the actions of a model of Stable-Baselines3 are read, which its file does not say: "aim", "elevation",
+        "placement", "action" and, of frames, "decision", as the environment of its training had them. What is
+        left out is that of ``Snooker-v0``.
 
     Returns
     -------
     Player
         Not yet bound: ``player(name).at(options).play(positions, seeds)``. ValueError if nothing has that
-        name, the file holds no player, or it holds code and ``trust`` is False.
+        name, the file holds no player, it holds code and ``trust`` is False, its actions are not those that
+        ``options`` say, or ``options`` are given for what is no model of Stable-Baselines3.
 
     Examples
     --------
     >>> import snooker_env as sn
     >>> sn.player("ghost_ball").at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [7]).values.shape
     (1, 5)
+
+    A model that was trained with ``aim="target"``:
+
+    >>> sn.player("ppo.zip", trust=True, options={"aim": "target"})  # doctest: +SKIP
     """
     truth("trust", trust)
+    read, text = checked(options), str(name)
+    if read and (not isinstance(name, str | Path) or is_name(text)):
+        raise refuse("options", read, LEFT_OUT)
     if not isinstance(name, str | Path):
         return _of_object(name)
-    text = str(name)
     if (built_in := _built_in(text)) is not None:
         return built_in
     if text.startswith(PROGRAM):
@@ -96,7 +108,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if (entry := _installed().get(text)) is not None:
         return _of_object(_made(text, entry.load))
     if text and Path(text).exists():
-        return _of_file(Path(text), trust)
+        return _of_file(Path(text), trust, read)
     if OWN.fullmatch(text):
         module, _, maker = text.partition(":")
         return _of_object(_made(text, lambda: getattr(importlib.import_module(module), maker)))
@@ -105,6 +117,16 @@ def player(name: Any, *, trust: bool = False) -> Player:
     known = ", ".join(map(repr, players()))
     others = "MODULE:CLASS, a model's file, a run's folder or program:COMMAND"
     raise refuse("player", text, f"must be one of {known}, {others}")
+
+
+def named(names: Sequence[str], trust: bool, options: Mapping[str, Any]) -> list[Player]:
+    """The players that a command line names; ``options`` are those of the models of Stable-Baselines3 among them."""
+    models = [of_others(name) for name in names]
+    its = [options if model else None for model in models]
+    made = [player(name, trust=trust, options=one) for name, one in zip(names, its, strict=True)]
+    if options and not any(models):
+        raise refuse("options", dict(options), LEFT_OUT)
+    return made
 
 
 def is_name(text: str) -> bool:
@@ -170,6 +192,8 @@ def _of_object(thing: Any) -> Player:
 
         return SeenPlayer(thing, dict(getattr(thing, "options", {})), type(thing).__name__)
     allowed = "must be a player: at(rules) and play(positions, seeds), or act(observations, masks, seeds)"
+    if callable(getattr(thing, "predict", None)):  # a model of Stable-Baselines3, or one like it
+        allowed += "; wrap its predict in act(observations, masks, seeds)"
     raise refuse_what("player", f"a {type(thing).__name__}", allowed)
 
 
@@ -181,14 +205,16 @@ def _read(path: Path) -> Any:
     return None
 
 
-def _of_file(path: Path, trust: bool) -> Player:
+def _of_file(path: Path, trust: bool, options: dict[str, Any]) -> Player:
     """The player of a model's file or a run's folder."""
     made = _read(path)
-    if made is not None:
-        return _of_object(made)
-    from .saved import saved_player
+    if made is None:
+        from .saved import saved_player
 
-    return saved_player(path, {}, trust)
+        return saved_player(path, options, trust)
+    if options:
+        raise refuse("options", options, f"{LEFT_OUT}, and {path} says itself how its actions are read")
+    return _of_object(made)
 
 
 def _strokes(name: str, path: Path) -> Any:

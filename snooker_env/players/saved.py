@@ -12,6 +12,7 @@ from ..tasks.declarations import SAYS
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options
 from ..tasks.saved_models import SavedModel, by_train, entries, one_thread, outline
+from .model_options import say_assumed
 from .seen import SeenPlayer
 
 _VIEW = "must be a model trained on the observation of a visit or a frame, and nothing else"
@@ -55,7 +56,7 @@ class FittingModel:
 
     def network(self, trust: bool) -> Any:
         """Load its policy: the code in its pickles runs. ValueError without ``trust``."""
-        network = self.saved.network(trust, "trust=True")
+        network = self.saved.network(trust, "trust=True, or --trust on the command line")
         same_view = outline(network.observation_space) == self.saved.observation
         if not same_view or network.action_space != self.actions:
             raise self.saved.refused("must be a model whose spaces are those that its file describes")
@@ -90,7 +91,8 @@ class SavedNetwork:
 
 
 def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = "player") -> SeenPlayer:
-    """The player of a model's ``.zip``; ValueError for other files and for those of ``train.py``."""
+    """The player of a model's ``.zip``, with ``options`` of ``model_options``; ValueError for other files and for
+    those of ``train.py``."""
     try:
         ours = path.is_dir() or by_train(entries(path))
     except Exception as error:
@@ -100,4 +102,7 @@ def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = 
             "must be read in a clone of the repository, without options: it is a model or a run of train.py"
         )
         raise refuse(field, str(path), words)
-    return SeenPlayer(SavedNetwork(FittingModel.of(path, options, field), trust), name=str(path))
+    model = FittingModel.of(path, options, field)
+    made = SeenPlayer(SavedNetwork(model, trust), name=str(path))
+    say_assumed(path, model.options)
+    return made

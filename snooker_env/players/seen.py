@@ -166,7 +166,7 @@ class SeenPlayer(BoundPlayer):
                 raise refuse_what("actions", f"array of shape {actions.shape}", allowed)
             return rules.actions.check_many(actions, n)
         except ValueError as error:
-            raise ValueError(f"player {self.name}: {error}") from None
+            raise ValueError(f"player {self.name}: act(...) returned {error}") from None
 
 
 def _conditions_known(at: Positions, rules: Rules) -> Floats:

@@ -43,9 +43,9 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
     assert {p.name for p in out.iterdir()} == {"checkpoint.pkl", "model.zip", "results.json", "tb"}
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
-    names = "command settings steps seconds parts start learned evaluation curve imitation"
+    names = "command settings steps simulated_shots seconds parts start learned evaluation curve imitation"
     assert sorted(found) == sorted(f"{names} versions git_commit processors".split())
-    assert found["settings"]["agent"] == agent and found["steps"] == 512
+    assert found["settings"]["agent"] == agent and found["steps"] == 512 == found["simulated_shots"]
     (part,) = found["parts"]
     assert (part["part"], part["unit"], part["amount"]) == (agent.partition("_")[0].upper(), "shots", 512)
     assert part["seconds"] == found["seconds"] and part["per_second"] == pytest.approx(512 / found["seconds"])
@@ -119,6 +119,8 @@ def test_it_says_in_a_pipe_what_it_does(tmp_path, capsys, monkeypatch):
     found = results(tmp_path / "run")
     amounts = [(part["part"], part["amount"], part["unit"]) for part in found["parts"]]
     assert amounts == [("imitation", 64, "positions"), ("PPO", 256, "shots")]
+    tried = found["simulated_shots"] - 64 - 256  # every position is played on, too
+    assert 24 * 64 < tried <= 48 * 64
     seconds = [part["seconds"] for part in found["parts"]]
     assert found["seconds"] == pytest.approx(sum(seconds)) and seconds[1] > 0
     assert seconds[0] == pytest.approx(found["imitation"][-1]["seconds"])
@@ -300,7 +302,8 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
     assert run(tmp_path / "run", "--start", start, "--set", "learning_rate=0.0") == 0
     assert np.array_equal(weights(tmp_path / "run"), weights(finished / "ppo_mask"))
     found = results(tmp_path / "run")
-    assert found["start"] == {"model": start, "shots": 512, "imitated": 0, "start": None}
+    begun = {"model": start, "shots": 512, "imitated": 0, "start": None, "simulated_shots": 512}
+    assert found["start"] == begun and found["simulated_shots"] == 1024
     assert found["learned"].startswith(f"With 512 shots of training on top of the 512 of {start}, ppo_mask ")
     for agent in ("ppo_value", "ppo_target"):
         error = refused(train.main, *TINY, "--out", tmp_path / "other", "--agent", agent, "--start", start)

@@ -19,6 +19,29 @@ def python(*arguments, stdout=subprocess.PIPE, **variables):
     return subprocess.run(command, cwd=ROOT, env=os.environ | variables, timeout=300, **pipes)
 
 
+@pytest.mark.parametrize("below", [True, False])
+def test_a_command_to_paste_starts_the_python_that_runs(tmp_path, monkeypatch, below):
+    """As "python" if that is it, else by its path."""
+    mine, other = (tmp_path / name / "bin" for name in (".venv", "other"))
+    for folder in (mine, other):
+        folder.mkdir(parents=True)
+        (folder / "python").symlink_to(sys.executable)  # as in virtual environments of one installation
+    monkeypatch.setattr(sys, "executable", str(mine / "python"))
+    monkeypatch.chdir(tmp_path if below else other)
+    for first, said in ((mine, "python"), (other, ".venv/bin/python" if below else str(mine / "python"))):
+        monkeypatch.setenv("PATH", f"{first}{os.pathsep}{os.environ['PATH']}")
+        assert lifecycle.python() == said
+    monkeypatch.setenv("PATH", "")
+    assert lifecycle.python().endswith(".venv/bin/python")
+
+
+def test_the_package_lists_its_commands():
+    said = python("-m", "snooker_env").stdout
+    assert [
+        f"python -m snooker_env.{name} " in said for name in ("watch", "play", "advice", "benchmark")
+    ] == [True] * 4
+
+
 def without(package, target, *arguments):
     """A command where a package is not installed: train.py, or a module of agents."""
     start = "run_path('train.py'" if target == "train.py" else f"run_module({target!r}"

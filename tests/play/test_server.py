@@ -247,6 +247,23 @@ def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     assert "Traceback" not in out
 
 
+@pytest.mark.parametrize("found", [True, False])
+def test_a_browser_that_is_not_found_is_said_with_the_address(found, monkeypatch, capsys):
+    from snooker_env.play import __main__ as command
+
+    def end(self, **_):
+        raise KeyboardInterrupt
+
+    opened = []
+    monkeypatch.setattr(command, "warm_up", lambda service: None)
+    monkeypatch.setattr(command.webbrowser, "open", lambda address: opened.append(address) or found)
+    monkeypatch.setattr("snooker_env.play.server.PlayServer.serve_forever", end)
+    assert main(["--seed", "1"]) == 0
+    said = capsys.readouterr().out
+    assert (f"No browser was found: open {opened[0]} in one." in said) is not found
+    assert opened[0].startswith("http://127.0.0.1:") and opened[0] in said.split("\n\n")[1]
+
+
 @pytest.mark.parametrize(
     ("agents", "other"), [([], "tactician_500"), (["ghost_ball", "random"], "ghost_ball")]
 )
@@ -263,6 +280,7 @@ def test_the_first_agent_or_the_tactician_sits_opposite(agents, other):
         (["--position", "nowhere.json"], "nowhere.json"),
         (["--layout", "x"], "layout = 'x'"),
         (["--agent", "nobody"], "player = 'nobody'"),
+        (["--options", "aim=target"], "options = {'aim': 'target'}: must be left out"),
         (["--position", str(ROOT / "pyproject.toml")], "must be a file of JSON"),
         (["--port", "99999"], "port"),
         (["--seed", "-1"], "seed = -1"),

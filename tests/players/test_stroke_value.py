@@ -72,6 +72,9 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
     assert f"python -m snooker_env.watch --agent stroke_value@{whole / 'strokes.npz'}" in said
     results = json.loads((whole / "results.json").read_text())
     assert set(results["evaluation"]) == {"trained", "ghost_ball", "random"}
+    # the strokes that were tried, those that were played, and the planner's decisions on half of the first tables
+    assert results["steps"] < results["simulated_shots"] <= results["steps"] + 8 * 8 * 60 + 2 * 16 * 8
+    assert f"without those of the planner that it learned from: {results['simulated_shots']:,}." in said
     repeated = ["--agent", "stroke_value", "--seed", "3", "--set", "rounds=2", "tables=16"]
     assert shlex.split(results["command"]) == ["python", "train.py", *repeated]
     shutil.copytree(whole, parts)
@@ -79,7 +82,8 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
         (parts / name).unlink()  # as if it had been interrupted between the first round and its fit
     assert train.main(["--resume", "--out", str(parts), "--eval-visits", "20", "--no-progress"]) == 0
     assert (whole / "strokes.npz").read_bytes() == (parts / "strokes.npz").read_bytes()
-    assert json.loads((parts / "results.json").read_text())["curve"] == results["curve"]
+    again = json.loads((parts / "results.json").read_text())
+    assert all(again[name] == results[name] for name in ("curve", "simulated_shots"))
     layers = learned_strokes(whole / "strokes.npz")
     at = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     named = sn.player(f"stroke_value@{whole / 'strokes.npz'}").at({}).play(at, [3]).values

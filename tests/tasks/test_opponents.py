@@ -187,7 +187,8 @@ def test_callables_see_masks(tmp_path):
     assert len(kept) > 20 and all(data_equivalence(a, b, exact=True) for a, b in zip(*runs, strict=True))
 
 
-CONSENT = "holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with trust=True"
+CONSENT = "holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come "
+CONSENT += "with trust=True, or --trust on the command line"
 
 
 @pytest.mark.parametrize(

@@ -83,6 +83,24 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     assert (tmp_path / "new" / "p.png").read_bytes()[:4] == b"\x89PNG"
 
 
+def test_held_out_tables_alone_are_played_unless_others_are_named():
+    for words, sizes in (
+        ([], {"held_out": 2000}),
+        (["--visits", "30"], {"held_out": 30}),
+        (["--layouts", "colours", "held_out"], {"colours": 500, "held_out": 2000}),
+    ):
+        _, _, seeds = protocol.checked(protocol.parser().parse_args(["--agent", "random", *words]))
+        assert {name: len(its) for name, its in seeds.items()} == sizes
+
+
+def test_the_last_words_are_the_points_of_each_agent(capsys, tmp_path):
+    assert protocol.main(["--agent", "random", *QUICK, "--json", str(tmp_path / "r.json")]) == 0
+    _, _, last = " ".join(capsys.readouterr().out.split()).rpartition("Points a visit on held_out, ")
+    rows = read(tmp_path / "r.json")["results"]
+    made = [f"{row['agent']} {report._pm(row['figures']['points_a_visit'])}" for row in rows]
+    assert last == f"noise professional: {', '.join(made)}." and len(made) == 2
+
+
 def test_figures_do_not_depend_on_the_company(models, tmp_path):
     rows = []
     for company in ([], ["random", f"other={models / 'm-0'}"]):

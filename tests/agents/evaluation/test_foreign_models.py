@@ -125,7 +125,7 @@ ACTIONS += "for example placement=True"
 @pytest.mark.parametrize(
     ("name", "options", "says"),
     [
-        ("ppo", [], CONSENT + "with trust=True"),
+        ("ppo", [], CONSENT + "with trust=True, or --trust on the command line"),
         ("ppo", ["--trust", "--options", "placement=True"], ACTIONS.format(6)),
         ("sac", ["--trust"], ACTIONS.format(4)),
         ("dqn", ["--trust", "--options", "action=box"], ACTIONS.format(4)),
@@ -153,7 +153,7 @@ def test_wrong_figures_of_a_foreign_model_are_refused(foreign, tmp_path, change)
     assert not mark.exists()
 
 
-KEYS = ": must be KEY=VALUE, KEY once each of action, aim, elevation, placement"
+KEYS = ": must be KEY=VALUE, KEY once each of action, aim, elevation, placement, decision"
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,76 @@
+"""How are the actions of a model of Stable-Baselines3 read? By these options, of code or of a command line."""
+
+import json
+from argparse import ArgumentParser
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from .._check import choice, refuse
+from .._notices import say
+from ..tasks.options import Options
+from ..tasks.saved_models import by_train, entries
+
+KEYS = (*Options.group("action", "visit"), "decision")
+"""Options that a model's file does not hold; what it observes and what kind of actions it has, it says itself."""
+LEFT_OUT = "must be left out: it is for models of Stable-Baselines3"
+
+
+def checked(options: Mapping[str, Any] | None) -> dict[str, Any]:
+    """These options as a dict, {} for None; ValueError for others than ``KEYS`` or for values that they cannot have."""
+    if not isinstance(options, Mapping | None):
+        raise refuse("options", options, 'must be a dict such as {"aim": "target"}')
+    read = dict(options or {})
+    for key in read:
+        choice("key of options", key, KEYS)
+    Options(task="frame", **read)  # makes sure of the values
+    return read
+
+
+def options_of_words(words: Sequence[str]) -> dict[str, Any]:
+    """Options from words like "aim=target" and "placement=True"; ValueError for others."""
+    options: dict[str, Any] = {}
+    for word in words:
+        name, equals, value = word.partition("=")
+        if not equals or name not in KEYS or name in options:
+            raise refuse("options", word, f"must be KEY=VALUE, KEY once each of {', '.join(KEYS)}")
+        options[name] = _value(value)
+    return checked(options)
+
+
+def _value(text: str) -> Any:
+    """A truth value or a number, else the text itself."""
+    try:
+        value = json.loads(text.lower())
+    except ValueError:
+        return text
+    return value if isinstance(value, bool | int | float) else text
+
+
+def add_model_options(parser: ArgumentParser) -> None:
+    """Add ``--trust`` and ``--options`` to a command that takes a model's file."""
+    parser.add_argument("--trust", action="store_true", help="let the pickled code in a model's file run")
+    how = "how the actions of a model of Stable-Baselines3 are read, as aim=target"
+    parser.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
+
+
+def of_others(path: str | Path) -> bool:
+    """Whether that is a model's ``.zip`` that the repository's ``train.py`` did not make, or an unsound one."""
+    if not Path(path).is_file():
+        return False
+    try:
+        return not by_train(entries(path))
+    except Exception:  # ``SavedModel`` says what is wrong with it
+        return Path(path).suffix == ".zip"
+
+
+def say_assumed(path: str | Path, options: Mapping[str, Any]) -> None:
+    """Say on stderr, once in a process, that nobody told how the aim of a model with these options is read."""
+    if options.get("action", "box") == "box" and "aim" not in options and not _SAID:
+        _SAID.append(str(path))
+        told = 'to a model trained with that give --options aim=target, or options={"aim": "target"}'
+        say(f"{path}: aim=absolute is assumed, as in Snooker-v0; {told}")
+
+
+_SAID: list[str] = []
+"""The model of which that was said."""

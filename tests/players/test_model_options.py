@@ -1,0 +1,195 @@
+"""Are the actions of a model of Stable-Baselines3 read as its options say, wherever it is named?"""
+
+import json
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env import watch
+from snooker_env.advice.__main__ import main as advice
+from snooker_env.benchmark import HELD_OUT_SEED, Agent
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.planning import Planner, Positions
+from snooker_env.play.__main__ import _arguments, service_of
+from snooker_env.players import model_options
+from snooker_env.players.resolver import named
+from tests.bombs import bombed
+
+TARGET = {"aim": "target"}
+WORDS = ["--trust", "--options", "aim=target"]
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory):
+    """The file of an untrained model of ``aim="target"``."""
+    sb3 = pytest.importorskip("stable_baselines3")
+    file = tmp_path_factory.mktemp("models") / "ppo.zip"
+    sb3.PPO("MlpPolicy", SnookerEnv(**TARGET), seed=4, device="cpu").save(file)
+    return str(file)
+
+
+@pytest.fixture
+def nothing_said(monkeypatch):
+    monkeypatch.delenv("SNOOKER_ENV_QUIET", raising=False)
+    monkeypatch.setattr(model_options, "_SAID", [])
+
+
+def tables(n=3):
+    env = sn.SnookerVectorEnv(n, layout="held_out", threads=1, **TARGET)
+    env.reset(seed=HELD_OUT_SEED)
+    return env
+
+
+def test_a_model_plays_as_its_options_say(model):
+    from stable_baselines3 import PPO
+
+    env, rows = tables(), np.arange(3)
+    at = Positions.of(env)
+    chosen = PPO.load(model, device="cpu").predict(at.observations(), deterministic=True)[0]
+    expected = Planner(env).strokes_of(at, rows, chosen)[0]
+    told = sn.player(model, trust=True, options=TARGET).at(env).play(at, rows).values
+    assert np.allclose(told, expected, atol=1e-5)
+    assert not np.allclose(sn.player(model, trust=True).at(env).play(at, rows).values, expected, atol=0.1)
+
+
+def test_what_is_assumed_of_the_aim_is_said_once(model, capsys, nothing_said):
+    sn.player(model, trust=True, options=TARGET)
+    assert capsys.readouterr().err == ""
+    for _ in range(2):
+        sn.player(model, trust=True)
+    said = capsys.readouterr().err
+    assert (
+        said.count("\n") == 1
+        and f"{model}: aim=absolute is assumed" in said
+        and "--options aim=target" in said
+    )
+
+
+def test_of_discrete_actions_nothing_is_assumed(tmp_path, capsys, nothing_said):
+    sb3 = pytest.importorskip("stable_baselines3")
+    sb3.PPO("MlpPolicy", SnookerEnv(action="discrete"), device="cpu").save(tmp_path / "model.zip")
+    assert sn.player(tmp_path / "model.zip", trust=True).sees["action"] == "discrete"
+    assert capsys.readouterr().err == ""
+
+
+def test_nothing_of_a_model_that_does_not_fit_its_options_runs(model, tmp_path):
+    file = bombed(model, tmp_path / "model.zip", tmp_path / "mark")
+    with pytest.raises(ValueError, match="must be a model whose actions are Box"):
+        sn.player(file, trust=True, options={"placement": True})
+    consent = "come with trust=True, or --trust on the command line$"
+    with pytest.raises(ValueError, match=consent):
+        sn.player(file, options=TARGET)
+    assert not (tmp_path / "mark").exists()
+
+
+class Sees:
+    def act(self, observations, masks, seeds):
+        return np.zeros((len(seeds), 3))
+
+
+@pytest.mark.parametrize("name", ["random", "planner_30", "examples.own_player:Softly", Sees()])
+def test_options_of_who_is_no_model_are_refused(name):
+    with pytest.raises(ValueError, match=r"^options = \{'aim': 'target'\}: must be left out"):
+        sn.player(name, options=TARGET)
+
+
+def test_a_model_of_the_repository_says_itself_how_its_actions_are_read():
+    pytest.importorskip("sb3_contrib")
+    from agents.learning.models import PRETRAINED
+
+    with pytest.raises(ValueError, match=r"must be left out: .*ppo_value.zip says itself"):
+        sn.player(PRETRAINED / "ppo_value.zip", options=TARGET)
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ("aim=target", "options = 'aim=target': must be a dict"),
+        ({"noise": "club"}, "key of options = 'noise': must be one of 'action', 'aim', "),
+        ({"aim": "up"}, "aim = 'up': must be one of 'absolute', 'target'"),
+        ({"elevation": 80}, "elevation = 80: must be True or False, or degrees in"),
+        ({"decision": 3}, "decision = 3: must be True or False"),
+    ],
+)
+def test_options_that_cannot_be_are_refused(options, says):
+    with pytest.raises(ValueError, match=f"^{says}"):
+        sn.player("nobody.zip", options=options)
+    if isinstance(options, dict):
+        with pytest.raises(ValueError, match=f"^{says}"):
+            Agent.of("random", options=options)
+
+
+def test_words_of_a_command_line_become_options():
+    words = ["aim=target", "placement=true", "decision=False", "elevation=30"]
+    read = model_options.options_of_words(words)
+    assert read == {"aim": "target", "placement": True, "decision": False, "elevation": 30}
+
+
+def test_the_options_of_a_command_line_are_those_of_the_models_on_it(model):
+    one, other = named(["ghost_ball", model], True, TARGET)
+    assert one.name == "ghost_ball" and other.sees["aim"] == "target"
+    for names in (["ghost_ball"], []):
+        with pytest.raises(ValueError, match="must be left out"):
+            named(names, True, TARGET)
+
+
+def test_a_visit_of_a_model_is_watched(model, tmp_path, capsys):
+    out = tmp_path / "visit.json"
+    assert watch.main(["--agent", model, *WORDS, "--noise", "none", "--out", str(out)]) == 0
+    told = sn.player(model, trust=True, options=TARGET)
+    env = watch.episode(told, HELD_OUT_SEED, layout="held_out", noise="none", cue="real")
+    assert env.points > 0  # read otherwise it has none
+    assert sum(stroke["points"] for stroke in json.loads(out.read_text())["strokes"]) == env.points
+
+
+@pytest.mark.parametrize("both", [False, True])
+def test_a_frame_of_a_model_is_watched_on_either_side(model, both):
+    """It plays as it was trained to, also opposite, where the table's actions hold more."""
+    names = ["--agent", model if both else "ghost_ball", "--opponent", model]
+    args = watch.parser().parse_args(["--frame", *names, *WORDS, "--seed", "3"])
+    env, _, _ = watch.sought(args)
+    opposite = env.tables.seats[1].player.player
+    assert opposite.sees["aim"] == "target" and "placement" not in opposite.sees
+    assert {stroke.player for stroke in env.history} == {0, 1}
+
+
+def test_a_model_sits_at_the_page_and_gives_advice(model, tmp_path, capsys):
+    service = service_of(_arguments(["--agent", model, *WORDS, "--seed", "1"]))
+    (its,) = (one for name, one in service.seats.players.items() if name == "ppo")
+    assert its.sees["aim"] == "target"
+    service.close()
+    sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)).save(tmp_path / "p.json")
+    few = [
+        "--position",
+        str(tmp_path / "p.json"),
+        "--n",
+        "1",
+        "--samples",
+        "10",
+        "--visits",
+        "1",
+        "--noise",
+        "none",
+    ]
+    assert advice([*few, "--agent", model, *WORDS]) == 0 and "pot" in capsys.readouterr().out
+    assert advice([*few, *WORDS]) == 2 and "must be left out" in capsys.readouterr().err
+
+
+# What acts on observations
+
+
+def test_actions_of_another_shape_name_act():
+    player = sn.player(Sees()).at({})
+    says = r"^player Sees: act\(\.\.\.\) returned actions = array of shape \(1, 3\): must have shape \(1, 4\)"
+    with pytest.raises(ValueError, match=says):
+        player.play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0])
+
+
+def test_who_only_predicts_is_told_of_act():
+    class Predicts:
+        def predict(self, observation, deterministic=False):
+            return np.zeros(4), None
+
+    with pytest.raises(ValueError, match=r"wrap its predict in act\(observations, masks, seeds\)$"):
+        sn.player(Predicts())
