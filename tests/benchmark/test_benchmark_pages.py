@@ -42,8 +42,8 @@ def test_the_list_of_what_nothing_proves():
     assert re.findall(r"`([\w.]+)`", words) == list(UNPROVED)
 
 
-SLOW = "SnookerFrame-v0"
-"""A task whose strokes are checked by asking the opponent again: 100 s a file."""
+SLOW = ("SnookerFrame-v0", "SnookerSafety-v0")
+"""Tasks whose strokes are checked by asking the opponent again: 100 s and 7 s a file."""
 
 
 @pytest.mark.parametrize(

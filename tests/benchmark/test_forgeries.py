@@ -316,6 +316,7 @@ print(arithmetic(), *faults(read_result(sys.argv[1])), sep="\\n")
 """
 
 
+@pytest.mark.slow  # compiles all kernels for another processor
 def test_where_strokes_end_otherwise_that_is_said_first(tmp_path):
     """With the system's functions without fused multiply-add, whose last bits differ: nobody is suspected."""
     file = tmp_path / "one.json"
