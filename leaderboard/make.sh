@@ -35,14 +35,14 @@ judge random 0
 judge ghost_ball 0
 judge best_pot 0
 judge search 0
-# What train.py learns for each level of errors: 153,600 positions x 64 simulated shots, 147,456 x 48 judged choices, PPO.
-judge planner 18415616
+# What train.py learns for each level of errors: 153,600 positions x 64 simulated shots, 147,200 x 48 judged choices, PPO.
+judge planner 18403328
 # To those of planner, two rounds of 384 frames against itself and others: 205,141 positions, each with 120 shots of search and 8 that judge,
 # and some 12,000 strokes of the others, 120 shots each.
-judge tactician 46113664
+judge tactician 46101376
 # The values of three levels, and 4.6 million strokes that are tried.
 judge stroke_value 60000000
-judge ppo_value 18415616
+judge ppo_value 18403328
 
 # Plain PPO on each task, five training seeds.
 judge_each ppo_50k 49152
