@@ -19,10 +19,9 @@ judge() {  # its name, all simulated shots of its training
     $bench run all --agent "$1" --training-shots "$2" --out leaderboard --resume
 }
 
-judge_each() {  # the same, of models that are trained on each task
-    labels+=("$1")
+judge_each() {  # the same, of models that are trained on each task without an opponent: one that searches takes hours for them
     if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
-    for task in $(python -c "from snooker_env.benchmark import TASKS; print(*TASKS)"); do
+    for task in $(python -c "from snooker_env.benchmark import TASKS; print(*(t.id for t in TASKS.values() if not t.frame))"); do
         file=leaderboard/$task.$1.json
         if [ -e "$file" ] && grep -q '"incomplete": null' "$file"; then continue; fi
         python leaderboard/baseline.py "$task" || return
@@ -44,7 +43,7 @@ judge tactician 46101376
 judge stroke_value 60000000
 judge ppo_value 18403328
 
-# Plain PPO on each task, five training seeds.
+# Plain PPO, five training seeds.
 judge_each ppo_50k 49152
 
 $bench table leaderboard/*.json --markdown docs/leaderboard.md --awaited "${labels[@]}"
