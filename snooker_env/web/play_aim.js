@@ -43,8 +43,8 @@ export class Aim {
     by("nominate").onchange = event => this.set({}, event);
     canvas.addEventListener("pointerdown", event => this.down(event));
     canvas.addEventListener("pointermove", event => this.move(event));
-    canvas.addEventListener("pointerup", () => this.up(true));
-    canvas.addEventListener("pointercancel", () => this.up(false));
+    canvas.addEventListener("pointerup", event => event.pointerId === this.finger && this.up(true));
+    canvas.addEventListener("pointercancel", event => event.pointerId === this.finger && this.up(false));
     canvas.addEventListener("wheel", event => {
       if (!this.app.aiming) return;
       event.preventDefault();
@@ -80,16 +80,20 @@ export class Aim {
   faster(by_, event) { this.set({ speed: clamp(this.wish.speed + by_, ...this.app.limits.speed) }, event); }
   raise(degrees, event) { this.set({ elevation: clamp(this.wish.elevation + degrees * DEGREE, ...this.app.limits.elevation) }, event); }
 
-  // -------------------------------------------------------------------------------------------------------------- the pointer
+  // ---- the pointer
 
   at(event) {
     const box = by("table").getBoundingClientRect();
     return this.app.view.toTable(event.clientX - box.left, event.clientY - box.top);
   }
 
+  /** Is this another finger than the one that holds something? */
+  other(event) { return this.held && event.pointerId !== this.finger; }
+
   down(event) {
     const { app } = this;
-    if (!app.aiming || event.button > 0) return;
+    if (!app.aiming || event.button > 0 || this.other(event)) return;
+    this.finger = event.pointerId;
     const [x, y] = this.at(event), near = Math.hypot(x - app.balls.x[0], y - app.balls.y[0]), reach = event.pointerType === "touch" ? 3.5 : 2;
     const behind = this.onCue(x, y, event);
     this.held = app.state.in_hand && near < reach * app.view.R ? "ball" : behind ? "cue" : "aim";
@@ -128,7 +132,7 @@ export class Aim {
 
   move(event) {
     const { app } = this;
-    if (!app.aiming) return;
+    if (!app.aiming || this.other(event)) return;
     const [x, y] = this.at(event);
     if (!this.held) { by("table").style.cursor = this.onCue(x, y, event) ? "grab" : ""; return; }
     if (this.held === "cue") this.pull(x, y, event);
@@ -141,7 +145,7 @@ export class Aim {
     }
   }
 
-  // ------------------------------------------------------------------------------------------------------------- what is shown
+  // ---- what is shown
 
   show() {
     const { wish } = this;
@@ -204,7 +208,7 @@ export class Aim {
     if (met.ball >= 0) {
       const x = balls.x[met.ball], y = balls.y[met.ball], way = Math.atan2(y - met.y, x - met.x);
       const far = Math.min(0.12 + 0.7 * Math.cos(wish.aim - way), firstContact({ ...balls, on: balls.on.with(0, 0) }, met.ball, way, extent, R).run);
-      const to = [x + Math.cos(way) * far, y + Math.sin(way) * far];
+      const to = met.to = [x + Math.cos(way) * far, y + Math.sin(way) * far];
       lines.push({ points: [[x, y], to], colour: [255, 226, 110], width: 0.003, dash: [0.02, 0.02] });
     }
     return {

@@ -31,7 +31,6 @@ export function cloud(places, extent, rgb) {
 const percent = share => `${Math.round(100 * share)} %`;
 
 export class Advisor {
-  /** app: as for `Aim`, and `aim`, `redraw()`. */
   constructor(app) {
     this.app = app;
     fill(by("agent"), app.agents);
@@ -83,6 +82,7 @@ export class Advisor {
   question(wish, event, own) {
     const { state } = this.app, body = { speed: wish.speed, side: wish.side, top: wish.top, aim: wish.aim, elevation: wish.elevation, revision: state.revision };
     if (state.in_hand && wish.place) body.place = wish.place;
+    if (this.hover) body.noise = this.noise;
     this.wait.ask(body, { at: event?.timeStamp ?? performance.now(), revision: state.revision, own });
   }
 
@@ -118,11 +118,13 @@ export class Advisor {
 
   async advise() {
     const button = by("advise"), { app } = this, { revision } = app.state;
-    if (by("panel").classList.contains("folded")) by("fold").click();
+    app.fold(false);
     button.disabled = true;
     button.textContent = "Thinking …";
     try {
-      const found = await ask("advise", { agent: by("agent").value, n: 5, revision });
+      const own = app.state.noise[app.state.striker];
+      this.noise = ["none", "professional"].includes(own) ? "amateur" : own;  // a person errs
+      const found = await ask("advise", { agent: by("agent").value, n: 5, revision, noise: this.noise });
       if (found.suggestions && revision === app.state.revision) this.show(found);
     } catch (error) {
       by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
@@ -145,7 +147,7 @@ export class Advisor {
       const visit = one.kind === "pot" ? `points ${least} to ${most}` : `fair ${low} to ${high} %`;
       const range = one.win_interval ? `win chance ${low} to ${high} %` : visit;
       const [what, ...how] = pocketWords(one.words, this.app.view.upright).split("; ")[0].split(", "), told = this.told(one, what, how);
-      const button = make("button", { type: "button", title: `${range} (95 % interval)` }, make("b", { textContent: told.figure }), told.what, make("small", { textContent: told.how }));
+      const button = make("button", { title: `${range} (95 % interval)` }, make("b", { textContent: told.figure }), told.what, make("small", { textContent: told.how }));
       button.setAttribute("aria-pressed", "false");
       button.onpointerenter = event => event.pointerType === "mouse" && this.preview(k, event);
       button.onfocus = event => this.preview(k, event);
@@ -155,7 +157,8 @@ export class Advisor {
       return make("li", {}, button);
     });
     by("advice").replaceChildren(...items);
-    by("advice-order").textContent = choices.length ? `If you play, ${order[0].toLowerCase()}${order.slice(1)}` : order;
+    const errs = this.noise === this.app.state.noise[this.app.state.striker] ? order : order.replace(":", ", with an amateur's mistakes:");
+    by("advice-order").textContent = choices.length ? `If you play, ${errs[0].toLowerCase()}${errs.slice(1)}` : errs;
     by("advice-order").scrollIntoView({ block: "start" });
     this.app.redraw();
   }
@@ -190,6 +193,7 @@ export class Advisor {
       [app.balls.x[0], app.balls.y[0]] = one.place;
       app.aim.place(...one.place, event);
     }
+    app.compact();
     by("play").focus();
     app.aim.set({ speed: one.speed, side: one.side, top: one.top, aim: one.aim, elevation: one.elevation }, event);
   }

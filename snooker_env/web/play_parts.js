@@ -6,7 +6,6 @@
 
 export const by = id => document.getElementById(id);
 
-/** Create an element. */
 export function make(tag, properties = {}, ...inside) {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...inside);
@@ -54,7 +53,6 @@ export function confirmed(question, yes) {
   return new Promise(done => { box.onclose = () => done(box.returnValue === "yes"); });
 }
 
-/** An error that the server reported. */
 export class ServerError extends Error {
   constructor(error) {
     super(error.field ? `${error.field}${error.value === null || String(error.value).length > 60 ? "" : ` = ${error.value}`}: ${error.message}` : error.message);
@@ -66,7 +64,7 @@ export class ServerError extends Error {
 export async function ask(name, body, query = "") {
   const text = typeof body === "string" ? body : JSON.stringify(body);
   const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: text };
-  const reply = await fetch(`api/${name}${query}`, options);
+  const reply = await fetch(`api/${name}${query}`, options).catch(() => { throw new Error("The server does not answer; is it still running?"); });
   if (["replay.html", "save"].includes(name) && reply.ok) return reply.text();
   const found = await reply.json();
   if (!reply.ok) throw new ServerError(found.error);
@@ -93,7 +91,6 @@ export class Latest {
     else for (const done of this.waiting.splice(0)) done();
   }
 
-  /** Drop the request that waits. */
   drop() { this.next = null; }
 
   /** Resolves when every request has been answered. */
@@ -130,7 +127,6 @@ export function intoD(x, y, lines) {
   return far <= radius ? [x, ay - depth] : depth === 0 ? [Math.max(-radius, Math.min(radius, x)), ay] : [x * radius / far, ay - depth * radius / far];
 }
 
-/** Download a file. */
 export function keep(name, text, type) {
   const link = make("a", { href: URL.createObjectURL(new Blob([text], { type })), download: name });
   link.click();
