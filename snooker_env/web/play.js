@@ -110,17 +110,13 @@ class Page {
     fill(by("cue"), this.cues, undefined, kind => CUES[kind]);
     by("cue").onchange = () => this.seats();
     by("help-open").onclick = () => this.help();
-    const folds = [...document.querySelectorAll("#panel details")];
-    for (const one of folds) one.ontoggle = () => {
-      if (!one.open) return;
-      for (const other of folds) other.open &&= other === one;
-      one.scrollIntoView({ block: "nearest" });
+    for (const one of document.querySelectorAll("#panel details")) one.ontoggle = () => {
+      if (one.open) one.scrollIntoView({ block: "nearest" });
     };
     by("panel").addEventListener("click", event => event.detail && event.target.closest("button, summary")?.blur());  // keys are for the stroke again
     document.addEventListener("keydown", event => this.key(event));
   }
 
-  /** Show the controls of the stroke alone, or all. */
   fold(wanted) {
     const folded = by("panel").classList.toggle("folded", wanted);
     by("fold").setAttribute("aria-expanded", String(!folded));
@@ -233,13 +229,13 @@ class Page {
     }
   }
 
-  /** Do two agents play, with a stroke to come? The page lets them go on, each after the previous stroke has been shown. */
+  /** Do two agents play, with a stroke to come? The page lets them go on when the last one has been shown. */
   get agentsAlone() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
 
   /** Has the frame ended, and been shown? */
   get ended() { return !this.behind && this.state.phase === "over"; }
 
-  /** Does the game wait for Continue? Otherwise, between two agents, the button is Pause. */
+  /** Does the game wait for Continue? */
   get waits() { return this.agentsAlone && this.held || !this.behind && this.state.paused; }
 
   /** Are there strokes that have not been shown yet? Their results are not shown before. */
@@ -324,7 +320,6 @@ class Page {
 
   // ---- motion
 
-  /** Call what a stroke has brought, for a moment. */
   call({ points, fouls, penalty, words, break: run }) {
     if (!points && !fouls.length) return;
     const call = by("call");
@@ -355,20 +350,17 @@ class Page {
     done();
   }
 
-  /** Skip all motion of strokes already played. */
   still() {
     this.played = this.state.strokes;
     this.known.clear();
     this.skip();
   }
 
-  /** The last stroke again, at a rate of time. */
   async again(rate = 1) {
     if (!this.state.strokes || this.behind || this.setup.open) return;
     await this.film(async () => (await ask("strokes", undefined, `?from=${this.state.strokes - 1}`)).strokes[0], rate);
   }
 
-  /** Show a stroke that is not of the game now. */
   async film(stroke, rate = 1) {
     if (this.behind) return;
     this.busy = true;
@@ -379,7 +371,6 @@ class Page {
 
   // ---- the player
 
-  /** Can this person play a stroke now? */
   get aiming() {
     const { state } = this;
     return Boolean(state) && !this.behind && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";

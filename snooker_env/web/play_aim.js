@@ -1,6 +1,5 @@
 /**
  * How is a stroke aimed? By pointer, wheel, keys and controls; `Aim` holds the intended stroke and reports every change.
- *
  * `wish`: {speed [m/s], side, top (tip offset over R, right and up), aim [rad], elevation [rad]}.
  */
 
@@ -59,7 +58,6 @@ export class Aim {
     this.show();
   }
 
-  /** Change parts of the stroke, and report it. */
   set(part, event) {
     Object.assign(this.wish, part);
     this.show();
@@ -119,7 +117,6 @@ export class Aim {
     else this.set({ speed: pulled.before });
   }
 
-  /** Pull the cue back to a place [m]. */
   pull(x, y, event) {
     const { app, pulled, wish } = this, [least, most] = app.limits.speed, { balls } = app;
     pulled.pull = clamp((balls.x[0] - x) * Math.cos(wish.aim) + (balls.y[0] - y) * Math.sin(wish.aim) - pulled.from, 0, PULL);
@@ -176,7 +173,7 @@ export class Aim {
     return `${names[met.ball].replace(/ \d+$/, "")}: ${full[1]}${side}`;
   }
 
-  /** The cue ball as the player sees it; the dashed circle is the miscue limit. A tip that the raised cue cannot reach is a ring, and the one that it reaches a disc. */
+  /** The cue ball as the player sees it; the dashed circle is the miscue limit, a ring a tip that the raised cue cannot reach. */
   drawDial() {
     const dial = by("dial"), ratio = Math.min(window.devicePixelRatio || 1, 3), size = Math.round((dial.clientWidth || 112) * ratio);
     if (dial.width !== size || dial.height !== size) dial.width = dial.height = size;
@@ -201,7 +198,7 @@ export class Aim {
     disc(x, y, 0.15 * R, "#2c5f93"); disc(x, y, 0.06 * R, "#9cc4ea");
   }
 
-  /** Drawing of the aim: straight line, ring at the first contact, direction of the object ball, the cue. */
+  /** Drawing of the aim. */
   overlay() {
     const { app, wish } = this, { balls, scene: { extent }, view: { R } } = app, met = firstContact(balls, 0, wish.aim, extent, R);
     const lines = [{ points: [[balls.x[0], balls.y[0]], [met.x, met.y]], colour: [255, 255, 255], width: 0.003 }];

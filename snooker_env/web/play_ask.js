@@ -1,8 +1,7 @@
 /**
  * What does the advisor say, and where would the balls stop? Its list of strokes, and clouds of the stopping points of cue ball and object ball.
  *
- * While a stroke is dragged, one request is sent at a time, and the latest waits. `times` holds the times from an input to the picture that
- * shows its clouds [ms].
+ * `times`: from an input to the picture that shows its clouds [ms].
  */
 
 import { ask, by, fill, Latest, make, pairs, pocketWords, setting } from "./play_parts.js";
@@ -72,7 +71,6 @@ export class Advisor {
     });
   }
 
-  /** The stroke or its player has changed. */
   changed(event) {
     const { app } = this;
     if (!app.aiming || by("guide").value === "line") { this.found = null; this.wait.drop(); this.say(); app.redraw(); return; }
@@ -163,7 +161,6 @@ export class Advisor {
     this.app.redraw();
   }
 
-  /** A suggestion in two lines: what is played with the figure that it is ordered by, and how. */
   told(one, what, how) {
     const pocket = one.kind === "pot" ? ` to ${how.shift()}` : "", figure = one.win ?? null;
     const points = `${one.points.toFixed(1)} points`, chance = word => /^(pot|fair) /.test(word);
@@ -198,7 +195,7 @@ export class Advisor {
     app.aim.set({ speed: one.speed, side: one.side, top: one.top, aim: one.aim, elevation: one.elevation }, event);
   }
 
-  /** Drawing of the advice: the clouds, paths without errors, and the lines of all suggestions while none is previewed. */
+  /** Drawing of the advice. */
   overlay() {
     const out = { heat: this.found?.heat ?? [], lines: [], rings: [] }, { balls } = this.app.scene;
     const tint = ball => balls[ball].rgb.map(value => Math.round(value + (255 - value) / 3));

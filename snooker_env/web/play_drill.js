@@ -61,7 +61,6 @@ export class Drills {
     this.show();
   }
 
-  /** A stroke of the drill has come to rest. */
   async played(stroke) {
     const drill = DRILLS[this.now];
     if (!drill || this.over) return;

@@ -39,11 +39,9 @@ export function setting(id, words, otherwise, changed) {
   select.onchange = event => { kept.set(id, select.value); changed(event); };
 }
 
-/** Pockets' names as they lie on the screen. */
 export const pocketWords = (text, upright) => (upright ? text : text.replace("right middle", "lower middle").replace("left middle", "upper middle")
   .replace("top right", "lower right").replace("top left", "upper right"));
 
-/** Ask the player for confirmation; resolves to true for yes. */
 export function confirmed(question, yes) {
   const box = by("confirm");
   by("confirm-words").textContent = question;
@@ -71,7 +69,7 @@ export async function ask(name, body, query = "") {
   return found;
 }
 
-/** Sends one request at a time; of those made meanwhile, only the latest is sent next. `then(answer, about)`, `wrong(error, about)`. */
+/** Sends one request at a time; of those made meanwhile, only the latest is sent next. */
 export class Latest {
   constructor(name, then, wrong = () => {}) {
     Object.assign(this, { name, then, wrong, busy: false, next: null, waiting: [] });
@@ -97,7 +95,6 @@ export class Latest {
   quiet() { return this.busy ? new Promise(done => this.waiting.push(done)) : Promise.resolve(); }
 }
 
-/** Numbers of 32 bits in base64, in pairs. */
 export const pairs = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
 /** Distance from c along (ux, uy) to the points R away from the noses of a bed. */

@@ -17,7 +17,6 @@ export class Room {
     this.wait = new Latest("room", (found, revision) => this.take(found, revision), error => this.take(null, app.state.revision, error));
   }
 
-  /** The stroke or the table has changed. */
   changed() {
     const { app } = this;
     if (!app.aiming) { this.wait.drop(); this.found = null; this.show(); return; }
