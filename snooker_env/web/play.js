@@ -113,7 +113,7 @@ class Page {
     for (const one of document.querySelectorAll("#panel details")) one.ontoggle = () => {
       if (one.open) one.scrollIntoView({ block: "nearest" });
     };
-    by("panel").addEventListener("click", event => event.detail && event.target.closest("button, summary")?.blur());  // keys are for the stroke again
+    document.addEventListener("click", event => event.detail && event.target.closest("button, summary")?.blur());  // keys are for the stroke again
     document.addEventListener("keydown", event => this.key(event));
   }
 
@@ -242,7 +242,7 @@ class Page {
   get behind() { return Boolean(this.moving || this.busy || this.played < this.state.strokes); }
 
   /** Show no motion until a person is asked. */
-  hurry() { this.hurried = true; this.skip(); }
+  hurry() { this.hurried = Boolean(this.moving); this.skip(); }
 
   goOn() {
     if (this.ended) { by("next").click(); return; }
@@ -409,8 +409,9 @@ class Page {
     try {
       const saved = JSON.parse(text), position = saved.format === undefined;
       if (position && !saved.cue) throw new Error();
+      const state = await (position ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`));
       await this.drills.stop();
-      return await (position ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`));
+      return state;
     } catch (error) {
       if (error.field && error.field !== "saved") throw error;
       throw new Error(`${file.name} is no saved game.${text[0] === "<" ? " A replay opens by itself in a browser." : ""}`);
