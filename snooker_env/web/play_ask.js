@@ -133,6 +133,7 @@ export class Advisor {
 
   show({ order, suggestions, choices, choice }) {
     this.list = suggestions;
+    this.adopted = false;
     for (const { choice: one, win } of choices) {
       const button = by("choices").querySelector(`[data-choice=${one}]`);
       if (!button) continue;
@@ -157,7 +158,7 @@ export class Advisor {
     by("advice").replaceChildren(...items);
     const errs = this.noise === this.app.state.noise[this.app.state.striker] ? order : order.replace(":", ", with an amateur's mistakes:");
     by("advice-order").textContent = choices.length ? `If you play, ${errs[0].toLowerCase()}${errs.slice(1)}` : errs;
-    by("advice-order").scrollIntoView({ block: "start" });
+    by("advice").scrollIntoView({ block: "nearest" });
     this.app.redraw();
   }
 
@@ -186,6 +187,7 @@ export class Advisor {
     const one = this.list[k], { app } = this;
     by("advice").querySelectorAll("button").forEach((button, j) => button.setAttribute("aria-pressed", String(j === k)));
     this.hover = null;
+    this.adopted = true;
     if (one.place && app.state.in_hand) {
       [app.balls.x[0], app.balls.y[0]] = one.place;
       app.aim.place(...one.place, event);
@@ -206,7 +208,7 @@ export class Advisor {
       draw(this.hover.paths, 0.006, 1);
       for (const [ball, points] of Object.entries(this.hover.paths)) out.rings.push({ x: points.at(-1)[0], y: points.at(-1)[1], ball: Number(ball), alpha: 0.35 });
     } else {
-      for (const one of this.list) draw(one.paths, 0.0025, 0.4);
+      if (!this.adopted) for (const one of this.list) draw(one.paths, 0.0025, 0.4);
       draw(this.found?.paths, 0.004, 0.9);
     }
     return out;
