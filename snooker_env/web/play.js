@@ -10,7 +10,7 @@ import { Aim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
 import { Drills } from "./play_drill.js";
 import { firstAim } from "./play_first.js";
-import { ask, by, confirmed, fill, keep, kept, Latest, make } from "./play_parts.js";
+import { ask, by, confirmed, DOWN, fill, keep, kept, Latest, make } from "./play_parts.js";
 import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 import { Share } from "./play_share.js";
@@ -172,10 +172,10 @@ class Page {
     for (;;) {
       if (document.hidden) await new Promise(done => document.addEventListener("visibilitychange", done, { once: true })); // another tab is visible
       try {
-        this.take(await ask("state", undefined, this.state ? `?after=${this.state.revision}&wait=${this.lost ? 0 : 20}` : ""));
-        if (this.lost) { this.lost = false; by("last").className = ""; this.show(); }
+        const down = by("last").textContent === DOWN;
+        this.take(await ask("state", undefined, this.state ? `?after=${this.state.revision}&wait=${down ? 0 : 20}` : ""));
+        if (down) { by("last").className = ""; this.show(); }
       } catch (error) {
-        this.lost = true;
         this.trouble(error);
         await new Promise(done => setTimeout(done, 1000));
       }
@@ -233,7 +233,7 @@ class Page {
   get agentsAlone() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
 
   /** Has the frame ended, and been shown? */
-  get ended() { return !this.behind && this.state.phase === "over"; }
+  get ended() { return this.state?.phase === "over" && !this.behind; }
 
   /** Does the game wait for Continue? */
   get waits() { return this.agentsAlone && this.held || !this.behind && this.state.paused; }
@@ -407,13 +407,13 @@ class Page {
     if (!file) return undefined;
     const text = await file.text();
     try {
-      const saved = JSON.parse(text), position = saved.format === undefined;
-      if (position && !saved.cue) throw new Error();
+      const saved = JSON.parse(text), position = saved?.format === undefined;
+      if (position && !saved?.cue) throw new Error();
       const state = await (position ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`));
       await this.drills.stop();
       return state;
     } catch (error) {
-      if (error.field && error.field !== "saved") throw error;
+      if (error.message && error.field !== "saved" && !(error instanceof SyntaxError)) throw error;
       throw new Error(`${file.name} is no saved game.${text[0] === "<" ? " A replay opens by itself in a browser." : ""}`);
     }
   }

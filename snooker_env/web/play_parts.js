@@ -4,6 +4,8 @@
  * Frame as in `table.js`: metres, origin at the table's centre, +x to the yellow side, +y to the black end; directions anticlockwise from +x.
  */
 
+export const DOWN = "The server does not answer; is it still running?";
+
 export const by = id => document.getElementById(id);
 
 export function make(tag, properties = {}, ...inside) {
@@ -62,7 +64,7 @@ export class ServerError extends Error {
 export async function ask(name, body, query = "") {
   const text = typeof body === "string" ? body : JSON.stringify(body);
   const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: text };
-  const reply = await fetch(`api/${name}${query}`, options).catch(() => { throw new Error("The server does not answer; is it still running?"); });
+  const reply = await fetch(`api/${name}${query}`, options).catch(() => { throw new Error(DOWN); });
   if (["replay.html", "save"].includes(name) && reply.ok) return reply.text();
   const found = await reply.json();
   if (!reply.ok) throw new ServerError(found.error);
