@@ -528,7 +528,7 @@ class Page {
     const named = mine && state.nominations.length > 0;
     by("nominate-row").classList.toggle("idle", !named);
     by("nominate").disabled = !named;
-    fill(by("nominate"), named ? ["", ...state.nominations] : [""], by("nominate").value, value => value || (named ? "the one first struck" : "–"));
+    fill(by("nominate"), named ? ["", ...state.nominations] : [""], by("nominate").value, value => value || (named ? "first struck" : "–"));
     this.score(on);
     this.over(!setup && !this.moving);
   }

@@ -127,9 +127,15 @@ def test_a_link_is_opened_as_often_as_it_is_pasted_and_errors_are_seen(shown):
     for name, text, said in (
         ("null.json", "null", "null.json is no saved game."),
         ("list.json", "[1]", "list.json is no saved game."),
-        ("replay.html", "<!DOCTYPE html>", "replay.html is no saved game. A replay opens by itself in a browser."),
+        (
+            "replay.html",
+            "<!DOCTYPE html>",
+            "replay.html is no saved game. A replay opens by itself in a browser.",
+        ),
     ):
-        shown.page.set_input_files("#file", {"name": name, "mimeType": "application/json", "buffer": text.encode()})
+        shown.page.set_input_files(
+            "#file", {"name": name, "mimeType": "application/json", "buffer": text.encode()}
+        )
         shown.until("document.getElementById('last').textContent === argument", said)
 
 
