@@ -18,7 +18,7 @@ export async function packed(kind, json) {
 /** [kind, text of JSON] of a link or its fragment; Error if it is none. */
 export async function unpacked(link) {
   const [, kind, text] = /#(\w+)=([\w-]+)\s*$/.exec(link) ?? [];
-  if (!KINDS.includes(kind)) throw new Error("This is not a link to a position or a stroke: it must end with #game=… or #stroke=…");
+  if (!KINDS.includes(kind)) throw new Error("This is not a link to a position or a stroke.");
   try {
     const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), one => one.charCodeAt(0));
     return [kind, new TextDecoder().decode(await through(bytes, new DecompressionStream("deflate-raw")))];
