@@ -1,11 +1,8 @@
 /**
  * How does the page play? It shows the server's game, animates each stroke, and sends the player's strokes and decisions.
  *
- * The server holds the game. Every answer contains its state, and one request always waits for the next change. Strokes arrive in the format of
- * replays, each with the `tables` before and after it, and are animated by `table.js`.
- *
- * What is shown of the game is one `table`: the one before a stroke while it moves, the one after it until the next moves, the state's when
- * all strokes have been shown. Balls, score bar and words are drawn from it alone; what may be done comes from the state.
+ * One request always waits for the next state. Balls, score bar and words are drawn from one `table`: the one before a stroke while it moves, the one
+ * after it until the next moves, then the state's. What may be done comes from the state.
  */
 
 import { decode, showChance, TableView } from "./table.js";
@@ -13,7 +10,7 @@ import { Aim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
 import { Drills } from "./play_drill.js";
 import { firstAim } from "./play_first.js";
-import { ask, by, confirmed, fill, keep, kept, Latest, make } from "./play_parts.js";
+import { ask, by, confirmed, DOWN, fill, keep, kept, Latest, make } from "./play_parts.js";
 import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 import { Share } from "./play_share.js";
@@ -27,16 +24,18 @@ const LEVELS = {
   professional: ["tactician_500", "professional"], perfect: ["tactician_500", "none"], "nobody: two play here": ["person", "none"],
 };
 const OWN = "own";
-const NOISE = { none: "nobody", professional: "a professional", amateur: "an amateur", club: "a club player", robot: "a robot", olympiad: "the Olympiad's robots" };
-const GAMES = { snooker: "snooker", six_red: "six-red", shoot_out: "Shoot Out" };
+const NOISE = { none: "none", professional: "a professional's", amateur: "an amateur's", club: "a club player's", robot: "a robot's", olympiad: "the Olympiad's robots'" };
 const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
 /** Slow motion, zoom, and how long a call is shown [ms]. */
 const SLOW = 0.2, ZOOM = 2, CALLED = 1600;
 /** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels]. */
 const LOUPE = 0.24, SMALL = 9;
 const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "escape", "safety", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
-const CUES = { real: "real: over rails and balls", free: "free: nothing in its way" };
-const CHOICES = { play: "Play the table as it lies", play_again: "Let the offender play again", replace: "Replace the balls: play again from before", anywhere: "Put the cue ball anywhere" };
+const CUES = { real: "can be blocked", free: "never blocked" };
+/** What may be chosen after the foul of a player with this name. */
+const CHOICES = { play: () => "Play the table as it lies", play_again: who => `${who} plays again from here`, replace: who => `Put the balls back: ${who} plays again`, anywhere: () => "Put the cue ball anywhere" };
+/** A phone, which shows the controls of the stroke alone unless it is asked for all. */
+const PHONE = matchMedia("(orientation: portrait) and (max-width: 640px), (max-height: 480px) and (orientation: landscape)");
 
 const seed = () => Math.floor(Math.random() * 2 ** 48);
 
@@ -66,16 +65,18 @@ class Page {
     this.stats = new Stats(this);
     this.drills = new Drills(this);
     this.share = new Share(this);
-    if (matchMedia("(orientation: portrait) and (max-width: 640px)").matches) this.fold();
+    PHONE.onchange = () => this.fold(PHONE.matches);
+    this.compact();
     new ResizeObserver(() => this.fit()).observe(by("stage"));
     this.wire();
-    this.tour = new Tour();
+    this.tour = new Tour(this);
   }
 
   wire() {
     const act = (id, what) => { by(id).onclick = () => this.try(what); };
     by("play").onclick = event => this.play(event);
     by("skip").onclick = () => this.skip();
+    by("turn").onclick = () => this.hurry();
     by("fold").onclick = () => this.fold();
     by("zoom").onclick = () => this.zoom();
     by("full").onclick = () => this.full();
@@ -84,7 +85,7 @@ class Page {
     by("slow").onclick = () => this.again(SLOW);
     act("undo", () => ask("undo", {}));
     act("redo", () => ask("redo", {}));
-    by("concede").onclick = () => this.sure("Concede the frame?", "Concede", () => this.try(() => ask("concede", {})));
+    by("concede").onclick = async () => { if (await confirmed("Concede the frame?", "Concede")) this.try(() => ask("concede", {})); };
     by("new").onclick = () => this.sure("Leave this frame and begin a new game? This cannot be undone.", "New game", () => this.begin());
     by("again").onclick = () => this.again();
     by("next").onclick = () => this.go("new", { next: true, seed: seed() });
@@ -96,7 +97,7 @@ class Page {
     by("labels").checked = kept.get("labels", false);
     by("labels").onchange = () => { kept.set("labels", by("labels").checked); this.redraw(); };
     fill(by("layout"), LAYOUTS);
-    fill(by("rules"), this.games, undefined, game => GAMES[game]);
+    fill(by("rules"), this.games);
     fill(by("best-of"), BEST_OF.map(String), "1", n => (n === "1" ? "one frame" : `best of ${n}`));
     by("level").onchange = () => this.level();
     for (const k of [0, 1]) {
@@ -109,21 +110,21 @@ class Page {
     fill(by("cue"), this.cues, undefined, kind => CUES[kind]);
     by("cue").onchange = () => this.seats();
     by("help-open").onclick = () => this.help();
-    const folds = [...document.querySelectorAll("#panel details")];
-    for (const one of folds) one.ontoggle = () => {
-      if (!one.open) return;
-      for (const other of folds) other.open &&= other === one;
-      one.scrollIntoView({ block: "nearest" });
+    for (const one of document.querySelectorAll("#panel details")) one.ontoggle = () => {
+      if (one.open) one.scrollIntoView({ block: "nearest" });
     };
+    document.addEventListener("click", event => event.detail && event.target.closest("button, summary")?.blur());  // keys are for the stroke again
     document.addEventListener("keydown", event => this.key(event));
   }
 
-  /** Hide or show the controls; on a phone upright, all but those of the stroke. */
-  fold() {
-    const folded = by("panel").classList.toggle("folded");
+  fold(wanted) {
+    const folded = by("panel").classList.toggle("folded", wanted);
     by("fold").setAttribute("aria-expanded", String(!folded));
     if (folded) by("panel").scrollTop = 0;
   }
+
+  /** Let a phone show the table; `otherwise`: whether another screen folds. */
+  compact(otherwise) { if (PHONE.matches || otherwise !== undefined) this.fold(PHONE.matches); }
 
   full() {
     const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.();
@@ -152,7 +153,7 @@ class Page {
     this.redraw();
   }
 
-  // ------------------------------------------------------------------------------------------------------- the server's answers 
+  // ---- the server's answers
 
   /** Run a request that returns the next state; show the error if it is refused. */
   async try(what) {
@@ -167,14 +168,15 @@ class Page {
     by("last").className = "trouble";
   }
 
-  /** Always wait for the next change. */
   async watch() {
     for (;;) {
       if (document.hidden) await new Promise(done => document.addEventListener("visibilitychange", done, { once: true })); // another tab is visible
       try {
-        this.take(await ask("state", undefined, this.state ? `?after=${this.state.revision}&wait=20` : ""));
+        const down = by("last").textContent === DOWN;
+        this.take(await ask("state", undefined, this.state ? `?after=${this.state.revision}&wait=${down ? 0 : 20}` : ""));
+        if (down) { by("last").className = ""; this.show(); }
       } catch (error) {
-        by("asked").textContent = "The server does not answer; is it still running?";
+        this.trouble(error);
         await new Promise(done => setTimeout(done, 1000));
       }
     }
@@ -183,9 +185,12 @@ class Page {
   /** Use a state, if it is newer than the current one. */
   take(state) {
     if (this.state && state.revision <= this.state.revision) return;
-    const first = this.state === null;
+    const first = this.state === null, level = state.players[0] === "person" && Object.entries(LEVELS).find(([, [who, noise]]) => who === state.players[1] && noise === state.noise[1])?.[0];
     this.state = state;
-    if (first) this.put(state);
+    this.strength = level || OWN;
+    this.alias = [state.labels[1], state.labels[1]];
+    if (level && state.players[1] !== "person") this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
+    if (first) { this.put(state); this.drills.resume(); }
     if (first || state.strokes < this.played) this.still();
     by("last").className = "";
     this.seated();
@@ -215,43 +220,50 @@ class Page {
       this.known.delete(this.played);
       this.played++;
       if (!stroke) { this.played = this.state.strokes; break; }
-      await this.move(stroke);
+      if (!this.hurried) await this.move(stroke);
       this.call(stroke);
       if (this.drills.now && this.played === this.state.strokes) this.scored = stroke;
-      if (this.played < this.state.strokes) await new Promise(done => setTimeout(done, 500));
+      if (this.played < this.state.strokes && !this.hurried) await new Promise(done => setTimeout(done, 500));
       const { state } = this;
       if (state.paused && !state.trouble && this.played >= state.strokes && this.agentsAlone && !this.held) await this.try(() => ask("go", {}));
     }
   }
 
-  /** Do two agents play, with a stroke to come? The page lets them go on, each after the previous stroke has been shown. */
+  /** Do two agents play, with a stroke to come? The page lets them go on when the last one has been shown. */
   get agentsAlone() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
 
-  /** Does the game wait for Continue? Otherwise, between two agents, the button is Pause. */
+  /** Has the frame ended, and been shown? */
+  get ended() { return this.state?.phase === "over" && !this.behind; }
+
+  /** Does the game wait for Continue? */
   get waits() { return this.agentsAlone && this.held || !this.behind && this.state.paused; }
 
   /** Are there strokes that have not been shown yet? Their results are not shown before. */
   get behind() { return Boolean(this.moving || this.busy || this.played < this.state.strokes); }
 
+  /** Show no motion until a person is asked. */
+  hurry() { this.hurried = Boolean(this.moving); this.skip(); }
+
   goOn() {
+    if (this.ended) { by("next").click(); return; }
     this.held = !this.waits;
     if (!this.held && this.state.paused && !this.behind) this.try(() => ask("go", {}));
     this.show();
   }
 
-  /** Ask for confirmation before a game with strokes is discarded. */
+  /** Ask for confirmation before a game with strokes, or a match, is discarded. */
   async sure(question, yes, then) {
-    if (!this.state?.strokes || await confirmed(question, yes)) then();
+    if (!this.state?.strokes && this.state?.best_of === 1 || await confirmed(question, yes)) then();
   }
 
-  /** Begin a game as it is chosen. */
   begin() {
     this.go("new", { layout: by("layout").value, game: by("rules").value, best_of: Number(by("best-of").value), seed: seed() });
     by("start").open = false;
+    this.compact();
   }
 
-  go(name, body) {
-    this.drills.stop();
+  async go(name, body) {
+    await this.drills.stop();
     this.held = false;
     this.try(() => ask(name, body));
   }
@@ -277,6 +289,7 @@ class Page {
   settle() {
     if (this.moving || this.busy) return;
     const { state } = this;
+    if (state.phase === "over" || state.players[state.striker] === "person") this.hurried = false;
     this.put(state);
     if (this.settled !== state.revision) {
       const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes]);
@@ -305,13 +318,12 @@ class Page {
     this.aim.set({ aim, side: 0, top: 0, elevation: 0 });
   }
 
-  // --------------------------------------------------------------------------------------------------------------------- motion
+  // ---- motion
 
-  /** Call what a stroke has brought, for a moment. */
-  call({ points, fouls, penalty, break: run }) {
+  call({ points, fouls, penalty, words, break: run }) {
     if (!points && !fouls.length) return;
     const call = by("call");
-    call.textContent = fouls.length ? `Foul, ${penalty}` : run > points ? `+${points}, break ${run}` : `+${points}`;
+    call.textContent = fouls.length ? words.split(/[.;]/)[0] : run > points ? `+${points}, break ${run}` : `+${points}`;
     call.className = fouls.length ? "foul" : "";
     call.hidden = false;
     clearTimeout(this.called);
@@ -324,6 +336,7 @@ class Page {
     return new Promise(done => {
       this.moving = { stroke, rate, at: -0.4, now: null, done };
       if (this.near) this.fit();
+      this.compact();
       this.stats.turn(false);
       this.put(data.tables[0]);
     });
@@ -337,20 +350,17 @@ class Page {
     done();
   }
 
-  /** Skip all motion of strokes already played. */
   still() {
     this.played = this.state.strokes;
     this.known.clear();
     this.skip();
   }
 
-  /** The last stroke again, at a rate of time. */
   async again(rate = 1) {
     if (!this.state.strokes || this.behind || this.setup.open) return;
     await this.film(async () => (await ask("strokes", undefined, `?from=${this.state.strokes - 1}`)).strokes[0], rate);
   }
 
-  /** Show a stroke that is not of the game now. */
   async film(stroke, rate = 1) {
     if (this.behind) return;
     this.busy = true;
@@ -359,9 +369,8 @@ class Page {
     this.catchUp();
   }
 
-  // ----------------------------------------------------------------------------------------------------------------- the player
+  // ---- the player
 
-  /** Can this person play a stroke now? */
   get aiming() {
     const { state } = this;
     return Boolean(state) && !this.behind && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
@@ -397,9 +406,16 @@ class Page {
     by("file").value = "";
     if (!file) return undefined;
     const text = await file.text();
-    let saved;
-    try { saved = JSON.parse(text); } catch { throw new Error(`${file.name} is not JSON`); }
-    return saved.format === undefined ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`);
+    try {
+      const saved = JSON.parse(text), position = saved?.format === undefined;
+      if (position && !saved?.cue) throw new Error();
+      const state = await (position ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`));
+      await this.drills.stop();
+      return state;
+    } catch (error) {
+      if (error.message && error.field !== "saved" && !(error instanceof SyntaxError)) throw error;
+      throw new Error(`${file.name} is no saved game.${text[0] === "<" ? " A replay opens by itself in a browser." : ""}`);
+    }
   }
 
   /** Seat an opponent of the chosen strength; it errs as its level says, the person as before. */
@@ -434,9 +450,10 @@ class Page {
     if (event.altKey && !key.startsWith("Arrow")) return;
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, { side, top } = aim.wish;
     const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end() } : {
-      " ": () => this.skip(), Escape: () => this.skip(), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
+      " ": () => (event.shiftKey ? this.hurry() : this.skip()), Escape: () => (aim.held === "cue" ? aim.up(false) : this.skip()), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
       z: () => this.zoom(), f: () => this.full(), m: () => this.sound.flip(),
       "?": () => this.help(),
+      ...this.ended && { Enter: () => this.goOn() },
       ...this.aiming && {
         ArrowLeft: () => aim.turn(turn, event), ArrowRight: () => aim.turn(-turn, event), ArrowUp: () => aim.faster(push, event),
         ArrowDown: () => aim.faster(-push, event), w: () => aim.tip(side, top + 0.05, event), s: () => aim.tip(side, top - 0.05, event),
@@ -449,7 +466,7 @@ class Page {
     event.preventDefault();
   }
 
-  // ---------------------------------------------------------------------------------------------------------------- what is shown
+  // ---- what is shown
 
   /** Who sits at the table, as the server says it. */
   seated() {
@@ -460,54 +477,58 @@ class Page {
       by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
       by(`side-${k}`).querySelector(".frames").textContent = state.best_of > 1 ? `(${state.frames[k]})` : "";
     }
-    const levels = Object.keys(LEVELS), level = levels.find(name => state.players[0] === "person" && LEVELS[name][0] === state.players[1] && LEVELS[name][1] === state.noise[1]);
-    fill(by("level"), [...levels, OWN], level ?? OWN);
+    fill(by("level"), [...Object.keys(LEVELS), OWN], this.strength);
     const own = by("level").lastChild;
-    own.hidden = Boolean(level);
-    own.textContent = `${state.labels[1]}, who errs like ${NOISE[state.noise[1]]}`;
+    own.hidden = this.strength !== OWN;
+    own.textContent = `${state.labels[1]}, mistakes: ${NOISE[state.noise[1]]}`;
     by("practice").checked = state.practice;
     by("cue").value = state.cue;
     this.show();
   }
 
-  /** Words, score and controls. */
+  /** The server's words, with an opponent called by its strength. */
+  said(words) { return words.replaceAll(...this.alias); }
+
   show() {
     const { state, table } = this, busy = this.behind, mine = this.aiming, setup = this.setup.open;
-    for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["game", setup], ["last", setup], ["tools", setup]]) by(id).hidden = hide;
+    for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["act", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
     const who = state.labels[table.striker], on = table.ball_on?.replace("_", " ");
-    by("asked").textContent = setup ? "Set up a position" : this.moving ? `${who} ${who === "You" ? "play" : "plays"}: ${on}` : table.words;
-    if (by("last").className !== "trouble") by("last").textContent = table.last;
+    by("asked").textContent = setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : this.said(table.words);
+    if (by("last").className !== "trouble") by("last").textContent = this.said(table.last);
     by("asked").title = by("asked").textContent;
     by("last").title = by("last").textContent;
     const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
     by("choices").hidden = !choosing;
     if (choosing && by("choices").dataset.for !== String(state.revision)) {
       by("choices").dataset.for = state.revision;
+      by("panel").scrollTop = 0;
       by("choices").replaceChildren(...state.choices.map(choice => {
-        const button = make("button", { type: "button", textContent: choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice] });
+        const button = make("button", { textContent: choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice](state.labels[1 - state.striker]) });
         Object.assign(button.dataset, { choice, words: button.textContent });
         button.onclick = () => this.send({ choice });
         return button;
       }));
     }
-    by("go").hidden = setup || !this.waits && !this.agentsAlone;
-    by("go").textContent = this.waits ? "Continue" : "Pause";
+    by("go").hidden = !this.ended && !this.waits && !this.agentsAlone;
+    by("go").textContent = this.ended ? this.next : this.waits ? "Continue" : "Pause";
     by("play").disabled = !mine;
     by("stroke").classList.toggle("idle", !mine);
     by("skip").hidden = !this.moving;
+    by("turn").hidden = !this.moving || state.players[table.striker] === "person" || !state.players.includes("person");
     by("play").hidden = Boolean(this.moving) || choosing || !by("go").hidden;
     if (!mine) by("odds").textContent = "";
     by("advise").disabled = !mine && !choosing;
     by("aim-out").textContent = this.aim.words;
-    by("undo").disabled = !state.undo;
-    by("redo").disabled = !state.redo;
+    by("undo").disabled = !state.undo || this.drills.now;
+    by("redo").disabled = !state.redo || this.drills.now;
+    by("set").disabled = this.drills.now;
     by("again").disabled = by("slow").disabled = !state.strokes || busy;
     by("share-shot").disabled = by("replay").disabled = by("stats-open").disabled = !state.strokes;
     by("concede").disabled = !mine && !choosing;
     const named = mine && state.nominations.length > 0;
     by("nominate-row").classList.toggle("idle", !named);
     by("nominate").disabled = !named;
-    fill(by("nominate"), named ? ["", ...state.nominations] : [""], by("nominate").value, value => value || (named ? "the one first struck" : "–"));
+    fill(by("nominate"), named ? ["", ...state.nominations] : [""], by("nominate").value, value => value || (named ? "first struck" : "–"));
     this.score(on);
     this.over(!setup && !this.moving);
   }
@@ -539,10 +560,12 @@ class Page {
     if (phase !== "over") return;
     const { match_over: ended, best_of: length, frames } = this.state;
     by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}`;
-    by("next").textContent = length > 1 && ended ? "New match" : "Next frame";
+    by("next").textContent = this.next;
     by("over-score").textContent = `${labels[me]} ${scores[me]} : ${scores[1 - me]} ${labels[1 - me]}`;
-    by("over-last").textContent = last;
+    by("over-last").textContent = this.said(last);
   }
+
+  get next() { return this.state.best_of > 1 && this.state.match_over ? "New match" : "Next frame"; }
 
   /** An error message beside a place on the table. */
   bubble(text, x, y) {
@@ -550,9 +573,10 @@ class Page {
     bubble.hidden = !text;
     if (!text) return;
     bubble.textContent = text;
+    bubble.style.left = 0;
     const [px, py] = this.view.toScreen(x, y), box = by("stage").getBoundingClientRect();
-    bubble.style.left = `${Math.max(4, Math.min(box.width - 290, px + 18))}px`;
-    bubble.style.top = `${Math.max(4, Math.min(box.height - 70, py + 18))}px`;
+    bubble.style.left = `${Math.max(4, Math.min(box.width - bubble.offsetWidth - 4, px + 18))}px`;
+    bubble.style.top = `${Math.max(4, Math.min(box.height - bubble.offsetHeight - 4, py + 18))}px`;
   }
 
   /** Draw at the next frame; then call `seen`. */
@@ -561,17 +585,17 @@ class Page {
     this.asked ??= requestAnimationFrame(now => { this.asked = null; this.draw(now); });
   }
 
-  /** The first contact, larger, in a corner of the table that is far from the stroke, but not under the buttons: where balls are small, or under a finger. */
-  contact(frame, { x, y, ball }) {
+  /** The first contact, larger, in the corner that is farthest from the stroke: where balls are small. */
+  contact(frame, { x, y, ball, to }) {
     const { view, loupe, scene } = this, box = by("stage"), shown = ball >= 0 && !this.advisor.hover && view.R * view.scale / view.ratio < SMALL;
     by("loupe").hidden = !shown;
     if (!shown) return;
     const [px, py] = view.toScreen(x, y), [ix, iy] = view.toScreen(this.balls.x[0], this.balls.y[0]), { style } = by("loupe");
-    const aim = this.aim.wish.aim, cue = view.toScreen(this.balls.x[0] - 0.5 * Math.cos(aim), this.balls.y[0] - 0.5 * Math.sin(aim)), busy = [[px, py], [ix, iy], cue];
+    const aim = this.aim.wish.aim, cue = view.toScreen(this.balls.x[0] - 0.5 * Math.cos(aim), this.balls.y[0] - 0.5 * Math.sin(aim)), busy = [[px, py], [ix, iy], cue, to ? view.toScreen(...to) : cue];
     const room = ([left, top]) => Math.min(...busy.map(([x_, y_]) => Math.hypot(x_ - left * box.clientWidth, y_ - top * box.clientHeight)));
-    const [[left, top]] = [[0, 1], [1, 1], [0, 0]].sort((a, b) => room(b) - room(a));
+    const [[left, top]] = [[0, 1], [1, 1], [0, 0], [1, 0]].sort((a, b) => room(b) - room(a));
     Object.assign(style, { left: left ? "auto" : "8px", right: left ? "8px" : "auto", top: top ? "auto" : "8px", bottom: top ? "8px" : "auto" });
-    loupe.upright = view.upright;
+    by("room").classList.toggle("up", Boolean(top));
     if (loupe.canvas.width < 2 || loupe.canvas.clientWidth * loupe.ratio !== loupe.canvas.width) loupe.resize();
     loupe.upright = view.upright;
     loupe.look(x, y, loupe.canvas.width / LOUPE);

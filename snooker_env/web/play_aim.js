@@ -1,6 +1,5 @@
 /**
  * How is a stroke aimed? By pointer, wheel, keys and controls; `Aim` holds the intended stroke and reports every change.
- *
  * `wish`: {speed [m/s], side, top (tip offset over R, right and up), aim [rad], elevation [rad]}.
  */
 
@@ -43,8 +42,8 @@ export class Aim {
     by("nominate").onchange = event => this.set({}, event);
     canvas.addEventListener("pointerdown", event => this.down(event));
     canvas.addEventListener("pointermove", event => this.move(event));
-    canvas.addEventListener("pointerup", () => this.up(true));
-    canvas.addEventListener("pointercancel", () => this.up(false));
+    canvas.addEventListener("pointerup", event => event.pointerId === this.finger && this.up(true));
+    canvas.addEventListener("pointercancel", event => event.pointerId === this.finger && this.up(false));
     canvas.addEventListener("wheel", event => {
       if (!this.app.aiming) return;
       event.preventDefault();
@@ -59,7 +58,6 @@ export class Aim {
     this.show();
   }
 
-  /** Change parts of the stroke, and report it. */
   set(part, event) {
     Object.assign(this.wish, part);
     this.show();
@@ -80,16 +78,20 @@ export class Aim {
   faster(by_, event) { this.set({ speed: clamp(this.wish.speed + by_, ...this.app.limits.speed) }, event); }
   raise(degrees, event) { this.set({ elevation: clamp(this.wish.elevation + degrees * DEGREE, ...this.app.limits.elevation) }, event); }
 
-  // -------------------------------------------------------------------------------------------------------------- the pointer
+  // ---- the pointer
 
   at(event) {
     const box = by("table").getBoundingClientRect();
     return this.app.view.toTable(event.clientX - box.left, event.clientY - box.top);
   }
 
+  /** Is this another finger than the one that holds something? */
+  other(event) { return this.held && event.pointerId !== this.finger; }
+
   down(event) {
     const { app } = this;
-    if (!app.aiming || event.button > 0) return;
+    if (!app.aiming || event.button > 0 || this.other(event)) return;
+    this.finger = event.pointerId;
     const [x, y] = this.at(event), near = Math.hypot(x - app.balls.x[0], y - app.balls.y[0]), reach = event.pointerType === "touch" ? 3.5 : 2;
     const behind = this.onCue(x, y, event);
     this.held = app.state.in_hand && near < reach * app.view.R ? "ball" : behind ? "cue" : "aim";
@@ -115,7 +117,6 @@ export class Aim {
     else this.set({ speed: pulled.before });
   }
 
-  /** Pull the cue back to a place [m]. */
   pull(x, y, event) {
     const { app, pulled, wish } = this, [least, most] = app.limits.speed, { balls } = app;
     pulled.pull = clamp((balls.x[0] - x) * Math.cos(wish.aim) + (balls.y[0] - y) * Math.sin(wish.aim) - pulled.from, 0, PULL);
@@ -128,7 +129,7 @@ export class Aim {
 
   move(event) {
     const { app } = this;
-    if (!app.aiming) return;
+    if (!app.aiming || this.other(event)) return;
     const [x, y] = this.at(event);
     if (!this.held) { by("table").style.cursor = this.onCue(x, y, event) ? "grab" : ""; return; }
     if (this.held === "cue") this.pull(x, y, event);
@@ -141,7 +142,7 @@ export class Aim {
     }
   }
 
-  // ------------------------------------------------------------------------------------------------------------- what is shown
+  // ---- what is shown
 
   show() {
     const { wish } = this;
@@ -172,7 +173,7 @@ export class Aim {
     return `${names[met.ball].replace(/ \d+$/, "")}: ${full[1]}${side}`;
   }
 
-  /** The cue ball as the player sees it; the dashed circle is the miscue limit. A tip that the raised cue cannot reach is a ring, and the one that it reaches a disc. */
+  /** The cue ball as the player sees it; the dashed circle is the miscue limit, a ring a tip that the raised cue cannot reach. */
   drawDial() {
     const dial = by("dial"), ratio = Math.min(window.devicePixelRatio || 1, 3), size = Math.round((dial.clientWidth || 112) * ratio);
     if (dial.width !== size || dial.height !== size) dial.width = dial.height = size;
@@ -197,14 +198,14 @@ export class Aim {
     disc(x, y, 0.15 * R, "#2c5f93"); disc(x, y, 0.06 * R, "#9cc4ea");
   }
 
-  /** Drawing of the aim: straight line, ring at the first contact, direction of the object ball, the cue. */
+  /** Drawing of the aim. */
   overlay() {
     const { app, wish } = this, { balls, scene: { extent }, view: { R } } = app, met = firstContact(balls, 0, wish.aim, extent, R);
     const lines = [{ points: [[balls.x[0], balls.y[0]], [met.x, met.y]], colour: [255, 255, 255], width: 0.003 }];
     if (met.ball >= 0) {
       const x = balls.x[met.ball], y = balls.y[met.ball], way = Math.atan2(y - met.y, x - met.x);
       const far = Math.min(0.12 + 0.7 * Math.cos(wish.aim - way), firstContact({ ...balls, on: balls.on.with(0, 0) }, met.ball, way, extent, R).run);
-      const to = [x + Math.cos(way) * far, y + Math.sin(way) * far];
+      const to = met.to = [x + Math.cos(way) * far, y + Math.sin(way) * far];
       lines.push({ points: [[x, y], to], colour: [255, 226, 110], width: 0.003, dash: [0.02, 0.02] });
     }
     return {

@@ -1,8 +1,7 @@
 /**
  * What does the advisor say, and where would the balls stop? Its list of strokes, and clouds of the stopping points of cue ball and object ball.
  *
- * While a stroke is dragged, one request is sent at a time, and the latest waits. `times` holds the times from an input to the picture that
- * shows its clouds [ms].
+ * `times`: from an input to the picture that shows its clouds [ms].
  */
 
 import { ask, by, fill, Latest, make, pairs, pocketWords, setting } from "./play_parts.js";
@@ -31,7 +30,6 @@ export function cloud(places, extent, rgb) {
 const percent = share => `${Math.round(100 * share)} %`;
 
 export class Advisor {
-  /** app: as for `Aim`, and `aim`, `redraw()`. */
   constructor(app) {
     this.app = app;
     fill(by("agent"), app.agents);
@@ -73,7 +71,6 @@ export class Advisor {
     });
   }
 
-  /** The stroke or its player has changed. */
   changed(event) {
     const { app } = this;
     if (!app.aiming || by("guide").value === "line") { this.found = null; this.wait.drop(); this.say(); app.redraw(); return; }
@@ -83,6 +80,7 @@ export class Advisor {
   question(wish, event, own) {
     const { state } = this.app, body = { speed: wish.speed, side: wish.side, top: wish.top, aim: wish.aim, elevation: wish.elevation, revision: state.revision };
     if (state.in_hand && wish.place) body.place = wish.place;
+    if (this.hover) body.noise = this.noise;
     this.wait.ask(body, { at: event?.timeStamp ?? performance.now(), revision: state.revision, own });
   }
 
@@ -118,11 +116,13 @@ export class Advisor {
 
   async advise() {
     const button = by("advise"), { app } = this, { revision } = app.state;
-    if (by("panel").classList.contains("folded")) by("fold").click();
+    app.fold(false);
     button.disabled = true;
     button.textContent = "Thinking …";
     try {
-      const found = await ask("advise", { agent: by("agent").value, n: 5, revision });
+      const own = app.state.noise[app.state.striker];
+      this.noise = ["none", "professional"].includes(own) ? "amateur" : own;  // a person errs
+      const found = await ask("advise", { agent: by("agent").value, n: 5, revision, noise: this.noise });
       if (found.suggestions && revision === app.state.revision) this.show(found);
     } catch (error) {
       by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
@@ -133,6 +133,7 @@ export class Advisor {
 
   show({ order, suggestions, choices, choice }) {
     this.list = suggestions;
+    this.adopted = false;
     for (const { choice: one, win } of choices) {
       const button = by("choices").querySelector(`[data-choice=${one}]`);
       if (!button) continue;
@@ -145,7 +146,7 @@ export class Advisor {
       const visit = one.kind === "pot" ? `points ${least} to ${most}` : `fair ${low} to ${high} %`;
       const range = one.win_interval ? `win chance ${low} to ${high} %` : visit;
       const [what, ...how] = pocketWords(one.words, this.app.view.upright).split("; ")[0].split(", "), told = this.told(one, what, how);
-      const button = make("button", { type: "button", title: `${range} (95 % interval)` }, make("b", { textContent: told.figure }), told.what, make("small", { textContent: told.how }));
+      const button = make("button", { title: `${range} (95 % interval)` }, make("b", { textContent: told.figure }), told.what, make("small", { textContent: told.how }));
       button.setAttribute("aria-pressed", "false");
       button.onpointerenter = event => event.pointerType === "mouse" && this.preview(k, event);
       button.onfocus = event => this.preview(k, event);
@@ -155,12 +156,12 @@ export class Advisor {
       return make("li", {}, button);
     });
     by("advice").replaceChildren(...items);
-    by("advice-order").textContent = choices.length ? `If you play, ${order[0].toLowerCase()}${order.slice(1)}` : order;
-    by("advice-order").scrollIntoView({ block: "start" });
+    const errs = this.noise === this.app.state.noise[this.app.state.striker] ? order : order.replace(":", ", with an amateur's mistakes:");
+    by("advice-order").textContent = choices.length ? `If you play, ${errs[0].toLowerCase()}${errs.slice(1)}` : errs;
+    by("advice").scrollIntoView({ block: "nearest" });
     this.app.redraw();
   }
 
-  /** A suggestion in two lines: what is played with the figure that it is ordered by, and how. */
   told(one, what, how) {
     const pocket = one.kind === "pot" ? ` to ${how.shift()}` : "", figure = one.win ?? null;
     const points = `${one.points.toFixed(1)} points`, chance = word => /^(pot|fair) /.test(word);
@@ -186,15 +187,17 @@ export class Advisor {
     const one = this.list[k], { app } = this;
     by("advice").querySelectorAll("button").forEach((button, j) => button.setAttribute("aria-pressed", String(j === k)));
     this.hover = null;
+    this.adopted = true;
     if (one.place && app.state.in_hand) {
       [app.balls.x[0], app.balls.y[0]] = one.place;
       app.aim.place(...one.place, event);
     }
+    app.compact();
     by("play").focus();
     app.aim.set({ speed: one.speed, side: one.side, top: one.top, aim: one.aim, elevation: one.elevation }, event);
   }
 
-  /** Drawing of the advice: the clouds, paths without errors, and the lines of all suggestions while none is previewed. */
+  /** Drawing of the advice. */
   overlay() {
     const out = { heat: this.found?.heat ?? [], lines: [], rings: [] }, { balls } = this.app.scene;
     const tint = ball => balls[ball].rgb.map(value => Math.round(value + (255 - value) / 3));
@@ -205,7 +208,7 @@ export class Advisor {
       draw(this.hover.paths, 0.006, 1);
       for (const [ball, points] of Object.entries(this.hover.paths)) out.rings.push({ x: points.at(-1)[0], y: points.at(-1)[1], ball: Number(ball), alpha: 0.35 });
     } else {
-      for (const one of this.list) draw(one.paths, 0.0025, 0.4);
+      if (!this.adopted) for (const one of this.list) draw(one.paths, 0.0025, 0.4);
       draw(this.found?.paths, 0.004, 0.9);
     }
     return out;

@@ -1,8 +1,5 @@
 /**
  * What can one practise alone? Drills: tables set up again and again, strokes that are scored, and the best score, which this browser keeps.
- *
- * Each has a `table` for its n-th try, a `score` of a stroke's report and the state after it, and ends after `tries` strokes, or with the first that scores
- * nothing.
  */
 
 import { ask, by, kept, make } from "./play_parts.js";
@@ -27,7 +24,6 @@ const DRILLS = {
 };
 
 export class Drills {
-  /** app: `state`, `try(request)`. */
   constructor(app) {
     Object.assign(this, { app, now: null });
     by("drill-again").onclick = () => this.begin(this.now);
@@ -37,10 +33,16 @@ export class Drills {
 
   list() {
     by("drill-list").replaceChildren(...Object.entries(DRILLS).map(([key, { name, about }]) => {
-      const best = kept.get("best", {})[key], button = make("button", { type: "button" }, name, make("small", { textContent: best === undefined ? about : `${about}. Best: ${best}` }));
+      const best = kept.get("best", {})[key], button = make("button", {}, name, make("small", { textContent: best === undefined ? about : `${about}. Best: ${best}` }));
       button.onclick = () => this.app.sure("Leave this frame for a drill?", name, () => this.begin(key));
       return button;
     }));
+  }
+
+  /** Go on with the drill of a page that was loaded anew. */
+  resume() {
+    if (this.app.state.practice) Object.assign(this, kept.get("drill", {}));
+    this.show();
   }
 
   async begin(key) {
@@ -51,15 +53,14 @@ export class Drills {
     this.show();
     await app.try(() => ask("players", { players: ["person", "person"], practice: true }));
     await this.deal();
+    app.compact();
   }
 
   async deal() {
     await this.app.try(DRILLS[this.now].table);
-    this.dealt = this.app.state.revision;
     this.show();
   }
 
-  /** A stroke of the drill has come to rest. */
   async played(stroke) {
     const drill = DRILLS[this.now];
     if (!drill || this.over) return;
@@ -77,22 +78,22 @@ export class Drills {
   }
 
   async end() {
-    this.now = null;
-    this.show();
-    const { before } = this;
-    this.before = null;
-    if (before) await this.app.try(() => ask("players", before));
+    await this.stop();
     this.app.begin();
   }
 
-  /** A game begins: there is no drill any more. */
-  stop() {
-    if (this.now) Object.assign(this, { now: null, before: null });
+  /** There is no drill any more: whoever sat here before sits here again. */
+  async stop() {
+    const { before } = this;
+    Object.assign(this, { now: null, before: null });
     this.show();
+    if (before) await this.app.try(() => ask("players", before));
   }
 
   show() {
-    by("drill").hidden = !this.now;
+    const { now, before, tries, score, over } = this;
+    kept.set("drill", { now, before, tries, score, over });
+    by("drill").hidden = !now;
     if (!this.now) return;
     const { name, about, run } = DRILLS[this.now], best = kept.get("best", {})[this.now] ?? 0;
     const ends = this.over ? `${name}: ${this.score}. Best: ${best}.` : run ? `${name}: ${this.score} points. Best: ${best}.` : `${name}, ${this.tries + 1} of ${TRIES}: ${this.score}. Best: ${best}.`;

@@ -1,7 +1,5 @@
 /**
- * Where does a first aim point? At the ball on with the widest pot, else at a reachable one, thinly while the pack is whole.
- *
- * So a player who only presses Play commits no avoidable foul.
+ * Where does a first aim point? At the ball on with the widest pot, else at a reachable one, thinly while the pack is whole: no foul by Play alone.
  */
 
 import { firstContact } from "./play_parts.js";

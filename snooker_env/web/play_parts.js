@@ -4,9 +4,10 @@
  * Frame as in `table.js`: metres, origin at the table's centre, +x to the yellow side, +y to the black end; directions anticlockwise from +x.
  */
 
+export const DOWN = "The server does not answer; is it still running?";
+
 export const by = id => document.getElementById(id);
 
-/** Create an element. */
 export function make(tag, properties = {}, ...inside) {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...inside);
@@ -40,11 +41,9 @@ export function setting(id, words, otherwise, changed) {
   select.onchange = event => { kept.set(id, select.value); changed(event); };
 }
 
-/** Pockets' names as they lie on the screen. */
 export const pocketWords = (text, upright) => (upright ? text : text.replace("right middle", "lower middle").replace("left middle", "upper middle")
   .replace("top right", "lower right").replace("top left", "upper right"));
 
-/** Ask the player for confirmation; resolves to true for yes. */
 export function confirmed(question, yes) {
   const box = by("confirm");
   by("confirm-words").textContent = question;
@@ -54,7 +53,6 @@ export function confirmed(question, yes) {
   return new Promise(done => { box.onclose = () => done(box.returnValue === "yes"); });
 }
 
-/** An error that the server reported. */
 export class ServerError extends Error {
   constructor(error) {
     super(error.field ? `${error.field}${error.value === null || String(error.value).length > 60 ? "" : ` = ${error.value}`}: ${error.message}` : error.message);
@@ -66,14 +64,14 @@ export class ServerError extends Error {
 export async function ask(name, body, query = "") {
   const text = typeof body === "string" ? body : JSON.stringify(body);
   const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: text };
-  const reply = await fetch(`api/${name}${query}`, options);
+  const reply = await fetch(`api/${name}${query}`, options).catch(() => { throw new Error(DOWN); });
   if (["replay.html", "save"].includes(name) && reply.ok) return reply.text();
   const found = await reply.json();
   if (!reply.ok) throw new ServerError(found.error);
   return found;
 }
 
-/** Sends one request at a time; of those made meanwhile, only the latest is sent next. `then(answer, about)`, `wrong(error, about)`. */
+/** Sends one request at a time; of those made meanwhile, only the latest is sent next. */
 export class Latest {
   constructor(name, then, wrong = () => {}) {
     Object.assign(this, { name, then, wrong, busy: false, next: null, waiting: [] });
@@ -93,14 +91,12 @@ export class Latest {
     else for (const done of this.waiting.splice(0)) done();
   }
 
-  /** Drop the request that waits. */
   drop() { this.next = null; }
 
   /** Resolves when every request has been answered. */
   quiet() { return this.busy ? new Promise(done => this.waiting.push(done)) : Promise.resolve(); }
 }
 
-/** Numbers of 32 bits in base64, in pairs. */
 export const pairs = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
 /** Distance from c along (ux, uy) to the points R away from the noses of a bed. */
@@ -130,7 +126,6 @@ export function intoD(x, y, lines) {
   return far <= radius ? [x, ay - depth] : depth === 0 ? [Math.max(-radius, Math.min(radius, x)), ay] : [x * radius / far, ay - depth * radius / far];
 }
 
-/** Download a file. */
 export function keep(name, text, type) {
   const link = make("a", { href: URL.createObjectURL(new Blob([text], { type })), download: name });
   link.click();

@@ -1,7 +1,7 @@
 /**
  * Has the cue room for the stroke? What the server says of it as the aim moves, in words and from the side.
  *
- * `found`: the answer of `api/room` for the last stroke that was asked about, or null. The latest answer wins; until it comes the one before stays.
+ * `found`: the answer of `api/room` for the last stroke that was asked about, or null.
  */
 
 import { by, Latest } from "./play_parts.js";
@@ -11,14 +11,12 @@ const STEEP = Math.PI / 36;  // a cue raised less is not worth a word
 const ASPECT = 3, LEAST = 0.2, PAST = 0.07;  // of the view from the side: width over height, how wide it is at least and past what is in the way [m]
 
 export class Room {
-  /** app: as for `Aim`, and `aim`, `cue` (the cue's and the rails' sizes [m]), `R`, `redraw()`. */
   constructor(app) {
     this.app = app;
     this.found = null;
     this.wait = new Latest("room", (found, revision) => this.take(found, revision), error => this.take(null, app.state.revision, error));
   }
 
-  /** The stroke or the table has changed. */
   changed() {
     const { app } = this;
     if (!app.aiming) { this.wait.drop(); this.found = null; this.show(); return; }

@@ -4,10 +4,9 @@
 
 import { ask, by, fill, Latest, make, ServerError } from "./play_parts.js";
 
-const ON = ["what the balls allow", "red", "any_colour", "yellow", "green", "brown", "blue", "pink", "black"];
+const ON = ["automatic", "red", "any_colour", "yellow", "green", "brown", "blue", "pink", "black"];
 
 export class SetUp {
-  /** app: `view`, `state`, `scene`, `take(state)`, `redraw()`, `bubble(text, x, y)`. */
   constructor(app) {
     this.app = app;
     this.open = false;
@@ -32,6 +31,7 @@ export class SetUp {
     app.put(state);
     this.balls = { x: x.slice(), y: y.slice(), on: on.slice() };
     this.open = true;
+    app.compact(false);
     fill(by("set-on"), ON, state.ball_on ?? ON[0]);
     fill(by("set-striker"), ["0", "1"], String(state.striker), value => state.labels[Number(value)]);
     for (const k of [0, 1]) { by(`set-name-${k}`).textContent = state.labels[k]; by(`set-score-${k}`).value = state.scores[k]; }
@@ -57,7 +57,10 @@ export class SetUp {
     }
     if (by("set-on").value !== ON[0]) position.on = by("set-on").value;
     position.in_hand = by("set-hand").checked;
-    const scores = [0, 1].map(k => Math.trunc(Number(by(`set-score-${k}`).value) || 0));
+    const scores = [0, 1].map(k => {
+      const score = by(`set-score-${k}`);
+      return Number(score.value = Math.min(score.max, Math.max(0, Math.trunc(score.value))));
+    });
     return { position, scores, striker: Number(by("set-striker").value), free_ball: by("set-free").checked };
   }
 
@@ -87,7 +90,6 @@ export class SetUp {
     this.app.redraw();
   }
 
-  /** The error in plain words. */
   plain(error) {
     const called = name => (/^reds?\b/.test(name) ? "red" : name === "cue" ? "cue ball" : name.replaceAll("_", " ")), ball = called(error.field ?? "");
     const said = error.said ?? error.message, on = String(error.value ?? "").replace(/'/g, ""), other = /^overlaps ([a-z]+(\[\d+\])?) at/.exec(said)?.[1];
@@ -103,13 +105,12 @@ export class SetUp {
     return error.message.replace(/reds\[\d+\]/g, "red");
   }
 
-  /** The balls off the table. */
   tray() {
     const { balls } = this.app.scene;
     by("tray").replaceChildren(...balls.flatMap((ball, i) => {
       if (this.balls.on[i] || i > 0 && i < 16 && this.balls.on.slice(1, i).some(on => !on)) return [];
       const many = i > 0 && i < 16 ? this.balls.on.slice(1, 16).filter(on => !on).length : 1;
-      const made = make("button", { type: "button", textContent: many > 1 ? many : "", title: i && i < 16 ? `red (${many} off the table)` : ball.name });
+      const made = make("button", { textContent: many > 1 ? many : "", title: i && i < 16 ? `red (${many} off the table)` : ball.name });
       made.setAttribute("aria-label", made.title);
       made.setAttribute("aria-pressed", String(this.picked === i));
       made.style.background = `rgb(${ball.rgb})`;

@@ -1,6 +1,6 @@
 /**
- * How is a position or a stroke passed on? As text after the # of the page's address: the game as the server saves it, or the last stroke as a
- * replay has it, as JSON, deflated, in base64url. The address itself is not passed on: it is of this machine alone.
+ * How is a position or a stroke passed on? As text after the # of the page's address: the game as saved, or the last stroke as a replay has it, as
+ * JSON, deflated, in base64url.
  */
 
 import { ask, by, ServerError } from "./play_parts.js";
@@ -18,7 +18,7 @@ export async function packed(kind, json) {
 /** [kind, text of JSON] of a link or its fragment; Error if it is none. */
 export async function unpacked(link) {
   const [, kind, text] = /#(\w+)=([\w-]+)\s*$/.exec(link) ?? [];
-  if (!KINDS.includes(kind)) throw new Error("This is no link of a position or a stroke: it must end with #game=… or #stroke=…");
+  if (!KINDS.includes(kind)) throw new Error("This is not a link to a position or a stroke.");
   try {
     const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), one => one.charCodeAt(0));
     return [kind, new TextDecoder().decode(await through(bytes, new DecompressionStream("deflate-raw")))];
@@ -26,12 +26,13 @@ export async function unpacked(link) {
 }
 
 export class Share {
-  /** app: `try`, `trouble`, `sure`, `loaded(saved)`, `show one stroke(data)`. */
   constructor(app) {
     this.app = app;
     by("share-game").onclick = () => this.offer("game", () => ask("save", {}));
     by("share-shot").onclick = () => this.offer("stroke", async () => JSON.stringify((await ask("strokes", undefined, `?from=${app.state.strokes - 1}`)).strokes[0]));
-    by("link").onchange = () => { this.open(by("link").value); by("link").value = ""; };
+    const link = by("link"), open = () => { this.open(link.value); link.value = ""; };
+    link.onpaste = () => setTimeout(open);
+    link.onkeydown = event => event.key === "Enter" && open();
     window.addEventListener("hashchange", () => this.fromAddress());
   }
 
@@ -46,7 +47,6 @@ export class Share {
     } catch (error) { this.app.trouble(error); }
   }
 
-  /** What stands after the # of the address. */
   async fromAddress() {
     const { hash } = location;
     if (!hash) return;
@@ -58,7 +58,7 @@ export class Share {
     const { app } = this;
     try {
       const [kind, value] = await unpacked(link);
-      if (kind === "game") app.sure("Leave this frame for the position of the link?", "Open", () => app.try(() => ask("load", `{"saved": ${value}}`)));
+      if (kind === "game") app.sure("Leave this frame for the position of the link?", "Open", () => app.go("load", `{"saved": ${value}}`));
       else await app.film(JSON.parse(value));
     } catch (error) { app.trouble(error instanceof ServerError ? error : new Error(error.message)); }
   }

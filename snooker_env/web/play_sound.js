@@ -1,7 +1,5 @@
 /**
- * How does the table sound? Cue, balls, cushions and pockets, each a short sum of dying tones and noise, made here; no file is loaded.
- *
- * While a stroke moves, its events are sounded as they are passed, louder the faster the balls meet.
+ * How does the table sound? Cue, balls, cushions and pockets, each a short sum of dying tones and noise, made here.
  */
 
 import { by, kept } from "./play_parts.js";

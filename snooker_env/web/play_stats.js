@@ -9,7 +9,7 @@ import { decode } from "./table.js";
 import { ask, by, make, setting } from "./play_parts.js";
 
 const NEAR = 0.16, STEP = 0.02;
-const LIMITS = { off: "none", 15: "15 s", 25: "25 s", 40: "40 s" };
+const LIMITS = { off: "none", "15 s": "15 s", "25 s": "25 s", "40 s": "40 s" };
 
 /** How near [m] the ball that a decoded stroke struck first came to a pocket. */
 function nearest(stroke, falls) {
@@ -60,17 +60,18 @@ export class Stats {
     this.show();
   }
 
-  /** A person has played. */
   played() {
     if (this.since !== null) this.times.set(this.app.state.strokes, (performance.now() - this.since) / 1000);
   }
 
   /** The shot clock; when it has run down, the stroke is played as it is aimed. */
   show() {
-    const limit = Number(by("limit").value), clock = by("clock");
+    const limit = parseInt(by("limit").value), clock = by("clock"), now = performance.now();
+    if (document.querySelector("dialog[open], #tour:not([hidden])")) this.since &&= this.since + now - this.at;  // it stands still
+    this.at = now;
     clock.hidden = !limit || this.since === null || document.hidden;
     if (clock.hidden) return;
-    const left = limit - (performance.now() - this.since) / 1000;
+    const left = limit - (now - this.since) / 1000;
     clock.textContent = Math.max(0, Math.ceil(left));
     clock.classList.toggle("late", left < 5);
     if (left <= 0) { this.app.aim.held = null; this.app.play(); }

@@ -7,13 +7,14 @@ const STEPS = [
   ["table", `Welcome. ${finger ? "Drag" : "Drag with the mouse"} on the table to aim: the white ball goes towards your ${finger ? "finger" : "pointer"}. The ring shows where it meets the first ball.`],
   ["fine", "This strip aims finely: drag along it, or tap the arrows beside it. It says how full you strike the ball."],
   ["dial", "Here you choose where the tip strikes the white: high to follow, low to screw back, left or right for side."],
-  ["table", "Take the cue behind the white ball, pull it back, and let go: the further, the harder. Push it back to the ball to think again."],
+  ["table", "Take the cue behind the white ball, pull it back, and let go: the further, the harder. Push it back to cancel."],
   ["play", "Or set the power with the slider and press Play. You may take every stroke back with Undo."],
   ["advise", "Don't know what to play? Ask. Opponents of every strength are under New game, exercises under Drills. Good luck!"],
 ];
 
 export class Tour {
-  constructor() {
+  constructor(app) {
+    this.app = app;
     by("tour-open").onclick = () => this.go(0);
     by("tour-next").onclick = () => this.go(this.step + 1);
     by("tour-skip").onclick = () => this.go(STEPS.length);
@@ -26,7 +27,9 @@ export class Tour {
     by("tour").hidden = step >= STEPS.length;
     if (step >= STEPS.length) { kept.set("toured", true); return; }
     const [id, words] = STEPS[step];
+    this.app.compact();
     if (id !== "table") by(id).classList.add("shown-now");
+    by(id).scrollIntoView({ block: "nearest" });
     by("tour-words").textContent = words;
     by("tour-step").textContent = `${step + 1} of ${STEPS.length}`;
     by("tour-next").textContent = step + 1 < STEPS.length ? "Next" : "Play";

@@ -1,9 +1,9 @@
 /**
  * How is a table drawn with its balls? By a `TableView` on a canvas, from its scene; each frame says where the balls are.
  *
- * On screen +y goes right and +x down; on a canvas that may stand and is higher than wide, +y goes up and +x right. A frame has `x`, `y`, `on` of all balls; and, as it likes, `z` (the height of balls that
- * fly), `side` (a view from the side), `depth` (0 on the cloth, 1 gone into a pocket), `turns`, `labels`, `lines` (each with `points`, or a `path`, a Path2D in metres),
- * `rings`, `heat`, `highlight` and `cue`.
+ * On screen +y goes right and +x down; on a canvas that may stand and is higher than wide, +y goes up and +x right.
+ * A frame has `x`, `y`, `on` of all balls; and, as it likes, `z` (heights), `side` (a view from the side), `depth` (0 on the cloth, 1 gone into a pocket),
+ * `turns`, `labels`, `lines` (with `points`, or a `path`, a Path2D in metres), `rings`, `heat`, `highlight` and `cue`.
  */
 
 /** How far a lamp is above the balls [m]. */
@@ -102,7 +102,6 @@ export class TableView {
     if (frame.side) this.side(frame);
   }
 
-  /** All balls that can be seen, the deepest first. */
   balls(frame) {
     const { scene } = this;
     const [[x0, x1], [y0, y1]] = scene.extent;
@@ -222,7 +221,6 @@ export class TableView {
     fill(pen, colour);
   }
 
-  /** A ball's picture on the canvas. */
   stamp(rgb, px, py, radius, size = 1) {
     const [image, half] = this.sprite(rgb, radius);
     const wide = half * size;
