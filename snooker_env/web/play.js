@@ -650,7 +650,7 @@ class Page {
 try {
   window.page = new Page(await ask("scene"));
   window.page.watch();
-  window.page.started.then(() => window.page.share.fromAddress());
+  window.page.share.fromAddress();
 } catch (error) {
   by("asked").textContent = error.message;
 }

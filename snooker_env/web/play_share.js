@@ -48,6 +48,7 @@ export class Share {
   }
 
   async fromAddress() {
+    await this.app.started;
     const { hash } = location;
     if (!hash) return;
     history.replaceState(null, "", location.pathname);
