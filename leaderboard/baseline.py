@@ -39,6 +39,8 @@ def main():
     parser.add_argument("--seeds", type=int, default=5, help="training seeds [5]")
     parser.add_argument("--out", type=Path, default=Path("runs/baseline"), help="folder [runs/baseline]")
     args = parser.parse_args()
+    if not 1 <= args.seeds <= 99:  # the tables of the hundredth would be those of the judging
+        parser.error(f"seeds = {args.seeds}: must be in [1, 99]")
     torch.set_num_threads(1)
     args.out.mkdir(parents=True, exist_ok=True)
     for seed in range(args.seeds):

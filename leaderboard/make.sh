@@ -21,7 +21,8 @@ judge() {  # its name, all simulated shots of its training
 
 judge_each() {  # the same, of models that are trained on each task without an opponent: one that searches takes hours for them
     if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
-    for task in $(python -c "from snooker_env.benchmark import TASKS; print(*(t.id for t in TASKS.values() if not t.frame))"); do
+    tasks=$(python -c "from snooker_env.benchmark import TASKS; print(*(t.id for t in TASKS.values() if not t.frame))") || exit 1
+    for task in $tasks; do
         file=leaderboard/$task.$1.json
         if [ -e "$file" ] && grep -q '"incomplete": null' "$file"; then continue; fi
         python leaderboard/baseline.py "$task" || return

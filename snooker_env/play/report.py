@@ -75,9 +75,9 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
     acts, labels = service.session.acts, service.seats.labels
     played = acts[k].played
     assert played is not None
-    both = acts[k - 1 : k + 1]
+    before, both = acts[k - 2] if k > 1 else None, acts[k - 1 : k + 1]
     chances = service.win_chances(both)
-    tables = [table_after(act, labels, chance) for act, chance in zip(both, chances, strict=True)]
+    tables = [table_after(act, labels, chance, before) for act, chance in zip(both, chances, strict=True)]
     return encoded_stroke(played, labels) | {"tables": tables}
 
 

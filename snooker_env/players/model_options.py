@@ -56,10 +56,8 @@ def add_model_options(parser: ArgumentParser) -> None:
 
 def of_others(path: str | Path) -> bool:
     """Whether that is a model's ``.zip`` that the repository's ``train.py`` did not make, or an unsound one."""
-    if not Path(path).is_file():
-        return False
     try:
-        return not by_train(entries(path))
+        return Path(path).is_file() and not by_train(entries(path))
     except Exception:  # ``SavedModel`` says what is wrong with it
         return Path(path).suffix == ".zip"
 

@@ -172,8 +172,10 @@ class Page {
     for (;;) {
       if (document.hidden) await new Promise(done => document.addEventListener("visibilitychange", done, { once: true })); // another tab is visible
       try {
-        const down = by("last").textContent === DOWN;
-        this.take(await ask("state", undefined, this.state ? `?after=${this.state.revision}&wait=${down ? 0 : 20}` : ""));
+        const down = by("last").textContent === DOWN, after = this.state?.revision;
+        const state = await ask("state", undefined, this.state ? `?after=${after}&wait=${down ? 0 : 20}` : "");
+        if (state.revision < after) location.reload();  // another server
+        this.take(state);
         if (down) { by("last").className = ""; this.show(); }
       } catch (error) {
         this.trouble(error);
@@ -233,7 +235,7 @@ class Page {
   get agentsAlone() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
 
   /** Has the frame ended, and been shown? */
-  get ended() { return this.state?.phase === "over" && !this.behind; }
+  get ended() { return this.state?.phase === "over" && !this.behind && !this.drills.now; }
 
   /** Does the game wait for Continue? */
   get waits() { return this.agentsAlone && this.held || !this.behind && this.state.paused; }
@@ -242,7 +244,7 @@ class Page {
   get behind() { return Boolean(this.moving || this.busy || this.played < this.state.strokes); }
 
   /** Show no motion until a person is asked. */
-  hurry() { this.hurried = Boolean(this.moving); this.skip(); }
+  hurry() { this.hurried = !by("turn").hidden; this.skip(); }
 
   goOn() {
     if (this.ended) { by("next").click(); return; }
@@ -336,7 +338,7 @@ class Page {
     return new Promise(done => {
       this.moving = { stroke, rate, at: -0.4, now: null, done };
       if (this.near) this.fit();
-      this.compact();
+      if (this.state.players[stroke.player] === "person") this.compact();
       this.stats.turn(false);
       this.put(data.tables[0]);
     });
@@ -364,6 +366,7 @@ class Page {
   async film(stroke, rate = 1) {
     if (this.behind) return;
     this.busy = true;
+    this.compact();
     try { await this.move(typeof stroke === "function" ? await stroke() : stroke, rate); } catch (error) { this.moving = null; this.trouble(error); }
     this.busy = false;
     this.catchUp();
@@ -373,7 +376,7 @@ class Page {
 
   get aiming() {
     const { state } = this;
-    return Boolean(state) && !this.behind && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
+    return Boolean(state) && !this.behind && !this.drills.dealing && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
   }
 
   async play() {
@@ -409,11 +412,10 @@ class Page {
     try {
       const saved = JSON.parse(text), position = saved?.format === undefined;
       if (position && !saved?.cue) throw new Error();
-      const state = await (position ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`));
       await this.drills.stop();
-      return state;
+      return await (position ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`));
     } catch (error) {
-      if (error.message && error.field !== "saved" && !(error instanceof SyntaxError)) throw error;
+      if (error.message && !(error instanceof SyntaxError)) throw error;
       throw new Error(`${file.name} is no saved game.${text[0] === "<" ? " A replay opens by itself in a browser." : ""}`);
     }
   }
@@ -504,7 +506,7 @@ class Page {
       by("panel").scrollTop = 0;
       by("choices").replaceChildren(...state.choices.map(choice => {
         const button = make("button", { textContent: choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice](state.labels[1 - state.striker]) });
-        Object.assign(button.dataset, { choice, words: button.textContent });
+        button.dataset.choice = choice;
         button.onclick = () => this.send({ choice });
         return button;
       }));

@@ -134,12 +134,7 @@ export class Advisor {
   show({ order, suggestions, choices, choice }) {
     this.list = suggestions;
     this.adopted = false;
-    for (const { choice: one, win } of choices) {
-      const button = by("choices").querySelector(`[data-choice=${one}]`);
-      if (!button) continue;
-      button.classList.toggle("best", one === choice);
-      if (win !== null) button.textContent = `${button.dataset.words} · win ${percent(win)}`;
-    }
+    for (const button of by("choices").children) button.classList.toggle("best", button.dataset.choice === choice);
     const items = suggestions.map((one, k) => {
       const [low, high] = (one.win_interval ?? one.chance_interval).map(value => Math.round(100 * value));
       const [least, most] = one.points_interval.map(value => value.toFixed(1));
@@ -156,7 +151,7 @@ export class Advisor {
       return make("li", {}, button);
     });
     by("advice").replaceChildren(...items);
-    const errs = this.noise === this.app.state.noise[this.app.state.striker] ? order : order.replace(":", ", with an amateur's mistakes:");
+    const errs = this.noise === this.app.state.noise[this.app.state.striker] ? order : order.replace(/:$/, ", with an amateur's mistakes:");
     by("advice-order").textContent = choices.length ? `If you play, ${errs[0].toLowerCase()}${errs.slice(1)}` : errs;
     by("advice").scrollIntoView({ block: "nearest" });
     this.app.redraw();

@@ -42,6 +42,7 @@ export class Drills {
   /** Go on with the drill of a page that was loaded anew. */
   resume() {
     if (this.app.state.practice) Object.assign(this, kept.get("drill", {}));
+    if (this.now && !this.over && !DRILLS[this.now].run && this.app.state.strokes > this.counted) this.count(0);  // it was not seen to its end
     this.show();
   }
 
@@ -57,16 +58,29 @@ export class Drills {
   }
 
   async deal() {
+    if (!this.now) return;
+    this.dealing = true;  // no stroke on the table of the last try
     await this.app.try(DRILLS[this.now].table);
+    this.dealing = false;
+    this.counted = this.app.state.strokes;
     this.show();
+    this.app.settle();
   }
 
   async played(stroke) {
     const drill = DRILLS[this.now];
     if (!drill || this.over) return;
     const got = drill.score(stroke, this.app.state);
-    if (got) this.score = drill.run ? stroke.break : this.score + got;
+    if (got && drill.run) this.score = stroke.break;
+    await this.count(got);
+  }
+
+  /** A try is over. */
+  async count(got) {
+    const drill = DRILLS[this.now];
+    if (!drill.run) this.score += got;
     this.tries++;
+    this.counted = this.app.state.strokes;
     this.over = drill.run ? !got || this.app.state.phase === "over" : this.tries === TRIES;
     if (this.over) {
       const best = kept.get("best", {});
@@ -91,8 +105,8 @@ export class Drills {
   }
 
   show() {
-    const { now, before, tries, score, over } = this;
-    kept.set("drill", { now, before, tries, score, over });
+    const { now, before, counted, tries, score, over } = this;
+    kept.set("drill", { now, before, counted, tries, score, over });
     by("drill").hidden = !now;
     if (!this.now) return;
     const { name, about, run } = DRILLS[this.now], best = kept.get("best", {})[this.now] ?? 0;

@@ -60,7 +60,10 @@ export class Share {
     try {
       const [kind, value] = await unpacked(link);
       if (kind === "game") app.sure("Leave this frame for the position of the link?", "Open", () => app.go("load", `{"saved": ${value}}`));
-      else await app.film(JSON.parse(value));
+      else {
+        while (app.behind) await new Promise(done => setTimeout(done, 200));
+        await app.film(JSON.parse(value));
+      }
     } catch (error) { app.trouble(error instanceof ServerError ? error : new Error(error.message)); }
   }
 }

@@ -46,6 +46,7 @@ export class Stats {
     this.app = app;
     this.times = new Map();  // of a person's stroke, by its number: seconds
     this.since = null;
+    this.at = performance.now();
     by("stats-open").onclick = by("over-stats").onclick = () => this.open();
     setting("limit", LIMITS, "off", () => this.show());
     setInterval(() => this.show(), 200);

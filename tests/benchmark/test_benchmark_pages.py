@@ -71,6 +71,10 @@ def test_the_leaderboard_is_the_page_of_its_files():
         if not (ROOT / f"leaderboard/{task}.{label}.json").exists()
     ]
     assert len(labels) > 6 and ("Missing: " in text) == bool(missing)
+    for label in re.findall(r"^judge_each (\w+)", script, re.MULTILINE):
+        assert all(
+            f"{name}.{label}" in {one.stem for one in FILES} for name, task in TASKS.items() if not task.frame
+        )
 
 
 def test_the_examples_on_the_page_run(tmp_path, monkeypatch):

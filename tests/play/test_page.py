@@ -689,7 +689,7 @@ def test_the_controls_stay_where_they_are(shown):
 
 
 def test_advice_after_a_foul_says_what_to_choose(shown):
-    """How likely one wins after each choice, and which the agent would take, marked."""
+    """The choice that the agent would take is marked."""
     shown.set_up(COVERED)
     shown("page.aim.set({aim: 1.5708, speed: 1})")
     shown.page.click("#play")
@@ -701,9 +701,6 @@ def test_advice_after_a_foul_says_what_to_choose(shown):
     shown.until("document.querySelectorAll('#advice button').length")
     marked = shown("[...document.querySelectorAll('#choices .best')].map(one => one.dataset.choice)")
     assert marked == [asked["choice"]]
-    for one in asked["choices"]:
-        button = shown.page.inner_text(f"#choices [data-choice={one['choice']}]")
-        assert button.endswith(f"win {100 * one['win']:.0f} %")
 
 
 def test_one_menu_seats_an_opponent_of_a_strength(shown):

@@ -213,6 +213,7 @@ def test_a_foul_asks_for_a_choice_and_a_nomination_counts(game):
     assert back["state"]["positions"]["cue"] == COVERED["cue"]
     both = game("undo") and game("stroke", choice="play", speed=1.0, aim=1.0)
     assert both["stroke"]["player"] == 1
+    assert both["stroke"]["tables"][0]["last"] == f"{foul} Player 2 played on."
 
 
 def test_a_request_that_is_refused_has_changed_nothing(game):

@@ -230,7 +230,7 @@ def test_the_ladder_of_the_repository_is_sound(capsys):
     assert {p["label"] for p in found["players"]}.issuperset(names.split())
 
 
-def test_the_page_names_every_field():
+def test_the_page_names_every_part_of_a_file():
     text = (ROOT / "docs" / "agents" / "tournament.md").read_text()
     rooms = {name.partition(".")[0] for name in FIELDS} - {"schema"}
     columns = {name.rpartition("_")[0] + "_" if "_" in name else name for name in COLUMNS}

@@ -202,7 +202,13 @@ def test_weights_are_handed_on(mask, plain):
     for file in (mask, plain):
         model = made("ppo_mask", seed=9)
         load_weights(model, file)
-        assert model.start == {"model": str(file), "shots": 77, "imitated": 300, "start": None}
+        assert model.start == {
+            "model": str(file),
+            "shots": 77,
+            "imitated": 300,
+            "start": None,
+            "simulated_shots": None,
+        }
         weights = model.policy.state_dict()
         assert its.keys() == weights.keys() and all(torch.equal(its[name], weights[name]) for name in its)
 

@@ -16,12 +16,13 @@ from agents.learning.imitation import Imitation
 from agents.players.trained import load_player
 from commands import lock
 from commands.files import write_atomic
+from commands.lifecycle import python
 from snooker_env.progress import Progress
 from tests.agents import training
 from tests.agents.training import TINY, results, resume, weights
 from tests.processes import ROOT
 
-CONTINUE = "Continue with:  python train.py --resume --out"
+CONTINUE = f"Continue with:  {python()} train.py --resume --out"
 NO_SPACE = (28, "No space left on device")
 
 

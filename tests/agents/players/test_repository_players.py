@@ -13,6 +13,7 @@ from agents.learning.hyperparameters import Recipe
 from agents.learning.models import PRETRAINED, load_trained, pretrained
 from agents.players.trained import load_player, read_model
 from snooker_env.planning import Positions
+from snooker_env.players.model_options import of_others
 from snooker_env.players.weights import FOLDER, levels
 from snooker_env.tasks import Noise
 from tests.processes import ROOT, python
@@ -70,6 +71,9 @@ def test_a_planner_takes_the_value_of_a_model_of_your_own(tmp_path):
 def test_files_of_others_are_left_to_others(tmp_path):
     (tmp_path / "x.zip").write_bytes(b"no zip")
     assert read_model(tmp_path / "x.zip") is None
+    assert of_others(tmp_path / "x.zip") and not of_others(
+        "program:python -c " + 300 * "x"
+    )  # a name too long for a file
     with pytest.raises(ValueError, match=r"must be a model's \.zip or a folder"):
         load_player(tmp_path)
     assert Noise().silent
