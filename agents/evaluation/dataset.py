@@ -122,7 +122,9 @@ def episodes_of(part, seeds, first):
     ends = np.cumsum(part["lengths"])
     for k, (end, length) in enumerate(zip(ends.tolist(), part["lengths"].tolist(), strict=True)):
         one = {column: part[column][end - length : end] for column in COLUMNS}
-        shown = np.concatenate([one["observations"], part["last"][k : k + 1]])
+        shown: Any = np.concatenate(
+            [one["observations"], part["last"][k : k + 1]]
+        )  # its type says nothing of arrays
         if part["masks"].shape[1]:
             shown = {
                 "observations": shown,

@@ -72,7 +72,7 @@ def table_after(
 
 def stroke_report(service: Service, k: int) -> dict[str, Any]:
     """The act with this index, which is a stroke: as in a replay, with the tables before and after it."""
-    acts, labels = service.session.acts, service.seats.labels
+    acts, labels = service.session.acts, service.labels
     played = acts[k].played
     assert played is not None
     before, both = acts[k - 2] if k > 1 else None, acts[k - 1 : k + 1]
@@ -89,11 +89,11 @@ def report(service: Service) -> dict[str, Any]:
     hidden, lines = (_snookered(session, frame, on), _lines(session, frame, on)) if on else (False, [])
     act = session.acts[session.at - 1]
     before = session.acts[session.at - 2] if session.at > 1 else None
-    state = table_after(act, seats.labels, service.win_chances([act])[0], before)
+    state = table_after(act, service.labels, service.win_chances([act])[0], before)
     state |= {
         "revision": service.revision,
         "players": list(seats.who),
-        "labels": list(seats.labels),
+        "labels": list(service.labels),
         "noise": list(session.noise),
         "practice": session.practice,
         "game": session.game,

@@ -230,7 +230,7 @@ def _errors(fields: dict[str, Any], samples: int, session: Session) -> dict[str,
 def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], Any]) -> Any:
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
-        labels, judge = service.seats.labels, service.judge
+        labels, judge = service.labels, service.judge
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
     title = f"{labels[0]} - {labels[1]}"

@@ -125,6 +125,12 @@ class Service:
             self._closed = True
             self._changed.notify_all()
 
+    @property
+    def labels(self) -> tuple[str, str]:
+        """The names of both players; alone at the table a person is "You"."""
+        one, other = self.seats.labels
+        return ("You" if self.session.practice and not self.seats.is_agent(0) else one), other
+
     @contextmanager
     def reading(self) -> Iterator[Session]:
         """The game, for reading: no other thread changes it meanwhile."""

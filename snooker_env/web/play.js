@@ -96,8 +96,9 @@ class Page {
     by("file").onchange = () => this.try(() => this.load());
     by("labels").checked = kept.get("labels", false);
     by("labels").onchange = () => { kept.set("labels", by("labels").checked); this.redraw(); };
-    fill(by("layout"), LAYOUTS);
     fill(by("rules"), this.games);
+    by("rules").onchange = () => fill(by("layout"), by("rules").value === "six_red" ? ["break_off", "colours"] : LAYOUTS);
+    by("rules").onchange();
     fill(by("best-of"), BEST_OF.map(String), "1", n => (n === "1" ? "one frame" : `best of ${n}`));
     by("level").onchange = () => this.level();
     for (const k of [0, 1]) {
@@ -484,6 +485,7 @@ class Page {
     own.hidden = this.strength !== OWN;
     own.textContent = `${state.labels[1]}, mistakes: ${NOISE[state.noise[1]]}`;
     by("practice").checked = state.practice;
+    by("side-1").style.visibility = state.practice ? "hidden" : "";
     by("cue").value = state.cue;
     this.show();
   }

@@ -153,6 +153,7 @@ def test_the_chance_is_for_the_larger_errors_and_nobody_wins_practice(game):
     ]
     assert said[0] == said[2] != said[1]
     alone = game("players", practice=True, noise=["none", "none"])
+    assert alone["labels"][0] == "You" and alone["words"].startswith("Your stroke")
     assert alone["win_chance"] is None and "Chance to win" not in alone["text"]
     game("stroke", speed=2.0, aim=STRAIGHT)
     assert game.get("strokes")["strokes"][0]["tables"][1]["win_chance"] is None
