@@ -163,6 +163,14 @@ def test_a_drill_outlives_a_reload_and_gives_the_seats_back(shown):
     assert {name: shown("page.state")[name] for name in before} == before
 
 
+def test_the_clock_of_a_first_visitor_is_a_number(chromium, line):  # noqa: F811
+    """The tutorial is open before the first state has come."""
+    shown = Shown(chromium, line, new=True)
+    shown.until(f"{SETTLED} && page.aiming")
+    assert shown.page.is_visible("#tour") and shown("Number.isFinite(page.stats.since)")
+    shown.close()
+
+
 def test_the_shot_clock_stands_while_something_is_read(shown):
     shown.set_up(EASY)
     shown.page.click("#options summary")
