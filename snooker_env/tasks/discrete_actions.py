@@ -184,7 +184,7 @@ class Choices:
     claim: bool
     lot: bool
     choices: int
-    space: spaces.Discrete
+    space: spaces.Discrete[np.int64]
 
     def __init__(self, physics: Physics, says: Collection[str] = ()):
         self.physics = physics
