@@ -1,19 +1,13 @@
 """Advice: the strokes that a player would play in a position, and their outcomes, as data and in words.
 
->>> import snooker_env as sn
->>> position = sn.Position(cue=(0.25, 0.6), reds=[(-0.4, 1.3)], black=(0.0, 1.4605), on="red")
->>> advice = sn.advise(position, n=2, samples=40, visits=8)
->>> print(advice[0].words)  # doctest: +ELLIPSIS
-red, top left, ... m/s, ..., pot ... %, ... points expected
-
 In words the ``snooker_env.POCKETS`` are called green pocket, yellow pocket, right middle, top right, top left
 and left middle. Left and right are as seen from the baulk end: right is the yellow side (+x).
 """
 
-from .ask import advise, stroke_of
-from .coach import Coaching, Drill, coach
+from .ask import advise
+from .coach import Coaching, coach
 from .destinations import Destinations, destinations
-from .errors import Estimate, PlayerErrors, estimate_errors
+from .errors import PlayerErrors, estimate_errors
 from .recorded import Recorded, read_strokes, strokes_of, write_strokes
 from .room import Room
 from .strokes import Advice, CueStroke, Suggestion
@@ -25,8 +19,6 @@ __all__ = [
     "Coaching",
     "CueStroke",
     "Destinations",
-    "Drill",
-    "Estimate",
     "PlayerErrors",
     "Recorded",
     "Room",
@@ -36,7 +28,6 @@ __all__ = [
     "destinations",
     "estimate_errors",
     "read_strokes",
-    "stroke_of",
     "strokes_of",
     "write_strokes",
 ]

@@ -88,11 +88,8 @@ def _advice(argv: Sequence[str]) -> int:
         (low, high), (least, most) = one.chance_interval, one.points_interval
         chance, points = ("pot", f", points {least:.1f} to {most:.1f}") if one.kind == "pot" else ("fair", "")
         print(f"{k}. {one.words}")
-        won = (
-            ""
-            if one.win_interval is None
-            else "; win chance {:.0f} to {:.0f} %".format(*(100 * end for end in one.win_interval))
-        )
+        ends = [100 * end for end in one.win_interval or ()]
+        won = "; win chance {:.0f} to {:.0f} %".format(*ends) if ends else ""
         print(f"   {chance} {100 * low:.0f} to {100 * high:.0f} %{points}{won} (95 %)", end="")
         x, y = one.stops or (0.0, 0.0)
         print(f"; cue ball stops at ({x:.2f}, {y:.2f}) m, spread {one.spread:.2f} m" if one.stops else "")

@@ -1,4 +1,4 @@
-"""What would a player do here, and how would it turn out? ``advise``, and ``stroke_of`` for one stroke."""
+"""What would a player do here, and how would it turn out? ``advise``."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -130,40 +130,3 @@ def _ranked(asked: Player, practice: Practice, at: Positions, seed: int) -> list
     bound = asked.at(practice.options)
     rank = getattr(bound, "rank", None)
     return cue_strokes(bound.play(at, [seed]) if rank is None else rank(at, [seed])[0].strokes, at)
-
-
-def stroke_of(
-    player: Any,
-    position: PositionsLike,
-    *,
-    noise: NoiseLike = "professional",
-    options: Any = None,
-    seed: int = 0,
-) -> CueStroke:
-    """Return the one stroke that a player would play in a position.
-
-    Parameters
-    ----------
-    player : str, Path or player
-        As ``snooker_env.player`` takes it. For several calls pass its result: a model is then loaded once.
-    position, noise, options
-        As in ``advise``.
-    seed : int
-        Seed of the player's random numbers, in [0, 2**63].
-
-    Returns
-    -------
-    CueStroke
-        With a place in the D if the cue ball is in hand. ValueError as from ``advise``.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> from snooker_env.advice import stroke_of
-    >>> stroke_of("search", sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), noise="none").place is None
-    True
-    """
-    integer("seed", seed, 0, 2**63)
-    at = one_position(position)
-    practice = practice_of(noise, options, position, of_frames=at.of_frames)
-    return cue_strokes(player_of(player).at(practice.options).play(at, [seed]), at)[0]

@@ -33,24 +33,10 @@ WORDS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Drill:
-    """What to practise: a layout of this package, and why.
+    """What to practise, and why."""
 
-    Attributes
-    ----------
-    layout : str
-        As ``layout`` of an environment, and ``--layout`` of the page.
-    reason : str
-        In one sentence.
-
-    Examples
-    --------
-    >>> from snooker_env.advice import Drill
-    >>> Drill(layout="line_up", reason="position costs most").layout
-    'line_up'
-    """
-
-    layout: str
-    reason: str
+    layout: str  # as of an environment, and ``--layout`` of the page
+    reason: str  # in one sentence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +63,7 @@ class Coaching:
     sure : float
         The share of the bootstrap's samples in which it does.
     drills : tuple of Drill
-        What to practise, first what costs most.
+        What to practise, first what costs most: each a ``layout`` of this package, and the ``reason`` in one sentence.
 
     Examples
     --------
@@ -188,16 +174,15 @@ def coach(
     found = fitted(kept, base, seed)
     kept = found.strokes
     costs = lost(kept, bench, seed)
-    many = max(1, visits_of(kept))
+    visits = max(1, visits_of(kept))
     rng = np.random.default_rng((seed, RESAMPLES))
-    drawn = costs.parts[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / many
-    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), costs.parts.sum(axis=0) / many
+    drawn = costs.parts[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / visits
+    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), costs.parts.sum(axis=0) / visits
+    figures = zip(PARTS, np.vstack([sums, ends]).T.tolist(), costs.counts.tolist(), strict=True)
     parts = {
-        name: Estimate(
-            value=float(sums[k]), low=float(ends[0, k]), high=float(ends[1, k]), strokes=int(costs.counts[k])
-        )
-        for k, name in enumerate(PARTS)
-        if costs.counts[k]
+        name: Estimate(value=value, low=low, high=high, strokes=many)
+        for name, (value, low, high), many in figures
+        if many
     }
     first = max(parts, key=lambda name: parts[name].value) if parts else None
     most = first if first is not None and parts[first].value > 0.0 else None

@@ -1,14 +1,13 @@
-"""Where do the balls of a stroke stop under execution errors? As points and as a map."""
+"""Where do the balls of a stroke stop under execution errors?"""
 
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from .._check import choice, integer, number
+from .._check import integer
 from .._types import Floats
 from ..game.balls import CUE
-from ..geometry import HALF_LENGTH, HALF_WIDTH
 from ..planning.positions import PositionsLike
 from ..tasks.noise import NoiseLike
 from .practice import JUDGING, keys, one_position, played_from, practice_of
@@ -54,22 +53,6 @@ class Destinations:
     scored: float
     points: float
 
-    def density(self, cell: float = 0.05, ball: str = "cue") -> dict[str, Any]:
-        """Return a density map of where a ball stops, as shares of all samples in square cells.
-
-        ``cell``: side of a cell [m], in [0.005, 1]. ``ball``: "cue" or "ball", the object ball. Returns
-        "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of cells; "values": ny
-        rows of nx numbers, whose sum is the share of samples in which the ball stayed on the table.
-        """
-        number("cell", cell, 0.005, 1.0)
-        places = getattr(self, choice("ball", ball, ("cue", "ball")))
-        nx, ny = int(np.ceil(2.0 * HALF_WIDTH / cell)), int(np.ceil(2.0 * HALF_LENGTH / cell))
-        x0, y0 = -0.5 * nx * cell, -0.5 * ny * cell
-        # a ball may come to rest between the jaws
-        columns = np.clip(((places - (x0, y0)) / cell).astype(int), 0, (nx - 1, ny - 1))
-        values = np.bincount(columns[:, 1] * nx + columns[:, 0], minlength=nx * ny) / self.samples
-        return {"x0": x0, "y0": y0, "cell": float(cell), "nx": nx, "ny": ny, "values": values.tolist()}
-
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types; points as lists, rounded to 0.1 mm."""
         return vars(self) | {name: getattr(self, name).round(4).tolist() for name in ("cue", "ball")}
@@ -93,8 +76,8 @@ def destinations(
     samples : int
         How often the stroke is played, in [1, 1000000]; once without noise.
     seed : int
-        Seed of the noise samples, in [0, 2**63]. Every stroke meets the same errors with the same seed, so a
-        map changes smoothly with the stroke.
+        Seed of the noise samples, in [0, 2**63]. Every stroke meets the same errors with the same seed, so the
+        places change smoothly with the stroke.
     options
         As in ``advise``.
 
@@ -109,8 +92,8 @@ def destinations(
     >>> from snooker_env.advice import destinations
     >>> position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     >>> stops = destinations(position, {"speed": 1.8, "aim": 0.8}, samples=100)
-    >>> stops.object_ball, stops.cue.shape[1], stops.density(0.1)["nx"]
-    (21, 2, 18)
+    >>> stops.object_ball, stops.cue.shape[1]
+    (21, 2)
     """
     integer("samples", samples, 1, 1_000_000)
     integer("seed", seed, 0, 2**63)

@@ -60,21 +60,7 @@ WAYS = 32
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """A number with its 95 % interval, and the strokes that it was learned from.
-
-    Attributes
-    ----------
-    value, low, high : float
-        The estimate and the ends of its interval.
-    strokes : int
-        Number of strokes.
-
-    Examples
-    --------
-    >>> from snooker_env.advice import Estimate
-    >>> print(Estimate(value=0.1, low=0.08, high=0.12, strokes=100))
-    0.1 [0.08, 0.12]
-    """
+    """A number with its 95 % interval, and the number of strokes that it was learned from."""
 
     value: float
     low: float
@@ -87,7 +73,8 @@ class Estimate:
 
 @dataclass(frozen=True, kw_only=True)
 class PlayerErrors:
-    """A player's errors of execution, as returned by ``estimate_errors``.
+    """A player's errors of execution, as returned by ``estimate_errors``. An ``Estimate`` has ``value``, the ends ``low``
+    and ``high`` of its 95 % interval, and the number of ``strokes`` that it was learned from.
 
     Attributes
     ----------
@@ -209,26 +196,21 @@ def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
     told = [k for k, row in enumerate(pots.rows) if np.isnan(directions[row])]
     e = directions[~np.isnan(directions)]
     base, direction, weights = LEVELS[BASE], None, None
+    unit = base.direction_deg(practice.options.rules.physics)
     if len(e) + len(told):
         sure = directions[~np.isnan(directions) & ~guessed]
         log_l = direct(sure) + mixed + outcome(pots.chances[told], pots.made[told]).sum(axis=0)
         weights = posterior(log_l)
-        direction = estimate(weights, base.direction_deg(practice.options.rules.physics), len(e) + len(told))
+        direction = estimate(weights, unit, len(e) + len(told))
     v = speeds[~np.isnan(speeds)]
     speed = estimate(posterior(direct(v)), base.speed_rel, len(v)) if len(v) else None
     if direction is None and speed is None:
-        what = "none that tells an error"
-        allowed = (
-            "must hold strokes with intended and played, with a pot and played, or with a pot and potted"
-        )
-        raise refuse_what("strokes", what, allowed)
-    errors = PlayerErrors(
-        direction=direction,
-        speed=speed,
-        aside=mean_of(e, base.direction_deg(practice.options.rules.physics)),
-        faster=mean_of(v, base.speed_rel),
+        allowed = "with intended and played, with a pot and played, or with a pot and potted"
+        raise refuse_what("strokes", "none that tells an error", f"must hold strokes {allowed}")
+    aside, faster = mean_of(e, unit), mean_of(v, base.speed_rel)
+    return Fitted(
+        PlayerErrors(direction=direction, speed=speed, aside=aside, faster=faster), weights, pots, strokes
     )
-    return Fitted(errors, weights, pots, strokes)
 
 
 def direct(e: Floats) -> Floats:

@@ -46,15 +46,9 @@ def outlooks(
     for mine, group, rest in zip(wins, groups, scored, strict=True):
         half = Z * sqrt(float(mine.var(ddof=1)) / len(mine)) if len(mine) > 1 else 0.0
         win = float(mine.mean())
-        out.append(
-            Outlook(
-                win=win,
-                win_interval=(max(0.0, win - half), min(1.0, win + half)),
-                replies=float((rest > 0.0).mean()) if len(rest) else None,
-                leaves=float(rest.mean()) if len(rest) else None,
-                snookers=float(hidden[group].mean()) if len(group) else None,
-            )
-        )
+        interval = max(0.0, win - half), min(1.0, win + half)
+        replies = (float((rest > 0.0).mean()), float(rest.mean())) if len(rest) else (None, None)
+        out.append(Outlook(win, interval, *replies, float(hidden[group].mean()) if len(group) else None))
     return out
 
 

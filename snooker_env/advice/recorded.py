@@ -121,10 +121,8 @@ class Recorded:
                 raise refuse("potted", self.potted, "must be left out: no pot was meant")
         put("guessed", truth("guessed", self.guessed))
         if self.guessed and (self.ball is None or self.played is None or self.intended is not None):
-            allowed = (
-                "must be False without a pot and the stroke played, which it is told from, and with intended"
-            )
-            raise refuse("guessed", True, allowed)
+            told = "without a pot and the stroke played, which it is told from, and with intended"
+            raise refuse("guessed", True, f"must be False {told}")
         put("points", integer("points", self.points, 0, MOST_POINTS))
         put("penalty", integer("penalty", self.penalty, 0, MOST_PENALTY))
         if not isinstance(self.scores, list | tuple) or len(self.scores) != 2:

@@ -55,13 +55,8 @@ class Room:
     @property
     def words(self) -> str:
         """What is done to the stroke, in words; "" for nothing, and for less than half a degree."""
-        over = (
-            ""
-            if self.over is None
-            else " over a red"
-            if self.over.startswith("red")
-            else f" over the {self.over}"
-        )
+        what = self.over and ("a red" if self.over.startswith("red") else f"the {self.over}")
+        over = f" over {what}" if what else ""
         if self.unplayable:
             return f"no room for the cue{over}: raised to {degrees(self.elevation):.0f} degrees, nobody plays that"
         parts = []

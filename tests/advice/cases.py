@@ -3,6 +3,8 @@
 import numpy as np
 
 import snooker_env as sn
+from snooker_env.advice.practice import one_position, practice_of
+from snooker_env.advice.strokes import cue_strokes
 from snooker_env.players import Ranked, Strokes
 
 REDS = [(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)]
@@ -19,6 +21,13 @@ HIDDEN = sn.Position(cue=(0.3, -0.5), reds=[(0.0, 1.74), (0.06, 1.74)], pink=(0.
 """Reds that straight lines reach, and none of them can be potted."""
 ALL = {"open": OPEN, "endgame": ENDGAME, "in_hand": IN_HAND, "respotted": RESPOTTED}
 ALL |= {"snookered": SNOOKERED, "hidden": HIDDEN}
+
+
+def stroke_of(player, position, *, noise="professional", seed=0):
+    """The one stroke that a player would play in a position."""
+    at = one_position(position)
+    practice = practice_of(noise, None, position, of_frames=at.of_frames)
+    return cue_strokes(sn.player(player).at(practice.options).play(at, [seed]), at)[0]
 
 
 class Given:

@@ -4,10 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from cases import ALL, ENDGAME, IN_HAND, OPEN, RESPOTTED, SNOOKERED, played, state_of
+from cases import ALL, ENDGAME, IN_HAND, OPEN, RESPOTTED, SNOOKERED, played, state_of, stroke_of
 
 import snooker_env as sn
-from snooker_env.advice import stroke_of
 from snooker_env.advice.__main__ import main
 from snooker_env.planning import clear_paths
 from tests.refusals import refused

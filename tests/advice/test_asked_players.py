@@ -4,10 +4,9 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from cases import ALL, ENDGAME, IN_HAND, OPEN, state_of
+from cases import ALL, ENDGAME, IN_HAND, OPEN, state_of, stroke_of
 
 import snooker_env as sn
-from snooker_env.advice import stroke_of
 from snooker_env.planning import Position
 from snooker_env.players import Ranked, Strokes
 from snooker_env.tasks import choice_of

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cases import ENDGAME, HIDDEN, OPEN, SNOOKERED, Given, played
+from cases import ENDGAME, HIDDEN, OPEN, SNOOKERED, Given, played, stroke_of
 
 import snooker_env as sn
-from snooker_env.advice import CueStroke, stroke_of, words
+from snooker_env.advice import CueStroke, words
 from snooker_env.advice.__main__ import main
 from snooker_env.advice.practice import one_position
 from snooker_env.game import frame_columns as columns
