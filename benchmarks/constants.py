@@ -15,7 +15,8 @@ import numpy as np
 
 from commands.tables import shown, text_table
 from snooker_env._warmup import warmup
-from snooker_env.benchmark import TASKS, Agent, figures_of, play_episodes
+from snooker_env.benchmark import TASKS, Agent, figures_of
+from snooker_env.benchmark.playing import play_episodes
 from snooker_env.tasks import SIDES, SPEEDS, TOPS
 from snooker_env.tasks.discrete_actions import POTS, STROKES
 

@@ -1,9 +1,11 @@
-"""How is a file written so that no reader ever sees half of it? Beside it, to be moved there."""
+"""How are files written so that no reader ever sees half of one, beside them, to be moved there; and how is JSON read?"""
 
+import json
 import os
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")
 """Names of the temporary files; a process that was killed leaves one behind."""
@@ -33,3 +35,24 @@ def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], objec
             error.filename = str(path)  # the file that the caller named
             del error.filename2
         raise
+
+
+def read_json(path: str | Path) -> Any:
+    """What a file of JSON in UTF-8 holds; ValueError for NaN or Infinity, too, and for a key twice in one object."""
+
+    def no_number(name: str) -> Any:
+        raise ValueError(f"{name} is no number of JSON")
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        made: dict[str, Any] = {}
+        for name, value in pairs:
+            if name in made:
+                raise ValueError(f"the key {name!r} stands there twice")
+            made[name] = value
+        return made
+
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+        return json.loads(text, parse_constant=no_number, object_pairs_hook=once)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{path}: must be JSON ({error})") from None

@@ -3,58 +3,49 @@
 from .._shots import simulated
 from ..play.program import AgentError, ProgramPlayer
 from .agents import Agent
-from .checking import afresh, faults, replayed
+from .checking import faults
 from .leaderboard import page
-from .playing import COLUMNS, PlayedEpisodes, play_episodes
-from .provenance import arithmetic, commit, machine, processor, software
-from .results import budget_of, figures_of, read_result, write_result
+from .playing import COLUMNS
+from .provenance import commit as commit
+from .provenance import machine as machine
+from .provenance import processor as processor
+from .provenance import software as software
+from .results import figures_of, read_result, write_result
 from .rollouts import CENTURY, FIGURES, MAXIMUM, Strokes, counts, play_visits, summary
 from .run import judge
-from .schema import faults_of_fields
-from .statistics import RESAMPLES, Resamples, figure, interval, iqm, unseen
-from .tasks import FREE, HELD_OUT_SEED, TASKS, Task, most_points, tables_of, task_of
+from .schema import faults_of_fields as faults_of_fields
+from .statistics import RESAMPLES as RESAMPLES
+from .statistics import Resamples as Resamples
+from .statistics import figure as figure
+from .statistics import interval, iqm
+from .statistics import unseen as unseen
+from .tasks import HELD_OUT_SEED, TASKS, Task
+from .tasks import most_points as most_points
+from .tasks import tables_of as tables_of
+from .tasks import task_of as task_of
 
 __all__ = [
     "CENTURY",
     "COLUMNS",
     "FIGURES",
-    "FREE",
     "HELD_OUT_SEED",
     "MAXIMUM",
-    "RESAMPLES",
     "TASKS",
     "Agent",
     "AgentError",
-    "PlayedEpisodes",
     "ProgramPlayer",
-    "Resamples",
     "Strokes",
     "Task",
-    "afresh",
-    "arithmetic",
-    "budget_of",
-    "commit",
     "counts",
     "faults",
-    "faults_of_fields",
-    "figure",
     "figures_of",
     "interval",
     "iqm",
     "judge",
-    "machine",
-    "most_points",
     "page",
-    "play_episodes",
     "play_visits",
-    "processor",
     "read_result",
-    "replayed",
     "simulated",
-    "software",
     "summary",
-    "tables_of",
-    "task_of",
-    "unseen",
     "write_result",
 ]

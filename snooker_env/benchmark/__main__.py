@@ -4,8 +4,8 @@ import argparse
 import os
 import shlex
 import sys
-from collections.abc import Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -60,10 +60,9 @@ def parser() -> argparse.ArgumentParser:
     help_ = "have --agent play N episodes on fresh seeds: the same mean?"
     check.add_argument("--fresh", type=int, metavar="N", help=help_)
     _agent(check, required=False)
+    help_ = "threads that play the tables (default: one for each core)"
     for one in (run, check):
-        one.add_argument(
-            "--threads", type=int, help="threads that play the tables (default: one for each core)"
-        )
+        one.add_argument("--threads", type=int, help=help_)
     table = commands.add_parser("table", help="print the leaderboard of result files")
     table.add_argument("files", nargs="*", metavar="FILE")
     table.add_argument("--markdown", metavar="FILE", help="write it as a page")
@@ -107,11 +106,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _tasks(args: Any) -> int:
     """List the tasks."""
-    rows = [
-        [one.id, one.title, one.judged_layout, str(one.frozen["noise"]), f"{one.episodes:,}"]
-        for one in TASKS.values()
-    ]
-    print("\n".join(text_table(["task", "what", "judged on", "noise", "episodes"], rows, 4)))
+    about = lambda one: [one.id, one.title, one.judged_layout, one.frozen["noise"], f"{one.episodes:,}"]  # noqa: E731
+    head = ["task", "what", "judged on", "noise", "episodes"]
+    print("\n".join(text_table(head, [about(task) for task in TASKS.values()], 4)))
     print(f"\nFree options: {', '.join(FREE)}. All others are frozen.")
     return 0
 
@@ -153,39 +150,36 @@ def _text(args: Any) -> int:
     """Play the track of words and print the result."""
     agent = _agent_of(args, label=args.label)
     out = Path(args.out or f"text.{agent.label}.json")
-    with ExitStack() as ending:
-        progress: list[Progress] = []
-
-        def tick(played: int, total: int) -> None:
-            if not progress:
-                progress.append(ending.enter_context(Progress("text", total, "visits", done=played)))
-            progress[0].at(played)
-
+    with _ticking("text", "visits") as tick:
         result = judge_text(agent, visits=args.visits, out=out, resume=args.resume, tick=tick)
     figures = result["figures"]
     said = f"{shown(figures['points'])} points a visit, {len(result['rows'])} visits"
     if agent.program:
-        kept = (
-            f"{100 * figures['forfeited']:.0f} % forfeited, {figures['refused']:.2f} answers refused a visit"
-        )
-        said = f"{said}, {kept}, {figures['read']:,.0f} characters read and {figures['written']:,.0f} written"
+        said += f", {100 * figures['forfeited']:.0f} % forfeited, {figures['refused']:.2f} answers refused a visit"
+        said += f", {figures['read']:,.0f} characters read and {figures['written']:,.0f} written"
     print(f"text  {agent.label}: {said}: {out}")
     return 0
 
 
 def _judged(task: Task, agent: Agent, file: Path, args: Any) -> dict[str, Any]:
     """Play a task and say how far it is."""
+    more: Any = {name: getattr(args, name) for name in ("episodes", "resume", "threads")}
+    with _ticking(task.id, "episodes") as tick:
+        return judge(task, agent, out=file, command=args.line, tick=tick, **more)
+
+
+@contextmanager
+def _ticking(what: str, unit: str) -> Iterator[Callable[[int, int], None]]:
+    """A function of work played and total that shows the progress, from its first call on."""
     with ExitStack() as ending:
         shown_by: list[Progress] = []
 
         def tick(played: int, total: int) -> None:
-            """Show the progress, from the first call on."""
             if not shown_by:
-                shown_by.append(ending.enter_context(Progress(task.id, total, "episodes", done=played)))
+                shown_by.append(ending.enter_context(Progress(what, total, unit, done=played)))
             shown_by[0].at(played)
 
-        more: Any = {name: getattr(args, name) for name in ("episodes", "resume", "threads")}
-        return judge(task, agent, out=file, command=args.line, tick=tick, **more)
+        yield tick
 
 
 def _told(result: dict[str, Any], task: Task, file: Path) -> int:
@@ -277,14 +271,7 @@ def _profile(args: Any) -> int:
     return 0
 
 
-COMMANDS = {
-    "tasks": _tasks,
-    "run": _run,
-    "text": _text,
-    "check": _check,
-    "table": _table,
-    "profile": _profile,
-}
+COMMANDS = {call.__name__[1:]: call for call in (_tasks, _run, _text, _check, _table, _profile)}
 
 if __name__ == "__main__":
     raise SystemExit(main())

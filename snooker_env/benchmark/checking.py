@@ -192,29 +192,7 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
 
 
 def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
-    """Have the agent play the first episodes of a result again, and compare strokes and rows.
-
-    Parameters
-    ----------
-    record, agent : dict, Agent
-        A result without faults, and its agent.
-    episodes : int
-        Episodes of each training seed.
-    threads : int, optional
-        As in ``SnookerVectorEnv``.
-
-    Returns
-    -------
-    list of str
-        A line for each episode that differs, or for another number of simulated shots.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import TASKS, Agent, judge, replayed
-    >>> agent = Agent.of("random")
-    >>> replayed(judge(TASKS["SnookerPotHard-v0"], agent, episodes=2), agent, 2)
-    []
-    """
+    """Have its agent play the first episodes of a sound result again: a line for each whose strokes or row differ."""
     seeds = TASKS[record["task"]].seeds(record["protocol"]["episodes"])[:episodes]
     again, wrong, rows = _by(agent, record, seeds, threads), [], record["rows"]
     kept = {tuple(row[:2]): (row, one.tobytes()) for row, one in zip(rows, strokes_of(record), strict=True)}
@@ -232,31 +210,8 @@ def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int |
 def afresh(
     record: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None
 ) -> tuple[float, float, list[str]]:
-    """Have the agent play a task on seeds that it cannot know, and compare the mean score.
-
-    Parameters
-    ----------
-    record, agent : dict, Agent
-        A complete result without faults, and its agent.
-    episodes, seed : int
-        Fresh episodes of each training seed, at least 2, and the first of their seeds: none that is public.
-    threads : int, optional
-        As in ``SnookerVectorEnv``.
-
-    Returns
-    -------
-    mean, error : float
-        The mean score of the fresh episodes, and the standard error of its difference to the result.
-    faults : list of str
-        A line if they differ by more than 3.29 standard errors, or a model-free agent simulates shots.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import TASKS, Agent, afresh, judge
-    >>> agent = Agent.of("random")
-    >>> afresh(judge(TASKS["SnookerPotHard-v0"], agent, episodes=60), agent, 60, 1_500_000)[2]
-    []
-    """
+    """Have its agent play a complete, sound result's task on seeds that it cannot know, from ``seed`` on: the mean score,
+    the standard error of its difference to the result, and a line for each fault."""
     if record["figures"] is None:
         raise refuse("incomplete", record["incomplete"], "must be null to compare means")
     played = _by(agent, record, range(seed, seed + episodes), threads)

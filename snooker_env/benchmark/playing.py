@@ -29,31 +29,13 @@ Kept = list[NDArray[np.float32]]
 
 @dataclass
 class PlayedEpisodes:
-    """Episodes that were played, as ``play_episodes`` returns them.
+    """Episodes that were played, as ``play_episodes`` returns them."""
 
-    Attributes
-    ----------
-    rows : list of list of int
-        One row for each episode, columns ``COLUMNS``.
-    strokes : list of numpy.ndarray
-        Those of each episode: float32 (strokes, size), actions that hold all of a stroke.
-    decisions, simulated : int
-        Number of decisions of the player, and of shots that this process simulated for them.
-    seconds : float
-        Time of all decisions [s].
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import COLUMNS, PlayedEpisodes
-    >>> PlayedEpisodes([]).decisions, COLUMNS[:3]
-    (0, ('run', 'table', 'score'))
-    """
-
-    rows: list[list[int]]
-    strokes: Kept = field(default_factory=list)
-    decisions: int = 0
-    seconds: float = 0.0
-    simulated: int = 0
+    rows: list[list[int]]  # one for each episode, columns ``COLUMNS``
+    strokes: Kept = field(default_factory=list)  # float32 (strokes, size), actions that hold all of a stroke
+    decisions: int = 0  # of the player
+    seconds: float = 0.0  # time of all of them [s]
+    simulated: int = 0  # shots that this process simulated for them
 
     def add(self, more: "PlayedEpisodes") -> None:
         """Add episodes that were played after these."""
@@ -137,30 +119,7 @@ def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorE
 def play_episodes(
     task: Task, player: Any, seeds: list[int], run: int = 0, threads: int | None = None
 ) -> PlayedEpisodes:
-    """Play one episode on each of the judged tables with these seeds, side by side.
-
-    Parameters
-    ----------
-    task, player : Task, and Player or str
-        The task, and a player or the name of one.
-    seeds : list of int
-        Seeds of the tables.
-    run : int
-        Index of the training seed: first number of each row, and the seed of what the player draws.
-    threads : int, optional
-        As in ``SnookerVectorEnv``.
-
-    Returns
-    -------
-    PlayedEpisodes
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import TASKS, play_episodes
-    >>> task = TASKS["SnookerPotHard-v0"]
-    >>> len(play_episodes(task, "ghost_ball", task.seeds(2)).rows)
-    2
-    """
+    """Play one episode on each of the judged tables with these seeds, side by side; ``run``: the training seed's index."""
     tables = tables_for(task, len(seeds), threads)
     decide = Decider(player, tables, seeds, run)
     rows = rows_of(task, tables, seeds, decide, run)

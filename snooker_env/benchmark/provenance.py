@@ -18,20 +18,7 @@ LIBRARIES = ("numpy", "numba", "gymnasium", "torch", "stable_baselines3", "sb3_c
 
 
 def commit() -> str | None:
-    """The commit of the checkout that the package is in.
-
-    Returns
-    -------
-    str or None
-        The hash, with "-dirty" if files are changed; None without a checkout or without git.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import commit
-    >>> text = commit()
-    >>> text is None or len(text.removesuffix("-dirty")) == 40
-    True
-    """
+    """The commit of the checkout that the package is in, with "-dirty" if files are changed; None without one."""
     here = Path(__file__).resolve().parents[2]
     git = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
     try:
@@ -43,18 +30,7 @@ def commit() -> str | None:
 
 
 def processor() -> str:
-    """The name of the processor, as the operating system reports it, or "unknown".
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import processor
-    >>> len(processor()) > 0
-    True
-    """
+    """The name of the processor, as the operating system reports it, or "unknown"."""
     cpuinfo = Path("/proc/cpuinfo")
     lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
     names = [text.split(":", 1)[1].strip() for text in lines if text.startswith("model name")]
@@ -62,18 +38,7 @@ def processor() -> str:
 
 
 def software() -> dict[str, str | None]:
-    """Name -> version of the package, of Python and of libraries that decide results; None: not installed.
-
-    Returns
-    -------
-    dict
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import software
-    >>> "numpy" in software()
-    True
-    """
+    """Name -> version of the package, of Python and of libraries that decide results; None: not installed."""
     from .. import __version__
 
     versions: dict[str, str | None] = {"snooker_env": __version__, "python": platform.python_version()}
@@ -87,21 +52,8 @@ def software() -> dict[str, str | None]:
 
 @cache
 def arithmetic() -> str:
-    """How the last bits fall here: where this is the same, the same strokes end alike, bit for bit.
-
-    Functions of the system's mathematical library differ in the last bit; many impacts amplify that.
-
-    Returns
-    -------
-    str
-        Digest of 128 strokes into the pack, with execution errors.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import arithmetic
-    >>> len(arithmetic())
-    16
-    """
+    """How the last bits fall here, a digest of 128 strokes into the pack with execution errors: where it is the same, the
+    same strokes end alike. Mathematical libraries differ in the last bit, and many impacts amplify that."""
     tables = SnookerVectorEnv(32, aim="target", layout="break_off", noise="professional")
     seen = hashlib.sha256()
     tables.reset(seed=0)
@@ -113,18 +65,7 @@ def arithmetic() -> str:
 
 
 def machine() -> dict[str, Any]:
-    """Platform, processor, cores, load of the last minute or None: "platform", "cpu", "cores", "load".
-
-    Returns
-    -------
-    dict
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import machine
-    >>> machine()["cores"] >= 1
-    True
-    """
+    """Platform, processor, cores, load of the last minute or None: "platform", "cpu", "cores", "load"."""
     load = round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None
     where = f"{platform.system()} {platform.machine()}"
     return {"platform": where, "cpu": processor(), "cores": os.cpu_count() or 1, "load": load}

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse, refuse_what
-from .._files import write_atomic
+from .._files import read_json, write_atomic
 from .._types import Floats
 from ..players import FRAMES, VISITS
 from ..players.resolver import PROGRAM
@@ -32,24 +32,7 @@ SLACK = 1.02
 
 
 def budget_of(shots: int | None) -> str:
-    """The budget class of an agent, by its training shots.
-
-    Parameters
-    ----------
-    shots : int or None
-        Number of simulated shots of its training; None: unknown.
-
-    Returns
-    -------
-    str
-        "none", "50k", "1M", "5M", "open" or "unknown".
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import budget_of
-    >>> budget_of(0), budget_of(49_152), budget_of(1_015_808), budget_of(30_000_000), budget_of(None)
-    ('none', '50k', '1M', 'open', 'unknown')
-    """
+    """The budget class of an agent, by the simulated shots of its training; None: unknown."""
     if not shots:
         return "unknown" if shots is None else "none"
     return next((name for name, most in BUDGETS.items() if shots <= SLACK * most), "open")
@@ -165,12 +148,8 @@ def result_of(
 ) -> dict[str, Any]:
     """The record of a run. ``alone``: played on one table; ``about``: "command", "load", "incomplete"."""
     shots, why = agent.shots_declared, about["incomplete"]
-    who = {
-        "label": agent.label,
-        "sources": agent.texts,
-        "budget": None,
-        "training_shots": agent.training_shots,
-    }
+    who: dict[str, Any] = {"label": agent.label, "sources": agent.texts, "budget": None}
+    who["training_shots"] = agent.training_shots
     one_table = 1e3 * alone.seconds / alone.decisions if alone.decisions else None
     record = {
         "schema": {},
@@ -225,13 +204,8 @@ def read_result(path: str | Path) -> Any:
     Returns
     -------
     object
-
-    Raises
-    ------
-    ValueError
-        If it is not JSON in UTF-8, contains NaN or Infinity, or a key twice in one object.
-    OSError
-        If it cannot be read.
+        ValueError if it is not JSON in UTF-8, contains NaN or Infinity, or a key twice in one object; OSError if it
+        cannot be read.
 
     Examples
     --------
@@ -241,23 +215,7 @@ def read_result(path: str | Path) -> Any:
     ...
     FileNotFoundError: [Errno 2] No such file or directory: 'nothing.json'
     """
-
-    def no_number(name: str) -> Any:
-        raise ValueError(f"{name} is no number of JSON")
-
-    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        made: dict[str, Any] = {}
-        for name, value in pairs:
-            if name in made:
-                raise ValueError(f"the key {name!r} stands there twice")
-            made[name] = value
-        return made
-
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-        return json.loads(text, parse_constant=no_number, object_pairs_hook=once)
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{path}: must be JSON ({error})") from None
+    return read_json(path)
 
 
 def packed(strokes: Kept) -> dict[str, str]:

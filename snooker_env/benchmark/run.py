@@ -53,15 +53,9 @@ def judge(
     -------
     dict
         The result. After Ctrl-C, or when a program that plays fails, it holds the complete batches, and
-        "incomplete" has the reason.
-
-    Raises
-    ------
-    ValueError
-        If the agent cannot play the task, or ``out`` holds a result of another run.
-    Exception
-        What the code of a player raises; ``out`` then holds the complete batches. ``SystemExit`` becomes
-        RuntimeError.
+        "incomplete" has the reason. ValueError if the agent cannot play the task, or ``out`` holds a result of
+        another run; else what the code of a player raises (``SystemExit`` as RuntimeError): ``out`` then holds the
+        complete batches.
 
     Examples
     --------

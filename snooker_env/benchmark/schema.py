@@ -92,28 +92,8 @@ def faults_of_fields(
     ranges: Mapping[str, tuple[float, float]] | None = None,
     version: int = VERSION,
 ) -> list[str]:
-    """What is wrong with the fields of a result, a line each.
-
-    Parameters
-    ----------
-    record : object
-        As ``json`` reads it.
-    fields, ranges : dict, optional
-        Dotted name -> type, whether it may be null, meaning; and -> lowest and highest number. Default: those
-        of a result of this benchmark, whose ranges hold for other fields too.
-    version : int
-        Of the fields, for the messages.
-
-    Returns
-    -------
-    list of str
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import faults_of_fields
-    >>> faults_of_fields({"date": "today"}, {"date": (str, False, "when, in UTC")})
-    ["date = 'today': must be a time in UTC, as 2026-11-22T19:00:00Z"]
-    """
+    """What is wrong with the fields of a record, a line each. ``fields``: dotted name -> type, whether it may be null,
+    meaning; ``ranges``: name -> lowest and highest number, beside those of a result; ``version``: for messages."""
     fields, ranges = FIELDS if fields is None else fields, {**RANGES, **(ranges or {})}
     if not isinstance(record, dict):
         return ["the file must hold one JSON object"]

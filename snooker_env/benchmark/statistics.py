@@ -57,25 +57,9 @@ def _drawn(size, draws, n, seed):
 
 
 class Resamples:
-    """Bootstrap samples of matrices (runs, visits).
+    """n bootstrap samples of matrices (runs, visits).
 
-    Equal numbers of visits give the same visits in each sample (pairs); other seeds give other runs.
-
-    Parameters
-    ----------
-    runs, visits : int
-        Shape of the matrices.
-    n, seed : int
-        Number of samples, and the seed with which the runs are drawn.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from snooker_env.benchmark import Resamples
-    >>> samples = Resamples(1, 3, n=4)
-    >>> samples.sums(np.ones((1, 3))).tolist()
-    [3.0, 3.0, 3.0, 3.0]
-    """
+    Equal numbers of visits give the same visits in each sample (pairs); other seeds give other runs."""
 
     def __init__(self, runs: int, visits: int, n: int = RESAMPLES, seed: int = 0):
         self._runs = _drawn(runs, max(1, runs - 1), n, (1, seed))
@@ -126,47 +110,12 @@ def interval(samples: Any, level: float = 0.95) -> tuple[float, float]:
 
 
 def unseen(n: float, level: float = 0.95) -> float:
-    """Upper bound of a share of which ``n`` independent trials showed no case.
-
-    Exact and one-sided, about 3 / n at 95 % [Clopper & Pearson 1934]. Runs on the same tables count once: it
-    then holds for other tables and noise samples, not for other training seeds.
-
-    Parameters
-    ----------
-    n, level : float
-        Number of trials, and the confidence level, in (0, 1).
-
-    Returns
-    -------
-    float
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import unseen
-    >>> round(unseen(30), 3)
-    0.095
-    """
+    """Upper bound of a share of which ``n`` independent trials showed no case [Clopper & Pearson 1934]: exact, one-sided, about
+    3 / n at 95 %. Runs on the same tables count once: it holds for other tables and errors, not for other training seeds."""
     return 1.0 - (1.0 - level) ** (1.0 / n)
 
 
 def figure(value: float, samples: Any) -> dict[str, float | None]:
-    """A figure with its 95 % bootstrap interval.
-
-    Parameters
-    ----------
-    value, samples : float; array_like, float (n,)
-        The figure, and bootstrap samples of it.
-
-    Returns
-    -------
-    dict
-        "value", "low" and "high"; None where a number is not finite.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import figure
-    >>> figure(0.5, [0.5, 0.5])
-    {'value': 0.5, 'low': None, 'high': None}
-    """
+    """A figure with its 95 % bootstrap interval: "value", "low" and "high"; None where a number is not finite."""
     numbers = zip(("value", "low", "high"), (value, *interval(samples)), strict=True)
     return {name: float(x) if np.isfinite(x) else None for name, x in numbers}

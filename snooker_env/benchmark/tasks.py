@@ -142,23 +142,7 @@ TASKS: dict[str, Task] = {task.id: task for task in _ALL}
 
 
 def task_of(name: Any) -> Task:
-    """The task with an id.
-
-    Parameters
-    ----------
-    name : str
-        The id, for instance "SnookerBreak-v0".
-
-    Returns
-    -------
-    Task
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import task_of
-    >>> task_of("SnookerPotHard-v0").title
-    'pot one hard ball'
-    """
+    """The task with an id."""
     return TASKS[choice("task", name, tuple(TASKS))]
 
 
@@ -177,44 +161,12 @@ def _tables_of(layout: str, n: int) -> tuple[int, ...]:
 
 
 def tables_of(layout: str, visits: int) -> list[int]:
-    """Seeds of tables for judging, from ``HELD_OUT_SEED``: no two are alike, mirrored or not.
-
-    Parameters
-    ----------
-    layout, visits : str, int
-        Name of the layout, and number of tables.
-
-    Returns
-    -------
-    list of int
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import tables_of
-    >>> tables_of("held_out", 3)
-    [1000000, 1000001, 1000002]
-    """
+    """Seeds of tables for judging, from ``HELD_OUT_SEED``: no two are alike, mirrored or not."""
     return list(_tables_of(layout, visits))
 
 
 def most_points(layout: str) -> int:
-    """The most points of a visit on a layout.
-
-    Parameters
-    ----------
-    layout : str
-        Name of the layout.
-
-    Returns
-    -------
-    int
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import most_points
-    >>> most_points("colours"), most_points("held_out")
-    (27, 147)
-    """
+    """The most points of a visit on a layout."""
     _, on_table = deal(plan_of(layout), np.random.default_rng(0))
     reds, colours = int(on_table[1:16].sum()), int(VALUES[16:] @ on_table[16:])
     return colours + reds * (8 if colours else 1)

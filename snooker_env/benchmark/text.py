@@ -114,11 +114,7 @@ def figures_of(rows: list[dict[str, int]]) -> dict[str, Any]:
 def judge_text(
     agent: Agent, *, visits: int = VISITS, out: str | Path, resume: bool = False, tick: Any = None
 ) -> dict[str, Any]:
-    """Play the track and keep the result in ``out`` after every visit; returns it.
-
-    ValueError for wrong arguments and a file of another agent, AgentError if the program dies or is too slow: what was
-    played is kept, and ``resume`` goes on with it.
-    """
+    """Play the track and keep the result in ``out`` after every visit, with which ``resume`` goes on; returns it."""
     integer("visits", visits, 2, MOST)
     if len(agent.texts) > 1:
         raise refuse("agent", ", ".join(agent.texts), "must be one: this track has no training seeds")

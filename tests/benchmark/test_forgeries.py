@@ -311,7 +311,8 @@ def test_what_is_called_unproved_can_be_changed_unseen(boxes):
 
 CHECK = """
 import sys
-from snooker_env.benchmark import arithmetic, faults, read_result
+from snooker_env.benchmark import faults, read_result
+from snooker_env.benchmark.provenance import arithmetic
 print(arithmetic(), *faults(read_result(sys.argv[1])), sep="\\n")
 """
 

@@ -55,7 +55,24 @@ def private(source):
     return direct + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)
 
 
+SHARED = (
+    *(
+        "RESAMPLES",
+        "Resamples",
+        "commit",
+        "faults_of_fields",
+        "figure",
+        "machine",
+        "most_points",
+        "processor",
+    ),
+    *("software", "tables_of", "task_of", "unseen"),
+)
+"""Of the benchmark: what the evaluation of agents writes and counts alike."""
 TRAINED_FOR = (
+    *(f"snooker_env.benchmark: {name}" for name in SHARED),
+    "snooker_env.game: plan_of",
+    *(f"snooker_env.render.diagrams: {name}_of" for name in ("bandwidth", "density", "level")),
     "snooker_env.players",
     "snooker_env.planning.learned",
     "snooker_env.planning.frame_search: LEAST",
@@ -64,6 +81,7 @@ TRAINED_FOR = (
     "snooker_env.game: frame_columns",
     "snooker_env.tasks.carry_out",
     "snooker_env.tasks.frame",
+    "snooker_env.tasks.saved_models",
     "snooker_env.tasks.threads",
 )
 
