@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from snooker_env.physics.table import Table
-from snooker_env.render.table_picture import View
+from snooker_env.render.table_picture import SIZE, View
 
 README = 880
 """Pixels of a page's width."""
@@ -17,9 +17,15 @@ LEAST = 10.5
 """Pixels from line to line of the smallest text: 9 and more from the top of a capital to the foot of a g."""
 
 
-def to_pixels(points, height=None, table="match", *, size=None):
+def to_pixels(points, table="match", *, size=SIZE):
     """Columns and rows [pixels] of points (..., 2) [m] in a picture of ``rgb_array`` of that size."""
-    return View.of(Table.of(table), height, size)(points)
+    return View.of(Table.of(table), size)(points)
+
+
+def size_of(table, height):
+    """(width, height) of a picture that the table and its score bar fill."""
+    tall, wide = np.diff(table.bounds, axis=1)[:, 0] + 2 * (0.155 + 0.012)
+    return 2 * round(wide / tall * (height - height / 15) / 2), height
 
 
 @contextmanager

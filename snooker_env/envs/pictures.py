@@ -8,16 +8,16 @@ from typing import Any, TypeAlias
 import gymnasium
 import numpy as np
 
-from .._check import integer, refuse
 from .._types import Bytes
 from ..physics.table import Table
+from ..render.table_picture import SIZE as SIZE
+from ..render.table_picture import checked_size
 from ..tasks.played import Played
 from ..tasks.tables import Tables
 
 MODES = ("human", "rgb_array", "ansi")
 FPS = 30
 HOLD = 15  # pictures of the table after each stroke of a film, with the referee's words
-SIZE = (1920, 1080)  # default width and height of pictures [pixels], as in render.table_picture
 
 
 Picture: TypeAlias = Bytes | str | None
@@ -36,12 +36,8 @@ def recorder_asking() -> Any:
 
 
 class PictureSource:
-    """The pictures of one environment: the current one or, for a recorder, first those of the motion.
-
-    ``RecordVideo`` of Gymnasium and ``VecVideoRecorder`` of Stable-Baselines3 call ``render()`` once after
-    each step, in a method named ``_capture_frame``. A step here is a whole shot, and no recorder accepts a
-    list. So ``render()``, called by such a method, calls it back for each picture of the motion.
-    """
+    """The pictures of one environment: the current one or, for a recorder, first those of the motion. Recorders call
+    ``render()`` once after each step, in a method named ``_capture_frame``, and accept no list: it is called back."""
 
     def __init__(self) -> None:
         self._current: Any = None
@@ -68,7 +64,7 @@ class Pictures:
     ):
         self.table, self.mode = table, mode
         self.players: tuple[str, ...] = players
-        self.size: tuple[int, int] = checked_size(size)
+        self.size: tuple[int, int] = checked_size(size, "render_size")
         self._window, self._source = None, PictureSource()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -77,10 +73,7 @@ class Pictures:
     def render(
         self, tables: Tables, k: int, history: list[Played], recent: list[tuple[list[Played], int]]
     ) -> Picture:
-        """Table k with the paths of the last stroke of its ``history``.
-
-        A recorder first gets the motion of the ``recent`` strokes: for each episode, its strokes, how many.
-        """
+        """Table k with the paths of the last stroke of its ``history``; ``recent``: of each episode strokes, and how many."""
         if self.mode is None:
             modes = '"rgb_array", "ansi" or "human"'
             how = f"make the environment with render_mode={modes}"
@@ -178,11 +171,3 @@ class Pictures:
         bar = standing_bar(tables, k, self.players, last)
         over: Any = {"paths": paths, "ghosts": ghosts, "turns": turns, "text": tables.text(k), "bar": bar}
         return scene(self.table, tables.positions[k], tables.on_table[k], **over)
-
-
-def checked_size(size: Any) -> tuple[int, int]:
-    """(width, height) of pictures; ValueError unless they are two valid integers."""
-    if isinstance(size, str) or not hasattr(size, "__len__") or len(size) != 2:
-        raise refuse("render_size", size, "must be (width, height)")
-    width, height = (integer(f"render_size[{i}]", size[i], 100, 8192) for i in range(2))
-    return width, height

@@ -1,7 +1,6 @@
 """What is ``Snooker-v0``? The Gymnasium environment of one table."""
 
 from collections.abc import Sequence
-from inspect import cleandoc
 from typing import Any
 
 import gymnasium
@@ -11,7 +10,7 @@ from .._check import choice, refuse
 from .._types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
-from ..tasks.options import Options, observation_space_of, options_table
+from ..tasks.options import Options, observation_space_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput
 from .arguments import ONE, breakers_of, known_options, starts_of
@@ -73,9 +72,8 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     info has the same keys each time.
 
     ## Arguments
-    All but an opponent that is an object are JSON types, so that ``EnvSpec.to_json`` round-trips.
-
-    {options}
+    ``snooker_env.Options`` describes each option. All but an opponent that is an object are JSON types, so that
+    ``EnvSpec.to_json`` round-trips.
 
     Parameters
     ----------
@@ -176,6 +174,3 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
     def _crew(self) -> Crew:
         return Crew(self._record.buffers, (self.np_random,), self._watch)
-
-
-SnookerEnv.__doc__ = cleandoc(SnookerEnv.__doc__ or "").replace("{options}", options_table().rstrip())

@@ -30,15 +30,14 @@ from .snooker import SnookerEnv
 
 PICTURES = ("rgb_array", "ansi")
 _ONE_TABLE = "simulate_batch, or SnookerEnv for one table"
-NOT_OF_A_TABLE = dict.fromkeys(("last_shot", "history", "keep_history"), _ONE_TABLE) | {
-    **{name: name for name in ("step", "render", "close")},
+NOT_OF_A_TABLE: dict[str, str] = dict.fromkeys(("last_shot", "history", "keep_history"), _ONE_TABLE)
+NOT_OF_A_TABLE |= {name: name for name in ("step", "render", "close")}
+NOT_OF_A_TABLE |= {
     "reset": 'reset(options={"reset_mask": ...})',
     "set_state": 'reset(options={"states": ...})',
-    "spec": "the attribute spec",
-    "unwrapped": "this environment",
-    "get_wrapper_attr": "call",
-    "set_wrapper_attr": "another environment",
 }
+NOT_OF_A_TABLE |= {"get_wrapper_attr": "call", "set_wrapper_attr": "another environment"}
+NOT_OF_A_TABLE |= {"spec": "the attribute spec", "unwrapped": "this environment"}
 """Names that ``call`` refuses, and their replacements: the tables play, end and begin together."""
 
 

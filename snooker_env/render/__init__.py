@@ -1,6 +1,6 @@
 """Pictures of a table. ``__all__`` is public: geometry and colours for drawing with another library."""
 
-from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, outline, scene_data
+from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, outline, scene_data
 from .palette import COLOURS, PALETTE
 
 __all__ = [
@@ -11,7 +11,6 @@ __all__ = [
     "PALETTE",
     "RAIL",
     "SPOT_MARKS",
-    "Outline",
     "outline",
     "scene_data",
 ]

@@ -39,14 +39,8 @@ def win_chance(
     Returns
     -------
     matplotlib.axes.Axes
-        The axes of the diagram: strokes played to the right, the chance upwards.
-
-    Raises
-    ------
-    ValueError
-        If there is no chance, one is outside [0, 1], or there are not two names.
-    ImportError
-        Without matplotlib.
+        The axes of the diagram: strokes played to the right, the chance upwards. ValueError if there is no chance,
+        one is outside [0, 1], or there are not two names; ImportError without matplotlib.
 
     Examples
     --------

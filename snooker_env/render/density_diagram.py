@@ -23,25 +23,7 @@ _REACH = 3.0  # a Gaussian kernel is cut off at this many bandwidths
 
 
 def bandwidth_of(points: Floats) -> float:
-    """The bandwidth by Scott's rule: standard deviation times m^(-1/6), at least 1 cm and at most 15 cm.
-
-    Parameters
-    ----------
-    points : float64 (m, 2)
-        Places [m].
-
-    Returns
-    -------
-    float
-        Standard deviation of the Gaussian kernels [m].
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from snooker_env.render.diagrams import bandwidth_of
-    >>> round(bandwidth_of(np.array([[0.0, 0.0], [0.2, 0.0], [0.0, 0.2], [0.2, 0.2]])), 4)
-    0.0794
-    """
+    """The bandwidth [m] by Scott's rule: standard deviation times m^(-1/6), at least 1 cm and at most 15 cm."""
     spread = float(np.sqrt(points.var(axis=0).mean()))
     return float(np.clip(spread * len(points) ** (-1 / 6), 0.01, 0.15))
 
@@ -49,30 +31,8 @@ def bandwidth_of(points: Floats) -> float:
 def density_of(
     points: Floats, low: Floats, high: Floats, bandwidth: float, cell: float = CELL
 ) -> tuple[Floats, Floats]:
-    """A kernel density estimate with Gaussian kernels in a rectangle.
-
-    Parameters
-    ----------
-    points, low, high, bandwidth, cell
-        Places, float64 (m, 2); two opposite corners of the rectangle, float64 (2,); standard deviation of the
-        kernels; and size of a cell, a little different where the cells fill the rectangle [m].
-
-    Returns
-    -------
-    values : float64 (nx, ny)
-        Density [1/m^2]. The tails of the kernels beyond the corners are folded back, so that the sum times
-        the cell's area is the share of the points that lie inside.
-    size : float64 (2,)
-        Size of a cell, close to ``cell`` [m].
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from snooker_env.render.diagrams import density_of
-    >>> values, size = density_of(np.array([[0.5, 1.0]]), np.zeros(2), np.array([1.0, 2.0]), bandwidth=0.1)
-    >>> round(float(values.sum() * size.prod()), 6)
-    1.0
-    """
+    """A density estimate (nx, ny) [1/m^2] with Gaussian kernels in the rectangle ``low`` to ``high``, and the size of its
+    cells [m], about ``cell``. Tails beyond the corners are folded back: the sum is the share of points inside."""
     n = np.maximum(1, np.round((high - low) / cell).astype(int))
     size = (high - low) / n
     counts, _, _ = np.histogram2d(*points.T, bins=n.tolist(), range=[(low[0], high[0]), (low[1], high[1])])
@@ -87,25 +47,7 @@ def density_of(
 
 
 def level_of(values: Floats, share: float) -> float:
-    """The density above which a share of the total lies.
-
-    Parameters
-    ----------
-    values, share
-        Densities, as of ``density_of`` [1/m^2], and the share, from 0 to 1.
-
-    Returns
-    -------
-    float
-        The level [1/m^2].
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from snooker_env.render.diagrams import level_of
-    >>> level_of(np.array([[4.0, 3.0], [2.0, 1.0]]), 0.6)
-    3.0
-    """
+    """The density above which a share of the total lies."""
     ranked = np.sort(values.ravel())[::-1]
     return float(ranked[min(np.searchsorted(np.cumsum(ranked), share * ranked.sum()), len(ranked) - 1)])
 

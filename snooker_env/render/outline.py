@@ -32,27 +32,7 @@ for _constant in (BAULK_LINE, D_ARC):
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The parts of a table that never move, as ``outline`` computes them. All are empty for unbounded cloth.
-
-    Attributes
-    ----------
-    cushions : tuple of float64 (m, 2)
-        Closed polygons [m]: nose, the jaws at its ends, and the cushion's back under the wood.
-    noses : tuple of float64 (m, 2)
-        Polylines, one for each cushion: the part that balls meet, jaw - nose - jaw [m].
-    falls : float64 (k, 3)
-        Centre x, y and radius of the slate circles over which balls drop [m].
-    throats : float64 (k, 5)
-        The holes in the wood [m]: x, y of the mouth's middle and of the fall's centre, and half the width.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> from snooker_env.render import outline
-    >>> parts = outline(sn.Table.preset("match"))
-    >>> len(parts.cushions), parts.falls.shape, parts.throats.shape
-    (6, (6, 3), (6, 5))
-    """
+    """The parts of a table that never move, see ``outline``."""
 
     cushions: tuple[Floats, ...]
     noses: tuple[Floats, ...]
@@ -84,14 +64,19 @@ def outline(table: Table) -> Outline:
     Returns
     -------
     Outline
-        Polygons and circles in metres. The result is kept: do not change its arrays.
+        Four attributes [m], all empty for unbounded cloth. ``cushions``, arrays (m, 2): closed polygons of the nose,
+        the jaws at its ends and the cushion's back under the wood. ``noses``, arrays (m, 2): of each the line that
+        balls meet, jaw - nose - jaw. ``falls`` (k, 3): centre and radius of the slate circles over which balls
+        drop. ``throats`` (k, 5), the holes in the wood: the mouth's middle, the fall's centre, half the width. The
+        result is kept: do not change its arrays.
 
     Examples
     --------
     >>> import snooker_env as sn
     >>> from snooker_env.render import outline
-    >>> len(outline(sn.Table.preset("carom")).noses)
-    4
+    >>> parts = outline(sn.Table.preset("match"))
+    >>> len(parts.cushions), parts.falls.shape, parts.throats.shape
+    (6, (6, 3), (6, 5))
     """
     cushions, noses = [], []
     ends = []
@@ -166,7 +151,7 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     -------
     dict
         Lengths in metres, rounded to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in
-        ``Outline``, as lists. ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the bed.
+        ``outline``, as lists. ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the bed.
         ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``: {"baulk", "d", "spots"}, or None on a
         table without them. ``ball_radius``. ``palette``: {name: [red, green, blue]}. ``balls``: by id
         {"name", "letter", "value", "rgb"}.

@@ -279,9 +279,3 @@ def dot(ball: int, radius: float) -> Any:
     row = round(image.get_height() / 2 - lamp.get_height() / 2 - 0.35 * radius)
     image.blit(lamp, ((image.get_width() - lamp.get_width()) // 2, row))
     return image
-
-
-def outline_of_a_ball(place: Floats, radius: float) -> Floats:
-    """A closed circle as points (49, 2) [m]."""
-    turn = np.linspace(0.0, 2 * np.pi, 49)
-    return place + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)

@@ -4,20 +4,12 @@ it, and the score bar as on television."""
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
+
 from .._types import Bytes
 from ..game.balls import COLOUR_NAMES, YELLOW
 from .palette import PALE, PALETTE
-from .pygame_balls import (
-    BOLD,
-    MEDIUM,
-    dot,
-    draw_balls,
-    draw_lines,
-    line_width,
-    outline_of_a_ball,
-    pygame_,
-    typeset,
-)
+from .pygame_balls import BOLD, MEDIUM, dot, draw_balls, draw_lines, line_width, pygame_, typeset
 from .scene import Scene, ScoreBar
 from .table_picture import SIZE as SIZE
 from .table_picture import Size, table_picture
@@ -27,6 +19,8 @@ _ROWS = 72  # lengths in this file are those of a bar 72 pixels high, as in a pi
 _SMALLEST = 36  # A lower bar is one line of text [pixels]
 _EDGE = 28
 _GAP = 30
+_TURN = np.linspace(0.0, 2 * np.pi, 49)
+_CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)], axis=1)
 _STRIP = 7  # height of the shares of the chance to win, at the upper edge
 
 
@@ -205,7 +199,7 @@ def draw(scene: Scene, view: View) -> Bytes:
     if scene.aim is not None:
         draw_lines(surface, [(view(scene.aim), aim)], 0.8 * width)
     if scene.ghost is not None:
-        circle = outline_of_a_ball(scene.ghost, scene.ball_radius)
+        circle = scene.ghost + scene.ball_radius * _CIRCLE
         draw_lines(surface, [(view(circle), aim)], 0.6 * width)
     draw_balls(surface, scene, view)
     surface.set_clip(None)
@@ -214,7 +208,7 @@ def draw(scene: Scene, view: View) -> Bytes:
     return pixels
 
 
-def rgb_array(scene: Scene, height: int | None = None, *, size: Size | None = None) -> Bytes:
-    """The picture of a scene, uint8 (height, width, 3), of a size, or a height that gives the width."""
+def rgb_array(scene: Scene, *, size: Size = SIZE) -> Bytes:
+    """The picture of a scene, uint8 (height, width, 3)."""
     pygame_()
-    return draw(scene, View.of(scene.table, height, size))
+    return draw(scene, View.of(scene.table, size))

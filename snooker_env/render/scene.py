@@ -2,13 +2,13 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from .._check import array, integer, number, refuse
+from .._check import number
 from .._types import Flags, Floats, Ints, Vector, Vectors
-from ..game.balls import CUE, N_BALLS
+from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind
 from ..physics.table import Table, TableLike
@@ -77,19 +77,6 @@ class ScoreBar:
     words: str = ""  # what just happened, as the referee would say it
     win_chance: float | None = None  # how likely the first player wins the frame
 
-    def __post_init__(self) -> None:
-        if len(self.players) > 2 or not all(isinstance(name, str) for name in self.players):
-            raise refuse("players", self.players, "must be the names of at most two players")
-        if len(self.scores) != len(self.players):
-            allowed = f"must hold one number for each of the {len(self.players)} players"
-            raise refuse("scores", self.scores, allowed)
-        if self.striker is not None and self.striker not in range(len(self.players)):
-            raise refuse("striker", self.striker, "must be None or an index of players")
-        for ball in self.potted:
-            integer("potted", ball, 1, N_BALLS - 1)
-        if self.win_chance is not None:
-            number("win_chance", self.win_chance, 0.0, 1.0)
-
 
 @dataclass(frozen=True, eq=False)
 class Scene:
@@ -110,57 +97,30 @@ class Scene:
     lettered: bool  # whether balls carry their letters, so that colours are not needed
 
 
-class _Overlays(NamedTuple):
-    """What ``scene`` draws over the table and the balls."""
-
-    paths: Mapping[int, Vectors] | None = None
-    aim: Vectors | None = None
-    ghost: Vector | None = None
-    ghosts: Mapping[int, Vectors] | None = None
-    turns: Mapping[int, Vector] | None = None
-
-
 def scene(
     table: TableLike,
     positions: Vectors,
     on_table: Flags | None = None,
     *,
     ball_radius: float | None = None,
+    paths: Mapping[int, Vectors] | None = None,
+    aim: Vectors | None = None,
+    ghost: Vector | None = None,
+    ghosts: Mapping[int, Vectors] | None = None,
+    turns: Mapping[int, Vector] | None = None,
     text: str = "",
     bar: ScoreBar | None = None,
     lettered: bool = False,
-    **overlays: Any,
 ) -> Scene:
-    """One picture: n <= 22 balls, ids 0 to n-1, positions (n, 2) or with heights (n, 3), and ``_Overlays`` as in ``Scene``.
-    Arrays are copied."""
-    r = array("positions", positions, (-1, 3 if np.shape(np.asarray(positions))[-1:] == (3,) else 2))
-    heights, r = r[:, 2] if r.shape[1] == 3 else np.zeros(len(r)), r[:, :2]
-    if len(r) > N_BALLS:
-        raise refuse("positions", f"array of shape {r.shape}", f"must hold at most {N_BALLS} balls")
-    here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
-    if here.shape != (len(r),) or here.dtype != bool:
-        what = f"{here.dtype} array of shape {here.shape}"
-        raise refuse("on_table", what, f"must be bool of shape ({len(r)},)")
-    if bar is not None and not isinstance(bar, ScoreBar):
-        raise refuse("bar", bar, "must be None or a ScoreBar")
-    ids, table = np.flatnonzero(here), Table.of(table)
-    usual = table.ball_radius or BALL_RADIUS
-    radius = usual if ball_radius is None else number("ball_radius", ball_radius, 1e-3, 1)
-    over = _Overlays(**overlays)
-    aim = None if over.aim is None else array("aim", over.aim, (-1, 2))
-    ghost = None if over.ghost is None else array("ghost", over.ghost, (2,))
-    paths, ghosts = (_by_ball(name, getattr(over, name), (-1, 2)) for name in ("paths", "ghosts"))
-    drawn = (paths, aim, ghost, ghosts, _by_ball("turns", over.turns, (4,)))
-    return Scene(
-        table, ids, r[ids], np.maximum(heights[ids], 0.0), radius, *drawn, str(text), bar, bool(lettered)
-    )
-
-
-def _by_ball(field, values, shape):
-    for ball in values or {}:
-        if ball not in range(N_BALLS):
-            raise refuse(field, ball, f"must have ball ids 0 to {N_BALLS - 1} as keys")
-    return {int(ball): array(f"{field}[{ball}]", value, shape) for ball, value in (values or {}).items()}
+    """One picture: n <= 22 balls, ids 0 to n-1, positions (n, 2) or with heights (n, 3), the rest as in ``Scene``, copied."""
+    r, table = np.array(positions, np.float64), Table.of(table)
+    heights = r[:, 2] if r.shape[1] == 3 else np.zeros(len(r))
+    ids = np.arange(len(r)) if on_table is None else np.flatnonzero(np.array(on_table))
+    radius = ball_radius or table.ball_radius or BALL_RADIUS
+    own: Any = lambda points: None if points is None else np.array(points, np.float64)  # noqa: E731
+    each: Any = lambda balls: {int(ball): own(points) for ball, points in (balls or {}).items()}  # noqa: E731
+    drawn = each(paths), own(aim), own(ghost), each(ghosts), each(turns)
+    return Scene(table, ids, r[ids, :2], np.maximum(heights[ids], 0.0), radius, *drawn, text, bar, lettered)
 
 
 def ball_paths(

@@ -2,7 +2,7 @@
 a signed distance [m] (negative inside); an edge covers a part of a pixel, smooth at every size."""
 
 from functools import lru_cache
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -18,7 +18,6 @@ SIZE = (1920, 1080)  # default width and height of a picture [pixels]
 
 _MARGIN = 0.012  # floor shown around the rails [m]
 _BAR = 1 / 15  # part of the height for the score bar
-_LONGEST = 8.0  # largest width over height, for a width that follows from the table
 _LEAST, _MOST = 100, 8192
 
 
@@ -33,21 +32,13 @@ class View(NamedTuple):
     y: float  # row of the origin
 
     @classmethod
-    def of(cls, table: Table, height: int | None = None, size: Size | None = None) -> "View":
-        """``size`` (width, height): as large as fits; ``height``: that table's width; neither: ``SIZE``."""
+    def of(cls, table: Table, size: Size = SIZE) -> "View":
+        """As large as fits into ``size``, (width, height)."""
         low, high = extent(table).T
         (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
-        if height is not None and size is not None:
-            raise refuse("size", size, "must be None where height is given")
-        if height is not None:
-            height = integer("height", height, _LEAST, 4320)
-            bar = round(_BAR * height)
-            scale = min((height - bar) / tall, _LONGEST * height / wide)
-            width = 2 * round(scale * wide / 2)  # even, for video encoders
-        else:
-            width, height = _checked(SIZE if size is None else size)
-            bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))
-            scale = min((height - bar) / tall, width / wide)
+        width, height = checked_size(size)
+        bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))
+        scale = min((height - bar) / tall, width / wide)
         x, y = width / 2 - scale * middle_y, (height - bar) / 2 - scale * middle_x
         return cls(width, height, bar, float(scale), float(x), float(y))
 
@@ -57,10 +48,11 @@ class View(NamedTuple):
         return np.stack([self.x + self.scale * points[..., 1], self.y + self.scale * points[..., 0]], axis=-1)
 
 
-def _checked(size):
+def checked_size(size: Any, field: str = "size") -> Size:
+    """(width, height) of pictures; ValueError unless they are two valid integers."""
     if isinstance(size, str) or not hasattr(size, "__len__") or len(size) != 2:
-        raise refuse("size", size, "must be (width, height)")
-    return integer("size", size[0], _LEAST, _MOST), integer("size", size[1], _LEAST, _MOST)
+        raise refuse(field, size, "must be (width, height)")
+    return integer(f"{field}[0]", size[0], _LEAST, _MOST), integer(f"{field}[1]", size[1], _LEAST, _MOST)
 
 
 LAMPS = 4  # number of lamps over a table, in a row along its length

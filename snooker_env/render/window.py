@@ -17,12 +17,11 @@ import sys
 from typing import Any
 
 from .._check import number
-from ..physics.table import Table
 from .palette import PALETTE
 from .pygame_balls import BOLD, MEDIUM, pygame_, typeset
 from .pygame_view import draw
 from .scene import Film, Scene
-from .table_picture import SIZE, Size, View
+from .table_picture import SIZE, Size, View, checked_size
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Speeds that the user can choose, in multiples of the caller's."""
@@ -55,9 +54,8 @@ def _no_display(why):
 class Window:
     """A window with a table, opened by the first ``draw``; once closed by its user, shut until ``close``."""
 
-    def __init__(self, height: int | None = None, title: str = "snooker", *, size: Size | None = None):
-        View.of(Table.of(None), height, size)  # raises for a wrong size now, not when the window opens
-        self._height, self._size, self._title = height, size, title
+    def __init__(self, *, size: Size | None = None):
+        self._size = None if size is None else checked_size(size)
         self._screen: Any = None
         self._shut = False
         self._speed, self._paused, self._letters, self._paths = SPEEDS.index(1.0), False, False, True
@@ -127,10 +125,9 @@ class Window:
         if not os.environ.get("SDL_VIDEODRIVER") and driver in _INVISIBLE:
             pygame.display.quit()
             raise _no_display(f"SDL found only its driver {driver!r}")
-        pygame.display.set_caption(self._title)
-        view = View.of(scene.table, self._height, self._size)
-        width, height = view.width, view.height
-        if self._height is None and self._size is None:
+        pygame.display.set_caption("snooker")
+        width, height = self._size or SIZE
+        if self._size is None:
             desk_width, desk_height = pygame.display.get_desktop_sizes()[0]
             part = min(1.0, 0.92 * desk_width / SIZE[0], 0.88 * desk_height / SIZE[1])
             width, height = round(part * width), round(part * height)

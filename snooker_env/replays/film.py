@@ -16,6 +16,7 @@ from .._jit import entry
 from .._types import Bytes
 from ..physics.table import Table
 from ..render.scene import Film, Scene, ScoreBar, scene
+from ..render.table_picture import SIZE
 from ..simulation import Shot
 from ..tasks.played import Played
 from .words import bars, pots_of
@@ -50,7 +51,6 @@ def to_video(picture: Bytes) -> Bytes:
 
 PAUSE = 0.8  # how long the table is shown after each stroke [s of the film]
 UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
-SIZE = (1920, 1080)
 HD = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
 """Options that declare the colour space of ``to_video`` (BT.709, limited range)."""
 USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 15.0)}

@@ -110,15 +110,10 @@ def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar 
 
 def _bar(on_table, ball_on, free_ball, players, scores, striker, break_points, potted, words=""):
     """A bar; without players none of their scores."""
-    mask = mask_of_present(on_table) & ~1
-    return ScoreBar(
-        tuple(players),
-        scores if players else (),
-        striker if players else None,
-        break_points,
-        tuple(potted or ()),
-        int(on_table[1 : N_REDS + 1].sum()),
-        points_available(mask, ball_on, free_ball) if ball_on >= 0 else 0,
-        "free ball" if free_ball else on_words(ball_on),
-        words,
+    mask, who = (
+        mask_of_present(on_table) & ~1,
+        (tuple(players), scores, striker) if players else ((), (), None),
     )
+    left = points_available(mask, ball_on, free_ball) if ball_on >= 0 else 0
+    on, reds = "free ball" if free_ball else on_words(ball_on), int(on_table[1 : N_REDS + 1].sum())
+    return ScoreBar(*who, break_points, tuple(potted or ()), reds, left, on, words)

@@ -48,7 +48,7 @@ def test_a_picture_is_full_hd_with_the_table_above_the_bar(empty):
 def test_a_picture_of_any_size_holds_the_whole_table(size):
     picture = rgb_array(scene("match", SPOTS), size=size)
     assert picture.shape == (size[1], size[0], 3)
-    view = View.of(MATCH, size=size)
+    view = View.of(MATCH, size)
     corners = view(np.array([(-1.044, -1.9395), (1.044, 1.9395)]))
     assert corners.min() >= 0 and corners[1, 0] <= size[0] and corners[1, 1] <= size[1] - view.bar
     one, x, y = view(np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]))

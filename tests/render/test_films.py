@@ -49,8 +49,6 @@ def test_the_film_of_a_shot_shows_the_balls_of_the_shot():
     small = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], None, {"R": 0.02})
     assert {one.ball_radius for one in Film(None, small).scenes(5)} == {0.02}
     assert scene("match", SPOTS).ball_radius == scene(None, SPOTS).ball_radius == BALL_RADIUS
-    with pytest.raises(ValueError, match="ball_radius"):
-        scene("match", SPOTS, ball_radius=-1)
 
 
 def test_a_film_is_the_same_at_any_time_as_picture_after_picture(pot):

@@ -32,7 +32,7 @@ def picture(pygame):
 
 
 def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
-    window = Window(height=300)
+    window = Window(size=(518, 300))
     assert not window.is_open and not dummy_screen.display.get_init()
     window.close()
     film = Film("match", pot)
@@ -46,7 +46,7 @@ def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
 
 
 def test_the_window_heeds_its_close_button_and_escape(dummy_screen, pot):
-    window = Window(height=300)
+    window = Window(size=(518, 300))
     assert window.draw(scene("match", SPOTS))
     dummy_screen.event.post(dummy_screen.event.Event(dummy_screen.QUIT))
     assert not window.play(Film("match", pot), fps=1000)
@@ -62,24 +62,22 @@ def test_the_window_heeds_its_close_button_and_escape(dummy_screen, pot):
     window.close()
 
 
-def test_a_window_is_as_wide_as_its_first_table_and_keeps_its_size(dummy_screen):
-    carom, match = sn.Table.preset("carom"), sn.Table.preset("match")
-    window = Window(200)
-    for table in (carom, match):
+def test_a_window_keeps_its_size(dummy_screen):
+    window, size = Window(size=(360, 200)), (360, 200)
+    for table in (sn.Table.preset("carom"), sn.Table.preset("match")):
         assert window.draw(scene(table, [(0.0, 0.0)]))
-        width = rgb_array(scene(carom, [(0.0, 0.0)]), 200).shape[1]
-        assert dummy_screen.display.get_surface().get_size() == (width, 200 + 14)
-        assert np.array_equal(picture(dummy_screen), rgb_array(scene(table, [(0.0, 0.0)]), size=(width, 200)))
+        assert dummy_screen.display.get_surface().get_size() == (360, 200 + 14)
+        assert np.array_equal(picture(dummy_screen), rgb_array(scene(table, [(0.0, 0.0)]), size=size))
     window.close()
-    with pytest.raises(ValueError, match="height"):
-        Window(5)
+    with pytest.raises(ValueError, match="size"):
+        Window(size=(360, 5))
 
 
 class Pressed(Window):
     """A window whose user presses keys: {number of the picture: keys}. It keeps what it showed."""
 
-    def __init__(self, pygame, presses, height=100):
-        super().__init__(height)
+    def __init__(self, pygame, presses, size=(178, 100)):
+        super().__init__(size=size)
         self.pygame, self.presses, self.seen = pygame, presses, []
 
     def draw(self, scene, status=WAITING):
@@ -122,7 +120,7 @@ def test_a_film_is_paused_stepped_and_skipped(dummy_screen, pot):
 def test_letters_and_paths_are_shown_at_will(dummy_screen):
     given = {"paths": {CUE: [(0.0, -1.0), (0.0, 1.0)]}}
     presses = {1: [dummy_screen.K_l], 2: [dummy_screen.K_p], 3: [dummy_screen.K_l]}
-    window = Pressed(dummy_screen, presses, height=300)
+    window = Pressed(dummy_screen, presses, size=(518, 300))
     for wanted in (given, {**given, "lettered": True}, {"lettered": True}, {}):
         window.draw(scene("match", SPOTS, **given))
         expected = rgb_array(scene("match", SPOTS, **wanted), size=(518, 300))
@@ -135,7 +133,7 @@ def test_without_a_display_it_refuses(monkeypatch):
     for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("sys.platform", "linux")
-    window = Window(100)
+    window = Window(size=(178, 100))
     for ask in (require_display, lambda: window.draw(scene("match", SPOTS))):
         unset = r"\(neither DISPLAY nor WAYLAND_DISPLAY is set\).*rgb_array.*SDL_VIDEODRIVER=dummy"
         with pytest.raises(RuntimeError, match=unset):
