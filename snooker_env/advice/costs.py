@@ -1,18 +1,5 @@
-"""What do strokes cost a player? Points of a frame lost by potting, position and safety, against a target's strokes.
-
-**Costs** are counted in points of a frame (those of the player, less those of the other, that are expected from there on)
-against a player of the ``target`` level, as golf counts strokes gained. What a position is worth is the ``tactician``'s
-learned worth, between two players of that level. Of each stroke with a called pot the target's best stroke at that same pot
-is found by simulation: it is made with the chance p, and is worth M on average if made, N if missed. What the player did
-was worth W: his points, less penalties, and the worth of what was left, to him or, with the opposite sign, to the other.
-Then W - (p M + (1 - p) N), what he gained on the target, is the sum of
-
-    potting   (made - p) (M - N)     that he made or missed the pot
-    position  W - M, where made      what he left himself
-    safety    W - N, where missed    what his miss left the other
-
-A stroke without a called pot counts as safety, with W less the worth of the position that it was played from: there the
-target had its free choice. A cost is a loss, so it is positive where the player does worse than the target.
+"""What do strokes cost a player? Points of a frame lost by potting, position and safety, against a target's strokes; the
+formulas stand in docs/play/coach.md, "What costs most".
 """
 
 from dataclasses import dataclass
@@ -21,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from .._types import Floats, Ints
-from ..planning import Positions, pots, sobol_points, strokes_at
+from ..planning import Positions, pots
+from ..planning.proposals import strokes_at
+from ..planning.sobol import sobol_points
 from ..planning.worth import lead_of, passed
 from .judging import joined
 from .practice import JUDGING, Practice, keys, one_position

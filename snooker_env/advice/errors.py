@@ -5,27 +5,7 @@ direction of the cue ball errs by ``sigma_d`` at 1.5 m/s, and at a cue speed V b
 much (V in m/s); the speed errs by the share ``sigma_v``. Two numbers are estimated, each as a multiple s of a
 professional's.
 
-**What a stroke says of s**, by its likelihood L(s):
-
-* *Meant and played.* The error e in standard deviations of a professional is seen itself: L = exp(-(e/s)^2 / 2) / s. Where
-  only the pot that was meant is known, the line that the stroke should have had is solved, for its own speed and spin, to
-  the middle of the pocket: who plays for a side of the pocket is said to err. The tip's error moves that line, too, by the
-  throw of its spin, and counts with it (``line_of``). If the pot was only guessed from the line,
-  the stroke may have been a safety: it is one with an unknown share of chances, and its line then is anywhere within
-  ``CALLED`` of the pot's. Those that are likelier to be safeties count as such from there on.
-* *Meant, and potted or not.* The pot's tolerance is found by simulation: strokes are played in error by ``RADII``, times
-  ``WAYS`` directions of the five errors (direction, two of the tip, elevation, speed, in a professional's proportions), and
-  the share of each radius that is potted is kept. P(pot | s) is its mean over the law of the radius, which is chi with five
-  degrees of freedom, times s; L = P or 1 - P. It bears what a half-width in degrees does not: jaws, throw by a tip that is
-  off to the side, pockets that are narrow for hard balls. Without an ``intended`` stroke it is played in the middle of the
-  ball with the ``speed`` recorded, or at 1.5 m/s: then one who strikes harder is said to err more than in truth.
-
-Where the cue ball stopped is not used for the speed: the tip's errors move that place about as much.
-
-**The estimate** is the median of the posterior for a prior that is flat in log s from ``LEAST`` to ``MOST``, the interval
-its quantiles 2.5 and 97.5 %. For strokes meant and played that is the classical interval, sqrt(sum e^2 / chi^2_n), exact
-for every n: after 100 strokes the estimate has a standard error of 7 %, and no method does better. A pot that went in or
-not says at most 0.65 as much (P = 0.87 is best), one that always or never goes in nothing.
+What a stroke says of s, by its likelihood, and what is estimated: docs/play/coach.md, "How errors are estimated".
 """
 
 from collections.abc import Sequence

@@ -11,21 +11,11 @@ from ..game.balls import CUE
 from ..game.frame_columns import Layouts
 from ..geometry import BALL_RADIUS
 from ..planning import Positions, Stops, clear_paths
+from . import words as say
 from .frames import Outlook, Z, lies, outlooks, rest_of
 from .practice import JUDGING, Practice, keys, played_from
 from .room import Room, room_for
 from .strokes import CueStroke, Suggestion
-from .words import (
-    RAISED,
-    against_words,
-    contact_words,
-    cushion_words,
-    figures_words,
-    percent,
-    reply_words,
-    stroke_words,
-    what_words,
-)
 
 FOULS = ("foul", "in-off")  # kinds of strokes that are fouls without errors
 RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with
@@ -104,19 +94,19 @@ def _trial(
     elif trial.penalty[k]:
         kind = "in-off" if trial.potted[k, CUE] >= 0 else "foul"
     elif hidden:
-        kind, how = "escape", cushion_words(x, y, stroke.aim) if room.elevation < RAISED else ""
+        kind, how = "escape", say.cushion_words(x, y, stroke.aim) if room.elevation < say.RAISED else ""
     else:
         kind, on = "safety" if starts.of_frames else "contact", starts.balls_on[k]
         if first >= 0 and on[first]:
-            how = contact_words(dx, dy, stroke.aim)
+            how = say.contact_words(dx, dy, stroke.aim)
         else:  # fair without a contact: it is played away from a ball on that it touches
             gaps = np.hypot(*(starts.positions[k] - (x, y)).T)
             ball = int(np.where(on, gaps, np.inf).argmin())
     distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
-    what, physics = what_words(kind, ball, pocket, first, how), practice.options.rules.physics
+    what, physics = say.what_words(kind, ball, pocket, first, how), practice.options.rules.physics
     played = replace(stroke, side=room.side, top=room.top)  # its spin is that of the tip that is reached
     words, alike = (
-        ", ".join(filter(None, (what, stroke_words(played, distance, physics, way), lie)))
+        ", ".join(filter(None, (what, say.stroke_words(played, distance, physics, way), lie)))
         for way in (room, None)
     )
     return kind, ball, pocket, first, words, alike, room
@@ -156,7 +146,7 @@ def _compared(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
         return one
     rival = max(rivals, key=lambda other: other.figure)
     kind = rival.kind if (rival.kind == "pot") != (one.kind == "pot") else ""
-    return replace(one, against=rival.win, words=one.words + against_words(rival.figure, kind))
+    return replace(one, against=rival.win, words=one.words + say.against_words(rival.figure, kind))
 
 
 def least_bad(practice: Practice, strokes: list[Tried], **how: int) -> Suggestion:
@@ -200,7 +190,7 @@ def judged(
                 in_off=float((~stayed).mean()),
                 stops=middle,
                 spread=spread,
-                words=f"{one.words}, {figures_words(one.kind, chance, points, look is not None)}"
+                words=f"{one.words}, {say.figures_words(one.kind, chance, points, look is not None)}"
                 + (_why(one.kind, chance, look) if look else ""),
             )
         )
@@ -218,5 +208,5 @@ def _cloud(places: Floats) -> tuple[tuple[float, float] | None, float | None]:
 def _why(kind: str, chance: float, look: Outlook) -> str:
     """The words of what a stroke of a frame leads to."""
     seldom = kind == "pot" and 1.0 - chance < OFTEN
-    reply = "" if seldom else reply_words(kind, look.replies, look.leaves, look.snookers)
-    return f"{reply and f', {reply}'}; win chance {percent(look.win)}"
+    reply = "" if seldom else say.reply_words(kind, look.replies, look.leaves, look.snookers)
+    return f"{reply and f', {reply}'}; win chance {say.percent(look.win)}"

@@ -1,11 +1,6 @@
 """What is recorded of a stroke, and how is it read from a file? ``Recorded``: what was meant, what was played, what came.
-
-Three kinds of records say something about a player's errors, the first the most:
-
-* The stroke meant and the stroke played (``intended``, ``played``), as a simulator has both.
-* The pot meant and the stroke played (``ball``, ``pocket``, ``played``), as in a replay. A replay does not say which pot
-  was meant: it is guessed to be the direct pot whose line is nearest to that of the stroke, within ``CALLED``.
-* The pot meant and whether it went in (``ball``, ``pocket``, ``potted``), as a person with a pencil, or a camera, has it.
+Who knows how much of a stroke: docs/play/coach.md. The pot that is guessed of a replay is the direct one whose line is
+nearest to that of the stroke, within ``CALLED``.
 """
 
 import base64
@@ -351,19 +346,10 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
     reds = {ball: 1 + k for k, ball in enumerate(ball for ball in ids if 1 <= ball <= 15)}
     down = {(reds.get(ball, ball), into) for ball, into in fell.items()}
     ball, pocket = (None, None) if meant is None else meant
-    return Recorded(
-        position=position,
-        intended=intended,
-        played=played,
-        ball=ball,
-        pocket=pocket,
-        potted=None if ball is None else (ball, pocket) in down and not one["penalty"],
-        guessed=ball is not None and intended is None,
-        points=one["points"],
-        penalty=one["penalty"],
-        after=after,
-        scores=scores,
-    )
+    pot: Any = {"ball": ball, "pocket": pocket, "guessed": ball is not None and intended is None}
+    pot["potted"] = None if ball is None else (ball, pocket) in down and not one["penalty"]
+    came: Any = {"points": one["points"], "penalty": one["penalty"], "after": after, "scores": scores}
+    return Recorded(position=position, intended=intended, played=played, **pot, **came)
 
 
 def _numbers(text: str, kind: str, columns: int) -> Floats:

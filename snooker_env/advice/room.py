@@ -84,13 +84,7 @@ def room_for(stroke: Floats, at: Positions, rules: Rules) -> Room:
         tuple(stroke.tolist()), places, present, rails, *map(float, numbers)
     )
     _, side, top, _, elevation = played
-    return Room(
-        elevation=elevation,
-        side=side,
-        top=top,
-        raised=bool(done & RAISED),
-        moved=bool(done & MOVED),
-        unplayable=bool(done & UNPLAYABLE),
-        over=None if over == OVER_NOTHING else RAIL if over == OVER_RAIL else NAMES[over],
-        behind=behind,
-    )
+    bits = {"raised": RAISED, "moved": MOVED, "unplayable": UNPLAYABLE}
+    found: Any = {name: bool(done & bit) for name, bit in bits.items()}
+    found["over"] = None if over == OVER_NOTHING else RAIL if over == OVER_RAIL else NAMES[over]
+    return Room(elevation=elevation, side=side, top=top, behind=behind, **found)
