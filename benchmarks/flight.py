@@ -17,7 +17,7 @@ import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.physics.impact import contact
-from snooker_env.planning import Planner, Positions, StrokeSearch, spread_strokes
+from snooker_env.planning import Planner, Positions, StrokeSearch, at_pots
 
 from ._common.command import Command, at_least, run, save_json
 from .scene.models import SCENES
@@ -80,9 +80,7 @@ def pots(tables, physics, rng, seed):
     env = sn.SnookerVectorEnv(tables, layout="opened", physics=physics, cue="real", noise="professional")
     env.reset(seed=list(range(seed, seed + tables)))
     at, search = Positions.of(env), StrokeSearch(env)
-    strokes = spread_strokes(
-        at, EACH, rng.integers(2**32, size=tables), search.spread, search.dynamics
-    ).strokes
+    strokes = at_pots(search, at, EACH, rng.integers(2**32, size=tables)).strokes
     env.close()
     rows = np.repeat(np.arange(tables), EACH)
     flat = strokes.reshape(-1, 5)

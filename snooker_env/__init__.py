@@ -14,7 +14,6 @@ any version:
 * ``snooker_env.progress``: how far a long command is, for your own commands too
 * ``snooker_env.render``: the scene of a table, and its pictures
 * ``snooker_env.render.diagrams``: shots, options, fans and where a ball stops, drawn with matplotlib
-* ``snooker_env.tasks.saved_models``: the description in a model's file, read as plain data
 * ``snooker_env.replays``: what was played, as a page, as data and as a film
 * ``snooker_env.widget``: a replay in a notebook
 * ``snooker_env.benchmark``: named tasks with frozen options, and how agents are judged on them
@@ -81,16 +80,10 @@ __all__ = [
     "warmup",
 ]
 
-_LATER = {
-    **{"Options": "tasks.options", "advise": "advice", "player": "players"},
-    **{
-        "SnookerEnv": "envs.snooker",
-        "SnookerVectorEnv": "envs.vector",
-        "MatchVectorEnv": "envs.match_vector",
-    },
-    **dict.fromkeys(("Planner", "Position", "Positions"), "planning"),
-    **dict.fromkeys(("RecordReplay", "Replay", "replay"), "replays"),
-}
+_LATER = {"Options": "tasks.options", "advise": "advice", "player": "players", "SnookerEnv": "envs.snooker"}
+_LATER |= {"SnookerVectorEnv": "envs.vector", "MatchVectorEnv": "envs.match_vector"}
+_LATER |= dict.fromkeys(("Planner", "Position", "Positions"), "planning")
+_LATER |= dict.fromkeys(("RecordReplay", "Replay", "replay"), "replays")
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""
 
 _register(_gymnasium)

@@ -27,18 +27,8 @@ _WRITE_GROUP, _WRITE_OTHERS, _STICKY = 0o020, 0o002, 0o1000
 _DIGEST = hashlib.sha256().digest_size
 
 
-KERNEL_ROOMS = (
-    "_inner.py",
-    "_jit.py",
-    "_lanes.py",
-    "game",
-    "geometry.py",
-    "impacts.py",
-    "physics",
-    "planning",
-    "simulation.py",
-    "tasks",
-)
+_FILES = "_inner.py", "_jit.py", "_lanes.py", "geometry.py", "impacts.py", "simulation.py"
+KERNEL_ROOMS = (*_FILES, "game", "physics", "planning", "tasks")
 """What holds kernels, and all that their kernels take from (tests/repository/test_kernel_rooms.py)."""
 
 
@@ -66,6 +56,9 @@ def _hash_of(folder: Path) -> str:
 
 
 # Folders that belong to the user alone
+
+
+_ALONE = "every process compiles for itself"
 
 
 class UnsafeFolderError(OSError):
@@ -101,11 +94,8 @@ def cache_folder() -> Path | None:
 
     ``$NUMBA_CACHE_DIR``, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it ``snooker_env/<kernel hash>``.
     """
-    chosen = (
-        os.environ.get("NUMBA_CACHE_DIR")
-        or os.environ.get("XDG_CACHE_HOME")
-        or os.path.expanduser("~/.cache")
-    )
+    asked = map(os.environ.get, ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"))
+    chosen = next(filter(None, asked), None) or os.path.expanduser("~/.cache")
     home = Path(chosen).absolute()
     folder = home / "snooker_env" / kernel_hash()
     try:
@@ -117,12 +107,10 @@ def cache_folder() -> Path | None:
         with tempfile.TemporaryFile(dir=folder):
             return folder
     except UnsafeFolderError as error:
-        why = (
-            f"{error}: no machine code is loaded from there or kept there; every process compiles for itself"
-        )
+        why = f"{error}: no machine code is loaded from there or kept there; {_ALONE}"
         advice = "set NUMBA_CACHE_DIR to a folder of your own, or remove this one"
     except OSError:
-        why, advice = f"{folder} is not writable: every process compiles for itself", "set NUMBA_CACHE_DIR"
+        why, advice = f"{folder} is not writable: {_ALONE}", "set NUMBA_CACHE_DIR"
     warnings.warn(f"{why}; {advice}", RuntimeWarning, stacklevel=2)
     return None
 
@@ -147,12 +135,10 @@ class _Place(_CacheLocator):
     def __init__(self, function, file):
         assert CACHE_FOLDER is not None
         self._py_file, self._line = file, function.__code__.co_firstlineno
-        folder = Path(file).resolve().parent
         path = Path(file).resolve()
         inside = path.is_relative_to(_PACKAGE) and path.relative_to(_PACKAGE).parts[0] in KERNEL_ROOMS
-        self._folder = CACHE_FOLDER / (
-            ".".join(folder.relative_to(_PACKAGE.parent).parts) if inside else _hash_of(folder)
-        )
+        name = ".".join(path.parent.relative_to(_PACKAGE.parent).parts) if inside else _hash_of(path.parent)
+        self._folder = CACHE_FOLDER / name
 
     @classmethod
     def from_function(cls, py_func, py_file):
@@ -227,9 +213,8 @@ class Kept(FunctionCache):
 
     def __init__(self, py_func: Any):
         super().__init__(py_func)
-        self._cache_file = _Files(
-            self.cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp()
-        )
+        stamp = self._impl.locator.get_source_stamp()
+        self._cache_file = _Files(self.cache_path, self._impl.filename_base, stamp)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The machine code for this signature, or None."""
@@ -237,19 +222,11 @@ class Kept(FunctionCache):
             self._impl.locator.ensure_cache_path()
             return super().load_overload(sig, target_context)
         except OSError as error:
-            _warn_once(
-                "place",
-                f"machine code is not read from {self.cache_path} ({error}): "
-                "every process compiles for itself",
-            )
+            _warn_once("place", f"machine code is not read from {self.cache_path} ({error}): {_ALONE}")
         except Exception as error:  # a damaged file can make pickle, numba or LLVM raise anything
             self._cache_file.discard()
-            what = f"{type(error).__name__}: {error}"
-            _warn_once(
-                "broken",
-                f"machine code kept in {self.cache_path} cannot be used ({what}): "
-                "it is compiled and kept anew",
-            )
+            what = f"cannot be used ({type(error).__name__}: {error}): it is compiled and kept anew"
+            _warn_once("broken", f"machine code kept in {self.cache_path} {what}")
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -257,8 +234,4 @@ class Kept(FunctionCache):
         try:
             super().save_overload(sig, data)
         except Exception as error:  # for instance a full disk, or an index that was damaged in the meantime
-            _warn_once(
-                "place",
-                f"machine code cannot be kept in {self.cache_path} ({error}): "
-                "every process compiles for itself",
-            )
+            _warn_once("place", f"machine code cannot be kept in {self.cache_path} ({error}): {_ALONE}")

@@ -197,24 +197,7 @@ def flags(field: str, value: Any, shape: tuple[int, ...]) -> Bools:
 
 
 def truth(field: str, value: Any) -> bool:
-    """Check that a value is a bool; 0 and 1 are none.
-
-    Parameters
-    ----------
-    field, value
-        Name of the argument, for the message, and its value.
-
-    Returns
-    -------
-    bool
-        The value; ValueError for anything else.
-
-    Examples
-    --------
-    >>> from snooker_env.checks import truth
-    >>> truth("render", True)
-    True
-    """
+    """The value, a bool; ValueError for anything else: 0 and 1 are none."""
     if not isinstance(value, (bool, np.bool_)):
         raise refuse(field, value, "must be True or False")
     return bool(value)

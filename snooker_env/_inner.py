@@ -18,16 +18,14 @@ from numba.core.types.functions import BaseFunction, Function
 
 FIND = "get_call_type"
 """The method of numba's functions that finds what they give for some types."""
+_OF_CODE = (
+    "optimize_final_module",
+    "finalize_final_module",
+    "finalize_dynamic_globals",
+    "verify_declare_only_symbols",
+)
 _PARTS = (
-    (
-        codegen.JITCodeLibrary,
-        (
-            "_optimize_final_module",
-            "_finalize_final_module",
-            "_finalize_dynamic_globals",
-            "_verify_declare_only_symbols",
-        ),
-    ),
+    (codegen.JITCodeLibrary, tuple(f"_{name}" for name in _OF_CODE)),
     (compiler.CompileResult, ("_replace", "entry_point")),
     (CPUDispatcher, ("add_overload",)),
     (compiler.Compiler, ("compile_extra",)),

@@ -51,26 +51,15 @@ def warmup() -> None:
     from .game.balls import REDS_MASK
     from .game.frame import Frame
     from .game.in_hand import place_cue
-    from .game.paths import paths
     from .game.pots import pots
     from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
-    from .planning import (
-        Planner,
-        Position,
-        Positions,
-        StrokeSearch,
-        at_balls,
-        clear_paths,
-        obstructions,
-        over_cushions,
-        prospects_of,
-    )
+    from .planning import Planner, Position, Positions, StrokeSearch, clear_paths, obstructions, prospects_of
     from .planning import pots as direct_pots
+    from .planning.proposals import at_balls, over_cushions
     from .planning.worth import best_places, decide
     from .players import player
-    from .tasks.box_actions import Actions, line
     from .tasks.options import Options
 
     with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
@@ -82,14 +71,8 @@ def warmup() -> None:
         env.reset(seed=0)
         env.action_masks()
         env.step(0)
-        frames = {
-            "task": "frame",
-            "placement": True,
-            "decision": True,
-            "miss": "attempt",
-            "opponent": "ghost_ball",
-        }
-        env = SnookerEnv(**frames)
+        all_of_frames = {"placement": True, "decision": True, "miss": "attempt", "opponent": "ghost_ball"}
+        env = SnookerEnv(task="frame", **all_of_frames)
         for seed in range(3):  # in one of them the opponent breaks off
             env.reset(seed=seed)
             env.step([0.0] * 7)
@@ -102,11 +85,9 @@ def warmup() -> None:
         frame = Frame.start()
         frame.play(Stroke())
         frame.concede(0)
-        opponents: list[tuple[Any, Any]] = [
-            (lambda observation, rng: [0.0] * 4, [0.0] * 4),
-            (_Still(), [0.0] * 4),
-        ]
-        for opponent, action in (*opponents, ("random", 0), ("random", [0.0] * 4)):
+        still: Any = [0.0] * 4
+        policies: Any = (lambda observation, rng: still, still), (_Still(), still)
+        for opponent, action in (*policies, ("random", 0), ("random", still)):
             env = SnookerEnv(task="frame", opponent=opponent, action="discrete" if action == 0 else "box")
             for seed in range(3):
                 env.reset(seed=seed)
@@ -117,9 +98,6 @@ def warmup() -> None:
         tables: Any = match.tables
         tables.info_of(0, None)
         pots(env.positions, env.on_table, REDS_MASK)
-        Actions("absolute", False, False, env.physics).shot([0.0] * 4, env.positions, env.on_table, REDS_MASK)
-        line(env.positions, env.on_table, REDS_MASK)
-        paths(env.positions, env.on_table, REDS_MASK)
         place_cue(env.positions, env.on_table, 0.0, 0.0)
         settle_table(env.positions, env.on_table, Situation(), Stroke())
         judge(Situation(), Stroke())

@@ -34,7 +34,6 @@ __all__ = [
     "POCKET_PLACES",
     "PRESETS",
     "SIDES",
-    "Bed",
     "Pocket",
 ]
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
@@ -82,7 +81,8 @@ class Pocket:
     """The shape of one kind of pocket, the same at all four corners or at both middles.
 
     ``Pocket.corner`` and ``Pocket.middle`` make one from published sizes. A jaw leaves the nose at ``start``,
-    turns away on an arc and goes on straight (its facing), if the arc does not end over the fall.
+    turns away on an arc and goes on straight (its facing), if the arc does not end over the fall. ValueError if a
+    size is out of range, if the jaws leave no opening, or if a ball could pass beside the fall.
 
     Parameters
     ----------
@@ -98,11 +98,6 @@ class Pocket:
     fall_depth, fall_radius : float
         From the nose line (at a corner, from each) to the centre of the slate's circle, in [-1, 1], and its
         radius [m], in (0, 1]. A ball begins to drop where its centre crosses the circle.
-
-    Raises
-    ------
-    ValueError
-        If a size is out of range, if the jaws leave no opening, or if a ball could pass beside the fall.
 
     Examples
     --------
@@ -230,30 +225,13 @@ def _sizes(name, mouth, shelf, fall_radius):
 
 @dataclass(frozen=True, kw_only=True)
 class Bed:
-    """A rectangular table as data: its size, its pockets and its balls.
+    """A rectangular table as data: its size, its pockets and its balls."""
 
-    Parameters
-    ----------
-    length, width : float
-        Distance between facing noses [m], along y and along x.
-    corner, middle : Pocket or None
-        Shapes in the corners and in the middles of the sides along y. None: there are none.
-    ball : mapping of str to float
-        Fields of ``Physics`` of the game's balls and noses: R [m], M [kg], sin_theta. Empty: any ball.
-
-    Examples
-    --------
-    >>> from snooker_env.geometry import PRESETS
-    >>> bed = PRESETS["match"]
-    >>> bed.length, bed.width, bed.ball["R"]
-    (3.569, 1.778, 0.02625)
-    """
-
-    length: float
+    length: float  # distance between facing noses along y, and the next along x [m]
     width: float
-    corner: Pocket | None
-    middle: Pocket | None
-    ball: Mapping[str, float]
+    corner: Pocket | None  # None: there are none
+    middle: Pocket | None  # in the middles of the sides along y
+    ball: Mapping[str, float]  # fields of ``Physics`` of the game's balls and noses; empty: any ball
 
     @property
     def pockets(self) -> tuple[str, ...]:
@@ -330,6 +308,7 @@ def scaled(pocket: Pocket, factor: float) -> Pocket:
 _POOL_CORNER = Pocket.corner(mouth=4.5875 * _INCH, shelf=1.125 * _INCH, fall_radius=2.75 * _INCH, cut=142.0)
 _POOL_MIDDLE = Pocket.middle(mouth=5.0625 * _INCH, shelf=0.1875 * _INCH, fall_radius=3.0 * _INCH, cut=104.0)
 _UK_CORNER, _UK_MIDDLE = (scaled(pocket, _INCH / BALL_RADIUS) for pocket in (_CORNER, _MIDDLE))
+_POOL_BALL = {"M": 0.163, "sin_theta": 0.27}
 _BEDS = {
     # throats of the corners 86.0 and 80.14 mm
     "match": _bed(2 * HALF_LENGTH, 2 * HALF_WIDTH, _CORNER, _MIDDLE, R=BALL_RADIUS, M=0.1406, sin_theta=0.4),
@@ -341,11 +320,10 @@ _BEDS = {
     # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5 to
     # 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. In them: mouths
     # and shelves of Alciatore's TP 3.6 and 3.5; his fall radii too, which the WPA leaves open.
-    "pool9": _bed(
-        100 * _INCH, 50 * _INCH, _POOL_CORNER, _POOL_MIDDLE, R=1.125 * _INCH, M=0.163, sin_theta=0.27
-    ),
+    "pool9": _bed(100 * _INCH, 50 * _INCH, _POOL_CORNER, _POOL_MIDDLE, R=1.125 * _INCH, **_POOL_BALL),
     # UMB: 2.84 x 1.42 m, balls of 61 to 61.5 mm and 205 to 220 g, noses 37 mm high.
     "carom": _bed(2.84, 1.42, None, None, R=0.03075, M=0.2125, sin_theta=37.0 / 30.75 - 1.0),
 }
 PRESETS = MappingProxyType(_BEDS)
-"""The preset tables by name, each a ``Bed``: "match", "tight", "uk8", "pool9" and "carom". Read-only."""
+"""The preset tables by name: "match", "tight", "uk8", "pool9" and "carom". Each has ``length`` and ``width`` [m], the
+``corner`` and ``middle`` pocket, a ``Pocket`` or None, and of ``ball`` R [m], M [kg] and sin_theta. Read-only."""

@@ -31,11 +31,8 @@ def _unit_normal(normal):
     nx, ny, nz = array("normal", normal, (3,)).tolist()
     if abs(nz) > 1e-9 or abs(np.hypot(nx, ny) - 1.0) > 1e-6:
         length = (nx * nx + ny * ny + nz * nz) ** 0.5
-        raise refuse(
-            "normal",
-            (nx, ny, nz),
-            f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {length:.7g})",
-        )
+        allowed = f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {length:.7g})"
+        raise refuse("normal", (nx, ny, nz), allowed)
     size = float(np.hypot(nx, ny))
     return nx / size, ny / size
 
@@ -75,14 +72,8 @@ def collide_balls(
     -------
     v1, w1, v2, w2 : float64 (3,)
         Velocities [m/s], with the vertical one of a lifted ball, and spins [rad/s] after it; unchanged if the
-        balls do not approach each other.
-
-    Raises
-    ------
-    ValueError
-        For bad input.
-    SimulationError
-        If the computation of the impact does not end.
+        balls do not approach each other. ValueError for bad input, SimulationError if the computation of the impact
+        does not end.
 
     Examples
     --------
@@ -123,14 +114,8 @@ def collide_cushion(
     Returns
     -------
     v, w : float64 (3,)
-        Velocity [m/s] and spin [rad/s] after it; unchanged if the ball does not move into the cushion.
-
-    Raises
-    ------
-    ValueError
-        For bad input.
-    SimulationError
-        If the computation of the impact does not end.
+        Velocity [m/s] and spin [rad/s] after it; unchanged if the ball does not move into the cushion. Errors as of
+        ``collide_balls``.
 
     Examples
     --------
@@ -181,15 +166,9 @@ def strike(
 
     Returns
     -------
-    v : float64 (3,)
-        Velocity [m/s].
-    w : float64 (3,)
-        Angular velocity [rad/s].
-
-    Raises
-    ------
-    ValueError
-        For a miscue (an offset beyond ``Physics.max_offset``, 0.5 by default), or a number out of range.
+    v, w : float64 (3,)
+        Velocity [m/s] and angular velocity [rad/s]. ValueError for a miscue (an offset beyond
+        ``Physics.max_offset``, 0.5 by default), or a number out of range.
 
     Examples
     --------

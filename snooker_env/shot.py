@@ -113,11 +113,8 @@ class Shot:
 def check_path(shot: Shot) -> None:
     """Raise ValueError unless the shot has its path."""
     if not len(shot.segments):
-        raise refuse(
-            "shot.segments",
-            "none",
-            "must be there: simulate() keeps them, environments with keep_history = True",
-        )
+        allowed = "must be there: simulate() keeps them, environments with keep_history = True"
+        raise refuse("shot.segments", "none", allowed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,9 +36,8 @@ def _balls(positions, velocities, spins, on_table, flies, batch, checked=False):
     v = array("velocities", velocities, (*shape, _columns(velocities, flies)), fastest, "m/s")
     w = array("spins", spins, (*shape, 3), most_spin, "rad/s")
     if not 1 <= shape[-1] <= MAX_BALLS:
-        raise refuse_what(
-            "positions", f"array of shape {r.shape}", f"must hold at least one ball and at most {MAX_BALLS}"
-        )
+        allowed = f"must hold at least one ball and at most {MAX_BALLS}"
+        raise refuse_what("positions", f"array of shape {r.shape}", allowed)
     here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
     if not flies:
         return r, v, w, here
@@ -106,14 +105,8 @@ def simulate(
     Returns
     -------
     Shot
-        Final positions, pots, the log of events and the paths.
-
-    Raises
-    ------
-    ValueError
-        For bad input.
-    SimulationError
-        If the shot does not come to rest within ``max_events`` events, or an impact of it does not end.
+        Final positions, pots, the log of events and the paths. ValueError for bad input, SimulationError if the shot
+        does not come to rest within ``max_events`` events, or an impact of it does not end.
 
     Examples
     --------
@@ -189,12 +182,9 @@ def simulate_batch(
 
     Parameters
     ----------
-    positions : array_like, float (b, n, 2)
-        Centres of the balls [m]; these and the following as in ``simulate``.
-    velocities : array_like, float (b, n, 2)
-        Velocities [m/s].
-    spins : array_like, float (b, n, 3)
-        Angular velocities [rad/s].
+    positions, velocities, spins : array_like, float (b, n, 2), (b, n, 2) and (b, n, 3)
+        Centres of the balls [m], velocities [m/s] and angular velocities [rad/s]; these and the following as in
+        ``simulate``.
     table : str, Table or None
         The same for all shots.
     physics : None, str, dict or Physics
@@ -213,14 +203,7 @@ def simulate_batch(
     Returns
     -------
     ShotBatch
-        Final positions, pots and durations, and with ``events`` the logs.
-
-    Raises
-    ------
-    ValueError
-        For bad input; the message names the shot.
-    SimulationError
-        As ``simulate``; the message names the shot.
+        Final positions, pots and durations, and with ``events`` the logs. Errors as of ``simulate``; they name the shot.
 
     Examples
     --------
@@ -239,16 +222,8 @@ def simulate_batch(
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
     start = tuple(a.copy() for a in state)
-    out = _run(
-        state,
-        physics,
-        table,
-        solver,
-        max_events,
-        log_space(len(r), _FIRST_LOG if events else 0, 0),
-        threads,
-        doubt=True,
-    )
+    log = log_space(len(r), _FIRST_LOG if events else 0, 0)
+    out = _run(state, physics, table, solver, max_events, log, threads, doubt=True)
     if (out.status == UNSOUND).any():
         _refuse(start, physics, table)
     count(len(r))
@@ -257,12 +232,8 @@ def simulate_batch(
         # rare: the log is longer than the first guess, so the shot is simulated again with more room
         if out.status[k] == LOG_FULL:
             one = play(tuple(part[k] for part in start), physics, table, solver, max_events, path=False)
-            r[k], here[k], out.potted[k], out.duration[k] = (
-                one.positions,
-                one.on_table,
-                one.potted,
-                one.duration,
-            )
+            r[k], here[k] = one.positions, one.on_table
+            out.potted[k], out.duration[k] = one.potted, one.duration
             out.n_events[k] = len(one.events)
             if logs is not None:
                 logs[k] = one.events
@@ -285,20 +256,15 @@ class _Run:
     def log(self, k):
         m = min(int(self.n_events[k]), self.event_time.shape[1])
         events, what = np.empty(m, EVENT), self.event_what[k, :m]
-        events["time"], events["kind"], events["i"], events["j"] = (
-            self.event_time[k, :m],
-            what[:, 0],
-            what[:, 1],
-            what[:, 2],
-        )
+        events["time"] = self.event_time[k, :m]
+        events["kind"], events["i"], events["j"] = what.T
         return events
 
 
 def log_space(b: int, log_size: int, path_size: int) -> Log:
     """A ``Log`` of b shots."""
-    return Log(
-        np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT))
-    )
+    times, what = np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32)
+    return Log(times, what, np.zeros((b, path_size, cloth.SEGMENT)))
 
 
 _KEPT = threading.local()
@@ -321,16 +287,8 @@ def _run(state, physics, table, fidelity, max_events, log=None, threads=1, doubt
     log = log or log_space(b, 0, 0)
     ends = Ends(np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b))
     out = _Run(np.zeros((b, n), np.int64), *ends, *log)
-    setup = (
-        physics.packed_for(fidelity)[None],
-        _NO_KICKS,
-        table.noses,
-        table.jaws,
-        table.falls,
-        table._reach(physics.R),
-        *fidelity,
-        doubt,
-    )
+    bounds = table.noses, table.jaws, table.falls, table._reach(physics.R)
+    setup = physics.packed_for(fidelity)[None], _NO_KICKS, *bounds, *fidelity, doubt
     balls, aloft = (*state[:4], out.potted), state[4] if physics.flight else None
     arguments = balls, aloft, setup, max_events, tuple(log), tuple(ends)
 

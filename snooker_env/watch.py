@@ -1,9 +1,5 @@
 """How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
 
-    python -m snooker_env.watch --agent planner --out break.html
-    python -m snooker_env.watch --agent search_2000 --at-least 50 --out break.mp4
-    python -m snooker_env.watch --frame --out frame.html
-
 The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the
 replay is written to a temporary file and opened in the browser. The cue is real. Visits are played on held-out tables, the
 seeds one after the other; --at-least takes the first of --tries visits with so many points, else the longest. The

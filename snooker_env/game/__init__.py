@@ -1,8 +1,9 @@
 """The game of snooker: balls, rules, frames, layouts, without physics and Gymnasium; public: ``__all__``."""
 
-from .balls import COLOUR_NAMES, CUE, N_BALLS, NAMES, SPOTS, TOUCH, VALUES, BallOn, balls_on, ids_of, mask_of
+from .balls import COLOUR_NAMES, CUE, N_BALLS, NAMES, SPOTS, TOUCH, VALUES, BallOn, balls_on
 from .banks import HELD_OUT
-from .layouts import LAYOUTS, POT_WINDOWS, Plan, layout, plan_of
+from .layouts import LAYOUTS, POT_WINDOWS, layout
+from .layouts import plan_of as plan_of
 
 __all__ = [
     "COLOUR_NAMES",
@@ -16,10 +17,6 @@ __all__ = [
     "TOUCH",
     "VALUES",
     "BallOn",
-    "Plan",
     "balls_on",
-    "ids_of",
     "layout",
-    "mask_of",
-    "plan_of",
 ]

@@ -158,9 +158,9 @@ def balls_on(ball_on: int, on_table: int) -> int:
 
     Examples
     --------
-    >>> from snooker_env.game import BallOn, balls_on, ids_of, mask_of
-    >>> ids_of(balls_on(BallOn.RED, mask_of([0, 1, 2, 21])))
-    (1, 2)
+    >>> from snooker_env.game import BallOn, balls_on
+    >>> bin(balls_on(BallOn.RED, 1 << 21 | 0b111))  # the cue ball, two reds, the black
+    '0b110'
     """
     if ball_on == 1:
         return on_table & REDS_MASK
@@ -194,24 +194,7 @@ available: Any = kernel(points_available)
 
 
 def mask_of(balls: Iterable[int]) -> int:
-    """The mask of some balls.
-
-    Parameters
-    ----------
-    balls : iterable of int
-        Ids of the balls, 0 to 21; ValueError for others.
-
-    Returns
-    -------
-    int
-        Mask with bit i for ball i.
-
-    Examples
-    --------
-    >>> from snooker_env.game import mask_of
-    >>> mask_of([0, 1, 3])
-    11
-    """
+    """The mask of some balls; ValueError unless their ids are 0 to 21."""
     mask = 0
     for ball in balls:
         mask |= 1 << integer("ball", ball, 0, N_BALLS - 1)
@@ -224,26 +207,22 @@ def mask_of_present(on_table: Bools) -> int:
 
 
 def ids_of(mask: int) -> tuple[int, ...]:
-    """The ids of the balls in a mask.
-
-    Parameters
-    ----------
-    mask : int
-        Mask with bit i for ball i; ValueError for a bit above 21.
-
-    Returns
-    -------
-    tuple of int
-        The ids in rising order.
-
-    Examples
-    --------
-    >>> from snooker_env.game import ids_of
-    >>> ids_of(11)
-    (0, 1, 3)
-    """
+    """The ids of the balls in a mask, in rising order; ValueError for a bit above 21."""
     integer("mask", mask, 0, ALL_MASK)
     return tuple(i for i in range(N_BALLS) if mask >> i & 1)
+
+
+def check_ball_on(field: str, ball_on: BallOn, mask: int, balls: str, *, in_turn: bool = True) -> None:
+    """ValueError unless this may be on with the balls of a mask, which the message calls ``balls``; ``in_turn``: a colour
+    only if it is the lowest."""
+    word, lowest = ball_on.name.lower(), BallOn(next_on(mask))
+    if not balls_on(ball_on, mask & ~CUE_BIT):
+        raise refuse(field, word, f"must name balls of which one is on the table ({balls})")
+    if ball_on > BallOn.RED and mask & REDS_MASK:
+        raise refuse(field, word, f"must be 'red' or 'any_colour' while reds are on the table ({balls})")
+    if in_turn and ball_on not in (BallOn.ANY_COLOUR, lowest):
+        allowed = f"must be 'any_colour' or {lowest.name.lower()!r}, the lowest on the table ({balls})"
+        raise refuse(field, word, allowed)
 
 
 def check_table(positions: Vectors, on_table: Flags) -> tuple[Floats, Bools]:

@@ -331,16 +331,10 @@ class Frame:
         time_to_play: int = 0,
         duration: int = 0,
     ) -> tuple["Frame", Verdict]:
-        """One stroke: the next frame and the referee's ``Verdict``.
-
-        For the miss rules, ``clear_path``, ``full_ball_path``: whether before the stroke a straight path was
-        clear to any part, and to the full face, of a ball on (``paths.paths``); ``attempt``: whether the cue
-        ball came near one (``attempt.ATTEMPT_GAP``). ``layout``: see ``Saved``.
-
-        For a clock, ``time_to_play``, ``duration``: the time [ms] from the rest of the balls to this stroke,
-        and to the next rest. A stroke that needs longer than ``shot_clock`` is not played: the balls stay as
-        they lie, and ``stroke`` is read as ``Stroke(late=True)``. The frame ends when another stroke with the
-        same ``time_to_play`` could not begin in time."""
+        """One stroke: the next frame and the referee's ``Verdict``. ``clear_path``, ``full_ball_path``, ``attempt``: for the
+        miss rules, of ``paths.best_paths`` before it, and whether the cue ball came near a ball on (``attempt``);
+        ``layout``: see ``Saved``. ``time_to_play``, ``duration``: for a clock [ms], from the rest of the balls to this
+        stroke, and to the next rest: one later than ``shot_clock`` is read as ``Stroke(late=True)``."""
         self._in_phase("stroke", "play")
         late, lasted, rules = False, 0, self.rule_set
         integer("time_to_play", time_to_play, 0, MOST_CLOCK)

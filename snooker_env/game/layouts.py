@@ -155,32 +155,12 @@ def deal_tables(which, code, tables, streams, positions, on_table):
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A layout by name, in the form that the kernels read; ``plan_of`` makes one.
-
-    Pickling and copying make it again from the name, so the bank of tables is never copied.
-
-    Attributes
-    ----------
-    name : str
-        Name of the layout.
-    code, tables : numpy.ndarray
-        float64 (4,): kind, number of reds, and the range of tables of the bank or of a pot's tolerance [rad].
-        float64 (b, 22, 2): the bank of stored tables [m]; b = 0 for a layout without one.
-    unfit : tuple of int
-        Tables of the bank that do not fit the table played on; others replace them.
-
-    Examples
-    --------
-    >>> from snooker_env.game import plan_of
-    >>> plan = plan_of("break_off")
-    >>> plan.name, plan.in_hand, plan.tables.shape
-    ('break_off', True, (0, 22, 2))
-    """
+    """A layout by name, in the form that the kernels read. Pickling and copying make it again: no bank is copied."""
 
     name: str
-    code: Floats
-    tables: Floats
-    unfit: tuple[int, ...] = ()
+    code: Floats  # (4,): kind, number of reds, and the range of tables of the bank or of a pot's tolerance [rad]
+    tables: Floats  # (b, 22, 2): the bank of stored tables [m]; b = 0 for a layout without one
+    unfit: tuple[int, ...] = ()  # tables of the bank that do not fit the table played on; others replace them
 
     @property
     def in_hand(self) -> bool:
@@ -210,27 +190,7 @@ LAYOUTS = (*STORED_IN, *_NAMES)
 
 
 def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
-    """The ``Plan`` of a layout.
-
-    Parameters
-    ----------
-    name : str
-        One of ``LAYOUTS``, ``"random:N"`` or ``"break_off:N"`` with N reds from 0 to 15, or ``"pots:D"`` with
-        D one of ``POT_WINDOWS``; ValueError for others.
-    unfit : tuple of int
-        Indices of tables of the bank that are not to be dealt, in rising order.
-
-    Returns
-    -------
-    Plan
-        The layout for ``layout``, ready for repeated use.
-
-    Examples
-    --------
-    >>> from snooker_env.game import plan_of
-    >>> plan_of("random:6").code.tolist()
-    [4.0, 6.0, 0.0, 0.0]
-    """
+    """The ``Plan`` of a layout, see ``layout``, without the tables ``unfit`` of its bank; ValueError for others."""
     name, asked = name if isinstance(name, str) else "", name
     head, _, which = name.partition(":")
     tables, code = NO_BANK, None
@@ -256,8 +216,9 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
 
     Parameters
     ----------
-    plan : str or Plan
-        The layout, see ``plan_of``.
+    plan : str
+        The layout: one of ``LAYOUTS``, ``"random:N"`` or ``"break_off:N"`` with N reds from 0 to 15, or ``"pots:D"``
+        with D one of ``POT_WINDOWS``; ValueError for others. Or a ``Plan`` of one, for repeated use.
     rng : numpy.random.Generator
         One number is drawn from it, the key of the layout's stream.
 

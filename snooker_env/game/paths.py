@@ -12,19 +12,15 @@ places of ``in_hand``; an opening that falls between them is in the striker's fa
 
 import numpy as np
 
-from .._check import array, integer, refuse, truth
 from .._jit import entry, kernel
-from .._types import Flags, Vectors
-from ..geometry import BALL_RADIUS
-from .balls import ALL_MASK, CUE_BIT, N_BALLS, REDS_MASK, REFEREE_TOUCH, check_table
+from .balls import N_BALLS, REDS_MASK, REFEREE_TOUCH
 from .in_hand import PLACES_IN_D, PLACES_ON_BED
 from .lines import meets
 from .snookered import SLACK, segment_distance
 from .spotting import touches
 
 WINDOW = 1e-9  # a narrower opening does not count [rad]: it is rounding
-NO_NOSES, NO_ARCS = np.empty((0, 5)), np.empty((0, 6))
-"""No cushions: ``noses`` and ``jaws`` have the rows of ``physics.Table`` (``physics.columns``)."""
+# columns of ``noses`` and ``jaws``, as of ``physics.Table``
 AXIS, SIDE, LEVEL, LOW, HIGH = range(5)
 ARC_X, ARC_Y, ARC_RADIUS, ARC_UX, ARC_UY, ARC_COS = range(6)
 
@@ -197,29 +193,3 @@ def best_paths(positions, on_table, on, in_hand, noses, jaws, radius):
             return True, True
         clear = clear or clear_path(at, on_table, on, noses, jaws, radius)
     return clear, False
-
-
-def paths(
-    positions: Vectors,
-    on_table: Flags,
-    on: int,
-    *,
-    anywhere: bool = False,
-    noses: Vectors = NO_NOSES,
-    jaws: Vectors = NO_ARCS,
-    radius: float = BALL_RADIUS,
-) -> tuple[bool, bool]:
-    """Both tests for Python: (any part, full ball); ``noses``, ``jaws``: of a ``Table``. A cue ball off the
-    table is in hand: in the D or, with ``anywhere``, on the bed. ValueError for wrong input."""
-    placed, present = check_table(positions, on_table)
-    if truth("anywhere", anywhere) and present[0]:
-        allowed = "must be False with the cue ball on the table (on_table[0]): then it is not in hand"
-        raise refuse("anywhere", True, allowed)
-    if integer("on", on, 0, ALL_MASK) & CUE_BIT:
-        raise refuse("on", on, "must name object balls only")
-    cushions = array("noses", noses, (-1, 5)), array("jaws", jaws, (-1, 6))
-    for part in cushions:
-        part.setflags(write=False)  # as those of a Table: numba compiles for each kind
-    in_hand = 0 if present[0] else 1 + anywhere
-    any_part, full = best_paths(placed, present, on, in_hand, *cushions, float(radius))
-    return bool(any_part), bool(full)

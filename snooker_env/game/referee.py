@@ -5,7 +5,7 @@ from typing import Any
 
 from .._check import choice, integer, refuse
 from .._jit import entry
-from .balls import ALL_MASK, COLOURS_MASK, CUE_BIT, N_BALLS, NAMES, REDS_MASK, BallOn, balls_on, ids_of
+from .balls import ALL_MASK, COLOURS_MASK, CUE_BIT, N_BALLS, NAMES, BallOn, balls_on, check_ball_on, ids_of
 from .rule_sets import RULES, RulesName
 from .ruling import AUTO, RULE_FLAGS, Before, Facts, Flag, Foul, Outcome, Ruling, VisitEnd, ruling
 
@@ -29,12 +29,7 @@ class Situation:
         object.__setattr__(self, "ball_on", on)
         integer("lead", self.lead, -MOST_POINTS, MOST_POINTS)
         choice("rules", self.rules, RULES)
-        if not balls_on(self.ball_on, self.on_table & ~CUE_BIT):
-            allowed = "must name balls of which one is on the table (on_table)"
-            raise refuse("ball_on", self.ball_on.name, allowed)
-        if self.ball_on > BallOn.RED and self.on_table & REDS_MASK:
-            allowed = "must be RED or ANY_COLOUR while reds are on the table (on_table)"
-            raise refuse("ball_on", self.ball_on.name, allowed)
+        check_ball_on("ball_on", on, self.on_table, "on_table", in_turn=False)
         if self.free_ball and self.ball_on == BallOn.ANY_COLOUR:
             raise refuse("free_ball", self.free_ball, "must be False when any colour is on (ball_on)")
 

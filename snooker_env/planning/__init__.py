@@ -9,16 +9,6 @@ A planner works in two steps:
    stopped.
 
 The caller assigns a value to each afterstate. ``prospects_of`` is a rule of thumb for that.
-
->>> import snooker_env as sn
->>> from snooker_env.planning import Planner, Position, pots
->>> position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.8)], black=(0.0, 1.4605), on="red")
->>> int(pots(position).ball[0, 0])
-1
->>> planner = Planner({"action": "discrete", "noise": "club"})
->>> outcomes = planner.play(position, rows=[0, 0], actions=[67, 67], keys=[1, 2])
->>> len(outcomes.afterstates), outcomes.observations.shape
-(2, (2, 121))
 """
 
 from ..tasks.threads import processors
@@ -26,9 +16,8 @@ from .geometry import Paths, Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
-from .proposals import Proposals, at_balls, at_pots, over_cushions, safeties, spread_strokes, strokes_at
+from .proposals import Proposals, at_pots
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
-from .sobol import sobol_points
 from .stroke_search import Ranked, StrokeSearch
 from .strokes import Stops, action_masks, actions_of, as_actions, pot_aim
 
@@ -48,18 +37,12 @@ __all__ = [
     "action_masks",
     "actions_of",
     "as_actions",
-    "at_balls",
     "at_pots",
     "clear_paths",
     "obstructions",
-    "over_cushions",
     "pot_aim",
     "pots",
     "processors",
     "prospects_of",
-    "safeties",
-    "sobol_points",
     "spread_of",
-    "spread_strokes",
-    "strokes_at",
 ]

@@ -70,23 +70,8 @@ class Tried(NamedTuple):
 
 
 class FrameSearch:
-    """Searches for the best stroke of a frame.
-
-    Parameters
-    ----------
-    env_or_options : Env, VectorEnv, AECEnv, Options or dict
-        The frame: physics, table, fidelity, cue, miss rule and execution noise count.
-    worth : callable
-        See ``worth``.
-    budget : int, optional
-        Average number of simulated shots of a decision over whole frames, at least ``LEAST``; default 120.
-    propose : callable
-        A generator of pots, see ``StrokeSearch``.
-    chance : Chance, optional
-        The chance to win of an expected lead. Default None: points alone count.
-    noise, threads : optional
-        As for ``Planner``.
-    """
+    """Searches for the best stroke of a frame: as ``StrokeSearch``, with the ``worth`` of positions in place of a value, and
+    the ``chance`` to win of an expected lead (None: points alone count). ``budget``: shots of a decision on average."""
 
     def __init__(
         self,
@@ -104,9 +89,8 @@ class FrameSearch:
         rules = options.rules
         self.noise: Noise = rules.noise if noise is None else Noise.of(noise)
         self.rules = rules
-        self.threads: int = (
-            min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
-        )
+        usual = min(1024, processors())
+        self.threads: int = usual if threads is None else integer("threads", threads, 1, 1024)
         self._trials = FrameTrials(replace(rules, noise=self.noise), Threads(self.threads))
         self.spread: float = spread_of(self.noise, rules.physics)
         self.dynamics: Dynamics = Dynamics.of(replace(rules, noise=self.noise))

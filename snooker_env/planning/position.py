@@ -11,18 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import array, choice, integer, refuse, refuse_what, truth
-from .._files import write_atomic
+from .._files import read_json, write_atomic
 from .._types import Flags, Integers, Place, Vectors
 from ..game.balls import (
     COLOUR_NAMES,
     CUE,
     N_BALLS,
     N_REDS,
-    REDS_MASK,
     SPOTS,
+    YELLOW,
     BallOn,
-    balls_on,
-    colour,
+    check_ball_on,
     mask_of_present,
     next_on,
 )
@@ -36,7 +35,8 @@ ON = tuple(ball.name.lower() for ball in BallOn)  # the names of all values of "
 
 @dataclass(frozen=True, kw_only=True)
 class Position:
-    """The balls on a table in the middle of a visit, by name: validated when it is made, and immutable.
+    """The balls on a table in the middle of a visit, by name: validated when it is made, and immutable. ValueError if a
+    ball is off the table, in a cushion or over a pocket, if balls overlap, or the ball on is wrong.
 
     Parameters
     ----------
@@ -57,11 +57,6 @@ class Position:
         Points of the visit so far, in [0, 155]; default 0.
     table : str, Table or None, optional
         The table that the balls must fit on, not stored; None: unbounded cloth. Default: "match".
-
-    Raises
-    ------
-    ValueError
-        If a ball is off the table, in a cushion or over a pocket, balls overlap, or the ball on is wrong.
 
     Examples
     --------
@@ -132,7 +127,7 @@ class Position:
         """Make the ``Position`` of one table's arrays, see ``arrays``; reds are numbered anew."""
         places, present = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
-        ids = {"cue": CUE, **{name: colour(name) for name in COLOUR_NAMES}}
+        ids = {"cue": CUE, **dict(zip(COLOUR_NAMES, range(YELLOW, N_BALLS), strict=True))}
         balls: Any = {name: tuple(places[i]) for name, i in ids.items() if present[i]}
         balls["reds"] = tuple(tuple(places[i]) for i in range(1, N_REDS + 1) if present[i])
         visit: Any = {"in_hand": bool(in_hand), "points": points, "over": bool(over)}
@@ -157,7 +152,7 @@ class Position:
     @classmethod
     def load(cls, path: str | Path, *, table: TableLike = "match") -> "Position":
         """Read a file of ``save``, or one written by hand; ValueError names what is wrong in it."""
-        return cls(**_read(path), table=table)
+        return cls(**_checked(read_json(path), str(path)), table=table)
 
 
 _NAMES = tuple(f.name for f in fields(Position))  # keys that a position in JSON may have
@@ -222,15 +217,7 @@ def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue
     present = mask_of_present(on_table)
     if not present & 1:
         raise refuse(cue, None, "must be on the table while the visit goes on")
-    if not balls_on(ball_on, present):
-        raise refuse(on, ball_on.name.lower(), f"must name balls of which one is on the table ({balls})")
-    if ball_on > BallOn.RED and present & REDS_MASK:
-        allowed = f"must be 'red' or 'any_colour' while reds are on the table ({balls})"
-        raise refuse(on, ball_on.name.lower(), allowed)
-    lowest = next_on(present)
-    if ball_on not in (BallOn.ANY_COLOUR, lowest):
-        what = f"'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table"
-        raise refuse(on, ball_on.name.lower(), f"must be {what} ({balls})")
+    check_ball_on(on, ball_on, present, balls)
 
 
 def _checked(raw: Any, field: str = "position") -> Mapping[str, Any]:
@@ -252,23 +239,3 @@ def _places(value: Any) -> list[Any]:
     if not isinstance(value, list | tuple):
         return []
     return [part for part in value if isinstance(part, list | tuple)] or [value]
-
-
-def _read(path: str | Path) -> Mapping[str, Any]:
-    """The fields in a file of JSON; ValueError names the file or the key that is wrong."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-        raw = json.loads(text, object_pairs_hook=_once)
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
-        raise refuse("path", str(path), f"must be a file of JSON ({error})") from None
-    return _checked(raw, str(path))
-
-
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object as a dict; ValueError if a key is there twice."""
-    out = dict(pairs)
-    if len(out) < len(pairs):
-        names = [key for key, _ in pairs]
-        repeated = next(key for key in names if names.count(key) > 1)
-        raise refuse("key of the position", repeated, "must be there once")
-    return out

@@ -37,7 +37,8 @@ class Positions:
     may know. Planning plays their strokes as those of visits, see ``as_visits``.
 
     ``positions[3]`` is one ``Position``. Any other NumPy index (a slice, a mask, a list of rows) gives
-    ``Positions``: a view for a slice, else a copy.
+    ``Positions``: a view for a slice, else a copy. ValueError if an array has the wrong shape or type, or a number is
+    not finite; overlaps are refused when played.
 
     Parameters
     ----------
@@ -54,11 +55,6 @@ class Positions:
     conditions : array_like, optional
         float (m, 8). The constants of each table, in the order of ``physics.conditions.RANGES``, of an
         environment with ``conditions="drawn"``: planners with that option plan with them. Default None.
-
-    Raises
-    ------
-    ValueError
-        If an array has the wrong shape or type, or a number is not finite. Overlaps are refused when played.
 
     Examples
     --------

@@ -272,66 +272,34 @@ def _escapes(balls, seeds, law, strokes, chances):
 _SPREAD = np.empty((0, 0), np.int64)
 
 
-def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: Dynamics) -> Proposals:
-    """Propose m strokes for each of n positions, spread over all direct pots, speeds and tips.
+def at_pots(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
+    """Generate strokes spread over all direct pots, speeds and tips, for ``StrokeSearch``.
 
     Parameters
     ----------
-    at : Positions
-        The n positions.
-    m : int
-        Number of strokes for each.
-    seeds : numpy.ndarray
-        int64 (n,), in [0, 2**32): of the Sobol scrambles.
-    spread : float
-        Standard deviation of the cue ball's direction [rad], see ``spread_of``.
-    dynamics : tuple
-        What the aims are solved with, and how errors grow with the speed: ``StrokeSearch.dynamics``.
+    search, at, m, seeds
+        The search, whose ``spread`` and ``dynamics`` count; n ``Positions``; the number of strokes for each; int64 (n,)
+        in [0, 2**32), of the Sobol scrambles.
 
     Returns
     -------
     Proposals
-        The strokes and the chances of their pots.
+        The strokes; none where there is no direct pot.
 
     Examples
     --------
-    >>> from snooker_env.planning import Position, Positions, StrokeSearch, spread_strokes
-    >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> spread_strokes(at, 5, [7], search.spread, search.dynamics).strokes.shape
+    >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_pots
+    >>> at = Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
+    >>> at_pots(StrokeSearch({}), at, 5, [7]).strokes.shape
     (1, 5, 5)
     """
-    return _proposed(at, np.zeros((len(at), m, COLUMNS)), seeds, _SPREAD, spread, dynamics)
+    return _proposed(at, np.zeros((len(at), m, COLUMNS)), seeds, _SPREAD, search.spread, search.dynamics)
 
 
 def strokes_at(
     at: Positions, which: Ints, speeds_and_tips: Floats, spread: float, dynamics: Dynamics
 ) -> Proposals:
-    """Propose strokes at chosen pots with chosen speeds and tips; their aims are solved.
-
-    Parameters
-    ----------
-    at : Positions
-        The n positions.
-    which : numpy.ndarray
-        int64 (n, m). Index of each stroke's pot, widest first as of ``pots``, at most the last one's.
-    speeds_and_tips : numpy.ndarray
-        float64 (n, m, 3). Cue speed [m/s], side and top; a tip outside the disc of radius 0.49 is drawn in.
-    spread, dynamics
-        As for ``spread_strokes``.
-
-    Returns
-    -------
-    Proposals
-        The strokes and the chances of their pots.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from snooker_env.planning import Position, Positions, StrokeSearch, strokes_at
-    >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> strokes_at(at, np.array([[0]]), [[[2.0, 0.0, -0.9]]], search.spread, search.dynamics).strokes.shape
-    (1, 1, 5)
-    """
+    """Strokes at chosen pots (n, m), indices of ``pots``, with speeds and tips (n, m, 3); their aims are solved."""
     n, m = which.shape
     strokes = np.zeros((n, m, COLUMNS))
     strokes[..., :AIM] = speeds_and_tips
@@ -351,103 +319,22 @@ def _balls(at):
     return at.positions, at.on_table, at.game
 
 
-def at_pots(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
-    """Generate strokes spread over all direct pots, speeds and tips: ``spread_strokes`` for a search.
-
-    Parameters
-    ----------
-    search : StrokeSearch
-        The search, whose ``spread`` and ``dynamics`` count.
-    at, m, seeds
-        As for ``spread_strokes``.
-
-    Returns
-    -------
-    Proposals
-        The strokes; none where there is no direct pot.
-
-    Examples
-    --------
-    >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_pots
-    >>> at = Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> at_pots(StrokeSearch({}), at, 5, [7]).strokes.shape
-    (1, 5, 5)
-    """
-    return spread_strokes(at, m, seeds, search.spread, search.dynamics)
-
-
 def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
-    """Generate strokes at the balls on that the cue ball can strike.
-
-    Parameters
-    ----------
-    search, at, m, seeds
-        As for ``at_pots``.
-
-    Returns
-    -------
-    Proposals
-        The strokes; none where no ball on is seen.
-
-    Examples
-    --------
-    >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_balls
-    >>> at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0)))
-    >>> at_balls(StrokeSearch({}), at, 4, [7]).chances.tolist()
-    [[1.0, 1.0, 1.0, 1.0]]
-    """
-    return _at_windows(search, at, m, seeds, False)
+    """Strokes at the balls on that the cue ball can strike; none where no ball on is seen."""
+    return _of_visits(_contacts, search, at, m, seeds, False)
 
 
 def safeties(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
-    """Generate strokes at the balls on that the cue ball can strike, of all speeds, every other one thin.
-
-    Parameters
-    ----------
-    search, at, m, seeds
-        As for ``at_pots``.
-
-    Returns
-    -------
-    Proposals
-        The strokes; none where no ball on is seen. Before a break-off the first one is the built-in break-off.
-
-    Examples
-    --------
-    >>> from snooker_env.planning import Position, Positions, StrokeSearch, safeties
-    >>> at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0)))
-    >>> safeties(StrokeSearch({}), at, 4, [7]).chances.tolist()
-    [[1.0, 1.0, 1.0, 1.0]]
-    """
-    return _at_windows(search, at, m, seeds, True)
-
-
-def _at_windows(search, at, m, seeds, safe):
-    made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
-    _contacts(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), safe, *made)
-    return made
+    """Such strokes of all speeds, every other one thin; before a break-off the first one is the built-in break-off."""
+    return _of_visits(_contacts, search, at, m, seeds, True)
 
 
 def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
-    """Generate escapes over cushions, where hardly anything of a ball on is seen.
+    """Escapes over cushions, where hardly anything of a ball on is seen; none in other positions."""
+    return _of_visits(_escapes, search, at, m, seeds)
 
-    Parameters
-    ----------
-    search, at, m, seeds
-        As for ``at_pots``.
 
-    Returns
-    -------
-    Proposals
-        The strokes; none in other positions.
-
-    Examples
-    --------
-    >>> from snooker_env.planning import Position, Positions, StrokeSearch, over_cushions
-    >>> hidden = Positions.of(Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red"))
-    >>> over_cushions(StrokeSearch({}), hidden, 4, [7]).chances.tolist()
-    [[1.0, 1.0, 1.0, 1.0]]
-    """
+def _of_visits(kernel, search, at, m, seeds, *more):
     made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
-    _escapes(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
+    kernel(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *more, *made)
     return made

@@ -86,28 +86,7 @@ def _points(seed, out):
 
 
 def sobol_points(n: int, dimensions: int, seed: int) -> Floats:
-    """Return the first n points of a scrambled Sobol sequence.
-
-    Parameters
-    ----------
-    n : int
-        Number of points; powers of 2 are the most even.
-    dimensions : int
-        Number of coordinates, 1 to 5.
-    seed : int
-        Of the scramble; its lowest 32 bits count.
-
-    Returns
-    -------
-    numpy.ndarray
-        float64 (n, dimensions), each in (0, 1).
-
-    Examples
-    --------
-    >>> from snooker_env.planning import sobol_points
-    >>> sorted((sobol_points(8, 2, seed=3)[:, 1] * 8).astype(int).tolist())
-    [0, 1, 2, 3, 4, 5, 6, 7]
-    """
+    """The first n points, each in (0, 1), of a scrambled sequence of up to 5 dimensions: float64 (n, dimensions)."""
     out = np.empty((n, dimensions))
     _points(seed & _ALL, out)
     return out

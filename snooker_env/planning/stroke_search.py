@@ -105,7 +105,8 @@ class StrokeSearch:
     propose : callable or sequence of callable, optional
         Generators of strokes, ``propose(search, at, m, seeds)`` -> ``Proposals``; those that have any for a
         position share the looks evenly. The first one proposes pots; where none of these is likelier than
-        ``doubtful``, ``at_balls`` and ``over_cushions`` join. Default: ``at_pots``.
+        ``doubtful``, those of ``snooker_env.planning.proposals`` for strokes at balls and over cushions join.
+        Default: ``at_pots``.
     doubtful : float, optional
         Largest chance of a pot at which strokes without one are tried as well, in [0, 1]; default 0.
     pots_only : bool, optional
@@ -247,18 +248,13 @@ def halved(
     score: Callable[[Floats], Floats],
 ) -> tuple[Ints, Floats, Ints]:
     """Sequential halving: of the strokes of n positions the best meet noise samples, the better ones more of them.
-
     ``looks`` (n, m, v): the values of each stroke without error, -inf where there is none; they count as ``PRIOR``
     samples. ``order`` (n, m): the strokes, best first. ``rounds``: how many go on, and their further samples.
     ``met(rows, picks, errors)``: values (k, v) of the strokes ``picks`` of the positions ``rows`` under errors (k, 5).
     ``score``: what values (..., v) are compared by. Returns the order then, means (n, m, v) and samples (n, m)."""
     n, m = looks.shape[:2]
-    every, sums, values, tries = (
-        np.arange(n)[:, None],
-        PRIOR * looks,
-        looks.copy(),
-        np.zeros((n, m), np.int64),
-    )
+    every, sums = np.arange(n)[:, None], PRIOR * looks
+    values, tries = looks.copy(), np.zeros((n, m), np.int64)
     samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in seeds.tolist()])
     done = 0
     for many, each in rounds:

@@ -330,11 +330,8 @@ def encoded(
         raise refuse(f"strokes[{k}], aim", float(strokes[k, AIM]), allowed)
     if actions.elevation:
         if (steep := strokes[:, ELEVATION].max(initial=0.0)) > actions.steepest + 1e-9:
-            raise refuse(
-                "elevation",
-                float(steep),
-                f"must be at most {actions.steepest:.3g} rad, as the option elevation says",
-            )
+            allowed = f"must be at most {actions.steepest:.3g} rad, as the option elevation says"
+            raise refuse("elevation", float(steep), allowed)
         out[:, 4] = 2.0 * strokes[:, ELEVATION] / actions.steepest - 1.0
     elif strokes[:, ELEVATION].any():
         allowed = "must be 0: actions without elevation=True have a level cue"

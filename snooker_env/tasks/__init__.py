@@ -1,9 +1,4 @@
-"""Tasks: strokes of visits and frames. Public here: what actions, observations and execution errors mean.
-
->>> from snooker_env.tasks import CHOICES, LEVELS, choice_of
->>> CHOICES, choice_of(pot=0, speed=4, side=1, top=2), LEVELS["club"].aim_deg
-(540, 67, 0.108)
-"""
+"""Tasks: strokes of visits and frames. Public here: what actions, observations and execution errors mean."""
 
 from .box_actions import MAX_SPEED, MIN_SPEED
 from .discrete_actions import POTS, SIDES, SPEEDS, STROKES, TOPS, choice_of
@@ -11,7 +6,6 @@ from .discrete_actions import SIZE as CHOICES
 from .noise import LEVELS, Noise
 from .observations import OBSERVATIONS, STATE_ENTRIES
 from .observations import SIZE as OBSERVATION_SIZE
-from .observations import shaped as shaped_observations
 from .observations import space as observation_space
 from .opponent_pool import OpponentPool
 
@@ -32,5 +26,4 @@ __all__ = [
     "OpponentPool",
     "choice_of",
     "observation_space",
-    "shaped_observations",
 ]

@@ -8,15 +8,14 @@ import numpy as np
 from gymnasium import spaces
 
 from .._check import choice, number, refuse, refuse_what, truth
-from .._jit import entry, kernel
-from .._types import Action, Flags, Floats, Vectors
-from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, find_pots
+from .._jit import kernel
+from .._types import Action, Floats
+from ..game.pots import GHOST_X, GHOST_Y, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
-from .arrays import CueLaw
-from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_RAILS, A_TARGET, SAYS
-from .lines import LINE_ROWS, aim_along, find_lines, line_of, new_work
+from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_TARGET, SAYS
+from .lines import aim_along, find_lines
 from .pot_aim import swerved_aim
 
 AIMS = ("absolute", "target")
@@ -78,17 +77,6 @@ def shot_of(a, positions, on_table, on, options, law, work):
             _target(positions, on_table, on, (speed, side, top, raised), law, work) + TARGET_SPAN * a[3]
         )
     return speed, side, top, direction - squirt(side, options[A_END_MASS]), elevation
-
-
-@entry
-def _line(positions, on_table, on):
-    return line_of(positions, on_table, on, np.empty((LINE_ROWS, POT_COLUMNS)))
-
-
-@entry(uses=(shot_of,))
-def _shot(a, positions, on_table, on, options, phys):
-    law = CueLaw(phys, options[A_END_MASS], 0, 0, options[A_MAX_OFFSET], options[A_RAILS:])
-    return shot_of(a, positions, on_table, on, options, law, new_work())
 
 
 class Actions:
@@ -170,15 +158,3 @@ class Actions:
         kind = self.aim == "target", self.steepest, self.placement
         spoken = self.concede, self.claim, self.lot
         return np.array([*kind, *strike, False, *where, *spoken], np.float64)
-
-    def shot(
-        self, a: Any, positions: Vectors, on_table: Flags, on: int
-    ) -> tuple[float, float, float, float, float]:
-        """(speed, side, top, aim, elevation) of an action list; the aim is the cue's direction [rad]."""
-        table = np.array(positions, np.float64), np.array(on_table, np.bool_), int(on)
-        return _shot(np.array(a, np.float64), *table, self.pack(), self.physics.pack())
-
-
-def line(positions: Vectors, on_table: Flags, on: int) -> float:
-    """Direction [rad] of the target line: to the widest direct pot's ghost ball, else the best line."""
-    return _line(np.array(positions, np.float64), np.array(on_table, np.bool_), int(on))

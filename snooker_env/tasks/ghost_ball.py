@@ -289,18 +289,7 @@ def put_in_hand(positions, on_table, game, streams):
 
 
 class GhostBallOpponent(Opponent):
-    """The geometric player ``ghost_ball`` as a kernel: the widest direct pot (``game.pots``), softly.
-
-    * Without a pot: a plain stroke (``plain_stroke``). In the Shoot Out it is harder, so that a ball reaches
-      a cushion.
-    * It nominates the colour that its line meets first, never concedes or claims, and begins if it wins the
-      lot.
-    * A cue ball in hand goes to the best of ten places in the D; where it may stand anywhere, straight behind
-      the ball of the easiest pot. After a foul it always plays the table as it lies.
-    * It allows for neither throw nor position.
-    * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within
-      the window that strikes the ball. From a position restored after its miss it tries no pot and varies
-      more: two exact players cannot repeat one failing stroke for ever."""
+    """The geometric player ``ghost_ball`` as a kernel, see docs/environment/opponents.md."""
 
     def prepare(self, frames: Frames, which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
         _ghost_ball(which, frames.arrays, buffers.struck, frames.packs[SIDE], frames.rules.rule_set.code)

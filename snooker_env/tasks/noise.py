@@ -1,42 +1,8 @@
 """How accurately does a player execute a shot? Gaussian errors of aim, speed, tip offset and elevation.
 
-What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): aim, and the
-squirt of a tip that is off to the side. No measurement of a snooker player's errors was found, so the levels
-are set by what players achieve, on the pockets of this package.
-
-* "professional", 0.068 deg in all at a cue speed of 1.5 m/s: the first estimate of a professional's execution error
-  from whole frames. Two copies of ``tactician`` that err so, with a real cue, play frames like 203 frames of 37 matches
-  (half of a set; the others are kept apart; ``python -m agents.calibrate``, docs/agents/tactician.md). It holds all that
-  a person does not know, too: the constants of the table, where exactly the balls lie.
-* "amateur", 0.137, and "club", 0.274: twice and four times a professional's. The aim errors that secondary
-  sources give, 0.02 to 0.03 deg for professionals, 0.05 for a good amateur, 0.08 to 0.12 for club players, are as
-  1 to 2 to 4; their sizes, of players who know the table, are too small for frames as people play them.
-* "robot", 0.046: that of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and
-  left the cue ball 100 to 200 mm from the planned place, here 0.15 m. The pots ("moderate" in the benchmark)
-  and putting the whole error of position, that of its predictions included, into the speed are our choice.
-* "olympiad", 0.149: the definition of the Computer Olympiad's billiards: aim 0.125 deg, elevation 0.1 deg,
-  speed 0.075 m/s, offsets 0.5 mm. The squirt of the offset is added to the aim.
-
-What is said of pots does not agree with frames. Professionals are said to make 50 to 65 % of long pots and 88 to
-95 % of the likeliest ones; 0.035 deg would make 57 and 88 % (``python -m benchmarks.execution`` prints what the
-levels make, with ``--fit`` the errors that give such rates), but two players who err so clear the table nearly
-every time that they come to it: 1.6 scoring visits a frame, breaks of 60 and more. We chose the frames, which were
-counted.
-
-The errors of direction of "professional", "amateur" and "club" grow with the cue speed V as sqrt(1 + V^2), V in m/s:
-from 1.3 times those of the slowest hand at 0.8 m/s to 3.2 times at 3. A hand's spread grows with the force of its
-movement (signal-dependent noise: Harris & Wolpert, Nature 394, 1998, doi 10.1038/29528); how fast it does with a cue
-was not found, it is our choice.
-
-Our choices: aim and squirt have half of the variance each. The errors are independent, so the tip error, as
-large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope
-(0.35 m) behind the ball squirt cancels the turn. Speed 1, 2 and 4 %: a good pool player is said to roll a ball a table's
-length to within an inch or two, 0.5 to 1 % of the speed, a beginner to within a diamond, 6 % (Waldron, Pool Table
-Stimpmeter, 2009). Elevation hardly matters with a level cue.
-
-A real cue (the option ``cue="real"``) that must be raised is harder to deliver straight, over a rail or a ball the
-bridge is cramped. The errors of aim and tip then grow as 1 + elevation / 15 deg: twice as large at 15 deg. That is
-an estimate: players say so, nothing measured was found. With a free cue they do not grow."""
+What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): aim, and the squirt of a tip
+that is off to the side. No measurement of a snooker player's errors was found: what the levels are set by, their sources
+and what of them is our choice say docs/validation/execution_errors.md."""
 
 from dataclasses import asdict, dataclass, fields
 from math import degrees, hypot, radians, sqrt

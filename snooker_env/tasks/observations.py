@@ -122,33 +122,7 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
 
 
 def shaped(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = None) -> Observation:
-    """Convert flat observations to a kind of observations.
-
-    Parameters
-    ----------
-    kind : {"flat", "balls", "masked"}
-        The kind.
-    rows : numpy.ndarray
-        float32 (..., k), with k = 121 in a visit, 140 in a frame, 206 in a frame with a miss rule; 8 more with
-        the constants of the table.
-    masks : numpy.ndarray, optional
-        int8 or bool (..., choices): the available choices, which "masked" needs. Default None.
-
-    Returns
-    -------
-    numpy.ndarray or dict
-        "flat": ``rows`` itself. "balls": new arrays "balls" (..., 22, 5), "state" (..., 11 or 30) and, with a
-        miss rule, "replaced" (..., 22, 3), with constants "conditions" (..., 8). "masked": ``rows`` as "observations", ``masks`` as int8
-        "action_mask".
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from snooker_env.tasks import shaped_observations
-    >>> parts = shaped_observations("balls", np.zeros((8, 121), np.float32))
-    >>> parts["balls"].shape, parts["state"].shape
-    ((8, 22, 5), (8, 11))
-    """
+    """Flat observations (..., k) in a kind of ``space``: "flat" is ``rows`` itself, "balls" has new arrays."""
     if kind == "flat":
         return rows
     if kind == "masked":

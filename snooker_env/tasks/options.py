@@ -44,8 +44,6 @@ FRAMES = 7
 """Default length of a match: best of 7."""
 OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
 object: a callable(observation, rng) -> action, a player, one with act(observations, masks, seeds), an OpponentPool"""
-GROUPS = ("task", "action", "view", "shot", "frame")
-"""Groups of options: what is played, how one acts, what one sees, what decides a shot, rules of frames."""
 _UNSAID: Any = object()
 OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
 NEVER = 2**62  # stands for no limit of strokes or steps
@@ -86,10 +84,8 @@ class Rules:
     def packed(self) -> tuple[Floats, Floats, Floats]:
         """For the kernels: options of the action, deviations of the noise, physical parameters. The first and
         the last are one row, for all tables."""
-        phys, errors = (
-            self.physics.packed_for(self.fidelity)[None],
-            self.noise.pack(BALL_RADIUS, real=self.cue == "real"),
-        )
+        errors = self.noise.pack(BALL_RADIUS, real=self.cue == "real")
+        phys = self.physics.packed_for(self.fidelity)[None]
         return self.with_rails(self.actions.pack())[None], errors, phys
 
     @property
@@ -102,61 +98,17 @@ class Rules:
         return np.concatenate([options, self.rails])
 
 
-_ABOUT: dict[str, tuple[str, str | None, str]] = {
-    "task": ("task", None, '"visit", "frame", "match" (all that is of a frame is of a match, too)'),
-    "layout": ("task", None, '"opened", of a frame "break_off"; see Layouts'),
-    "action": ("action", None, '"box", "discrete"'),
-    "aim": ("action", None, '"absolute", "target"'),
-    "observation": ("view", None, '"flat", "balls"; with discrete actions "masked"'),
-    "noise": (
-        "shot",
-        None,
-        '"none", "professional", "amateur", "club", "robot", "olympiad", or a dict of `snooker_env.tasks.Noise`',
-    ),
-    "reward": (
-        "task",
-        None,
-        '"points"; of a visit "points_and_fouls", "pots", "legal"; of a frame "win"; of a match "frames", too',
-    ),
-    "elevation": (
-        "action",
-        None,
-        "whether box actions hold the elevation of the cue: up to 30 degrees, or a number of degrees from 5 to 70",
-    ),
-    "placement": ("action", None, "whether box actions hold the place of a cue ball in hand"),
-    "physics": ("shot", None, '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
-    "table": ("shot", None, '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
-    "cue": (
-        "shot",
-        None,
-        '"free", "real": whether rails and balls are in the way of the cue, see Room for the cue',
-    ),
-    "fidelity": ("shot", None, '"fast", "standard", "reference", "euler:N"'),
-    "conditions": ("shot", None, '"fixed", "drawn": whether each episode draws constants of its table'),
-    "observe_conditions": ("view", None, "whether observations hold the constants drawn"),
-    "one_stroke": ("task", None, "whether an episode ends with its first step; not of a match"),
-    "opponent": (
-        "task",
-        "frame",
-        '"none", "random", "ghost_ball", another name of a player, a `.zip`; or an object: see Opponents',
-    ),
-    "trust": ("task", "frame", "whether the code in an opponent's `.zip` may run"),
-    "miss": ("frame", "frame", '"off", "clear_path", "attempt": the rule for a foul and a miss'),
-    "max_strokes": ("frame", "frame", "strokes after which the frame is stopped; None for never"),
-    "says": (
-        "action",
-        "frame",
-        'some of "nominate", "decision", "concede", "claim", "lot": what actions say beside the stroke',
-    ),
-    "game": ("frame", "frame", '"snooker", "six_red", "shoot_out": the rules of the game'),
-    "time_to_play": (
-        "frame",
-        "frame",
-        "the time from the rest of the balls to the next stroke in the Shoot Out [s], at most 15",
-    ),
-    "frames": ("task", "match", "an odd number: the best of so many"),
+GROUPS = {
+    "task": ("task", "layout", "reward", "one_stroke", "opponent", "trust", "frames"),
+    "action": ("action", "aim", "elevation", "placement", "says"),
+    "view": ("observation", "observe_conditions"),
+    "shot": ("noise", "physics", "table", "fidelity", "cue", "conditions"),
+    "frame": ("miss", "max_strokes", "game", "time_to_play"),
 }
-"""Of each option: its group, the only task that has it, its values in Markdown."""
+"""Groups of options: what is played, how one acts, what one sees, what decides a shot, rules of frames."""
+_OF_FRAMES = "opponent", "trust", "miss", "max_strokes", "says", "game", "time_to_play"
+_ONLY: dict[str, str] = {**dict.fromkeys(_OF_FRAMES, "frame"), "frames": "match"}
+"""The only task that has an option; what is of a frame is of a match, too."""
 
 
 def _said(says: Any, flags: Mapping[str, Any]) -> tuple[str, ...]:
@@ -172,7 +124,8 @@ def _said(says: Any, flags: Mapping[str, Any]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together.
+    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. ValueError, which
+    names the field, if one is of the wrong type or conflicts with another; TypeError for an unknown one.
 
     Parameters
     ----------
@@ -244,11 +197,6 @@ class Options:
     ----------
     rules : Rules
         The same options in the form that the kernels need.
-
-    Raises
-    ------
-    ValueError
-        If an option is unknown, of the wrong type, or conflicts with another. The message names the field.
 
     Examples
     --------
@@ -376,7 +324,7 @@ class Options:
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""
         for f in _FIELDS:
-            only, value = _ABOUT[f.name][1], getattr(self, f.name)
+            only, value = _ONLY.get(f.name), getattr(self, f.name)
             if only is None or self.task == only or (self.task == "match" and only == "frame"):
                 continue
             if not isinstance(value, (type(f.default), np.bool_)) or value != f.default:
@@ -389,9 +337,9 @@ class Options:
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
         """Return name and default of each option of a group: "task", "action", "view", "shot" or "frame";
         with ``task``, of those that this task has. ValueError if there is no such group or task."""
-        choice("name", name, GROUPS)
+        members = GROUPS[choice("name", name, GROUPS)]
         kinds = TASKS if task is None else {"match": TASKS[1:]}.get(choice("task", task, TASKS), (task,))
-        keys = {key for key, (group, only, _) in _ABOUT.items() if group == name and only in (None, *kinds)}
+        keys = {key for key in members if _ONLY.get(key) in (None, *kinds)}
         return {f.name: f.default for f in _FIELDS if f.name in keys}
 
     def but(self, **changes: Any) -> "Options":
@@ -413,16 +361,6 @@ def _has(name):
 
 for _name in SAYS:
     setattr(Options, _name, _has(_name))
-
-
-def options_table() -> str:
-    """All options, their defaults and values: a Markdown table."""
-    rows = ["| name | default | values |", "|---|---|---|"]
-    for f in _FIELDS:
-        default = f'"{f.default}"' if isinstance(f.default, str) else repr(f.default)
-        _, only, values = _ABOUT[f.name]
-        rows.append(f"| `{f.name}` | `{default}` | {f'of a {only}: ' if only else ''}{values} |")
-    return "\n".join(rows) + "\n"
 
 
 def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:

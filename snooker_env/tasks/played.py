@@ -14,76 +14,33 @@ from .stroke import BREAK, COST, CUE_SPEED, FIRST, FOULS, FREE, PLAYER, ROOM, SC
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Played:
-    """One stroke as it was played and judged, and the table after it: an element of ``env.history``.
+    """One stroke as it was played and judged, and the table after it: an element of ``env.history``."""
 
-    Attributes
-    ----------
-    shot : Shot
-        The simulated shot, with its path if that was recorded.
-    cue : dict of str to float
-        The strike, errors included: "speed" [m/s], "side", "top" (over R), "aim", "elevation" [rad].
-    room : tuple of str
-        What ``cue="real"`` did to the stroke that was meant: "raised", "moved" (its tip, upwards), "unplayable".
-    player, next_player : int
-        Who played it, and whose turn it is next: 0, or in a frame 0 or 1.
-    ball_on, next_on : BallOn
-        What was on, and what is on next; NOTHING when the visit or frame is over.
-    free_ball, next_free_ball : bool
-        Whether the player had a free ball, and whether the next player has one.
-    first : tuple of int
-        Ids of the balls struck first: one, none, or those struck at the same instant.
-    points, penalty : int
-        Points scored, and penalty points given to the opponent.
-    fouls : Foul
-        The rules that the stroke broke.
-    positions, on_table : numpy.ndarray
-        float64 (22, 2), the balls after the stroke [m], colours respotted and a cue ball in hand placed; bool
-        (22,), which balls are on the table then.
-    scores : tuple of int
-        In a frame, both scores after the stroke; in a visit, its points so far.
-    break_before, break_points : int
-        Points of the break before and with this stroke; the latter in a frame 0 if it scored nothing.
-    in_hand, choice, over : bool
-        Whether the cue ball is in hand next; whether the next player has a decision to make, after a foul;
-        whether the visit or frame has ended.
-    winner : int or None
-        Who has won the frame.
-    frame : Frame or None
-        All that the rules know of the frame after the stroke, such as what may be replaced; None in a visit.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> env = sn.SnookerEnv(action="discrete")
-    >>> env.keep_history = True
-    >>> _ = env.reset(seed=1), env.step(67)
-    >>> env.history[0].player, env.history[0].ball_on.name
-    (0, 'RED')
-    """
-
-    shot: Shot
-    cue: dict[str, float]
-    player: int
-    ball_on: BallOn
-    free_ball: bool
-    first: tuple[int, ...]
+    shot: Shot  # with its path if that was recorded
+    cue: dict[str, float]  # errors included: "speed" [m/s], "side", "top" (over R), "aim", "elevation" [rad]
+    player: int  # who played it: 0, or in a frame 0 or 1
+    ball_on: BallOn  # what was on
+    free_ball: bool  # whether the player had one
+    first: tuple[int, ...]  # ids of the balls struck first: one, none, or those struck at the same instant
     points: int
-    penalty: int
-    fouls: Foul
-    positions: Floats
-    on_table: Bools
-    next_on: BallOn
+    penalty: int  # to the opponent
+    fouls: Foul  # the rules that the stroke broke
+    positions: Floats  # (22, 2) after the stroke [m], colours respotted and a cue ball in hand placed
+    on_table: Bools  # (22,) then
+    next_on: BallOn  # NOTHING when the visit or frame is over
     next_free_ball: bool
     next_player: int
-    scores: tuple[int, ...]
+    scores: tuple[int, ...]  # in a frame both after the stroke; in a visit its points so far
     break_before: int
-    break_points: int
-    in_hand: bool
-    choice: bool
-    over: bool
-    winner: int | None
-    frame: Frame | None = None
-    room: tuple[str, ...] = ()
+    break_points: int  # with this stroke; in a frame 0 if it scored nothing
+    in_hand: bool  # whether the cue ball is in hand next
+    choice: bool  # whether the next player has a decision to make, after a foul
+    over: bool  # whether the visit or frame has ended
+    winner: int | None  # of the frame
+    frame: Frame | None = None  # all that the rules know of it after the stroke; None in a visit
+    room: tuple[
+        str, ...
+    ] = ()  # what a real cue did to it: "raised", "moved" (its tip, upwards), "unplayable"
 
 
 def judged(seen: list[int]) -> dict[str, Any]:
@@ -101,9 +58,5 @@ def struck(buffers: ShotBuffers, j: int) -> dict[str, float]:
 
 def room_of(buffers: ShotBuffers, j: int) -> tuple[str, ...]:
     """The field ``room`` of ``Played``, for shot j."""
-    done = int(buffers.shots[j, ROOM])
-    return tuple(
-        name
-        for name, flag in (("raised", RAISED), ("moved", MOVED), ("unplayable", UNPLAYABLE))
-        if done & flag
-    )
+    done, flags = int(buffers.shots[j, ROOM]), (RAISED, MOVED, UNPLAYABLE)
+    return tuple(n for n, flag in zip(("raised", "moved", "unplayable"), flags, strict=True) if done & flag)

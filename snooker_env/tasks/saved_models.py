@@ -15,7 +15,6 @@ from gymnasium import spaces
 from .._check import refuse
 from .._install import missing
 
-__all__ = ["PLAIN", "SavedModel", "by_train", "entries", "one_thread", "outline", "part"]
 MOST = 2**26
 """Most bytes of JSON that are read (SB3 stores the last observations there): a small zip can unpack to more
 than a machine's memory, and JSON to objects 25 times as large."""
@@ -40,23 +39,7 @@ _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Let PyTorch compute on the calling thread alone, as a context: where a model that plays decides.
-
-    Shared out among a thread for each core, networks of a few layers are slower, and wait for busy cores.
-
-    Returns
-    -------
-    context manager
-        For ``with``.
-
-    Examples
-    --------
-    >>> import torch
-    >>> from snooker_env.tasks.saved_models import one_thread
-    >>> with one_thread():
-    ...     torch.get_num_threads()
-    1
-    """
+    """PyTorch computes on the calling thread alone: on several, networks of a few layers wait for busy cores."""
     import torch
 
     usual = torch.get_num_threads()
@@ -68,35 +51,7 @@ def one_thread() -> Iterator[None]:
 
 
 def part(path: str | Path, name: str, most: int = MOST) -> bytes:
-    """Read one part of a zip file, unless it is too large.
-
-    Parameters
-    ----------
-    path : str or Path
-        The zip file.
-    name : str
-        Name of the part.
-    most : int, optional
-        Largest size [bytes]; default 64 MiB.
-
-    Returns
-    -------
-    bytes
-        The content of the part.
-
-    Raises
-    ------
-    ValueError, KeyError, zipfile.BadZipFile, OSError
-        If the part is larger than ``most``, there is none, the file is no zip, or it cannot be read.
-
-    Examples
-    --------
-    >>> from snooker_env.tasks.saved_models import part
-    >>> part("nowhere.zip", "data")
-    Traceback (most recent call last):
-    ...
-    FileNotFoundError: [Errno 2] No such file or directory: 'nowhere.zip'
-    """
+    """One part of a zip file; ValueError if it is larger than ``most`` bytes, KeyError if there is none."""
     with zipfile.ZipFile(path) as file:
         if file.getinfo(name).file_size > most:
             raise ValueError(f"{name} is larger than {most} bytes")
@@ -104,34 +59,7 @@ def part(path: str | Path, name: str, most: int = MOST) -> bytes:
 
 
 def entries(path: str | Path) -> dict[str, Any]:
-    """Read the description that a model's file holds of itself; pickles in it stay text.
-
-    Parameters
-    ----------
-    path : str or Path
-        The model's ``.zip``.
-
-    Returns
-    -------
-    dict
-        The JSON of the part ``PLAIN`` or, if there is none, of ``data``.
-
-    Raises
-    ------
-    ValueError
-        If the part is no JSON object; the other errors are those of ``part``.
-
-    Examples
-    --------
-    >>> import tempfile, zipfile
-    >>> from pathlib import Path
-    >>> from snooker_env.tasks.saved_models import entries
-    >>> file = Path(tempfile.mkdtemp()) / "model.zip"
-    >>> with zipfile.ZipFile(file, "w") as made:
-    ...     made.writestr("data", '{"gamma": 0.99}')
-    >>> entries(file)
-    {'gamma': 0.99}
-    """
+    """The description that a model's ``.zip`` holds of itself, ``PLAIN`` or ``data``; pickles in it stay text."""
     with zipfile.ZipFile(path) as file:
         name = PLAIN if PLAIN in file.namelist() else "data"
     description = json.loads(part(path, name))
@@ -141,47 +69,12 @@ def entries(path: str | Path) -> dict[str, Any]:
 
 
 def by_train(description: dict[str, Any]) -> bool:
-    """Return whether a model was written by the repository's ``train.py``.
-
-    Parameters
-    ----------
-    description : dict
-        The result of ``entries``.
-
-    Returns
-    -------
-    bool
-        True for a model of ``train.py``.
-
-    Examples
-    --------
-    >>> from snooker_env.tasks.saved_models import by_train
-    >>> by_train({"gamma": 0.99})
-    False
-    """
+    """Whether a model whose ``entries`` these are was written by the repository's ``train.py``."""
     return "recipe" in description
 
 
 def outline(space: spaces.Space[Any]) -> tuple[str, Any]:
-    """Return the kind and size of a space, as far as Stable-Baselines3 stores them as plain data.
-
-    Parameters
-    ----------
-    space : gymnasium.Space
-        A Box, Dict or Discrete space, or any other with a shape.
-
-    Returns
-    -------
-    kind, size : str, and str or list of int
-        Name of the space's class; the number of choices or the spaces of a Dict, as text, else the shape.
-
-    Examples
-    --------
-    >>> from gymnasium import spaces
-    >>> from snooker_env.tasks.saved_models import outline
-    >>> outline(spaces.Box(-1.0, 1.0, (4,))), outline(spaces.Discrete(540))
-    (('Box', [4]), ('Discrete', '540'))
-    """
+    """Kind and size of a space, as far as Stable-Baselines3 stores them as plain data: a text, or the shape."""
     if isinstance(space, spaces.Dict):
         return "Dict", str(space.spaces)
     if isinstance(space, spaces.Discrete):
@@ -199,30 +92,12 @@ def _described_outline(described):
 
 @dataclass(frozen=True)
 class SavedModel:
-    """A model's file of Stable-Baselines3 or sb3-contrib, read without unpickling anything.
-
-    Attributes
-    ----------
-    path, field : Path, str
-        The file, and the name of the argument that error messages refer to.
-    data : dict
-        The JSON of its ``data``, in which pickles are text.
-    observation, action : (str, str or list of int)
-        ``outline`` of its spaces, as the file describes them.
-
-    Examples
-    --------
-    >>> from pathlib import Path
-    >>> from snooker_env.tasks.saved_models import SavedModel
-    >>> held = {"clip_range": 0.2, "rollout_buffer_class": {}}
-    >>> SavedModel(Path("ppo.zip"), "opponent", held, ("Box", [121]), ("Box", [4])).algorithm
-    ('stable_baselines3', 'PPO')
-    """
+    """A model's file of Stable-Baselines3 or sb3-contrib, read without unpickling anything."""
 
     path: Path
-    field: str
-    data: dict[str, Any]
-    observation: tuple[str, Any]
+    field: str  # the argument that error messages name
+    data: dict[str, Any]  # the JSON of ``data``, in which pickles are text
+    observation: tuple[str, Any]  # ``outline`` of its space, as the file describes it; and the next
     action: tuple[str, Any]
 
     @classmethod

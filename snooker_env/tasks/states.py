@@ -147,19 +147,10 @@ def checked(state: Any, rules: Rules, generator: np.random.Generator, *, to_play
     ball_on = balls.BallOn(on)
     mask = balls.mask_of_present(on_table)
     if not over:  # then there must be a shot to play
-        lowest = balls.next_on(mask)
         if not on_table[balls.CUE]:
             allowed = "must hold the cue ball while the visit goes on"
             raise refuse("state.on_table", on_table.tolist(), allowed)
-        if not balls.balls_on(ball_on, mask):
-            allowed = "must name balls of which one is on the table (state.on_table)"
-            raise refuse("state.ball_on", ball_on.name, allowed)
-        if ball_on > balls.BallOn.RED and mask & balls.REDS_MASK:
-            allowed = "must be RED or ANY_COLOUR while reds are on the table (state.on_table)"
-            raise refuse("state.ball_on", ball_on.name, allowed)
-        if ball_on not in (balls.BallOn.ANY_COLOUR, lowest):
-            allowed = f"must be ANY_COLOUR or {balls.BallOn(lowest).name}, the lowest of state.on_table"
-            raise refuse("state.ball_on", ball_on.name, allowed)
+        balls.check_ball_on("state.ball_on", ball_on, mask, "state.on_table")
         check_in_hand("state.in_hand", in_hand, "state.positions", positions)
     check_rng(state["rng"], generator)
     points, stream = integer("state.points", state["points"], 0, MOST_BREAK), check_stream(state["stream"])

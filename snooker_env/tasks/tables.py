@@ -228,11 +228,8 @@ class Tables(ABC):
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
         shot = {"shot": self.shot(k, buffers, j), "cue": struck(buffers, j), "room": room_of(buffers, j)}
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
-        after: Any = {
-            "next_on": BallOn(game[BALL_ON]),
-            "in_hand": bool(game[IN_HAND]),
-            "over": bool(game[OVER]),
-        }
+        in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
+        after: Any = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
         return Played(**shot, **balls, **after, **judged(seen), **standing)
 
     def shot(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Shot:
@@ -324,9 +321,8 @@ class Tables(ABC):
 
     def physics_of(self, k: int) -> Physics:
         """The constants of table k."""
-        return (
-            physics_with(self.rules.physics, self.conditions[k]) if self.rules.drawn else self.rules.physics
-        )
+        physics = self.rules.physics
+        return physics_with(physics, self.conditions[k]) if self.rules.drawn else physics
 
     def world(self, k: int) -> tuple[Rules, Floats]:
         """The rules, and the packed constants of table k: one row."""

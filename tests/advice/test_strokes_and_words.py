@@ -11,6 +11,7 @@ import snooker_env as sn
 from snooker_env.advice import POCKET_WORDS, CueStroke, judging, words
 from snooker_env.physics.events import EventKind
 from snooker_env.tasks import box_actions
+from tests.shots import shot
 
 
 def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
@@ -18,7 +19,7 @@ def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
     actions = box_actions.Actions("absolute", True, True, sn.Physics(), ("decision",))
     a = stroke.action(elevation=True, placement=True, decision=True).astype(float)
     places, on_table, _ = OPEN.arrays()
-    speed, side, top, cue, elevation = actions.shot(a, places, on_table, 2)
+    speed, side, top, cue, elevation = shot(actions, a, places, on_table, 2)
     v, _ = sn.strike(speed, cue, side, top, 0.0)
     numbers = speed, side, top, elevation, atan2(v[1], v[0])
     assert numbers == pytest.approx((3.1, -0.2, 0.3, 0.2, 2.5), abs=1e-6)

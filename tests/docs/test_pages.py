@@ -10,7 +10,6 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.tasks import LEVELS, Noise
-from snooker_env.tasks.options import options_table
 from tests.docs.pages import DOCS, LINKED, NAMES, PAGES, ROOT, anchors, links, paths
 
 
@@ -83,7 +82,7 @@ def defaults(table):
 def test_options_have_the_defaults_that_are_printed():
     of_all, of_one = map(defaults, tables("Options"))
     fields = {field.name: field.default for field in dataclasses.fields(sn.Options) if field.init}
-    assert of_all == fields and options_table() in PAGE and options_table() in str(sn.SnookerEnv.__doc__)
+    assert of_all == fields
     signature = inspect.signature(sn.SnookerEnv).parameters
     assert of_one == {name: signature[name].default for name in ("options", "render_mode", "render_size")}
 

@@ -5,9 +5,9 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BLUE, CUE, GREEN, N_BALLS, NAMES, PINK, SPOTS, mask_of
-from snooker_env.game.paths import paths
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
+from tests.miss_paths import paths
 
 TABLE = sn.Table.preset("match")
 

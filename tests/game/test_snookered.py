@@ -6,9 +6,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game.balls import BLACK, COLOURS_MASK, PINK, SPOTS, YELLOW, mask_of
-from snooker_env.game.paths import paths
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
+from tests.miss_paths import paths
 
 R = BALL_RADIUS
 RED = mask_of([1])
@@ -225,5 +225,3 @@ def test_wrong_input_is_refused():
         is_snookered(positions, on_table, 1)
     with pytest.raises(ValueError, match="jaws"):
         is_snookered(positions, on_table, on, jaws=[[1.0, 2.0]])
-    with pytest.raises(ValueError, match="anywhere = True: must be False with the cue ball on the table"):
-        paths(positions, on_table, on, anywhere=True)

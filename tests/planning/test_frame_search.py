@@ -5,9 +5,9 @@ import pytest
 
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import touching_balls as touching_kernel
-from snooker_env.planning import Position, Positions, at_pots, prospects_of, safeties, spread_of
+from snooker_env.planning import Position, Positions, at_pots, prospects_of, spread_of
 from snooker_env.planning.frame_search import AVERAGE, PLANS, FrameSearch
-from snooker_env.planning.proposals import EDGE
+from snooker_env.planning.proposals import EDGE, safeties
 from snooker_env.planning.worth import (
     NARROWEST,
     WIDEST,

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from positions import tables
 
-from snooker_env.game import paths as miss_rule
 from snooker_env.game import pots as one_by_one
 from snooker_env.game.balls import mask_of
 from snooker_env.planning import Position, Positions, clear_paths, obstructions, pots
+from tests import miss_paths as miss_rule
 
 
 def test_pots_are_those_of_each_position():

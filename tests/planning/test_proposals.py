@@ -3,6 +3,7 @@
 from dataclasses import replace
 from itertools import pairwise
 from math import floor
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -25,7 +26,9 @@ from snooker_env.planning.proposals import (
     SPEED,
     TOP,
     WIDEST,
-    spread_strokes,
+    at_balls,
+    at_pots,
+    over_cushions,
     strokes_at,
 )
 from snooker_env.planning.strokes import Dynamics
@@ -37,6 +40,13 @@ DYNAMICS = Dynamics.of(PLANNER.rules)
 SPREAD = planning.spread_of(LEVELS["club"])
 NO_POT = planning.Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0))
 """Both reds lie on the top cushion and hide each other from the corners."""
+
+
+class Hand(NamedTuple):
+    """What generators ask of a search."""
+
+    spread: float = SPREAD
+    dynamics: Dynamics = DYNAMICS
 
 
 def some(n=20, seed=4):
@@ -56,7 +66,7 @@ def solved(at, row, strokes, ball, pocket, ghost):
 
 def test_strokes_stay_within_their_limits_and_fill_them():
     at = some()
-    strokes, chances = spread_strokes(at, 512, seeds(20), SPREAD, DYNAMICS)
+    strokes, chances = at_pots(Hand(), at, 512, seeds(20))
     assert strokes.shape == (20, 512, 5) and chances.shape == (20, 512) and np.isfinite(strokes).all()
     speed, side, top = (strokes[..., c] for c in (SPEED, SIDE, TOP))
     assert speed.min() >= SLOWEST and speed.max() <= FASTEST and speed.min() < 1.02 * SLOWEST
@@ -76,7 +86,7 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
     at, m, several = some(), 150, 0
     direct, likely = planning.pots(at, most=MOST_POTS), planning.prospects_of(at, SPREAD, most=MOST_POTS)[1]
     chances = chances_by_width(at, SPREAD)
-    proposed = spread_strokes(at, m, seeds(20), SPREAD, DYNAMICS)
+    proposed = at_pots(Hand(), at, m, seeds(20))
     for k in range(20):
         many = int((direct.ball[k] >= 0).sum())
         if many == 0:
@@ -105,7 +115,7 @@ def test_a_chance_is_what_errors_leave_of_the_pot():
     n, m, errors = 40, 30, 12
     at = planning.Positions.of(tables(n, seed=9))
     tool = planning.StrokeSearch({"noise": "professional", "fidelity": "fast"}, threads=1)
-    strokes, chances = spread_strokes(at, m, seeds(n), tool.spread, tool.dynamics)
+    strokes, chances = at_pots(tool, at, m, seeds(n))
     rows = np.repeat(np.arange(n), m * errors)
     drawn = np.random.default_rng(0).standard_normal((len(rows), 5))
     flat, chances = strokes.reshape(-1, 5), chances.ravel()
@@ -132,9 +142,9 @@ def first_struck(at, strokes):
 
 def test_where_there_is_no_pot_the_strokes_hit_the_balls_on_from_thin_to_full():
     at, m = planning.Positions.of(NO_POT), 200
-    assert planning.pots(at).ball[0, 0] == -1 and not planning.at_pots(SEARCH, at, m, [5]).chances.any()
-    strokes, chances = (one[0] for one in planning.at_balls(SEARCH, at, m, [5]))
-    assert (chances == 1.0).all() and not planning.over_cushions(SEARCH, at, m, [5]).chances.any()
+    assert planning.pots(at).ball[0, 0] == -1 and not at_pots(SEARCH, at, m, [5]).chances.any()
+    strokes, chances = (one[0] for one in at_balls(SEARCH, at, m, [5]))
+    assert (chances == 1.0).all() and not over_cushions(SEARCH, at, m, [5]).chances.any()
     # a soft one with backspin does not arrive
     first, hard = first_struck(at, strokes), strokes[:, SPEED] > 2.0
     assert set(first[hard]) == {1, 2} and hard.sum() > 100
@@ -149,7 +159,7 @@ def test_where_there_is_no_pot_the_strokes_hit_the_balls_on_from_thin_to_full():
 
 def test_without_a_pot_half_of_the_strokes_are_hard_and_the_others_of_any_speed():
     """Hard strokes score more often by chance: the density of their speed grows with its square."""
-    strokes = planning.at_balls(SEARCH, planning.Positions.of(NO_POT), 2000, [5]).strokes[0]
+    strokes = at_balls(SEARCH, planning.Positions.of(NO_POT), 2000, [5]).strokes[0]
     shares = [(strokes[1::2, SPEED] < v).mean() for v in (2.0, 4.0, 6.0)]
     assert shares == pytest.approx([(v / MAX_SPEED) ** 3 for v in (2.0, 4.0, 6.0)], abs=0.01)
     counts = np.histogram(np.log(strokes[::2, SPEED]), 4, np.log([SOFTEST, FASTEST]))[0]
@@ -161,17 +171,17 @@ def test_no_contact_is_tried_that_another_ball_hides():
     """A colour before the reds: without it, some of the plain strokes would meet its place first."""
     at = planning.Positions.of(replace(NO_POT, yellow=(0.4, 1.4)))
     assert planning.pots(at).ball[0, 0] == -1
-    strokes = planning.at_balls(SEARCH, at, 400, [3]).strokes[0]
+    strokes = at_balls(SEARCH, at, 400, [3]).strokes[0]
     straight = (strokes[:, SIDE] == 0.0) & (strokes[:, SPEED] > 2.0)
     assert straight.sum() > 100 and set(first_struck(at, strokes[straight])) == {1, 2}
-    free = planning.at_balls(SEARCH, planning.Positions.of(NO_POT), 400, [3]).strokes[0]
+    free = at_balls(SEARCH, planning.Positions.of(NO_POT), 400, [3]).strokes[0]
     assert (first_struck(at, free[straight]) == 16).sum() > 5
 
 
 def test_away_from_a_ball_on_that_touches_the_cue_ball():
     """It counts as struck: every direction away from it is fair, none into it."""
     at = planning.Positions.of(planning.Position(cue=(0.0, 0.0), reds=[(0.0525, 0.0)], black=(0.0, -1.0)))
-    strokes = planning.at_balls(SEARCH, at, 100, [3]).strokes[0]
+    strokes = at_balls(SEARCH, at, 100, [3]).strokes[0]
     assert np.cos(strokes[:, AIM]).max() < 1e-6 and np.ptp(strokes[:, AIM]) > 3.0
     fouls = PLANNER.stops(at, np.zeros(100, int), strokes=strokes)
     assert (fouls.penalty[(fouls.potted[:, [0, 21]] < 0).all(axis=1)] == 0).all()
@@ -180,8 +190,8 @@ def test_away_from_a_ball_on_that_touches_the_cue_ball():
 
 def test_hidden_balls_are_reached_over_cushions():
     at = planning.Positions.of(HIDDEN)
-    assert not planning.at_balls(SEARCH, at, 64, [4]).chances.any()
-    strokes, chances = (one[0] for one in planning.over_cushions(SEARCH, at, 64, [4]))
+    assert not at_balls(SEARCH, at, 64, [4]).chances.any()
+    strokes, chances = (one[0] for one in over_cushions(SEARCH, at, 64, [4]))
     assert (chances == 1.0).all()
     aimed = np.arange(64) % ANYWHERE != ANYWHERE - 1
     fair = PLANNER.stops(at, np.zeros(64, int), strokes=strokes).penalty == 0
@@ -208,12 +218,10 @@ def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
             assert strokes[k, i, AIM] == solved(at, k, strokes[k, i : i + 1], *pot)[0]
 
 
-@pytest.mark.parametrize("generate", [planning.at_pots, planning.at_balls, planning.over_cushions])
+@pytest.mark.parametrize("generate", [at_pots, at_balls, over_cushions])
 def test_a_position_is_proposed_for_by_itself(generate):
     """Its strokes depend on its own seed and layout alone, and nothing that is passed is changed."""
-    at = planning.Positions.of(
-        tables(30, layout="random:6" if generate is planning.at_pots else "snookered", seed=6)
-    )
+    at = planning.Positions.of(tables(30, layout="random:6" if generate is at_pots else "snookered", seed=6))
     kept, made = at.copy(), generate(SEARCH, at, 40, seeds(30))
     some = np.flatnonzero(made.chances.any(axis=1))
     assert len(some) > 1
@@ -230,5 +238,5 @@ def test_a_wider_hand_spares_the_doubtful_pots():
     at = planning.Positions.of(
         planning.Position(cue=(0.0, 0.9), reds=[(0.5, 1.35), (-0.6, -0.9)], black=(0.0, 1.4605))
     )
-    small, large = (spread_strokes(at, 200, [3], spread, DYNAMICS).chances[0] for spread in (5e-4, 4e-3))
+    small, large = (at_pots(Hand(spread), at, 200, [3]).chances[0] for spread in (5e-4, 4e-3))
     assert large.max() < small.max() and (large == large.max()).sum() > (small == small.max()).sum() > 0

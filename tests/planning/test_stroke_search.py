@@ -20,7 +20,7 @@ from snooker_env.planning import (
     pots,
     prospects_of,
 )
-from snooker_env.planning.proposals import Proposals, spread_strokes
+from snooker_env.planning.proposals import Proposals
 from snooker_env.planning.sobol import normal_points
 from snooker_env.planning.stroke_search import FEWEST, FOUL, LEFT, PRIOR, schedule
 from snooker_env.tasks.noise import errors_of
@@ -162,7 +162,7 @@ def test_the_ranking_recomputed(budget, value):
     total = sum(each for _, each in rounds)
     for k, seed in enumerate(seeds):
         here = at[k : k + 1]
-        strokes, chances = (one[0] for one in spread_strokes(here, looks, [seed], tool.spread, tool.dynamics))
+        strokes, chances = (one[0] for one in at_pots(tool, here, looks, [seed]))
         look = chances * gains_by_hand(tool, here, strokes, np.zeros((1, 5)), worth)[:, 0]
         gains = gains_by_hand(tool, here, strokes, normal_points(total, seed), worth)
         order, score, done, met = sorted(range(looks), key=lambda i: -look[i]), list(look), 0, [0] * looks
@@ -189,7 +189,7 @@ def test_for_pots_alone_a_score_is_a_rate_and_nothing_is_valued():
         best, met = ranked.strokes[k, 0], int(ranked.samples[k, 0])
         errors = np.concatenate([np.zeros((1, 5)), normal_points(met, k)])
         made = tool.outcomes(at, np.full(met + 1, k), np.tile(best, (met + 1, 1)), errors).points > 0
-        proposed = spread_strokes(at[k : k + 1], schedule(60)[0], [k], tool.spread, tool.dynamics)
+        proposed = at_pots(tool, at[k : k + 1], schedule(60)[0], [k])
         strokes, chances = (one[0] for one in proposed)
         chance = chances[np.flatnonzero((strokes == best).all(axis=1))[0]]
         assert ranked.scores[k, 0] == pytest.approx((chance * made[0] + made[1:].sum()) / (1.0 + met))
@@ -200,7 +200,7 @@ def test_without_errors_the_ranking_is_that_of_the_looks():
     at = some(6)
 
     def sure(tool, here, m, seeds):
-        strokes, chances = spread_strokes(here, m, seeds, tool.spread, tool.dynamics)
+        strokes, chances = at_pots(tool, here, m, seeds)
         return Proposals(strokes, np.ones_like(chances))
 
     tool = search(80, {"noise": "none", "fidelity": "fast"}, propose=sure)
@@ -291,7 +291,7 @@ def test_nothing_given_is_changed_and_nothing_returned_is_shared():
     kept, proposed = at.copy(), []
 
     def propose(tool, here, m, scrambles):
-        made = spread_strokes(here, m, scrambles, tool.spread, tool.dynamics)
+        made = at_pots(tool, here, m, scrambles)
         proposed.append((made, made.strokes.copy(), made.chances.copy()))
         return made
 

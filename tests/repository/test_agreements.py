@@ -12,6 +12,7 @@ from snooker_env.physics import table
 from snooker_env.physics.parameters import MARLOW
 from snooker_env.tasks import observations
 from snooker_env.tasks.box_actions import Actions
+from tests.shots import shot
 
 
 @pytest.mark.parametrize("name", ["match", "tight"])
@@ -34,7 +35,7 @@ def test_constants_that_rooms_share_agree():
     assert layouts.GAP > balls.PINK_GAP > balls.CLEARANCE > balls.REFEREE_TOUCH > balls.TOUCH
     # Half a radius at the end of the action's scale is what ``Physics.max_offset`` allows by default
     actions = Actions("absolute", False, False, Physics())
-    side = actions.shot([0, 1, 0, 0], balls.SPOTS, np.ones(22, bool), 2)[1]
+    side = shot(actions, [0, 1, 0, 0], balls.SPOTS, np.ones(22, bool), 2)[1]
     assert side == actions.physics.max_offset == 0.5
     kinds = observations.STATE_ENTRIES[1:9]
     assert kinds == tuple(b.name.lower() for b in balls.BallOn if b >= 0)

@@ -11,6 +11,7 @@ from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import BAULK_Y, D_RADIUS, POCKET_AIMS
 from snooker_env.tasks.box_actions import MAX_ELEVATION, TARGET_SPAN
+from tests.shots import shot
 from tests.tables import after_strike, begun, speed_of, table_state
 
 
@@ -35,7 +36,7 @@ def test_absolute_aim_is_the_direction_in_which_the_ball_leaves(side, aim):
 
 
 def shot_of(env, *action_and_table):
-    return env.options.rules.actions.shot(*action_and_table)
+    return shot(env.options.rules.actions, *action_and_table)
 
 
 def test_squirt_is_what_is_compensated():

@@ -142,7 +142,8 @@ def test_pictures(mode):
 
 
 def test_every_argument_is_documented():
-    assert all(name in SnookerEnv.__doc__ for name in (*NAMES, "render_mode", "render_size"))
+    described = f"{sn.Options.__doc__}{SnookerEnv.__doc__}"
+    assert all(name in described for name in (*NAMES, "render_mode", "render_size"))
     arguments = {"options", "render_mode", "render_size", "keywords"}
     assert set(inspect.signature(SnookerEnv).parameters) == arguments
 

@@ -5,10 +5,10 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, BROWN, CUE, GREEN, PINK, SPOTS, YELLOW, BallOn, mask_of
-from snooker_env.game.paths import paths
 from snooker_env.game.ruling import AUTO, Foul
 from snooker_env.geometry import BAULK_Y, D_RADIUS
 from snooker_env.tasks import declarations, discrete_actions
+from tests.miss_paths import paths
 from tests.refusals import refused
 from tests.tables import PLACES as STANDING
 from tests.tables import begun, frame_env, frame_state, layout, plain

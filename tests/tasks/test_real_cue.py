@@ -20,11 +20,11 @@ from snooker_env.planning import (
     StrokeSearch,
     action_masks,
     as_actions,
-    at_balls,
     at_pots,
     prospects_of,
 )
 from snooker_env.planning import pots as direct_pots
+from snooker_env.planning.proposals import at_balls
 from snooker_env.tasks import choice_of
 from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.declarations import A_RAILS

@@ -12,10 +12,10 @@ from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.planning import Positions
 from snooker_env.planning.learned import pot_view
-from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
 from snooker_env.tasks.observations import SIZE
 from snooker_env.tasks.visit import BALL_ON
+from tests.shots import line
 
 VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 
