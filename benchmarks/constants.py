@@ -15,8 +15,9 @@ import numpy as np
 
 from commands.tables import shown, text_table
 from snooker_env._warmup import warmup
-from snooker_env.benchmark import TASKS, Agent, figures_of
+from snooker_env.benchmark import TASKS, Agent
 from snooker_env.benchmark.playing import play_episodes
+from snooker_env.benchmark.results import figures_of
 from snooker_env.tasks import SIDES, SPEEDS, TOPS
 from snooker_env.tasks.discrete_actions import POTS, STROKES
 

@@ -173,12 +173,12 @@ def coach(
     base = practice_of(BASE, physical)
     found = fitted(kept, base, seed)
     kept = found.strokes
-    costs = lost(kept, bench, seed)
+    points, counts = lost(kept, bench, seed)
     visits = max(1, visits_of(kept))
     rng = np.random.default_rng((seed, RESAMPLES))
-    drawn = costs.parts[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / visits
-    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), costs.parts.sum(axis=0) / visits
-    figures = zip(PARTS, np.vstack([sums, ends]).T.tolist(), costs.counts.tolist(), strict=True)
+    drawn = points[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / visits
+    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), points.sum(axis=0) / visits
+    figures = zip(PARTS, np.vstack([sums, ends]).T.tolist(), counts.tolist(), strict=True)
     parts = {
         name: Estimate(value=value, low=low, high=high, strokes=many)
         for name, (value, low, high), many in figures
@@ -200,7 +200,7 @@ def coach(
         costs=parts,
         most=most,
         sure=sure,
-        drills=drills_for(kept, parts, costs.parts, found.errors),
+        drills=drills_for(kept, parts, points, found.errors),
     )
 
 

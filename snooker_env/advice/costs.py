@@ -2,7 +2,6 @@
 formulas stand in docs/play/coach.md, "What costs most".
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,16 +22,9 @@ SLOW, FAST, TIP = 0.8, 4.5, 0.35
 """Of these strokes: cue speeds [m/s], and the largest height of the tip over R."""
 
 
-@dataclass(frozen=True, eq=False)
-class Lost:
-    """Points that each stroke lost, (n, 3) in the order of ``PARTS``, and how many strokes tell each part, (3,)."""
-
-    parts: Floats
-    counts: Ints
-
-
-def lost(strokes: list[Recorded], bench: Practice, seed: int) -> Lost:
-    """What strokes cost against a player with the errors of ``bench``."""
+def lost(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, Ints]:
+    """Points that strokes lost against a player with the errors of ``bench``, (n, 3) in the order of ``PARTS``, and how many
+    strokes tell each part, (3,)."""
     parts, counts = np.zeros((len(strokes), 3)), np.zeros(3, np.int64)
     known = [k for k, one in enumerate(strokes) if one.after is not None]
     at = {k: one_position(strokes[k].position, strokes[k].scores) for k in known}
@@ -51,7 +43,7 @@ def lost(strokes: list[Recorded], bench: Practice, seed: int) -> Lost:
         parts[k, 0] = (p - bool(one.potted)) * (made - missed)
         parts[k, 1 if one.potted else 2] = (made if one.potted else missed) - value
         counts += [1, bool(one.potted), not one.potted]
-    return Lost(parts, counts)
+    return parts, counts
 
 
 def worth_of(bench: Practice, at: list[Positions]) -> Floats:

@@ -10,8 +10,9 @@ from .provenance import commit as commit
 from .provenance import machine as machine
 from .provenance import processor as processor
 from .provenance import software as software
-from .results import figures_of, read_result, write_result
-from .rollouts import CENTURY, FIGURES, MAXIMUM, Strokes, counts, play_visits, summary
+from .results import read_result, write_result
+from .rollouts import CENTURY, FIGURES, MAXIMUM, Strokes, play_visits, summary
+from .rollouts import counts as counts
 from .run import judge
 from .schema import faults_of_fields as faults_of_fields
 from .statistics import RESAMPLES as RESAMPLES
@@ -36,9 +37,7 @@ __all__ = [
     "ProgramPlayer",
     "Strokes",
     "Task",
-    "counts",
     "faults",
-    "figures_of",
     "interval",
     "iqm",
     "judge",

@@ -48,29 +48,8 @@ def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
 
 
 def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] | None:
-    """All figures of an agent's rows.
-
-    Parameters
-    ----------
-    task, label : Task, str
-        The task, and the agent's label, on which the bootstrap samples of its runs depend.
-    rows : list of list of int
-        One row for each episode, columns ``COLUMNS``.
-
-    Returns
-    -------
-    dict or None
-        "score", "iqm" (for points only), "profile" (a list of {"at_least", and a figure}), "by_run", "best",
-        "points", "pots", "strokes", "fouls" and "cleared". A figure is {"value", "low", "high", "exact"}.
-        None if the runs are not complete.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import TASKS, figures_of
-    >>> rows = [[0, 1000000, 1, 1, 1, 1, 0, 1, 0, 1], [0, 1000001, 0, 1, 0, 0, 0, 0, 0, 1]]
-    >>> figures_of(TASKS["SnookerPotHard-v0"], "mine", rows)["score"]["value"]
-    0.5
-    """
+    """All figures of an agent's rows: "score", "iqm" (for points only), "profile" (with "at_least"), "by_run", "best", and means
+    of columns. A figure is {"value", "low", "high", "exact"}. None if the runs are not complete."""
     columns = matrix(rows)
     if columns is None:
         return None

@@ -168,23 +168,7 @@ def play_visits(
 
 
 def counts(s: Strokes) -> dict[str, Floats]:
-    """Count in each visit points, pots, fouls and more: both terms of every ratio of ``FIGURES``.
-
-    Parameters
-    ----------
-    s : Strokes
-        All strokes of the visits.
-
-    Returns
-    -------
-    dict of str to float64 (visits,)
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import counts, play_visits
-    >>> counts(play_visits("random", 2, layout="colours"))["visits"].tolist()
-    [1.0, 1.0]
-    """
+    """Points, pots, fouls and more of each visit (visits,): both terms of every ratio of ``FIGURES``."""
     next_points = np.append(s.points, 0.0)[s.following]  # of the stroke after; 0 after the last
     red, colour = s.made & (s.ball_on == BallOn.RED), s.made & (s.ball_on == BallOn.ANY_COLOUR)
     entries = {

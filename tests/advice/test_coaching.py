@@ -168,7 +168,7 @@ def missed_and_made():
 def test_costs_have_the_signs_of_what_happened():
     bench = practice_of("professional", of_frames=True)
     missed, made = missed_and_made()
-    parts = lost([missed, made], bench, 0).parts
+    parts = lost([missed, made], bench, 0)[0]
     assert (
         parts[0, 0] > 1.0 > 0.0 >= parts[1, 0]
     )  # a pot missed costs, one that the target makes too gains nothing
@@ -180,7 +180,7 @@ def test_costs_have_the_signs_of_what_happened():
         position=AT,
         after=sn.Position(cue=(0.0, -1.6), reds=[(0.0, 1.74)], brown=(0.0, -1.5), yellow=(0.7, -1.7)),
     )
-    easy, safe = lost([hanging, hidden], bench, 0).parts[:, 2]
+    easy, safe = lost([hanging, hidden], bench, 0)[0][:, 2]
     assert easy > safe
 
 

@@ -7,10 +7,10 @@ from functools import cache
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, figures_of, judge, page
+from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, judge, page
 from snooker_env.benchmark.checking import replayed
 from snooker_env.benchmark.leaderboard import markdown_table, plain, profile
-from snooker_env.benchmark.results import packed, strokes_of
+from snooker_env.benchmark.results import figures_of, packed, strokes_of
 from snooker_env.benchmark.schema import DATE, LONG_LINE, RANGES
 from snooker_env.benchmark.schema import line as one_line
 from tests.benchmark.records import put

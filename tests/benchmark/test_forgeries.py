@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import COLUMNS, TASKS, Agent, figures_of, judge
+from snooker_env.benchmark import COLUMNS, TASKS, Agent, judge
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.checking import afresh, faults, replayed
 from snooker_env.benchmark.provenance import arithmetic
-from snooker_env.benchmark.results import completed, packed, read_result, strokes_of, write_result
+from snooker_env.benchmark.results import completed, figures_of, packed, read_result, strokes_of, write_result
 from snooker_env.benchmark.schema import FIELDS, PACKAGES, UNPROVED
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import pot_aim, pots

@@ -55,22 +55,11 @@ def private(source):
     return direct + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)
 
 
-SHARED = (
-    *(
-        "RESAMPLES",
-        "Resamples",
-        "commit",
-        "faults_of_fields",
-        "figure",
-        "machine",
-        "most_points",
-        "processor",
-    ),
-    *("software", "tables_of", "task_of", "unseen"),
-)
+SHARED = "RESAMPLES Resamples commit counts faults_of_fields figure machine most_points processor software"
+SHARED += " tables_of task_of unseen"
 """Of the benchmark: what the evaluation of agents writes and counts alike."""
 TRAINED_FOR = (
-    *(f"snooker_env.benchmark: {name}" for name in SHARED),
+    *(f"snooker_env.benchmark: {name}" for name in SHARED.split()),
     "snooker_env.game: plan_of",
     *(f"snooker_env.render.diagrams: {name}_of" for name in ("bandwidth", "density", "level")),
     "snooker_env.players",
