@@ -8,13 +8,8 @@
 A ``Frame`` never changes: each act packs it into a row, lets a kernel of ``frame_columns`` change that, and
 unpacks the next frame. Players are 0 and 1. An act that is not allowed raises ValueError.
 
-A foul and a miss (S3 R14): ``miss="off"`` never calls it. ``miss="clear_path"`` calls it where a straight
-path to a part of a ball on was clear and none was struck first; not when either player needed penalty points
-before or after the stroke, or the points left equalled the difference. After a miss with a clear full-ball
-path, a second failure from the same position is a miss whatever the scores; then the striker is warned, and
-the third loses the frame. ``miss="attempt"`` calls it on a snookered striker too (``attempt``). Stalemates
-(``restart`` carries one out) and the lot for a re-spotted black are passed in.
-docs/environment/rules.md says what is left out."""
+The miss rules, and what is left out, stand in docs/environment/rules.md. Stalemates (``restart`` carries one out) and the
+lot for a re-spotted black are passed in."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

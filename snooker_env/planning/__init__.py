@@ -12,7 +12,7 @@ The caller assigns a value to each afterstate. ``prospects_of`` is a rule of thu
 """
 
 from ..tasks.threads import processors
-from .geometry import Paths, Pots, clear_paths, obstructions, pots
+from .geometry import Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
@@ -25,7 +25,6 @@ __all__ = [
     "RULE_OF_THUMB",
     "SURE",
     "Outcomes",
-    "Paths",
     "Planner",
     "Position",
     "Positions",

@@ -52,19 +52,7 @@ class Pots(NamedTuple):
 
 
 class Paths(NamedTuple):
-    """Whether the cue ball has a clear straight path in each of m positions, as returned by ``clear_paths``.
-
-    Attributes
-    ----------
-    any_part, full_ball : numpy.ndarray
-        bool (m,). Whether a straight path leads to some part, and to the full face, of a ball on.
-
-    Examples
-    --------
-    >>> from snooker_env.planning import Position, clear_paths
-    >>> clear_paths(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))).full_ball.tolist()
-    [True]
-    """
+    """Whether the cue ball has a clear straight path in each of m positions, see ``clear_paths``."""
 
     any_part: NDArray[np.bool_]
     full_ball: NDArray[np.bool_]
@@ -182,8 +170,9 @@ def clear_paths(positions: PositionsLike) -> Paths:
     Returns
     -------
     Paths
-        Two bool arrays (m,), of the foul-and-miss rule (``snooker_env.game.paths``) with the cushions of the
-        match table; False without a cue ball.
+        Two bool arrays (m,), ``any_part`` and ``full_ball``: whether a straight path leads to some part, and to the full
+        face, of a ball on, by the foul-and-miss rule (``snooker_env.game.paths``) with the cushions of the match
+        table; False without a cue ball.
 
     Examples
     --------

@@ -282,14 +282,9 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
     [[0.0, 0.0, 0.5, 0.0]]
     """
     fast, turns = array("speeds", speeds, (-1,)), array("aims", aims, (-1,))
-    if len(fast) and not (fast.min() >= MIN_SPEED and fast.max() <= MAX_SPEED):
-        number("speeds", float(fast.min() if fast.min() < MIN_SPEED else fast.max()), MIN_SPEED, MAX_SPEED)
     strokes = np.zeros((len(turns), COLUMNS))
     strokes[:, SPEED], strokes[:, SIDE], strokes[:, TOP], strokes[:, AIM] = fast, side, top, turns
-    far = np.abs(strokes[:, [SIDE, TOP]])
-    if not (far <= FARTHEST).all():
-        raise refuse("side, top", float(far.max()), "must be finite and within 0.5")
-    return encoded(_ABSOLUTE, strokes).astype(np.float32)
+    return encoded(_ABSOLUTE, check_strokes(strokes)).astype(np.float32)
 
 
 def check_strokes(strokes: Any, n: int | None = None) -> Floats:

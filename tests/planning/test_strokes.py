@@ -57,12 +57,12 @@ def test_an_action_of_a_speed_and_a_direction_is_that_stroke():
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (([0.1], [0.0]), "speeds = 0.1: must be a finite number in"),
-        (([7.1], [0.0]), "speeds = 7.1"),
+        (([0.1], [0.0]), r"strokes\[0\], speed = 0.1: must be a finite number in"),
+        (([7.1], [0.0]), r"strokes\[0\], speed = 7.1"),
         (([np.nan], [0.0]), r"speeds\[0\] = nan"),
         (([1.0], [np.inf]), r"aims\[0\] = inf"),
-        (([1.0], [0.0], 0.6), "side, top = 0.6"),
-        (([1.0], [0.0], np.nan), "side, top = nan"),
+        (([1.0], [0.0], 0.6), r"strokes\[0\], side = 0.6"),
+        (([1.0], [0.0], np.nan), r"strokes\[0\], side = nan"),
         (([[1.0]], [0.0]), "speeds = array of shape"),
     ],
 )

@@ -137,9 +137,9 @@ def test_no_kernel_is_compiled_twice_whatever_the_input_is_made_of(what, least):
     assert int(out) >= least and err == ""
 
 
-PARTS = {"clear_path", "new_work", "_solutions"}
-"""Other entry kernels alone call the first two, which make arrays: kept code holds them. The last makes tables of impacts for
-constants that are no preset's."""
+PARTS = {"best_paths", "clear_path", "new_work", "_solutions"}
+"""Other entry kernels alone call the first three, which make arrays: kept code holds them. The last makes tables of impacts
+for constants that are no preset's."""
 
 
 def test_a_warm_up_leaves_nothing_to_compile():
