@@ -409,13 +409,24 @@ def test_undo_redo_new_save_load_and_replay(game):
     assert replay["format"] == "snooker-replay" and len(replay["strokes"]) == 1
     assert replay["players"] == ["Player 1", "Player 2"]
     assert json.loads(json.dumps(replay))["strokes"][0]["words"] in game.get("replay.html")
-    saved = game("save")
+    saved, whole = game("save"), game("save", acts=True)
     assert game("undo")["scores"] == [0, 0] and game("redo")["scores"] == [1, 0]
     fresh = game("new", layout="colours", seed=4)
     assert fresh["reds"] == 0 and fresh["ball_on"] == "yellow" and not fresh["undo"] and fresh["strokes"] == 0
     again, other = (game("new", layout="colours", seed=seed)["positions"] for seed in (4, 5))
     assert again == fresh["positions"] != other
-    assert game("load", saved=saved)["scores"] == [1, 0]
+    loaded = game("load", saved=saved)
+    assert loaded["scores"] == [1, 0] and loaded["strokes"] == 0 and loaded["begun"] > fresh["begun"]
+    opened = game("load", saved=whole)
+    assert opened["begun"] == loaded["begun"] + 1 and opened["strokes"] == 1 and opened["scores"] == [1, 0]
+    assert game.get("replay")["strokes"] == replay["strokes"]
+    whole["acts"][0]["speed"] = 0.1
+    with pytest.raises(ValueError, match=r"^saved\.acts\[0\]\.speed = 0\.1"):
+        game("load", saved=whole)
+    assert game.get("state") == opened | {"revision": game.get("state")["revision"]}
+    for name, value in (("acts", 1), ("more", True)):
+        with pytest.raises(ValueError, match=name):
+            game("save", **{name: value})
     for name, value in (("layout", "x"), ("seed", -1), ("breaker", 2), ("seed", "1")):
         with pytest.raises(ValueError, match=f"{name} = {value!r}"):
             game("new", **{name: value})
