@@ -70,7 +70,8 @@ def _do(session: Session, act: Any) -> None:
     for name in act:
         choice("field", name, STROKE)
     stroke = CueStroke.of({name: act[name] for name in STROKE[:5] if name in act})
-    session.noise[session.frame.striker] = choice("noise", act.get("noise"), LEVELS)
+    level: Any = choice("noise", act.get("noise"), LEVELS)
+    session.noise[session.frame.striker] = level
     session.practice = truth("practice", act.get("practice"))
     if choice("cue", act.get("cue"), CUES) != session.cue:
         session.cue = act["cue"]

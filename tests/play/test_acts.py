@@ -34,11 +34,11 @@ def anything(seed, acts=80, **game):
             session.noise[0], session.cue = ("none", "free") if session.cue == "real" else ("club", "real")
         session.practice = k % 30 > 24
         if frame.in_hand and k % 3:
-            session.place(*rng.uniform(-1.0, 1.0, 2))
+            session.place(*rng.uniform(-1.0, 1.0, 2).tolist())
         named = session.nominations()
         nominated = DECLINED if frame.free_ball and k % 2 else int(rng.choice(named)) if named else AUTO
-        tip = {"side": rng.uniform(-0.3, 0.3), "top": rng.uniform(-0.3, 0.3)}
-        stroke = CueStroke(speed=rng.uniform(0.5, 7.0), aim=rng.uniform(-pi, pi), **tip)
+        speed, aim, side, top = rng.uniform((0.5, -pi, -0.3, -0.3), (7.0, pi, 0.3, 0.3)).tolist()
+        stroke = CueStroke(speed=speed, aim=aim, side=side, top=top)
         session.play(stroke, nominated=nominated)
     return session
 
@@ -53,6 +53,8 @@ def test_a_game_is_played_again_bit_by_bit(game):
     kinds = set()
     for seed in range(6):
         session, other = anything(seed, game=game), Session(seed=99)
+        if session.frame.phase == "choice":
+            session.choose("play")
         if session.frame.phase == "stroke":
             session.concede()
         saved = sent(session)
