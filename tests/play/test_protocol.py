@@ -10,6 +10,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from snooker_env.advice import advise
 from snooker_env.game.balls import PINK
 from snooker_env.game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from snooker_env.geometry import POCKETS
@@ -372,6 +373,32 @@ def test_advice_is_ranked_named_and_drawn(game):
     assert np.hypot(*np.subtract(best["paths"]["1"][-1], (0.87376, 1.76926))) < 0.15
     played = game("stroke", **{name: best[name] for name in ("speed", "side", "top", "aim", "elevation")})
     assert played["stroke"]["pots"] == [1]
+
+
+@pytest.mark.parametrize(
+    ("layout", "agent", "pots"), [("opened", "search_2000", True), ("break_off", "tactician_500", False)]
+)
+def test_hints_are_different_strokes_and_the_best_of_each(game, layout, agent, pots):
+    """One for each pot, and for each kind of safety: what an agent ranks are mostly ways of the same one."""
+    game("new", layout=layout, seed=2)
+    asked = {"noise": "amateur", "samples": 40, "seed": 3}
+    session, by = game.session, game.service.seats.players[agent]
+    options = {"cue": session.cue, "miss": session.miss}
+    ranked = advise(session.position, agent=by, n=13, options=options, **asked)
+    first = {}
+    for one in ranked:
+        third = (one.stops[1] > -1.0475) + (one.stops[1] > 1.0475)
+        key = (one.ball, one.pocket) if one.kind == "pot" else (one.kind, one.ball < 16 or one.ball, third)
+        first.setdefault(key, one.words)
+    found = game("advise", agent=agent, n=5, **asked)
+    words = [one["words"] for one in found["suggestions"]]
+    assert words == list(first.values())[:5] and 1 < len(first) < len(ranked) > 5
+    assert [one["win"] for one in found["suggestions"]] == sorted(
+        (one["win"] for one in found["suggestions"]), reverse=True
+    )
+    assert any(one["kind"] == "pot" for one in found["suggestions"][:2]) == pots
+    one = game("advise", agent=agent, n=1, **asked)["suggestions"]
+    assert len(one) == 1
 
 
 def test_destinations_spread_with_the_errors(game):
