@@ -57,9 +57,8 @@ def pocket_named(field: str, value: Any) -> int:
 
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
-RIVALS = (
-    2  # further strokes that are judged for each one after the first, since many are other ways of one pot
-)
+RIVALS = 2
+"""Further strokes that are judged for each suggestion after the first: many are other ways of one pot."""
 
 
 def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
