@@ -122,9 +122,8 @@ def episodes_of(part, seeds, first):
     ends = np.cumsum(part["lengths"])
     for k, (end, length) in enumerate(zip(ends.tolist(), part["lengths"].tolist(), strict=True)):
         one = {column: part[column][end - length : end] for column in COLUMNS}
-        shown: Any = np.concatenate(
-            [one["observations"], part["last"][k : k + 1]]
-        )  # its type says nothing of arrays
+        # Any: the type of its observations says nothing of arrays
+        shown: Any = np.concatenate([one["observations"], part["last"][k : k + 1]])
         if part["masks"].shape[1]:
             shown = {
                 "observations": shown,

@@ -45,7 +45,7 @@ def page_to_play(browser, out):
         "--layout",
         "opened",
         "--seed",
-        "3",
+        "6",
     ]
     server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     try:
@@ -57,7 +57,7 @@ def page_to_play(browser, out):
         page.locator("#noise-0").select_option("professional")
         page.locator("#options summary").click()
         page.get_by_role("button", name="What would you play?").click()
-        page.locator("#advice button").nth(4).wait_for(timeout=120_000)
+        page.locator("#advice button").first.wait_for(timeout=120_000)
         page.locator("#advice button").first.hover()
         time.sleep(1.5)
         shoot(page, out / "page.jpg")

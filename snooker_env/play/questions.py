@@ -1,5 +1,6 @@
 """Which stroke does a request contain, and what would it do? Answered on copies of the table."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ from .._check import choice, number, refuse
 from .._types import NoiseName
 from ..advice import CueStroke, Suggestion, advise, destinations
 from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
-from ..geometry import POCKET_AIMS, POCKETS
+from ..geometry import BAULK_Y, POCKET_AIMS, POCKETS
 from ..physics.engine import EventKind
 from ..planning import Planner
 from ..render.scene import ball_paths
@@ -56,6 +57,8 @@ def pocket_named(field: str, value: Any) -> int:
 
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
+RIVALS = 2
+"""Further strokes that are judged for each suggestion after the first: many are other ways of one pot."""
 
 
 def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
@@ -119,19 +122,33 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
 def suggestions(
     session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int
 ) -> dict[str, Any]:
-    """Strokes of the agent in words and data, with paths without errors; whose they are, and their order."""
+    """At most n strokes of the agent, the best of each ``_idea``, in words and data, with paths without errors; whose they
+    are, and their order."""
     choice("agent", agent, seats.agents)
-    how: Any = {"noise": noise, "n": n, "samples": samples, "seed": seed, "options": {"cue": session.cue}}
+    how: Any = {"noise": noise, "n": n + RIVALS * (n - 1), "samples": samples, "seed": seed}
+    how["options"] = {"cue": session.cue}
     at = session.planned()
     if not session.practice:  # alone at the table nobody wins
         at, how["options"]["miss"] = session.position, session.miss
-    advice, out = advise(at, agent=seats.players[agent], **how), []
+    advice, best, out = advise(at, agent=seats.players[agent], **how), {}, []
+    for one in advice:
+        best.setdefault(_idea(one), one)
+    advice = replace(advice, suggestions=tuple(best.values())[:n])
     for one in advice:
         twin = session.twin()
         if one.place is not None:
             twin.place(*one.place)
         out.append(one.to_dict() | _named(one) | paths(exact(twin, one.stroke)))
     return {"agent": agent, "order": advice.order, "suggestions": out}
+
+
+def _idea(one: Suggestion) -> tuple[Any, ...]:
+    """What two ways of one stroke share: ball and pocket of a pot; else its kind, the ball's name, red or a colour, and
+    whether the cue ball stays in baulk, in the middle or at the top."""
+    if one.kind == "pot":
+        return one.ball, one.pocket
+    third = None if one.stops is None else int(np.digitize(one.stops[1], (BAULK_Y, -BAULK_Y)))
+    return one.kind, NAMES[one.ball].split()[0] if one.ball >= 0 else None, third
 
 
 def _named(one: Suggestion) -> dict[str, Any]:

@@ -92,6 +92,7 @@ def report(service: Service) -> dict[str, Any]:
     state = table_after(act, service.labels, service.win_chances([act])[0], before)
     state |= {
         "revision": service.revision,
+        "begun": session.begun,
         "players": list(seats.who),
         "labels": list(service.labels),
         "noise": list(session.noise),

@@ -18,7 +18,7 @@ from ..replays import Replay
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
-from . import questions
+from . import acts, questions
 from .questions import colour_named, place_asked, stroke_in
 from .report import report, scene, stroke_report
 from .service import Service, StaleError
@@ -180,13 +180,14 @@ def _concede(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    whole = truth("acts", fields.get("acts", False))
     with service.reading() as session:
-        return session.save()
+        return acts.written(session) if whole else session.save()
 
 
 def _load(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(pause=True, any_turn=True) as session:
-        session.load(fields.get("saved"))
+        acts.opened(session, fields.get("saved"))
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -258,7 +259,7 @@ POST: dict[str, Route] = {
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede),
-    "save": Route(_save),
+    "save": Route(_save, ("acts",)),
     "load": Route(_load, ("saved",)),
 }
 

@@ -34,7 +34,7 @@ SCRIPTS = ("table.js", *(f"{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_HEAD = 16_384
-MOST_BODY = 65_536  # largest head and body of a request [bytes]; a saved game has about 3,000
+MOST_BODY = 131_072  # largest head and body of a request [bytes]; a replay has about 200 for each stroke
 MOST_AT_ONCE = 32  # largest number of connections; a browser keeps six
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
 _HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"

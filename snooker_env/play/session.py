@@ -5,7 +5,7 @@ an ``Act`` in a list; undo and redo move in it. A state holds the random stream,
 and played again meets the same execution errors.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 import numpy as np
@@ -49,6 +49,7 @@ class Act:
     played: Played | None = None  # for a stroke: as it was struck, simulated and judged
     detail: str = ""  # for a choice: the decision; for a stroke: the colour that was nominated
     room: Room | None = None  # for a stroke: how the cue found room for it
+    asked: dict[str, Any] = field(default_factory=dict)  # what was asked for, as JSON types: see ``acts``
 
 
 class Session:
@@ -61,6 +62,7 @@ class Session:
     won: list[int]  # frames that each seat has won in the match before this one
     acts: list[Act]
     at: int  # number of acts that count; the following ones were undone
+    begun: int  # games begun or loaded so far
 
     def __init__(
         self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
@@ -70,7 +72,7 @@ class Session:
             box |= {"elevation": 70, "physics": {"flight": True}}
         self._options = Options(task="frame", miss="clear_path", layout=layout, cue=cue, **box)
         self.noise, self.practice = ["none", "none"], False
-        self.best_of, self.won = 1, [0, 0]
+        self.best_of, self.won, self.begun = 1, [0, 0], 0
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
@@ -159,17 +161,13 @@ class Session:
             self._with[noise] = self._options.but(noise=noise)
         return self._with[noise]
 
-    def copy_to(self, tables: Frames) -> None:
-        """Copy the state to another table."""
-        tables.set_state(0, self._checked(self.state))
-
     def twin(self) -> "Session":
         """A copy for another thread; of the acts it holds the last one only."""
         other = object.__new__(Session)
         other.__dict__.update(self.__dict__)
         other._buffers, other.noise, other.won = ShotBuffers(1, path=True), list(self.noise), list(self.won)
         other.tables = Frames(self._options.rules, 1)
-        self.copy_to(other.tables)
+        other._set(self.state)
         other.acts, other.at = [self.acts[self.at - 1]], 1
         return other
 
@@ -217,7 +215,7 @@ class Session:
         self.tables.seed(0, np.random.default_rng(seed))
         self.tables.deal(np.zeros(1, np.int64), drawn=False)
         self._write(replace(self.frame, striker=breaker, breaker=breaker), 0)
-        self.acts, self.at = [Act("new", self.state)], 1
+        self._begin("new")
 
     def check_stroke(self, nominated: int = AUTO) -> None:
         """Raise ValueError unless a stroke may be played now, and that colour be nominated."""
@@ -240,6 +238,9 @@ class Session:
         actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
         tables.nominated[0] = nominated
         self._played, room = None, self.room(stroke)
+        asked = {**stroke.to_dict(), "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
+        asked["place"] = before["positions"][CUE] if self.frame.in_hand else None
+        asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
         try:
             crew = Crew(self._buffers, (), self._watch)
             tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
@@ -251,7 +252,7 @@ class Session:
         if self.practice:
             self._hand_back()
         words = NAMES[nominated] if nominated > CUE else ""
-        return self._did(Act("stroke", self.state, striker, self._played, words, room))
+        return self._did(Act("stroke", self.state, striker, self._played, words, room, asked))
 
     def _watch(self, k, buffers, j, agents):
         self._played = self.tables.played(k, buffers, j)
@@ -270,10 +271,8 @@ class Session:
         if frame.phase != "choice":
             raise refuse("choice", what, "must be left out: the other player has not just fouled")
         choice("choice", what, frame.choices)
-        actions = np.zeros((1, 8))
-        actions[0, -1] = DECISIONS[what]
-        self.tables.decide(np.zeros(1, np.int64), actions)
-        return self._did(Act("choice", self.state, frame.striker, detail=what))
+        self.tables.decide(np.zeros(1, np.int64), np.array([[*[0.0] * 7, DECISIONS[what]]]))
+        return self._did(Act("choice", self.state, frame.striker, detail=what, asked={"choice": what}))
 
     def concede(self) -> Act:
         """End the frame: the striker concedes."""
@@ -289,7 +288,7 @@ class Session:
     def _ended(self, what: str, after: Frame) -> Act:
         striker = self.frame.striker
         self._write(after, int(self.tables.game[0, STROKES]))
-        return self._did(Act(what, self.state, striker))
+        return self._did(Act(what, self.state, striker, asked={"declare": what}))
 
     def place(self, x: float, y: float) -> tuple[float, float]:
         """Put the cue ball in hand on the free place nearest to (x, y), of the D or of the table, and return it."""
@@ -353,18 +352,20 @@ class Session:
         if not isinstance(state, dict) or set(state) != set(STATE):
             raise refuse_what("saved.state", "something else", f"must be a dict with {list(STATE)}")
         frame = state["frame"]
-        options = self._but(None, frame.get("rules", "snooker") if isinstance(frame, dict) else None)
-        before, tables = self._options, self.tables
-        self._play_by(options)
-        try:
-            self.tables.set_state(0, self._checked(state))
-        except ValueError:
-            self.tables, self._options, self._with = tables, before, {}
-            self.tables.rules = before.rules
-            raise
-        self.practice, self.cue = practice, cast(CueKind, cue)
-        self.noise[:], self.best_of, self.won = levels, 1, [0, 0]
-        self.acts, self.at = [Act("load", self.state)], 1
+        twin = self.twin()
+        twin._play_by(self._but(None, frame.get("rules", "snooker") if isinstance(frame, dict) else None))
+        twin._set(state)
+        twin.practice, twin.cue = practice, cast(CueKind, cue)
+        twin.noise, twin.best_of, twin.won = levels, 1, [0, 0]
+        twin._begin("load")
+        self.become(twin)
+
+    def become(self, twin: "Session") -> None:
+        """Take over all of a copy."""
+        self.__dict__.update(twin.__dict__)
+
+    def _begin(self, what: str) -> None:
+        self.acts, self.at, self.begun = [Act(what, self.state)], 1, self.begun + 1
 
     def _did(self, act: Act) -> Act:
         del self.acts[self.at :]

@@ -188,13 +188,18 @@ class Page {
   /** Use a state, if it is newer than the current one. */
   take(state) {
     if (this.state && state.revision <= this.state.revision) return;
-    const first = this.state === null, level = state.players[0] === "person" && Object.entries(LEVELS).find(([, [who, noise]]) => who === state.players[1] && noise === state.noise[1])?.[0];
+    const first = this.state === null, fresh = state.begun !== this.state?.begun, level = state.players[0] === "person" && Object.entries(LEVELS).find(([, [who, noise]]) => who === state.players[1] && noise === state.noise[1])?.[0];
     this.state = state;
     this.strength = level || OWN;
     this.alias = [state.labels[1], state.labels[1]];
     if (level && state.players[1] !== "person") this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
     if (first) { this.put(state); this.drills.resume(); }
-    if (first || state.strokes < this.played) this.still();
+    if (fresh || state.strokes < this.played) this.still();
+    if (fresh && !first) {
+      this.stats.times.clear();
+      this.played = 0;
+      this.replay = state.strokes > 0;
+    }
     by("last").className = "";
     this.seated();
     this.catchUp();
@@ -207,6 +212,7 @@ class Page {
     this.busy = true;
     try { await this.showAll(); } catch (error) { this.played = this.state.strokes; this.trouble(error); }
     this.busy = false;
+    if (this.replay) this.replay = this.hurried = false;
     this.settle();
     const { scored } = this;
     this.scored = null;
@@ -228,7 +234,7 @@ class Page {
       if (this.drills.now && this.played === this.state.strokes) this.scored = stroke;
       if (this.played < this.state.strokes && !this.hurried) await new Promise(done => setTimeout(done, 500));
       const { state } = this;
-      if (state.paused && !state.trouble && this.played >= state.strokes && this.agentsAlone && !this.held) await this.try(() => ask("go", {}));
+      if (state.paused && !state.trouble && this.played >= state.strokes && this.agentsAlone && !this.held && !this.replay) await this.try(() => ask("go", {}));
     }
   }
 
@@ -518,7 +524,7 @@ class Page {
     by("play").disabled = !mine;
     by("stroke").classList.toggle("idle", !mine);
     by("skip").hidden = !this.moving;
-    by("turn").hidden = !this.moving || state.players[table.striker] === "person" || !state.players.includes("person");
+    by("turn").hidden = !this.moving || !this.replay && (state.players[table.striker] === "person" || !state.players.includes("person"));
     by("play").hidden = Boolean(this.moving) || choosing || !by("go").hidden;
     if (!mine) by("odds").textContent = "";
     by("advise").disabled = !mine && !choosing;
@@ -527,7 +533,7 @@ class Page {
     by("redo").disabled = !state.redo || this.drills.now;
     by("set").disabled = this.drills.now;
     by("again").disabled = by("slow").disabled = !state.strokes || busy;
-    by("share-shot").disabled = by("replay").disabled = by("stats-open").disabled = !state.strokes;
+    by("share-stroke").disabled = by("share-replay").disabled = by("replay").disabled = by("stats-open").disabled = !state.strokes;
     by("concede").disabled = !mine && !choosing;
     const named = mine && state.nominations.length > 0;
     by("nominate-row").classList.toggle("idle", !named);
@@ -603,7 +609,7 @@ class Page {
     if (loupe.canvas.width < 2 || loupe.canvas.clientWidth * loupe.ratio !== loupe.canvas.width) loupe.resize();
     loupe.upright = view.upright;
     loupe.look(x, y, loupe.canvas.width / LOUPE);
-    loupe.still ??= Object.assign(document.createElement("canvas"), { width: loupe.canvas.width, height: loupe.canvas.height });
+    loupe.still ??= make("canvas", { width: loupe.canvas.width, height: loupe.canvas.height });
     const pen = loupe.still.getContext("2d");
     pen.fillStyle = loupe.ink.cloth;
     pen.fillRect(0, 0, loupe.still.width, loupe.still.height);

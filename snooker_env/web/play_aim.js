@@ -3,6 +3,7 @@
  * `wish`: {speed [m/s], side, top (tip offset over R, right and up), aim [rad], elevation [rad]}.
  */
 
+import { disc, nib } from "./table.js";
 import { by, firstContact, intoD } from "./play_parts.js";
 
 /** How far the cue is pulled back for the hardest stroke, and from which it is a stroke at all [m]; how softly the power begins. */
@@ -177,25 +178,17 @@ export class Aim {
   drawDial() {
     const dial = by("dial"), ratio = Math.min(window.devicePixelRatio || 1, 3), size = Math.round((dial.clientWidth || 112) * ratio);
     if (dial.width !== size || dial.height !== size) dial.width = dial.height = size;
-    const pen = dial.getContext("2d"), c = size / 2, R = c / 1.08, { wish, app } = this, disc = (x, y, r, style) => {
-      pen.fillStyle = style;
-      pen.beginPath(); pen.arc(x, y, r, 0, 2 * Math.PI); pen.fill();
-    };
+    const pen = dial.getContext("2d"), c = size / 2, R = c / 1.08, { wish, app } = this;
     pen.clearRect(0, 0, size, size);
-    const shade = pen.createRadialGradient(c - 0.3 * R, c - 0.35 * R, 0.1 * R, c, c, R);
-    shade.addColorStop(0, "#fffdf2"); shade.addColorStop(0.7, "#efe9d6"); shade.addColorStop(1, "#a49d89");
-    disc(c, c, R, shade);
-    pen.strokeStyle = "#0003"; pen.lineWidth = ratio;
-    pen.beginPath(); pen.moveTo(c - R, c); pen.lineTo(c + R, c); pen.moveTo(c, c - R); pen.lineTo(c, c + R); pen.stroke();
-    pen.setLineDash([3 * ratio, 3 * ratio]); pen.strokeStyle = "#0006";
-    pen.beginPath(); pen.arc(c, c, app.limits.offset * R, 0, 2 * Math.PI); pen.stroke();
+    disc(pen, c, c, R, pen.createRadialGradient(c - 0.3 * R, c - 0.35 * R, 0.1 * R, c, c, R), [0, "#fffdf2"], [0.7, "#efe9d6"], [1, "#a49d89"]);
+    nib(pen, "#0003", ratio).stroke(new Path2D(`M${c - R} ${c}H${c + R}M${c} ${c - R}V${c + R}`));
+    pen.setLineDash([3 * ratio, 3 * ratio]);
+    disc(nib(pen, "#0006", ratio), c, c, app.limits.offset * R);
     pen.setLineDash([]);
     const room = app.room?.found, { side, top } = room?.moved ? room : wish, x = c + side * R, y = c - top * R;
-    if (room?.moved) {
-      pen.strokeStyle = "#c42030"; pen.lineWidth = 2 * ratio;
-      pen.beginPath(); pen.arc(c + wish.side * R, c - wish.top * R, 0.13 * R, 0, 2 * Math.PI); pen.stroke();
-    }
-    disc(x, y, 0.15 * R, "#2c5f93"); disc(x, y, 0.06 * R, "#9cc4ea");
+    if (room?.moved) disc(nib(pen, "#c42030", 2 * ratio), c + wish.side * R, c - wish.top * R, 0.13 * R);
+    disc(pen, x, y, 0.15 * R, "#2c5f93");
+    disc(pen, x, y, 0.06 * R, "#9cc4ea");
   }
 
   /** Drawing of the aim. */

@@ -4,7 +4,8 @@
  * `times`: from an input to the picture that shows its clouds [ms].
  */
 
-import { ask, by, fill, Latest, make, pairs, pocketWords, setting } from "./play_parts.js";
+import { numbers } from "./table.js";
+import { ask, by, fill, Latest, make, pocketWords, setting } from "./play_parts.js";
 
 const GUIDES = { line: "aim line", paths: "paths of the balls", spread: "paths, and where they stop" };
 const CUE_CLOUD = [255, 255, 255], BALL_CLOUD = [255, 196, 60];
@@ -88,7 +89,7 @@ export class Advisor {
     const { app } = this;
     if (found.stale || input.revision !== app.state.revision || !app.aiming || input.own && this.hover) return;
     const spread = by("guide").value === "spread" || this.hover;
-    found.heat = spread ? [cloud(pairs(found.ball), app.scene.extent, BALL_CLOUD), cloud(pairs(found.cue), app.scene.extent, CUE_CLOUD)] : [];
+    found.heat = spread ? [cloud(numbers(found.ball, Float32Array), app.scene.extent, BALL_CLOUD), cloud(numbers(found.cue, Float32Array), app.scene.extent, CUE_CLOUD)] : [];
     this.found = found;
     this.say();
     app.redraw(() => { this.times.push(performance.now() - input.at); });

@@ -108,9 +108,9 @@ export class Drills {
     const { now, before, counted, tries, score, over } = this;
     kept.set("drill", { now, before, counted, tries, score, over });
     by("drill").hidden = !now;
-    if (!this.now) return;
-    const { name, about, run } = DRILLS[this.now], best = kept.get("best", {})[this.now] ?? 0;
-    const ends = this.over ? `${name}: ${this.score}. Best: ${best}.` : run ? `${name}: ${this.score} points. Best: ${best}.` : `${name}, ${this.tries + 1} of ${TRIES}: ${this.score}. Best: ${best}.`;
-    by("drill-words").textContent = this.over || this.tries ? ends : `${ends} ${about}.`;
+    if (!now) return;
+    const { name, about, run } = DRILLS[now], best = kept.get("best", {})[now] ?? 0;
+    const ends = `${name}${over || run ? "" : `, ${tries + 1} of ${TRIES}`}: ${score}${run && !over ? " points" : ""}. Best: ${best}.`;
+    by("drill-words").textContent = over || tries ? ends : `${ends} ${about}.`;
   }
 }

@@ -97,8 +97,6 @@ export class Latest {
   quiet() { return this.busy ? new Promise(done => this.waiting.push(done)) : Promise.resolve(); }
 }
 
-export const pairs = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
-
 /** Distance from c along (ux, uy) to the points R away from the noses of a bed. */
 export function toCushion(cx, cy, ux, uy, [[x0, x1], [y0, y1]], R) {
   const along = (from, way, low, high) => (way > 1e-12 ? (high - R - from) / way : way < -1e-12 ? (low + R - from) / way : Infinity);

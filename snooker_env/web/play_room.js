@@ -47,23 +47,19 @@ export class Room {
     const c = Math.cos(elevation), s = Math.sin(elevation), q = Math.sqrt(Math.max(0, 1 - side * side - top * top));
     const [px, py] = [R * (top * s - q * c), R * (1 + top * c + q * s)];  // the middle of the tip
     const at = (far, up) => `${px - far * c + up * s},${-(py + far * s + up * c)}`;
+    by("side").replaceChildren();
     const part = (name, kind, values) => {
       const made = document.createElementNS(SVG, kind);
       for (const [key, value] of Object.entries({ class: name, ...values })) made.setAttribute(key, value);
-      return made;
+      by("side").append(made);
     };
-    const parts = [part("cloth", "rect", { x: -wide, y: 0, width: wide + edge, height: high })];
-    if (over === "rail") parts.push(part("wood", "rect", { x: -behind - wide, y: -cue.rail, width: wide, height: cue.rail + high }));
-    else if (over) {
-      const ball = part("ball", "circle", { cx: -behind, cy: -R, r: R });
-      ball.setAttribute("fill", `rgb(${scene.balls[names.indexOf(over)].rgb})`);
-      parts.push(ball);
-    }
-    parts.push(part("cue-ball", "circle", { cx: 0, cy: -R, r: R }));
-    parts.push(part("cue", "polygon", { points: [at(0, cue.tip), at(cue.length, cue.butt), at(cue.length, -cue.butt), at(0, -cue.tip)].join(" ") }));
-    parts.push(part("tip", "polygon", { points: [at(-cue.tip, cue.tip), at(cue.tip, cue.tip), at(cue.tip, -cue.tip), at(-cue.tip, -cue.tip)].join(" ") }));
+    part("cloth", "rect", { x: -wide, y: 0, width: wide + edge, height: high });
+    if (over === "rail") part("wood", "rect", { x: -behind - wide, y: -cue.rail, width: wide, height: cue.rail + high });
+    else if (over) part("ball", "circle", { cx: -behind, cy: -R, r: R, fill: `rgb(${scene.balls[names.indexOf(over)].rgb})` });
+    part("cue-ball", "circle", { cx: 0, cy: -R, r: R });
+    part("cue", "polygon", { points: [at(0, cue.tip), at(cue.length, cue.butt), at(cue.length, -cue.butt), at(0, -cue.tip)] });
+    part("tip", "polygon", { points: [at(-cue.tip, cue.tip), at(cue.tip, cue.tip), at(cue.tip, -cue.tip), at(-cue.tip, -cue.tip)] });
     by("side").setAttribute("viewBox", `${-wide} ${0.1 * high - high} ${wide + edge} ${high}`);
     by("side").setAttribute("aria-label", `The cue from the side, ${Math.round(elevation * 180 / Math.PI)} degrees${over ? ` over the ${over}` : ""}`);
-    by("side").replaceChildren(...parts);
   }
 }

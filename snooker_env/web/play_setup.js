@@ -121,18 +121,13 @@ export class SetUp {
     if (!by("tray").children.length) by("tray").textContent = "Every ball is on the table.";
   }
 
-  at(event) {
-    const box = by("table").getBoundingClientRect();
-    return this.app.view.toTable(event.clientX - box.left, event.clientY - box.top);
-  }
-
   inside(x, y) {
     const [[x0, x1], [y0, y1]] = this.app.scene.extent, out = 0.06;
     return x > x0 - out && x < x1 + out && y > y0 - out && y < y1 + out;
   }
 
   down(event) {
-    const [x, y] = this.at(event), { balls } = this, reach = event.pointerType === "touch" ? 2.5 : 1.3;
+    const [x, y] = this.app.aim.at(event), { balls } = this, reach = event.pointerType === "touch" ? 2.5 : 1.3;
     let best = reach * this.app.view.R, ball = -1;
     for (let i = 0; i < balls.x.length; i++) {
       const far = Math.hypot(balls.x[i] - x, balls.y[i] - y);
@@ -145,7 +140,7 @@ export class SetUp {
   }
 
   move(event) {
-    const { ball } = this.held, [x, y] = this.at(event), over = document.elementFromPoint(event.clientX, event.clientY) === by("table");
+    const { ball } = this.held, [x, y] = this.app.aim.at(event), over = document.elementFromPoint(event.clientX, event.clientY) === by("table");
     this.balls.on[ball] = Number(over && this.inside(x, y));
     if (this.balls.on[ball]) {
       const { lines } = this.app.scene, spot = lines?.spots.find(([sx, sy]) => Math.hypot(sx - x, sy - y) < 0.4 * this.app.view.R);

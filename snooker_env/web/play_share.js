@@ -1,45 +1,62 @@
 /**
- * How is a position or a stroke passed on? As text after the # of the page's address: the game as saved, or the last stroke as a replay has it, as
- * JSON, deflated, in base64url.
+ * How is a position, a stroke or a replay passed on? As text after the # of the page's address: the game as it is saved, the last stroke as the server
+ * tells it, or the game with all that was played. JSON, deflated, in base64url.
  */
 
-import { ask, by, ServerError } from "./play_parts.js";
+import { numbers } from "./table.js";
+import { ask, by } from "./play_parts.js";
 
-const KINDS = ["game", "stroke"];
+/** Of each kind of link: its JSON, after so many strokes. */
+const KINDS = {
+  game: () => ask("save", {}),
+  stroke: async n => JSON.stringify((await ask("strokes", undefined, `?from=${n - 1}`)).strokes[0]),
+  replay: () => ask("save", { acts: true }),
+};
+/** Characters of the longest link. */
+const MOST = 30_000;
+
+function deflate(Stream) {
+  try { return new window[Stream]("deflate-raw"); } catch { throw new Error("This browser is too old for links: use Save or Replay file instead."); }
+}
 const through = (bytes, stream) => new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer();
+
+function short(link) {
+  if (link.length > MOST) throw new Error(`A link can have ${MOST / 1000} kB, this one has ${Math.ceil(link.length / 1000)}: use Save or Replay file instead.`);
+  return link;
+}
 
 /** A text of JSON as "#kind=text". */
 export async function packed(kind, json) {
-  const bytes = new Uint8Array(await through(new TextEncoder().encode(json), new CompressionStream("deflate-raw")));
+  const bytes = new Uint8Array(await through(json, deflate("CompressionStream")));
   const text = btoa(Array.from(bytes, byte => String.fromCharCode(byte)).join(""));
-  return `#${kind}=${text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "")}`;
+  return short(`#${kind}=${text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "")}`);
 }
 
 /** [kind, text of JSON] of a link or its fragment; Error if it is none. */
 export async function unpacked(link) {
-  const [, kind, text] = /#(\w+)=([\w-]+)\s*$/.exec(link) ?? [];
-  if (!KINDS.includes(kind)) throw new Error("This is not a link to a position or a stroke.");
+  const [, kind, text] = /#(\w+)=([\w-]+)\s*$/.exec(short(link)) ?? [];
+  if (!Object.hasOwn(KINDS, kind)) throw new Error("This is no link to a position, a stroke or a replay.");
+  const stream = deflate("DecompressionStream");
   try {
-    const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), one => one.charCodeAt(0));
-    return [kind, new TextDecoder().decode(await through(bytes, new DecompressionStream("deflate-raw")))];
+    const bytes = numbers(text.replaceAll("-", "+").replaceAll("_", "/"), Uint8Array);
+    return [kind, new TextDecoder().decode(await through(bytes, stream))];
   } catch { throw new Error("The link is damaged: was it copied whole?"); }
 }
 
 export class Share {
   constructor(app) {
     this.app = app;
-    by("share-game").onclick = () => this.offer("game", () => ask("save", {}));
-    by("share-shot").onclick = () => this.offer("stroke", async () => JSON.stringify((await ask("strokes", undefined, `?from=${app.state.strokes - 1}`)).strokes[0]));
+    for (const kind in KINDS) by(`share-${kind}`).onclick = () => this.offer(kind);
     const link = by("link"), open = () => { this.open(link.value); link.value = ""; };
     link.onpaste = () => setTimeout(open);
     link.onkeydown = event => event.key === "Enter" && open();
-    window.addEventListener("hashchange", () => this.fromAddress());
+    window.onhashchange = () => this.fromAddress();
   }
 
   /** Copy a link, and show it in the field: where a page may not write the clipboard, it can be copied there. */
-  async offer(kind, what) {
+  async offer(kind) {
     try {
-      const link = await packed(kind, await what()), field = by("link");
+      const link = await packed(kind, await KINDS[kind](this.app.state.strokes)), field = by("link");
       field.value = link;
       field.select();
       try { await navigator.clipboard.writeText(link); } catch { /* it is selected */ }
@@ -58,12 +75,12 @@ export class Share {
   async open(link) {
     const { app } = this;
     try {
-      const [kind, value] = await unpacked(link);
-      if (kind === "game") app.sure("Leave this frame for the position of the link?", "Open", () => app.go("load", `{"saved": ${value}}`));
+      const [kind, text] = await unpacked(link);
+      if (kind !== "stroke") app.sure(`Leave this frame for the ${kind === "game" ? "position" : kind} of the link?`, "Open", () => app.go("load", `{"saved": ${text}}`));
       else {
         while (app.behind) await new Promise(done => setTimeout(done, 200));
-        await app.film(JSON.parse(value));
+        await app.film(JSON.parse(text));
       }
-    } catch (error) { app.trouble(error instanceof ServerError ? error : new Error(error.message)); }
+    } catch (error) { app.trouble(error); }
   }
 }

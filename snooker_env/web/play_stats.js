@@ -55,7 +55,6 @@ export class Stats {
   /** A stroke is asked of a person, or no longer. */
   turn(asked) {
     const { strokes, striker } = this.app.state, key = asked ? `${strokes} ${striker}` : null;
-    if (!strokes) this.times.clear();
     if (key !== this.key) this.since = asked ? performance.now() : null;
     this.key = key;
     this.show();

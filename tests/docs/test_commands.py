@@ -48,6 +48,9 @@ SHORT = {
 }
 """Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
 
+SLOW = {"benchmarks.pockets", "benchmarks.rack", "benchmarks.stability", "benchmarks.tradeoff"}
+"""Those of ``SHORT`` that compile much."""
+
 ELSEWHERE = {
     "pytest": ".ci/run",
     "sphinx": ".ci/run",
@@ -120,7 +123,13 @@ def test_commands_have_the_options_that_are_given(name):
         assert re.search(rf'"{option}"|^    {field}: ', source, re.MULTILINE), option
 
 
-@pytest.mark.parametrize("name", sorted(set(GIVEN) & set(SHORT)))
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if name in SLOW else [])
+        for name in sorted(set(GIVEN) & set(SHORT))
+    ],
+)
 def test_commands_run(name, tmp_path):
     arguments = shlex.split(SHORT[name].format(tmp=tmp_path))
     command = [sys.executable, name] if name.endswith(".py") else [sys.executable, "-m", name]

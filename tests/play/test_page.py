@@ -1,9 +1,11 @@
 """Does the page play? In a real headless Chromium, by mouse, keys and touch."""
 
 import json
+import re
 import time
 from math import pi
 
+import numpy as np
 import pytest
 
 from snooker_env.play.server import FILES
@@ -817,6 +819,13 @@ def test_a_drill_counts_and_keeps_its_best(shown):
     assert not shown.page.is_visible("#drill")
 
 
+def link_of(shown, kind):
+    """What the button for this kind of link makes."""
+    shown.page.click(f"#share-{kind}")
+    shown.until("document.getElementById('link').value.startsWith(argument)", f"#{kind}=")
+    return shown.page.input_value("#link")
+
+
 def test_a_position_and_a_stroke_are_passed_on_as_links(shown):
     shown.set_up(EASY, scores=[12, 30])
     shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})
@@ -824,10 +833,8 @@ def test_a_position_and_a_stroke_are_passed_on_as_links(shown):
     shown.played(1)
     shown.page.click("#files summary")
     links = {}
-    for kind, button in (("game", "#share-game"), ("stroke", "#share-shot")):
-        shown.page.click(button)
-        shown.until("document.getElementById('link').value.startsWith(argument)", f"#{kind}=")
-        links[kind] = shown.page.input_value("#link")
+    for kind in ("game", "stroke"):
+        links[kind] = link_of(shown, kind)
         assert len(links[kind]) < 6000
     state = shown.line("api/save", {})[1]
     shown.line("api/new", {"layout": "break_off", "seed": 3})
@@ -850,6 +857,92 @@ def test_a_position_and_a_stroke_are_passed_on_as_links(shown):
     shown.page.keyboard.press("Enter")
     shown.until("document.getElementById('last').className === 'trouble'")
     assert "copied whole" in shown.page.inner_text("#last")
+
+
+def test_a_whole_replay_is_passed_on_as_a_link(shown):
+    """It is shown from its first stroke, and gone on with; it meets the same errors as when it was played."""
+    shown.set_up(VISIT)
+    shown.line("api/players", {"noise": ["club", "amateur"]})
+    for aim_at in (
+        ["red 1", "top right"],
+        ["black", "top left"],
+        ["red 2", "top left"],
+        ["blue", "middle left"],
+    ):
+        if shown.line("api/state")[1]["phase"] == "choice":
+            shown.line("api/stroke", {"choice": "play"})
+        status, _, _ = shown.line("api/stroke", {"speed": 1.6, "aim_at": {"pot": aim_at}})
+        if status == 422:  # that ball is gone
+            shown.line("api/stroke", {"speed": 3.0, "aim": 1.0})
+    strokes, state = (shown.line(f"api/{name}")[1] for name in ("strokes", "state"))
+    assert len(strokes["strokes"]) == 4 and strokes["strokes"][0]["cue"]["speed"] != 1.6
+    shown.until("page.moving")
+    shown.played(4)
+    shown.page.click("#files summary")
+    link = link_of(shown, "replay")
+    assert 600 < len(link) < 2000
+    shown.line("api/new", {"layout": "break_off", "seed": 3})
+    shown.line("api/stroke", {"speed": 4.0, "aim": 1.5})
+    shown.page.goto("about:blank")
+    shown.page.goto(shown.line.server.address + link)
+    shown.until("document.getElementById('confirm').open")
+    shown.page.click("#confirm-yes")
+    for n in (1, 2):
+        shown.until("page.moving && page.played === argument", n)
+        first, second = shown("[page.moving.stroke.cue, page.state.strokes]")
+        assert first == strokes["strokes"][n - 1]["cue"] and second == 4
+        shown.page.click("#skip")
+    shown.until("page.moving && page.played === 3")
+    shown.page.click("#turn")
+    shown.until(f"page.played === 4 && !page.behind && {SETTLED}")
+    again, now = (shown.line(f"api/{name}")[1] for name in ("strokes", "state"))
+    for one, last in ((strokes, "Position set up."), (again, "Game loaded.")):
+        assert one["strokes"][0]["tables"][0].pop("last") == last
+    assert again["strokes"] == strokes["strokes"]
+    changing = ("revision", "begun", "undo", "redo")
+    assert {k: v for k, v in now.items() if k not in changing} == {
+        k: v for k, v in state.items() if k not in changing
+    }
+    assert not shown("page.hurried || page.replay")
+    shown.page.click("#undo")
+    shown.until(f"page.state.strokes === 3 && {SETTLED}")
+    shown.line("api/players", PERSONS)
+
+
+def test_a_link_that_cannot_be_made_or_opened_is_refused_in_one_sentence(shown):
+    shown.set_up(EASY)
+    code = (
+        "async text => (await import('./play_share.js')).packed('replay', text).catch(error => error.message)"
+    )
+    text = json.dumps(np.random.default_rng(1).uniform(size=3000).tolist())
+    assert len(shown.page.evaluate(code, text[:40_000])) < 30_000
+    instead = "use Save or Replay file instead."
+    said = shown.page.evaluate(code, text)
+    assert re.fullmatch(r"A link can have 30 kB, this one has (3\d): " + instead, said)
+    shown.page.click("#files summary")
+    for link, words in (
+        ("#replay=" + "A" * 29_993, f"A link can have 30 kB, this one has 31: {instead}"),
+        ("#constructor=AAAA", "This is no link to a position, a stroke or a replay."),
+        ("#replay=AAAA", "The link is damaged: was it copied whole?"),
+    ):
+        shown.page.fill("#link", link)
+        shown.page.keyboard.press("Enter")
+        shown.until("document.getElementById('last').textContent === argument", words)
+    wrong = shown.page.evaluate(code, '{"format": "snooker-game", "acts": [], "end": {}}')
+    shown("[window.CompressionStream, window.DecompressionStream] = [undefined, window.DecompressionStream]")
+    shown.page.click("#share-game")
+    old = f"This browser is too old for links: {instead}"
+    shown.until("document.getElementById('last').textContent === argument", old)
+    shown.page.fill("#link", wrong)
+    shown.page.keyboard.press("Enter")
+    shown.until("document.getElementById('last').textContent.startsWith('saved')")
+    shown("window.DecompressionStream = undefined")
+    shown.page.fill("#link", wrong)
+    shown.page.keyboard.press("Enter")
+    shown.until("document.getElementById('last').textContent === argument", old)
+    shown.errors = [
+        e for e in shown.errors if "422" not in e
+    ]  # the browser's own line for the refused replay
 
 
 def test_a_shot_clock_plays_the_stroke_as_it_is_aimed(shown):

@@ -10,6 +10,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from snooker_env.advice import advise
 from snooker_env.game.balls import PINK
 from snooker_env.game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from snooker_env.geometry import POCKETS
@@ -374,6 +375,32 @@ def test_advice_is_ranked_named_and_drawn(game):
     assert played["stroke"]["pots"] == [1]
 
 
+@pytest.mark.parametrize(
+    ("layout", "agent", "pots"), [("opened", "search_2000", True), ("break_off", "tactician_500", False)]
+)
+def test_hints_are_different_strokes_and_the_best_of_each(game, layout, agent, pots):
+    """One for each pot, and for each kind of safety: what an agent ranks are mostly ways of the same one."""
+    game("new", layout=layout, seed=2)
+    asked = {"noise": "amateur", "samples": 40, "seed": 3}
+    session, by = game.session, game.service.seats.players[agent]
+    options = {"cue": session.cue, "miss": session.miss}
+    ranked = advise(session.position, agent=by, n=13, options=options, **asked)
+    first = {}
+    for one in ranked:
+        third = (one.stops[1] > -1.0475) + (one.stops[1] > 1.0475)
+        key = (one.ball, one.pocket) if one.kind == "pot" else (one.kind, one.ball < 16 or one.ball, third)
+        first.setdefault(key, one.words)
+    found = game("advise", agent=agent, n=5, **asked)
+    words = [one["words"] for one in found["suggestions"]]
+    assert words == list(first.values())[:5] and 1 < len(first) < len(ranked) > 5
+    assert [one["win"] for one in found["suggestions"]] == sorted(
+        (one["win"] for one in found["suggestions"]), reverse=True
+    )
+    assert any(one["kind"] == "pot" for one in found["suggestions"][:2]) == pots
+    one = game("advise", agent=agent, n=1, **asked)["suggestions"]
+    assert len(one) == 1
+
+
 def test_destinations_spread_with_the_errors(game):
     game("position", position=EASY)
     unpacked = lambda text: np.frombuffer(base64.b64decode(text), "<f4").reshape(-1, 2)  # noqa: E731
@@ -409,13 +436,24 @@ def test_undo_redo_new_save_load_and_replay(game):
     assert replay["format"] == "snooker-replay" and len(replay["strokes"]) == 1
     assert replay["players"] == ["Player 1", "Player 2"]
     assert json.loads(json.dumps(replay))["strokes"][0]["words"] in game.get("replay.html")
-    saved = game("save")
+    saved, whole = game("save"), game("save", acts=True)
     assert game("undo")["scores"] == [0, 0] and game("redo")["scores"] == [1, 0]
     fresh = game("new", layout="colours", seed=4)
     assert fresh["reds"] == 0 and fresh["ball_on"] == "yellow" and not fresh["undo"] and fresh["strokes"] == 0
     again, other = (game("new", layout="colours", seed=seed)["positions"] for seed in (4, 5))
     assert again == fresh["positions"] != other
-    assert game("load", saved=saved)["scores"] == [1, 0]
+    loaded = game("load", saved=saved)
+    assert loaded["scores"] == [1, 0] and loaded["strokes"] == 0 and loaded["begun"] > fresh["begun"]
+    opened = game("load", saved=whole)
+    assert opened["begun"] == loaded["begun"] + 1 and opened["strokes"] == 1 and opened["scores"] == [1, 0]
+    assert game.get("replay")["strokes"] == replay["strokes"]
+    whole["acts"][0]["speed"] = 0.1
+    with pytest.raises(ValueError, match=r"^saved\.acts\[0\]\.speed = 0\.1"):
+        game("load", saved=whole)
+    assert game.get("state") == opened | {"revision": game.get("state")["revision"]}
+    for name, value in (("acts", 1), ("more", True)):
+        with pytest.raises(ValueError, match=name):
+            game("save", **{name: value})
     for name, value in (("layout", "x"), ("seed", -1), ("breaker", 2), ("seed", "1")):
         with pytest.raises(ValueError, match=f"{name} = {value!r}"):
             game("new", **{name: value})

@@ -123,7 +123,7 @@ def test_a_link_is_opened_as_often_as_it_is_pasted_and_errors_are_seen(shown):
     shown.page.fill("#link", "#nothing")
     shown.page.keyboard.press("Enter")
     shown.until("document.getElementById('last').className === 'trouble'")
-    assert seen(shown, "last") and "not a link" in shown.page.inner_text("#last")
+    assert seen(shown, "last") and "no link" in shown.page.inner_text("#last")
     for name, text, said in (
         ("null.json", "null", "null.json is no saved game."),
         ("list.json", "[1]", "list.json is no saved game."),

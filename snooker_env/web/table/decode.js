@@ -28,7 +28,7 @@ const HIGH = 0.01;
 const FALL = 0.2;
 
 /** Numbers from base64. */
-const numbers = (text, Type) => new Type(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
+export const numbers = (text, Type) => new Type(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
 /** The rotation q, then one by the vector (x, y, z) [rad]; quaternions are [w, x, y, z]. */
 function turned(q, x, y, z) {

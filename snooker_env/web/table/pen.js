@@ -45,7 +45,7 @@ function cast(pen, colour, blur, ...filling) {
   pen.shadowColor = "#0000";
 }
 
-function disc(pen, x, y, radius, filling, ...stops) {
+export function disc(pen, x, y, radius, filling, ...stops) {
   pen.beginPath();
   pen.arc(x, y, radius, 0, TURN);
   if (filling) fill(pen, filling, ...stops);
@@ -58,7 +58,7 @@ function glow(pen, x, y, radius, ...stops) {
 }
 
 /** Set a pen's line style. */
-const nib = (pen, strokeStyle, lineWidth) => Object.assign(pen, { strokeStyle, lineWidth });
+export const nib = (pen, strokeStyle, lineWidth) => Object.assign(pen, { strokeStyle, lineWidth });
 
 /** A path through points, drawn if it has a width. */
 function polyline(pen, points, width, colour) {

@@ -1,0 +1,143 @@
+"""Is a whole game written down, and played again elsewhere, as it was? By its first table and what was asked for."""
+
+import json
+from math import pi
+
+import numpy as np
+import pytest
+
+from snooker_env.advice import CueStroke
+from snooker_env.game.balls import PINK
+from snooker_env.game.ruling import AUTO
+from snooker_env.planning import Position
+from snooker_env.play.acts import MOST_ACTS, opened, written
+from snooker_env.play.session import DECLINED, Session
+from tests.play.test_session import standing
+from tests.playing import EASY, STRAIGHT
+
+KINDS = ("choice", "declare", "nominate", "place", "practice", "cue")
+
+
+def anything(seed, acts=80, **game):
+    """A game in which all that can be asked for is: random strokes, choices, places, nominations, seats."""
+    rng, session = np.random.default_rng(seed), Session(seed=seed)
+    session.new(layout="break_off", seed=seed, **game)
+    session.noise[:] = ["club", "professional"]
+    for k in range(acts):
+        frame = session.frame
+        if frame.phase == "over":
+            break
+        if frame.phase == "choice":
+            session.choose(frame.choices[rng.integers(len(frame.choices))])
+            continue
+        if k % 20 == 10:
+            session.noise[0], session.cue = ("none", "free") if session.cue == "real" else ("club", "real")
+        session.practice = k % 30 > 24
+        if frame.in_hand and k % 3:
+            session.place(*rng.uniform(-1.0, 1.0, 2).tolist())
+        named = session.nominations()
+        nominated = DECLINED if frame.free_ball and k % 2 else int(rng.choice(named)) if named else AUTO
+        speed, aim, side, top = rng.uniform((0.5, -pi, -0.3, -0.3), (7.0, pi, 0.3, 0.3)).tolist()
+        stroke = CueStroke(speed=speed, aim=aim, side=side, top=top)
+        session.play(stroke, nominated=nominated)
+    return session
+
+
+def sent(session):
+    """What is written down, as it arrives."""
+    return json.loads(json.dumps(written(session)))
+
+
+@pytest.mark.parametrize("game", ["snooker", "six_red"])
+def test_a_game_is_played_again_bit_by_bit(game):
+    kinds = set()
+    for seed in range(6):
+        session, other = anything(seed, game=game), Session(seed=99)
+        if session.frame.phase == "choice":
+            session.choose("play")
+        if session.frame.phase == "stroke":
+            session.concede()
+        saved = sent(session)
+        opened(other, saved)
+        assert [act.state for act in other.acts[1:]] == [act.state for act in session.acts[1:]]
+        assert [act.played and act.played.cue for act in other.acts[1:]] == [
+            act.played and act.played.cue for act in session.acts[1:]
+        ]
+        assert (other.noise, other.practice, other.cue, other.game) == (
+            session.noise,
+            session.practice,
+            session.cue,
+            game,
+        )
+        assert sent(other) == saved and other.begun == 2
+        while other.undo():
+            pass
+        assert other.state == session.acts[0].state and other.redo()
+        kinds |= {name for act in saved["acts"] for name in act if act[name]}
+    assert kinds >= set(KINDS)
+
+
+def test_it_begins_at_the_last_new_table_and_ends_before_what_was_undone():
+    session = anything(3, acts=5)
+    session.noise[:], session.practice = ["none", "none"], False
+    session.set_up(Position(**EASY), scores=(3, 4), striker=1, free_ball=False)
+    assert sent(session)["acts"] == [] and sent(session)["state"] == session.state
+    session.play(CueStroke(speed=2.0, aim=STRAIGHT))
+    session.play(CueStroke(speed=1.0, aim=1.0))
+    session.undo()
+    saved, other = sent(session), Session()
+    opened(other, saved)
+    assert saved["state"] == session.acts[-3].state and len(saved["acts"]) == 1
+    assert other.state == session.state and len(other.strokes) == 1 and other.frame.scores == (3, 5)
+    opened(other, session.save())
+    assert other.state == session.state and not other.strokes
+
+
+def test_a_free_ball_that_was_declined_is_declined_again():
+    asked = {}
+    for nominated in (AUTO, DECLINED, PINK):
+        session, other = standing(EASY, free_ball=True), Session()
+        session.play(CueStroke(speed=2.0, aim=STRAIGHT), nominated=nominated)
+        opened(other, sent(session))
+        assert other.state == session.state
+        asked[nominated] = sent(session)["acts"][0]["nominate"], session.frame.scores
+    assert asked == {AUTO: (None, (1, 0)), DECLINED: ("none", (1, 0)), PINK: ("pink", (0, 4))}
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda s: s.update(acts={}), r"^saved\.acts = something else: must be a list of at most 1000"),
+        (lambda s: s.update(acts=s["acts"] * (MOST_ACTS + 1)), "must be a list of at most 1000"),
+        (lambda s: s.update(acts=[1]), r"^saved\.acts\[0\]\.act = 1: must be an object"),
+        (lambda s: s["acts"][0].update(speed=99), r"^saved\.acts\[0\]\.speed = 99"),
+        (lambda s: s["acts"][0].pop("aim"), r"^saved\.acts\[0\]\.stroke"),
+        (lambda s: s["acts"][0].update(spin=1), r"^saved\.acts\[0\]\.field = 'spin'"),
+        (lambda s: s["acts"][0].update(noise="perfect"), r"^saved\.acts\[0\]\.noise = 'perfect'"),
+        (lambda s: s["acts"][0].pop("practice"), r"^saved\.acts\[0\]\.practice = None"),
+        (lambda s: s["acts"][0].update(cue=[]), r"^saved\.acts\[0\]\.cue"),
+        (lambda s: s["acts"][0].update(place=[0.0, -1.2]), r"^saved\.acts\[0\]\.place"),
+        (lambda s: s["acts"][0].update(nominate="red 1"), r"^saved\.acts\[0\]\.nominate = 'red 1'"),
+        (lambda s: s["acts"].append({"choice": "play"}), r"^saved\.acts\[1\]\.choice = 'play'"),
+        (lambda s: s["acts"].append({"declare": "claim"}), r"^saved\.acts\[1\]\.lead"),
+        (lambda s: s["acts"].append({"declare": "resign"}), r"^saved\.acts\[1\]\.declare = 'resign'"),
+        (lambda s: s["acts"].append({"declare": "concede", "aim": 1}), r"^saved\.acts\[1\]\.field = 'aim'"),
+        (lambda s: s["acts"][0].update(aim=STRAIGHT + 0.01), r"^saved\.end = another table"),
+        (lambda s: s.pop("end"), r"^saved\.end = another table"),
+        (lambda s: s["end"]["scores"].reverse(), r"^saved\.end = another table"),
+        (lambda s: s["end"]["positions"].pop("pink"), r"^saved\.end = another table"),
+        (lambda s: s["end"]["positions"].update(pink=[0.0, 0.895]), r"^saved\.end = another table"),
+        (lambda s: s["end"]["positions"].update(pink="x"), r"^saved\.end\.positions"),
+        (lambda s: s.pop("noise"), "^saved = version 1"),
+        (lambda s: s["state"].update(stream=[1]), "stream"),
+    ],
+)
+def test_what_is_not_sound_is_refused_and_changes_nothing(change, words):
+    session = standing(EASY)
+    session.play(CueStroke(speed=2.0, aim=STRAIGHT))
+    saved, other = sent(session), standing(EASY)
+    before, acts = other.save(), list(other.acts)
+    change(saved)
+    with pytest.raises(ValueError, match=words):
+        opened(other, saved)
+    assert other.save() == before and other.acts == acts
