@@ -1,14 +1,14 @@
 """Where do figures come from? The commit of the checkout, the machine, and the versions that matter."""
 
-from snooker_env import benchmark
-from snooker_env.benchmark import commit, software
+from snooker_env.benchmark import provenance as its
+from snooker_env.benchmark.provenance import commit, software
 
 __all__ = ["commit", "line", "machine", "provenance", "software"]
 
 
 def machine():
     """Platform, processor, cores, load and versions: a dict for JSON files."""
-    return benchmark.machine() | software()
+    return its.machine() | software()
 
 
 def line(m=None):

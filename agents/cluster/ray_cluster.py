@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 
 from commands.lifecycle import DISK, installs
-from snooker_env.benchmark import software as versions
+from snooker_env.benchmark.provenance import software as versions
 from snooker_env.checks import refuse
 from snooker_env.planning import processors
 
@@ -210,7 +210,7 @@ def _task():
     def play(task, shared, args, wanted):
         from agents.cluster.job import ClusterError, run
         from agents.cluster.ray_cluster import difference
-        from snooker_env.benchmark import processor
+        from snooker_env.benchmark.provenance import processor
 
         differs = difference(wanted)
         if differs:

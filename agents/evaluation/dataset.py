@@ -22,7 +22,8 @@ with needs("agents.dataset"):
     import snooker_env as sn
     from commands.files import write_atomic
     from commands.provenance import provenance
-    from snooker_env.benchmark import HELD_OUT_SEED, TASKS, task_of
+    from snooker_env.benchmark import HELD_OUT_SEED, TASKS
+    from snooker_env.benchmark.tasks import task_of
     from snooker_env.checks import choice, integer, refuse, refuse_what
     from snooker_env.planning import Planner, Positions
     from snooker_env.players import FRAMES, VISITS, decided, decision_seeds

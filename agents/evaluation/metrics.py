@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snooker_env.benchmark import FIGURES, Resamples, figure, iqm, unseen
+from snooker_env.benchmark import FIGURES, iqm
+from snooker_env.benchmark.statistics import Resamples, figure, unseen
 
 from .entrants import Entrant
 

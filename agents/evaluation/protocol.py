@@ -38,9 +38,12 @@ with needs("agents.evaluate"):
     from commands.physics_option import physics_option
     from commands.provenance import provenance
     from commands.tables import show
-    from snooker_env.benchmark import HELD_OUT_SEED, RESAMPLES, counts, play_visits, tables_of
+    from snooker_env.benchmark import HELD_OUT_SEED, play_visits
+    from snooker_env.benchmark.rollouts import counts
+    from snooker_env.benchmark.statistics import RESAMPLES
+    from snooker_env.benchmark.tasks import tables_of
     from snooker_env.checks import choice, integer, parse_fidelity, refuse
-    from snooker_env.game import plan_of
+    from snooker_env.game.layouts import plan_of
     from snooker_env.players.model_options import add_model_options
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise

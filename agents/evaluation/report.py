@@ -18,7 +18,8 @@ from commands.lifecycle import command, needs, parser_of
 with needs("agents.report"):
     from commands.files import read_json, write_atomic
     from commands.tables import TextTable, page, show, shown
-    from snooker_env.benchmark import CENTURY, FIGURES, MAXIMUM, most_points
+    from snooker_env.benchmark import CENTURY, FIGURES, MAXIMUM
+    from snooker_env.benchmark.tasks import most_points
     from snooker_env.checks import refuse
 
     from . import tournament_report

@@ -20,7 +20,7 @@ with needs("agents.search"):
     import snooker_env
     from commands.physics_option import physics_option
     from snooker_env.checks import integer, parse_fidelity, refuse
-    from snooker_env.game import plan_of
+    from snooker_env.game.layouts import plan_of
     from snooker_env.players.search import SearchPlayer
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise

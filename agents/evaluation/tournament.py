@@ -27,7 +27,9 @@ with needs("agents.tournament"):
     from commands.physics_option import physics_option
     from commands.tables import show
     from snooker_env import Options
-    from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
+    from snooker_env.benchmark import read_result, write_result
+    from snooker_env.benchmark.provenance import machine
+    from snooker_env.benchmark.statistics import RESAMPLES
     from snooker_env.checks import choice, integer, refuse
     from snooker_env.players import FRAMES
     from snooker_env.players.model_options import add_model_options

@@ -17,7 +17,7 @@ from itertools import combinations
 
 import numpy as np
 
-from snooker_env.benchmark import RESAMPLES, Resamples, figure
+from snooker_env.benchmark.statistics import RESAMPLES, Resamples, figure
 
 from .metrics import bounded
 

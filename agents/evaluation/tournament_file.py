@@ -6,7 +6,9 @@ Software, machine, command, commit and date are those of a benchmark's result (`
 from datetime import datetime, timezone
 from itertools import groupby
 
-from snooker_env.benchmark import commit, faults_of_fields, machine, read_result, software
+from snooker_env.benchmark import read_result
+from snooker_env.benchmark.provenance import commit, machine, software
+from snooker_env.benchmark.schema import faults_of_fields
 from snooker_env.checks import refuse
 
 from .tournament_figures import ANCHOR_ELO, COLUMNS, PRIOR, figures_of, schedule

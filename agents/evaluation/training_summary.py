@@ -6,7 +6,8 @@ import numpy as np
 
 from commands.tables import text_table
 from snooker_env import player
-from snooker_env.benchmark import play_visits, summary, tables_of
+from snooker_env.benchmark import play_visits, summary
+from snooker_env.benchmark.tasks import tables_of
 from snooker_env.players.search import BUDGET, SearchPlayer
 
 from ..learning.hyperparameters import SHOT_OPTIONS

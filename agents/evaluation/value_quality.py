@@ -21,7 +21,8 @@ with needs("agents.value_quality"):
     from commands.files import writable, write_atomic, write_json
     from commands.provenance import provenance
     from commands.tables import TextTable, page, show
-    from snooker_env.benchmark import play_visits, tables_of
+    from snooker_env.benchmark import play_visits
+    from snooker_env.benchmark.tasks import tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.planning import RULE_OF_THUMB, SURE, Positions, prospects_of
     from snooker_env.players import BoundPlayer

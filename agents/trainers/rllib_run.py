@@ -41,7 +41,9 @@ with needs("agents.train_rllib"):
     from commands.lock import NAME as LOCK
     from commands.lock import Lock
     from snooker_env import Options
-    from snooker_env.benchmark import play_visits, software, summary, tables_of
+    from snooker_env.benchmark import play_visits, summary
+    from snooker_env.benchmark.provenance import software
+    from snooker_env.benchmark.tasks import tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.game import HELD_OUT
     from snooker_env.progress import Progress

@@ -3,7 +3,6 @@
 from .balls import COLOUR_NAMES, CUE, N_BALLS, NAMES, SPOTS, TOUCH, VALUES, BallOn, balls_on
 from .banks import HELD_OUT
 from .layouts import LAYOUTS, POT_WINDOWS, layout
-from .layouts import plan_of as plan_of
 
 __all__ = [
     "COLOUR_NAMES",

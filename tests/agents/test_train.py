@@ -20,7 +20,8 @@ from agents.learning import callback, hyperparameters
 from agents.learning.hyperparameters import names
 from agents.players.trained import load_player
 from snooker_env import progress
-from snooker_env.benchmark import play_visits, summary, tables_of
+from snooker_env.benchmark import play_visits, summary
+from snooker_env.benchmark.tasks import tables_of
 from snooker_env.progress import Progress
 from tests.agents.training import TINY, results, resume, run, weights
 from tests.processes import ROOT, replace

@@ -7,12 +7,13 @@ import pytest
 from scipy import stats
 
 import snooker_env as sn
-from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, interval, judge, page, unseen
+from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, interval, judge, page
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.leaderboard import LEGEND, board, lines
 from snooker_env.benchmark.playing import play_episodes
 from snooker_env.benchmark.results import budget_of, figures_of, read_result
 from snooker_env.benchmark.schema import FIELDS
+from snooker_env.benchmark.statistics import unseen
 from snooker_env.benchmark.tasks import HELD_OUT_SEED
 from snooker_env.planning import Planner
 from snooker_env.players import VISITS, BoundPlayer, Strokes, decision_seeds

@@ -5,8 +5,9 @@ import pytest
 
 import snooker_env as sn
 from agents.evaluation import protocol
-from snooker_env.benchmark import HELD_OUT_SEED, play_visits, rollouts, tables_of
+from snooker_env.benchmark import HELD_OUT_SEED, play_visits, rollouts
 from snooker_env.benchmark.rollouts import FIGURES, Strokes, counts, summary
+from snooker_env.benchmark.tasks import tables_of
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BallOn
 from snooker_env.game.banks import HELD_OUT

@@ -6,7 +6,8 @@ from scipy import stats
 
 from agents.evaluation.entrants import Entrant
 from agents.evaluation.metrics import EntrantMetrics
-from snooker_env.benchmark import Resamples, interval, iqm
+from snooker_env.benchmark import interval, iqm
+from snooker_env.benchmark.statistics import Resamples
 
 
 def test_iqm_is_scipys_trimmed_mean():

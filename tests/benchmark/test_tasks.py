@@ -12,11 +12,11 @@ from gymnasium.utils.env_checker import check_env, data_equivalence
 
 import snooker_env as sn
 from snooker_env._registration import ENTRY_POINTS, FORMS, ID
-from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS, tables_of, task_of
+from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS
 from snooker_env.benchmark import tasks as benchmark_tasks
 from snooker_env.benchmark.playing import Repeater, play_episodes, rows_of, tables_for
 from snooker_env.benchmark.results import figures_of
-from snooker_env.benchmark.tasks import FREE
+from snooker_env.benchmark.tasks import FREE, tables_of, task_of
 from snooker_env.game import layout
 from snooker_env.game.layouts import STORED_IN
 from snooker_env.players import BoundPlayer, Strokes

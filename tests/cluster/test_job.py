@@ -13,7 +13,8 @@ from agents.cluster.keep import Keep, Store, digest_of, packed, unpacked
 from agents.evaluation import protocol, visits
 from agents.evaluation.entrants import Entrant
 from snooker_env import player
-from snooker_env.benchmark import play_visits, tables_of
+from snooker_env.benchmark import play_visits
+from snooker_env.benchmark.tasks import tables_of
 from tests.agents.training import interrupted_at
 from tests.cluster.players import AT, same
 from tests.processes import ROOT

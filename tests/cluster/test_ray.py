@@ -22,7 +22,7 @@ from agents.evaluation import protocol, searched, visits
 from agents.evaluation.entrants import Entrant
 from agents.evaluation.travel import sent
 from agents.learning import self_play
-from snooker_env.benchmark import tables_of
+from snooker_env.benchmark.tasks import tables_of
 from snooker_env.planning import Positions
 from tests.cluster.players import AT, same
 from tests.processes import ROOT

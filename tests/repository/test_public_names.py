@@ -55,12 +55,13 @@ def private(source):
     return direct + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)
 
 
-SHARED = "RESAMPLES Resamples commit counts faults_of_fields figure machine most_points processor software"
-SHARED += " tables_of task_of unseen"
-"""Of the benchmark: what the evaluation of agents writes and counts alike."""
 TRAINED_FOR = (
-    *(f"snooker_env.benchmark: {name}" for name in SHARED.split()),
-    "snooker_env.game: plan_of",
+    "snooker_env.benchmark.provenance",
+    "snooker_env.benchmark.rollouts: counts",
+    "snooker_env.benchmark.schema: faults_of_fields",
+    "snooker_env.benchmark.statistics",
+    "snooker_env.benchmark.tasks",
+    "snooker_env.game.layouts: plan_of",
     *(f"snooker_env.render.diagrams: {name}_of" for name in ("bandwidth", "density", "level")),
     "snooker_env.players",
     "snooker_env.planning.learned",

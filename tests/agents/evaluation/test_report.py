@@ -10,7 +10,8 @@ from scipy import stats
 from agents.evaluation import report
 from agents.evaluation.training_summary import conclusion
 from commands.tables import WIDTH, TextTable
-from snooker_env.benchmark import most_points, unseen
+from snooker_env.benchmark.statistics import unseen
+from snooker_env.benchmark.tasks import most_points
 
 GHOST = {"from": "ghost_ball"}
 

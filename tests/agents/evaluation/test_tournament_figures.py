@@ -17,7 +17,7 @@ from agents.evaluation.tournament_figures import (
     schedule,
     strengths,
 )
-from snooker_env.benchmark import unseen
+from snooker_env.benchmark.statistics import unseen
 
 SOUND = {"points": (60, 30), "scored": (50, 30), "visits": (10, 10), "strokes": (30, 20)}
 SOUND |= {"fouls": (0, 2), "best": (20, 12)}

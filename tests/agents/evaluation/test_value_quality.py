@@ -7,7 +7,8 @@ import pytest
 
 import snooker_env as sn
 from agents.evaluation import value_quality
-from snooker_env.benchmark import play_visits, tables_of
+from snooker_env.benchmark import play_visits
+from snooker_env.benchmark.tasks import tables_of
 
 
 def test_every_position_is_compared_with_what_followed(monkeypatch):
