@@ -1,14 +1,14 @@
 """Where do figures come from? The commit of the checkout, the machine, and the versions that matter."""
 
-from snooker_env.benchmark import provenance as its
 from snooker_env.benchmark.provenance import commit, software
+from snooker_env.benchmark.provenance import machine as computer
 
 __all__ = ["commit", "line", "machine", "provenance", "software"]
 
 
 def machine():
     """Platform, processor, cores, load and versions: a dict for JSON files."""
-    return its.machine() | software()
+    return computer() | software()
 
 
 def line(m=None):
