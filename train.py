@@ -4,7 +4,7 @@ players, and report the result.
     python train.py                                    six minutes on two cores: a value and a policy by expert iteration, then PPO
     python train.py --steps 1507328 --imitate 153600   the weights of the package: 17 minutes
     python train.py --agent ppo_mask --seed 1 --out runs/mine
-    python train.py --agent stroke_value               a player that simulates no shot, in six minutes
+    python train.py --agent stroke_value               a player that simulates no shot, in 15 minutes
     python train.py --resume --out runs/mine           continue from the last checkpoint after Ctrl-C, a kill or a power cut
 
 Files of a run folder:
@@ -14,7 +14,7 @@ Files of a run folder:
 * ``model.zip``: the trained model. ``python -m agents.evaluate`` and --start read it as plain data;
   ``PPO.load`` of Stable-Baselines3 unpickles it.
 * of ``stroke_value``: ``stroke_value.json``, its settings, the data and weights of each round, and ``strokes.npz``, the
-  trained network.
+  trained networks.
 * ``results.json``: every figure. ``tb/``: the curves (``tensorboard --logdir runs``).
 * ``train.lock``, while the run goes on: two runs cannot share a folder (``commands/lock.py``).
 
@@ -440,7 +440,7 @@ def train_strokes(parser, given, rest, settings):
     out, visits = rest.out, given.get("eval_visits", Settings.eval_visits)
 
     def part_of(number, what, total, unit, done=0):
-        what = f"stroke_value, part {number} of 2, {what}"
+        what = f"stroke_value, part {number} of 3, {what}"
         return Progress(what, total, unit, done=done, to=sys.stdout, quiet=rest.no_progress)
 
     with ExitStack() as ending:
@@ -456,12 +456,15 @@ def train_strokes(parser, given, rest, settings):
             snooker_env.warmup()
             with Stop() as stop:
                 stop.running = "these tables"
-                with part_of(1, "its own visits", training.total, "tables", training.done) as progress:
-                    training.run(progress, stop)
-            if stop.signal:
-                print(f"Saved at {len(training.rounds)} of {settings.rounds} rounds. {go_on(out)}")
-                return 128 + stop.signal
-            fit = training.finish()
+                parts = (training.visits, training.play_visits), (training.frames, training.play_frames)
+                for number, (rounds, play) in enumerate(parts, 1):
+                    with part_of(number, f"its own {rounds.of}", rounds.total, "tables", rounds.done) as progress:
+                        play(progress, stop)
+                    if stop.signal:
+                        done = f"{len(rounds.rounds)} of {rounds.many} rounds of {rounds.of}"
+                        print(f"Saved at {done}. {go_on(out)}")
+                        return 128 + stop.signal
+            training.save()
             shared = {"noise": "professional", "cue": settings.cue}
             best = f"stroke_value@{out / STROKES}"
             players = {
@@ -470,16 +473,16 @@ def train_strokes(parser, given, rest, settings):
                 "random": player("random"),
             }
             figures = held_out(
-                players, visits, lambda total: part_of(2, "evaluation", total, "visits"), **shared
+                players, visits, lambda total: part_of(3, "evaluation", total, "visits"), **shared
             )
-            learned = conclusion("stroke_value", training.shots, 0, figures)
+            shots = sum(rounds.tried for rounds, _ in parts)
+            learned = conclusion("stroke_value", shots, 0, figures)
             results = {
                 "command": shlex.join(["python", "train.py", *settings.words()]),
                 "settings": asdict(settings),
-                "steps": training.shots,
-                "simulated_shots": training.simulated,
-                "fit": fit,
-                "curve": training.curve,
+                "steps": shots,
+                "simulated_shots": sum(rounds.simulated for rounds, _ in parts),
+                "curve": {rounds.of: rounds.curve for rounds, _ in parts},
             }
             without = ", without those of the planner that it learned from"
             report(out, results, learned, figures, best, shared["noise"], without)

@@ -52,17 +52,11 @@ def frames(shared, args, threads):
         other = snooker_player(other).at(known)
     elif other is not None:
         other = Tactician(shared["budget"], other).at(known)
-    rng, seed = np.random.default_rng([args["seed"], 7]), args["seed"]
-    tables, crew = Frames(rules, many, seats=[Seat.of(rules)] * 2), Threads(threads or 1)
-    for k in range(many):
-        tables.seed(k, np.random.default_rng(seed + k))
-    tables.deal(np.arange(many), drawn=True, breakers=np.arange(many) % 2)
-    out, rows, beside, step, held, last = tables.output(), [], [], 0, 0, np.full(many, -1)
-    while len(going := np.flatnonzero(~tables.ended())):
-        theirs = (tables.game[going, columns.STRIKER] == 1) & (other is not None)
-        mine, keys = going[~theirs], decision_seeds(seed, going, step)
-        at = _seen_by_strikers(tables, mine)
-        decided, here, row = _judged(player, at, keys[~theirs], rng)
+    rng, rows, beside, held, last = np.random.default_rng([args["seed"], 7]), [], [], 0, np.full(many, -1)
+
+    def act(tables, mine, at, keys):
+        nonlocal held
+        decided, here, row = _judged(player, at, keys, rng)
         strokes, tried, start = decided
         if len(here):
             which = mine[here]
@@ -87,18 +81,37 @@ def frames(shared, args, threads):
             )
             last[which] = held + np.arange(len(here))
             held += len(here)
-        parts = tuple(np.zeros((many, *part.shape[1:]), part.dtype) for part in strokes.parts)
-        made = [(mine, strokes)]
+        return strokes
+
+    tables = play_frames(rules, args["seed"], many, act, other, threads)
+    rows = _followed(_joined(rows), tables)
+    rows["equals"] = np.full(len(rows["won"]), other is None)
+    return _with(rows, _joined(beside)) if beside else rows
+
+
+def play_frames(rules, seed, many, act, other, threads):
+    """Play frames from the tables ``seed``, ``seed + 1``, ... to their ends; returns the ``Frames``.
+
+    ``act(tables, which, at, keys)`` says the ``Strokes`` of the strikers on the tables ``which``, seen as ``at``. If
+    ``other``, a bound player, is not None, it is player 1 of all frames, and ``act`` player 0."""
+    tables, crew, step = Frames(rules, many, seats=[Seat.of(rules)] * 2), Threads(threads or 1), 0
+    for k in range(many):
+        tables.seed(k, np.random.default_rng(seed + k))
+    tables.deal(np.arange(many), drawn=True, breakers=np.arange(many) % 2)
+    out = tables.output()
+    while len(going := np.flatnonzero(~tables.ended())):
+        theirs = (tables.game[going, columns.STRIKER] == 1) & (other is not None)
+        keys, mine = decision_seeds(seed, going, step), going[~theirs]
+        made = [(mine, act(tables, mine, _seen_by_strikers(tables, mine), keys[~theirs]))]
         if other is not None and theirs.any():
             made.append((going[theirs], other.play(_seen_by_strikers(tables, going[theirs]), keys[theirs])))
+        parts = tuple(np.zeros((many, *part.shape[1:]), part.dtype) for part in made[0][1].parts)
         for who, said in made:
             for whole, part in zip(parts, said.parts, strict=True):
                 whole[who] = part
         tables.turn(lambda which, b, parts=parts: carry_out(tables, which, parts, b, 0), out, crew, going)
         step += 1
-    rows = _followed(_joined(rows), tables)
-    rows["equals"] = np.full(len(rows["won"]), other is None)
-    return _with(rows, _joined(beside)) if beside else rows
+    return tables
 
 
 def _judged(player, at, keys, rng):

@@ -1,16 +1,18 @@
 """How is ``stroke_value`` trained: what strokes are worth, without simulating them when it plays?
 
-``python train.py --agent stroke_value``. Each round plays visits, under errors from ``SCALES[0]`` to ``SCALES[1]`` times a
-professional's, with what the rounds before have learned (the first one half with the planner), and in each
+``python train.py --agent stroke_value``. Each round of visits is played under errors from ``SCALES[0]`` to ``SCALES[1]``
+times a professional's, with what the rounds before have learned (the first one half with the planner), and in each
 position that comes about tries some of the strokes that the player looks at, each under ``ERRORS`` execution errors. What
 they bring and what the planner's value says of what they leave is their worth: a network is fitted to it, on the
-positions of its own visits (DAgger; Ross, Gordon & Bagnell 2011). After each round the run's folder holds its data and
-its weights: a resumed run goes on from there. After the last one a network is fitted for longer.
+positions of its own visits (DAgger; Ross, Gordon & Bagnell 2011), after the last round for longer. Rounds of frames follow,
+against itself, ``best_pot`` and ``tactician_60``: a second network learns what the strokes of frames, safeties too, are worth
+beside what they seem to be worth. After each round the run's folder holds its data and its weights: a resumed run goes on
+from there.
 """
 
 import io
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, astuple, dataclass, fields
 from itertools import pairwise
 
 import numpy as np
@@ -22,16 +24,18 @@ from commands.files import write_atomic
 from commands.noise_option import noise_option
 from snooker_env.benchmark import simulated
 from snooker_env.checks import choice, integer, refuse
-from snooker_env.planning import Planner, Positions
+from snooker_env.planning import Planner, Positions, processors
+from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
 from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SAMPLES, SIZE, StrokeValue
 from snooker_env.players import VISITS, Strokes
 from snooker_env.players.player import placed
 from snooker_env.players.search import SearchPlayer
 from snooker_env.players.stroke_value import StrokeValuePlayer
-from snooker_env.players.weights import STROKES, learned_strokes
+from snooker_env.players.weights import STROKES, VALUE_LAYERS, StrokeLayers
 
 from ..cluster.keep import packed
 from .hyperparameters import changes_of
+from .stroke_frames import frames_tried
 
 SETTINGS = "stroke_value.json"
 """The file of a run's settings."""
@@ -44,8 +48,10 @@ BEST, OTHERS, ERRORS = 10, 10, 4
 EXPLORE, AMONG = 0.1, 8
 """Share of strokes that are not the one that seems best, but one of the ``AMONG`` best."""
 WIDTHS, BATCH, RATE, DECAY = (128, 64), 512, 2e-3, 1e-4
-PASSES, LAST_PASSES = 15, 60
+PASSES, LAST_PASSES = 15, {"visits": 60, "frames": 40}
 """Over the positions after each round, and after the last one."""
+AGAINST = None, None, "best_pot", "tactician_60"
+"""Who plays the parts of a round of frames against it, in turn; None: itself."""
 COMPARED = 2.0
 """Weight of what the strokes of a position are worth beside each other; that of the worth itself is 1."""
 HELD = 10
@@ -55,10 +61,10 @@ FIRST_SEED = 30_000_000
 
 
 class StrokeNetwork(nn.Sequential):
-    """What is seen of strokes (..., SIZE) -> what they are worth (..., 1), in units of ``POINTS``."""
+    """What is seen of strokes (..., size) -> what they are worth (..., 1), in units of ``POINTS``."""
 
-    def __init__(self):
-        parts = [nn.Linear(a, b) for a, b in pairwise((SIZE, *WIDTHS, 1))]
+    def __init__(self, size):
+        parts = [nn.Linear(a, b) for a, b in pairwise((size, *WIDTHS, 1))]
         super().__init__(*[part for one in parts for part in (one, nn.ReLU())][:-1])
 
     def layers(self, mean, deviation):
@@ -71,14 +77,23 @@ class StrokeNetwork(nn.Sequential):
         return made
 
 
-def fitted(seen, worth, table, seed, passes):
+def fitted(seen, worth, table, seed, passes, seems=None):
     """The layers of a network fitted to ``worth`` (n, k) points of strokes seen as (n, k, SIZE) on the tables with these
-    seeds (n,), and figures of the tables kept from the fit."""
+    seeds (n,), and figures of the tables kept from the fit. ``seems`` (n, k): the network adds to these points, and errors
+    beyond ``POINTS`` count less (Huber's loss)."""
     torch.manual_seed(seed)
     rng, held = np.random.default_rng(seed), table % HELD == HELD - 1
     mean, deviation = seen[~held].mean((0, 1), np.float64), seen[~held].std((0, 1), np.float64) + 1e-3
     scaled = torch.from_numpy(((seen - mean) / deviation).astype(np.float32))
-    wanted, network = torch.from_numpy((worth / POINTS).astype(np.float32)), StrokeNetwork()
+    network, lossy = StrokeNetwork(seen.shape[-1]), nn.functional.mse_loss
+    if seems is None:
+        plain, base = seen[..., 0], np.zeros_like(worth)  # what the policy says
+    else:
+        plain, base, lossy = seems, seems, nn.functional.huber_loss
+        with torch.no_grad():  # it begins by adding nothing
+            network[-1].weight.mul_(0.1)
+            network[-1].bias.zero_()
+    wanted = torch.from_numpy(((worth - base) / POINTS).astype(np.float32))
     used = np.flatnonzero(~held)
     batch = min(BATCH, len(used))
     optimiser = torch.optim.AdamW(network.parameters(), RATE, weight_decay=DECAY)
@@ -89,33 +104,33 @@ def fitted(seen, worth, table, seed, passes):
         for k in range(0, batch * (len(used) // batch), batch):
             off = network(scaled[order[k : k + batch]])[..., 0] - wanted[order[k : k + batch]]
             compared = off - off.mean(dim=1, keepdim=True)
-            loss = (off**2).mean() + COMPARED * (compared**2).mean()
+            loss = lossy(off, torch.zeros_like(off)) + COMPARED * lossy(compared, torch.zeros_like(off))
             optimiser.zero_grad()
             loss.backward()
             optimiser.step()
             schedule.step()
     with torch.no_grad():
-        said, true = network(scaled[held])[..., 0].numpy(), wanted[held].numpy()
+        said = network(scaled[held])[..., 0].numpy() + base[held] / POINTS
+    true = worth[held] / POINTS
     beside = [one - one.mean(axis=1, keepdims=True) for one in (said, true)]
-    policy = np.where(np.arange(seen.shape[1]) == seen[held][..., 0].argmax(axis=1)[:, None], true, 0.0).sum(
-        axis=1
+    chosen, before = (
+        np.take_along_axis(true, by.argmax(axis=1)[:, None], 1)[:, 0] for by in (said, plain[held])
     )
-    chosen = np.take_along_axis(true, said.argmax(axis=1)[:, None], 1)[:, 0]
     figures = {
         "positions": len(seen),
         "explained": float(1.0 - ((beside[0] - beside[1]) ** 2).mean() / (beside[1] ** 2).mean()),
         "worth_chosen": POINTS * float(chosen.mean()),
-        "worth_of_policy": POINTS * float(policy.mean()),
+        "worth_chosen_unlearned": POINTS * float(before.mean()),
     }
     return network.layers(mean, deviation), figures
 
 
-def played(layers, options, seeds, rng):
+def visits_tried(layers, noise, cue, seeds, rng):
     """Visits from the tables ``seeds``: what is seen of the strokes tried, float16 (n, k, SIZE), their worth [points],
     float32 (n, k), and the seeds of the tables on which the visits began (n,)."""
-    n, env = len(seeds), sn.SnookerVectorEnv(len(seeds), layout="opened", **VISITS, **options)
-    env.reset(seed=seeds)
-    values: StrokeValue = StrokeValuePlayer(layers or ()).at(env).values
+    n, env = len(seeds), sn.SnookerVectorEnv(len(seeds), layout="opened", **VISITS, noise=noise, cue=cue)
+    env.reset(seed=seeds.tolist())
+    values: StrokeValue = StrokeValuePlayer(StrokeLayers(layers)).at(env).values
     plain, planner = sn.player("ghost_ball").at(env), Planner(env)
     expert: SearchPlayer = sn.player("planner_60").at(env)  # type: ignore[assignment]
     values.value.threads = planner.threads
@@ -139,11 +154,11 @@ def played(layers, options, seeds, rng):
         worth[on] += judge(left[on])
         kept_seen.append(found.seen[every, picks].astype(np.float16))
         kept_worth.append(worth.reshape(-1, tried, ERRORS).mean(axis=2).astype(np.float32))
-        kept_table.append(np.asarray(seeds)[live[found.rows]])
+        kept_table.append(seeds[live[found.rows]])
         chosen = np.where(rng.random(len(scores)) < EXPLORE, rng.integers(AMONG, size=len(scores)), 0)
         strokes = plain.play(visits, keys[live]).values
         strokes[found.rows] = found.strokes[every[:, 0], order[every[:, 0], chosen]]
-        if layers is None:  # nothing is learned yet: half of the tables show where a good player comes
+        if not layers:  # nothing is learned yet: half of the tables show where a good player comes
             half = np.flatnonzero(np.arange(len(live)) % 2)
             strokes[half] = expert.play(visits[half], keys[live][half]).values
         actions = np.zeros((n, env.options.rules.actions.size))
@@ -153,20 +168,15 @@ def played(layers, options, seeds, rng):
     return tuple(map(np.concatenate, (kept_seen, kept_worth, kept_table)))
 
 
-def arrays_of(layers):
-    """The arrays of a file that ``weights.learned_strokes`` reads."""
-    made = {f"strokes/{k}/weight": weight.astype(np.float32) for k, (weight, _) in enumerate(layers)}
-    return made | {f"strokes/{k}/bias": bias.astype(np.float32) for k, (_, bias) in enumerate(layers)}
+def arrays_of(of, layers):
+    """The arrays of the network of "visits" or "frames" in a file that ``weights.learned_strokes`` reads."""
+    made = {f"{of}/{k}/weight": weight.astype(np.float32) for k, (weight, _) in enumerate(layers)}
+    return made | {f"{of}/{k}/bias": bias.astype(np.float32) for k, (_, bias) in enumerate(layers)}
 
 
 def _kept(file):
     with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
         return {name: arrays[name] for name in arrays.files}
-
-
-def _fitted_to(rounds, seed, passes):
-    both = {name: np.concatenate([one[name] for one in rounds]) for name in ("seen", "worth", "table")}
-    return fitted(both["seen"].astype(np.float32), both["worth"], both["table"], seed, passes)
 
 
 @dataclass(frozen=True)
@@ -176,16 +186,21 @@ class StrokeSettings:
     seed: int = 0
     rounds: int = 8
     tables: int = 1024
-    """Of a round."""
+    """Of a round of visits."""
+    frame_rounds: int = 3
+    frames: int = 1024
+    """Of a round of frames."""
     cue: str = "real"
 
     @classmethod
     def of(cls, seed, changes):
         """With "key=value" in ``changes``. Raises ValueError."""
-        made = cls(seed, **changes_of(changes, ("rounds", "tables", "cue")))
+        made = cls(seed, **changes_of(changes, [f.name for f in fields(cls)][1:]))
         integer("seed", made.seed, 0, 80)
-        integer("rounds", made.rounds, 1, 99)
-        integer("tables", made.tables, HELD, 100_000)
+        for name in ("rounds", "frame_rounds"):
+            integer(name, getattr(made, name), 1, 99)
+        for name in ("tables", "frames"):
+            integer(name, getattr(made, name), HELD, 100_000)
         choice("cue", made.cue, ("real", "free"))
         return made
 
@@ -217,88 +232,129 @@ class StrokeSettings:
         ]
 
 
-class StrokeTraining:
-    """The rounds of a run in the folder ``out``; those that it holds already are read."""
+class Rounds:
+    """Rounds of "visits" or "frames", ``of``, of a run in the folder ``out``; those that it holds already are read.
 
-    def __init__(self, out, settings):
-        self.out, self.settings, self.rounds, self.curve, self.layers = out, settings, [], [], None
-        asked = settings.tables, settings.seed, settings.cue, LOOKS, SAMPLES, SIZE, SCALES
-        self._asked = list(map(str, asked))
-        while len(self.rounds) < settings.rounds and self._file("round").is_file():
-            rows = _kept(self._file("round"))
+    ``many`` rounds on so many ``tables`` each, from ``first`` on."""
+
+    def __init__(self, out, settings, of, many, tables, first):
+        self.out, self.settings, self.of, self.many, self.tables = out, settings, of, many, tables
+        self.first, self.rounds, self.curve, self.layers = first, [], [], ()
+        self._asked = [*map(str, (*astuple(settings), LOOKS, SAMPLES, SIZE, FRAME_SIZE, SCALES))]
+        while len(self.rounds) < many and self._file().is_file():
+            rows = _kept(self._file())
             if rows.pop("asked").tolist() != self._asked:
                 raise refuse("out", str(out), "must hold rounds of this version and of the same settings")
             self._learn(rows)
 
-    def _file(self, what):
-        return self.out / f"{what}-{len(self.rounds)}.npz"
+    def _file(self, what=""):
+        return self.out / f"{self.of}-{len(self.rounds)}{what}.npz"
 
     @property
-    def shots(self):
+    def tried(self):
         """Shots that were simulated for the strokes that were tried."""
         return sum(one["worth"].size * ERRORS for one in self.rounds)
 
     @property
     def simulated(self):
-        """All shots that the rounds simulated, visits and the planner's decisions too; None: not known."""
-        shots = [one.get("shots") for one in self.rounds]
-        return None if any(one is None for one in shots) else int(sum(shots))
+        """All shots that the rounds simulated, play and the decisions of other players too."""
+        return sum(int(one["shots"]) for one in self.rounds)
 
     @property
     def total(self):
         """Tables of all rounds."""
-        return self.settings.rounds * self.settings.tables
+        return self.many * self.tables
 
     @property
     def done(self):
         """Tables of the rounds that are complete."""
-        return len(self.rounds) * self.settings.tables
+        return len(self.rounds) * self.tables
 
-    def run(self, progress, stop):
-        """Play the rounds that are left and learn from each, until ``stop`` notes a signal."""
-        while len(self.rounds) < self.settings.rounds and stop.signal is None:
-            self._round(progress, stop)
+    @property
+    def complete(self):
+        """Whether all rounds are."""
+        return len(self.rounds) == self.many
 
-    def _round(self, progress, stop):
-        one, k = self.settings, len(self.rounds)
-        first = FIRST_SEED + 10_000_000 * one.seed + 100_000 * k
-        rng, parts, played_on, before = np.random.default_rng([one.seed, k]), [], self.done, simulated()
+    def run(self, play, progress, stop):
+        """Play the rounds that are left and learn from each, until ``stop`` notes a signal. ``play(layers, noise, k, seeds,
+        rng)`` plays the tables ``seeds`` of a round's part k and returns what ``visits_tried`` does."""
+        while not self.complete and stop.signal is None:
+            self._round(play, progress, stop)
+
+    def _round(self, play, progress, stop):
+        k, parts, played_on, before = len(self.rounds), [], self.done, simulated()
+        first, rng = self.first + 100_000 * k, np.random.default_rng([self.settings.seed, k])
         shares = (np.arange(PARTS) + rng.random(PARTS)) / PARTS
-        for share, seeds in zip(
-            shares, np.array_split(np.arange(first, first + one.tables), PARTS), strict=True
-        ):
+        split = np.array_split(np.arange(first, first + self.tables), PARTS)
+        for part, (share, seeds) in enumerate(zip(shares, split, strict=True)):
             scale = SCALES[0] * (SCALES[1] / SCALES[0]) ** share**2
-            options = {"noise": noise_option(f"professional*{scale}"), "cue": one.cue}
-            parts.append(played(self.layers, options, seeds.tolist(), rng))
+            parts.append(play(self.layers, noise_option(f"professional*{scale}"), part, seeds, rng))
             progress.at(played_on := played_on + len(seeds), self.figures)
             if stop.signal is not None:
                 return
         seen, worth, table = map(np.concatenate, zip(*parts, strict=True))
         rows = {"seen": seen, "worth": worth, "table": table, "shots": np.array(simulated() - before)}
-        write_atomic(self._file("round"), packed(rows | {"asked": np.array(self._asked)}))
+        write_atomic(self._file(), packed(rows | {"asked": np.array(self._asked)}))
         self._learn(rows)
 
     @property
     def figures(self):
         """Those of the last fit, in words."""
-        said = f"round {len(self.rounds) + 1} of {self.settings.rounds}"
+        said = f"round {len(self.rounds) + 1} of {self.many}"
         return said + (
             f", {self.curve[-1]['explained']:.0%} of the differences explained" if self.curve else ""
         )
 
     def _learn(self, rows):
-        weights, seed = self._file("strokes"), self.settings.seed + len(self.rounds)
+        weights, k, of = self._file("-weights"), len(self.rounds), self.of
         self.rounds.append(rows)
         if weights.is_file():
-            self.layers = learned_strokes(weights)
-            self.curve.append(json.loads(str(_kept(weights)["figures"])))
-        else:
-            self.layers, figures = _fitted_to(self.rounds, seed, PASSES)
-            self.curve.append(figures)
-            write_atomic(weights, packed(arrays_of(self.layers) | {"figures": np.array(json.dumps(figures))}))
+            arrays = _kept(weights)
+            self.layers = [
+                (arrays[f"{of}/{i}/weight"], arrays[f"{of}/{i}/bias"]) for i in range(VALUE_LAYERS)
+            ]
+            self.curve.append(json.loads(str(arrays["figures"])))
+            return
+        seed, passes = (0, LAST_PASSES[of]) if self.complete else (k, PASSES)
+        seen, worth, table = (
+            np.concatenate([one[name] for one in self.rounds]) for name in ("seen", "worth", "table")
+        )
+        seen = seen.astype(np.float32)
+        seems = POINTS * seen[..., 0] if of == "frames" else None
+        self.layers, figures = fitted(seen, worth, table, self.settings.seed + seed, passes, seems)
+        self.curve.append(figures)
+        write_atomic(weights, packed(arrays_of(of, self.layers) | {"figures": np.array(json.dumps(figures))}))
 
-    def finish(self):
-        """The last fit, into ``STROKES`` of the folder: figures of the tables kept from it."""
-        layers, figures = _fitted_to(self.rounds, self.settings.seed, LAST_PASSES)
-        write_atomic(self.out / STROKES, packed(arrays_of(layers)))
-        return figures
+
+class StrokeTraining:
+    """A run in the folder ``out``: rounds of visits, then of frames."""
+
+    def __init__(self, out, settings):
+        self.out, self.settings, first = out, settings, FIRST_SEED + 10_000_000 * settings.seed
+        self.visits = Rounds(out, settings, "visits", settings.rounds, settings.tables, first)
+        self.frames = Rounds(
+            out, settings, "frames", settings.frame_rounds, settings.frames, first + 5_000_000
+        )
+
+    def play_visits(self, progress, stop):
+        """Play the rounds of visits that are left."""
+
+        def play(layers, noise, _part, seeds, rng):
+            return visits_tried(layers, noise, self.settings.cue, seeds, rng)
+
+        self.visits.run(play, progress, stop)
+
+    def play_frames(self, progress, stop):
+        """Play the rounds of frames that are left, when those of visits are complete."""
+        tried, threads = (BEST, OTHERS, ERRORS, EXPLORE, AMONG), processors()
+
+        def play(layers, noise, part, seeds, rng):
+            learned, other = StrokeLayers(self.visits.layers, layers), AGAINST[part % len(AGAINST)]
+            return frames_tried(learned, noise, self.settings.cue, seeds, other, tried, rng, threads)
+
+        self.frames.run(play, progress, stop)
+
+    def save(self):
+        """Both networks, into ``STROKES`` of the folder."""
+        both = arrays_of("visits", self.visits.layers) | arrays_of("frames", self.frames.layers)
+        write_atomic(self.out / STROKES, packed(both))

@@ -218,7 +218,7 @@ def _of_file(path: Path, trust: bool, options: dict[str, Any]) -> Player:
 
 
 def _strokes(name: str, path: Path) -> Any:
-    """The layers of a network that ``train.py --agent stroke_value`` has written."""
+    """The layers of the networks that ``train.py --agent stroke_value`` has written."""
     from .weights import learned_strokes
 
     try:

@@ -1,5 +1,5 @@
-"""How does a player play that predicts where pots leave the cue ball, without a shot? The stroke that its network says is
-worth most; where no pot is on, that of ``ghost_ball``."""
+"""How does a player play that predicts where balls come to rest, without a shot? The stroke that its networks say is worth
+most, in visits a pot; where none is on, that of ``ghost_ball``. In frames it plays safeties, too, and decides by their worth."""
 
 from typing import Any
 
@@ -7,62 +7,75 @@ import numpy as np
 
 from .._types import Floats
 from ..planning import Positions, spread_of
+from ..planning.learned.frame_strokes import FrameStrokes
 from ..planning.learned.learned_value import LearnedValue
+from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.stroke_value import LOOKS, Candidates, StrokeValue
 from ..planning.positions import seeds_of
 from ..planning.strokes import COLUMNS, Dynamics
 from ..tasks.options import Options
 from .choices import GhostBall
+from .frame_decisions import Decided, decided, ranked
 from .player import BoundPlayer, Ranked, Strokes, placed
-from .weights import learned_at, learned_strokes, level_for
+from .weights import StrokeLayers, learned_at, learned_strokes, learned_worth, level_for
 
 
 class StrokeValuePlayer(BoundPlayer):
-    """The best of the strokes of a ``StrokeValue``; ``layers``: of its network, by default the package's."""
+    """The best of the strokes of a ``StrokeValue``, in frames of a ``FrameStrokes``; ``learned``: the layers of their
+    networks, by default the package's."""
 
     name = "stroke_value"
 
-    def __init__(self, layers: Any = None):
-        self._given, self.values = layers, None
+    def __init__(self, learned: StrokeLayers | None = None):
+        self._given, self.values, self.search = learned, None, None
 
     def _bind(self, options: Options) -> None:
         rules, level = options.rules, level_for(options.rules.noise)
         learned, self._plain = learned_at(level), GhostBall().at(options)
-        # one of the value's networks says almost as much as all, in a quarter of the time
-        value = LearnedValue(learned.value[:1], spread_of(rules.noise, rules.physics))
         layers = learned_strokes() if self._given is None else self._given
-        self.values = StrokeValue(value, learned.policy, Dynamics.of(rules), rules.noise, layers)
+        spread = spread_of(rules.noise, rules.physics)
+        # one of the value's networks says almost as much as all, in a quarter of the time
+        value, worth = LearnedValue(learned.value[:1], spread), LearnedValue(learned.value, spread)
+        self.values = StrokeValue(value, learned.policy, Dynamics.of(rules), rules.noise, layers.visits)
+        self.search = FrameStrokes(rules, self.values, LearnedWorth(worth, learned_worth()[0]), layers.frames)
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
-        at, places, found, scores = self._scored(positions, seeds)
+        at = Positions.of(positions)
+        if at.of_frames:
+            return self.decided(at, np.asarray(seeds)).strokes
+        at, places, found, scores = self._scored(at, seeds)
         values = np.zeros((len(at), COLUMNS))
         values[found.rows] = found.strokes[np.arange(len(scores)), scores.argmax(axis=1)]
         others = np.setdiff1d(np.arange(len(at)), found.rows)
-        if not len(others):
-            return Strokes(values, places)
-        plain = self._plain.play(at[others], np.asarray(seeds)[others])
-        values[others] = plain.values
-        chosen = Strokes(values, places)
-        for part, its in zip(chosen.parts[1:], plain.parts[1:], strict=True):
-            part[others] = its
-        return chosen
+        if len(others):
+            plain = self._plain.play(at[others], np.asarray(seeds)[others])
+            values[others], places[others] = plain.values, plain.place
+        return Strokes(values, places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """Its strokes, best first, with what they are worth [points]."""
-        at, places, found, scores = self._scored(positions, seeds)
-        ranked: list[Ranked] = self._plain.rank(at, seeds)
+        at = Positions.of(positions)
+        if at.of_frames:
+            return ranked(self.search, self.decided(at, np.asarray(seeds)))
+        at, places, found, scores = self._scored(at, seeds)
+        made: list[Ranked] = self._plain.rank(at, seeds)
         for j, k in enumerate(found.rows.tolist()):
             order = np.argsort(-scores[j], kind="stable")
             where = np.repeat(places[k : k + 1], len(order), axis=0)
-            ranked[k] = Ranked(Strokes(found.strokes[j, order], where), scores[j, order].astype(np.float64))
-        return ranked
+            made[k] = Ranked(Strokes(found.strokes[j, order], where), scores[j, order].astype(np.float64))
+        return made
 
-    def _scored(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Candidates, Any]:
-        """The positions, the places of cue balls in hand, the strokes that are looked at, and their values."""
+    def decided(self, at: Positions, seeds: Any) -> Decided:
+        """What it does in positions of frames, what it compared in those in which it strikes, and from where."""
+        assert self.search is not None, self.options  # it must be bound
+        return decided(self.search, self._plain, self.options, at, seeds)
+
+    def _scored(self, at: Positions, seeds: Any) -> tuple[Positions, Floats, Candidates, Any]:
+        """Positions of visits, the places of cue balls in hand, the strokes that are looked at, and their values."""
         options, values = self.options, self.values  # it must be bound
         assert values is not None, options
-        at = Positions.of(positions).known_to(options.rules)
+        at = at.known_to(options.rules)
         keys = seeds_of(seeds, len(at))
         visits, places = placed(at, keys)
         found = values.candidates(visits, LOOKS, keys)

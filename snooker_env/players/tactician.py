@@ -1,8 +1,7 @@
 """How does the planner of the whole game play? One search for pots, safeties and escapes, one worth for both
-players, and all decisions of a frame by that worth: what to do after a foul, where the cue ball in hand goes, who
-begins at a re-spotted black."""
+players, and all decisions of a frame by that worth (``frame_decisions``)."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -10,33 +9,18 @@ from .._check import integer, refuse, refuse_what
 from .._types import Floats
 from ..game import frame_columns as columns
 from ..planning import Positions, processors, spread_of
-from ..planning.frame_search import AVERAGE, LEAST, FrameSearch, Tried
+from ..planning.frame_search import AVERAGE, LEAST, FrameSearch
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
 from ..planning.positions import PositionsLike
-from ..planning.worth import best_places, chosen, decide, lead_of, left_of
-from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
+from ..planning.worth import decide, lead_of, left_of
 from ..tasks.options import Options
 from .choices import GhostBall
-from .player import BoundPlayer, Ranked, Strokes, placed
-from .search import MOST, RANKED, SearchPlayer
+from .frame_decisions import Decided, decided, ranked
+from .player import BoundPlayer, Ranked, Strokes
+from .search import MOST, SearchPlayer
 from .weights import learned_at, learned_worth, level_for
-
-LOST = 0.01
-"""The chance to win below which it concedes a frame in which it needs snookers, where it may."""
-_IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
-
-
-class Decided(NamedTuple):
-    """What the ``tactician`` does in n positions.
-
-    ``strokes``: n ``Strokes``; ``tried``: of each position what its search tried, None where it plays no stroke;
-    ``start``: the positions that the strokes are played from, after decisions, with placed cue balls."""
-
-    strokes: Strokes
-    tried: list[Tried | None]
-    start: Positions
 
 
 class Tactician(BoundPlayer):
@@ -70,16 +54,7 @@ class Tactician(BoundPlayer):
         at = Positions.of(positions)
         if not at.of_frames:
             return self._visits.rank(at, seeds)
-        strokes, tried, _ = self.decided(at, np.asarray(seeds))
-        ranked = []
-        for k, one in enumerate(tried):
-            if one is None:
-                ranked.append(Ranked(strokes[k : k + 1], None))
-                continue
-            m = min(RANKED, int((one.samples > 0).sum()) or len(one.samples))
-            same = [np.repeat(part[k : k + 1], m, 0) for part in strokes.parts[1:]]
-            ranked.append(Ranked(Strokes(one.strokes[:m], *same), one.chances[:m]))
-        return ranked
+        return ranked(self.search, self.decided(at, np.asarray(seeds)))
 
     def chance_to_win(self, positions: PositionsLike) -> Floats:
         """Return how likely the striker of each position wins the frame, if both play on as the ``tactician`` does.
@@ -131,43 +106,5 @@ class Tactician(BoundPlayer):
 
     def decided(self, at: Positions, seeds: Any) -> Decided:
         """What it does in positions of frames, what it tried in those in which it strikes, and from where."""
-        search: Any = self.search
-        assert search is not None, self.options  # it must be bound
-        worth = search.worth
-        n, at = len(at), at.known_to(search.rules).copy()
-        values, places = np.tile(_IDLE, (n, 1)), np.full((n, 2), np.nan)
-        decisions, declare = np.full(n, columns.PLAY), np.full(n, SAYS_NOTHING)
-        plays, code = np.ones(n, np.bool_), search.rules.rule_set.code
-        rows = np.flatnonzero(at.lot)
-        if len(rows):
-            at.game[rows, columns.PHASE] = columns.STROKE
-            other = rows[worth(at[rows]) < 0.0] if "lot" in self.options.says else rows[:0]
-            declare[other], plays[other] = OTHER_BEGINS, False
-        rows = np.flatnonzero(at.choice)
-        if len(rows):
-            decisions[rows] = decide(worth, at[rows], code)[0]
-            for what in (columns.PLAY, columns.PLACE_ANYWHERE):
-                some = rows[decisions[rows] == what]
-                at.game[some] = chosen(at[some], what).game
-            plays[rows] = np.isin(decisions[rows], (columns.PLAY, columns.PLACE_ANYWHERE))
-        game = at.game
-        racks = (game[:, columns.STROKES] == 0) & (game[:, columns.RACK] == game[:, columns.ON_TABLE])
-        hand, usual = plays & at.in_hand, racks | at.anywhere
-        for rows in np.flatnonzero(hand & usual), np.flatnonzero(hand & ~usual):
-            if len(rows):  # at the break-off, and where it may stand anywhere, as other players do
-                some = placed(at[rows], seeds[rows]) if usual[rows[0]] else best_places(worth, at[rows])
-                at.positions[rows] = some[0].positions
-                places[rows] = at.positions[rows, 0]
-        tried: list[Tried | None] = [None] * n
-        rows = np.flatnonzero(plays)
-        for k, one in zip(rows.tolist(), search.rank(at[rows], seeds[rows]), strict=True):
-            if len(one.strokes):
-                tried[k], values[k] = one, one.strokes[0]
-        rows = rows[[tried[k] is None for k in rows.tolist()]]
-        if len(rows):  # nothing was found: any stroke at a ball on
-            values[rows] = self._plain.play(at[rows].as_visits(), seeds[rows]).values
-        if "concede" in self.options.says and search.chance is not None:
-            some = np.flatnonzero([one is not None and one.chances[0] < LOST for one in tried])
-            behind = lead_of(at[some]) < -left_of(at[some])  # it needs snookers
-            declare[some[behind]] = CONCEDES
-        return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)
+        assert self.search is not None, self.options  # it must be bound
+        return decided(self.search, self._plain, self.options, at, seeds)

@@ -12,10 +12,11 @@ import train
 from agents.learning import learn_strokes
 from snooker_env.benchmark import play_visits, simulated, summary
 from snooker_env.planning import Position, Positions
+from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
 from snooker_env.planning.learned.stroke_value import LOOKS, SIZE
 from snooker_env.players import VISITS
 from snooker_env.players.stroke_value import StrokeValuePlayer
-from snooker_env.players.weights import learned_strokes
+from snooker_env.players.weights import StrokeLayers, learned_strokes
 from snooker_env.progress import Progress
 
 
@@ -63,6 +64,8 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
         "--set",
         "rounds=2",
         "tables=16",
+        "frame_rounds=2",
+        "frames=10",
         "--eval-visits",
         "20",
         "--no-progress",
@@ -72,25 +75,35 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
     assert f"python -m snooker_env.watch --agent stroke_value@{whole / 'strokes.npz'}" in said
     results = json.loads((whole / "results.json").read_text())
     assert set(results["evaluation"]) == {"trained", "ghost_ball", "random"}
-    # the strokes that were tried, those that were played, and the planner's decisions on half of the first tables
-    assert results["steps"] < results["simulated_shots"] <= results["steps"] + 8 * 8 * 60 + 2 * 16 * 8
+    # the strokes that were tried, those that were played, and decisions of the planner, of best_pot and of tactician_60
+    assert results["steps"] < results["simulated_shots"] <= 3 * results["steps"]
+    assert [len(results["curve"][of]) for of in ("visits", "frames")] == [2, 2]
     assert f"without those of the planner that it learned from: {results['simulated_shots']:,}." in said
-    repeated = ["--agent", "stroke_value", "--seed", "3", "--set", "rounds=2", "tables=16"]
+    settings = ["rounds=2", "tables=16", "frame_rounds=2", "frames=10"]
+    repeated = ["--agent", "stroke_value", "--seed", "3", "--set", *settings]
     assert shlex.split(results["command"]) == ["python", "train.py", *repeated]
     shutil.copytree(whole, parts)
-    for name in ("results.json", "strokes.npz", "round-1.npz", "strokes-1.npz", "strokes-0.npz"):
-        (parts / name).unlink()  # as if it had been interrupted between the first round and its fit
+    for name in (
+        "results.json",
+        "strokes.npz",
+        "frames-1.npz",
+        "frames-1-weights.npz",
+        "frames-0-weights.npz",
+    ):
+        (parts / name).unlink()  # as if it had been interrupted between the first round of frames and its fit
+    (parts / "visits-1-weights.npz").unlink()
     assert train.main(["--resume", "--out", str(parts), "--eval-visits", "20", "--no-progress"]) == 0
     assert (whole / "strokes.npz").read_bytes() == (parts / "strokes.npz").read_bytes()
     again = json.loads((parts / "results.json").read_text())
     assert all(again[name] == results[name] for name in ("curve", "simulated_shots"))
-    layers = learned_strokes(whole / "strokes.npz")
+    learned = learned_strokes(whole / "strokes.npz")
     at = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     named = sn.player(f"stroke_value@{whole / 'strokes.npz'}").at({}).play(at, [3]).values
-    assert np.array_equal(named, StrokeValuePlayer(layers).at({}).play(at, [3]).values)
-    assert layers[0][0].shape == (128, SIZE) and layers[-1][0].shape == (1, 64)
+    assert np.array_equal(named, StrokeValuePlayer(learned).at({}).play(at, [3]).values)
+    for layers, size in zip(learned, (SIZE, FRAME_SIZE), strict=True):
+        assert layers[0][0].shape == (128, size) and layers[-1][0].shape == (1, 64)
     tables = opened(8)
-    assert len(StrokeValuePlayer(layers).at(tables).play(tables, np.arange(8))) == 8
+    assert len(StrokeValuePlayer(learned).at(tables).play(tables, np.arange(8))) == 8
 
 
 class Once:
@@ -105,11 +118,15 @@ class Once:
 
 
 def test_a_signal_stops_a_training_between_its_parts(tmp_path):
-    training = learn_strokes.StrokeTraining(tmp_path, learn_strokes.StrokeSettings(tables=16))
-    with Progress("a test", training.total, "tables", quiet=True) as progress:
-        training.run(progress, Once())
-        assert progress.done == 2
-    assert training.done == 0 and not list(tmp_path.iterdir())
+    training = learn_strokes.StrokeTraining(tmp_path, learn_strokes.StrokeSettings(tables=16, frames=16))
+    for rounds, play in (
+        (training.visits, training.play_visits),
+        (training.frames, training.play_frames),
+    ):
+        with Progress("a test", rounds.total, "tables", quiet=True) as progress:
+            play(progress, Once())
+            assert progress.done == 2
+        assert rounds.done == 0 and not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(
@@ -118,7 +135,11 @@ def test_a_signal_stops_a_training_between_its_parts(tmp_path):
         (["--envs", "64"], "--envs must be left out for stroke_value"),
         (["--mirror", "there"], "--mirror must be left out for stroke_value"),
         (["--set", "tables=3"], "tables = 3"),
-        (["--set", "widths=3"], "must be KEY=VALUE with KEY one of rounds, tables, cue"),
+        (["--set", "frames=9"], "frames = 9"),
+        (
+            ["--set", "widths=3"],
+            "must be KEY=VALUE with KEY one of rounds, tables, frame_rounds, frames, cue",
+        ),
         (["--seed", "81"], "seed = 81"),
     ],
 )
@@ -150,31 +171,61 @@ def test_the_network_is_fitted_to_what_strokes_are_worth():
     assert figures["explained"] > 0.9 and figures["positions"] == 600
     from snooker_env.planning.learned.dense_layers import Layers
 
+    seems = worth + 6.0 * seen[..., 7]
+    more, figures = learn_strokes.fitted(seen, worth, np.arange(600), 0, 60, seems)
+    assert figures["explained"] > 0.9 and figures["worth_chosen"] > figures["worth_chosen_unlearned"] + 1.0
+    added = learn_strokes.POINTS * Layers(more, "relu")(seen.reshape(-1, SIZE))[:, 0]
+    assert np.corrcoef(added, -seen[..., 7].reshape(-1))[0, 1] > 0.9
     said = learn_strokes.POINTS * Layers(layers, "relu")(seen.reshape(-1, SIZE))[:, 0]
     assert np.corrcoef(said, worth.reshape(-1))[0, 1] > 0.95
 
 
-def test_it_plays_frames_from_where_it_places_the_cue_ball():
-    """A pot is taken from the D; where there is none, all is as ``ghost_ball`` says, its break-off too."""
-    frame = sn.SnookerVectorEnv(40, task="frame", noise="professional", **sn.players.FRAMES)
-    frame.reset(seed=3)
-    player, plain, hands = sn.player("stroke_value").at(frame), sn.player("ghost_ball").at(frame), 0
+def frames(n, **options):
+    made = sn.SnookerVectorEnv(n, task="frame", noise="professional", **sn.players.FRAMES, **options)
+    made.reset(seed=3)
+    return made
+
+
+def test_it_plays_frames_without_a_shot_and_each_position_by_itself():
+    """Pots and safeties, from where it places the cue ball; its break-off is that of ``ghost_ball``."""
+    frame = frames(40, miss="clear_path")
+    player, plain, hands, safe = sn.player("stroke_value").at(frame), sn.player("ghost_ball").at(frame), 0, 0
     for k in range(12):
-        at, keys = Positions.of(frame), np.arange(40) + 100 * k
-        strokes, other = player.play(at, keys), plain.play(at, keys)
-        ranked = player.rank(at, keys)
-        same = np.flatnonzero((strokes.values == other.values).all(axis=1))
-        assert k or len(same) == 40
-        assert all(
-            np.array_equal(a[same], b[same], equal_nan=True)
-            for a, b in zip(strokes.parts, other.parts, strict=True)
-        )
+        at, keys, before = Positions.of(frame), np.arange(40) + 100 * k, simulated()
+        strokes, other, ranked = player.play(at, keys), plain.play(at, keys), player.rank(at, keys)
+        assert simulated() == before
+        if k == 0:
+            assert np.array_equal(strokes.values, other.values)
+        assert (strokes.values == other.values).all(axis=1).sum() <= (40 if k == 0 else 8)
         for j, one in enumerate(ranked):
             assert np.array_equal(one.strokes.values[0], strokes.values[j])
             assert np.array_equal(one.strokes.place[0], strokes.place[j], equal_nan=True)
+            assert one.scores is None or (np.diff(one.scores) <= 0.0).all()
+        for j in (0, 17, 39):
+            alone = player.play(at[[j]], keys[[j]])
+            for part, whole in zip(alone.parts, strokes.parts, strict=True):
+                assert np.array_equal(part[0], whole[j], equal_nan=True)
+        safe += sum(one is not None and one.kinds[0] == 1 for one in player.decided(at, keys).tried)
         hands += int((at.in_hand & np.isfinite(strokes.place[:, 0])).sum())
         frame.step(strokes.actions(frame.options, at))
-    assert hands > 40
+    assert hands > 40 and safe > 40
+
+
+def test_a_network_of_frames_changes_what_is_played_in_frames_alone():
+    """One that has learned nothing plays the stroke that seems to be worth most."""
+    package = learned_strokes()
+    frame = frames(20, layout="opened", miss="clear_path")
+    plain, taught = (StrokeValuePlayer(of).at(frame) for of in (StrokeLayers(package.visits), package))
+    at = Positions.of(frame)
+    looked = plain.search.look(at, np.arange(20))
+    scores = np.where(looked.there, plain.search.scores(looked.seen), -np.inf)
+    best = looked.strokes[np.arange(20), scores.argmax(axis=1)]
+    said = plain.play(at, np.arange(20)).values
+    assert np.array_equal(said[~at.in_hand], best[~at.in_hand])
+    assert (said != taught.play(at, np.arange(20)).values).any(axis=1).sum() > 5
+    tables = opened(20)
+    visits = [one.play(tables, np.arange(20)).values for one in (plain, taught)]
+    assert np.array_equal(*visits)
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,13 @@ each meeting with a nose or another ball is a single impact. Its path is looked 
 sliding ball. A ball that it meets stays where it is, and the potted one is gone: the prediction ends where these would matter.
 """
 
-from math import hypot, sqrt
+from math import cos, hypot, sin, sqrt
 
 import numpy as np
 
 from ..._jit import entry, kernel
-from ...game.balls import N_BALLS, SPOTS, VALUES
+from ...game.balls import N_BALLS, SPOTS, VALUES, bits
+from ...game.frame_columns import strikeable
 from ...geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ...physics import cloth
 from ...physics.arrays import Law
@@ -139,42 +140,85 @@ def _run(positions, on_table, skip, law, work, out):
     out[X], out[Y] = x, y
 
 
-@kernel(seconds=1, uses=(_run,))
-def _predicted(stroke, ball, pocket, positions, on_table, cue_law, work, out):
-    """What is predicted of a stroke (5,) at a pot; fills ``out`` (SEEN,)."""
+@kernel(seconds=1)
+def _met(stroke, ball, positions, on_table, cue_law, work, out):
+    """The cue ball of a stroke (5,) meets ``ball``, past all others: whether it does, and the velocity and the spin that
+    the ball leaves with. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
-    bx, by = positions[ball, 0], positions[ball, 1]
-    px, py = POCKET_AIMS[pocket, AIM_X] - bx, POCKET_AIMS[pocket, AIM_Y] - by
-    run = hypot(px, py)
+    cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     for c in range(SEEN):
         out[c] = 0.0
-    out[X], out[Y], out[NEAR] = positions[0, 0], positions[0, 1], 9.0
+    out[NEAR], still = 9.0, (0.0, 0.0, 0.0)
     meant = stroke[0], stroke[1], stroke[2], stroke[4]
     played = stroke_in_room(stroke[3], meant, positions, on_table, cue_law)
     met, t = meets(played, positions, (bx, by), cue_law, work)
     (x, y), v, w = cloth.evaluate(motion, state, 0, t if met else motion[0, cloth.T0], phys)
     if not met:
         out[X], out[Y] = x, y
-        out[MISSED] = (
-            1.0
-            if hypot(x - positions[0, 0], y - positions[0, 1])
-            < hypot(bx - positions[0, 0], by - positions[0, 1])
-            else 2.0
-        )
-        return
+        out[MISSED] = 1.0 if hypot(x - cx, y - cy) < hypot(bx - cx, by - cy) else 2.0
+        return False, still, still
     nx, ny = bx - x, by - y
-    away, still = hypot(nx, ny), (0.0, 0.0, 0.0)
-    own, w, other, _w, _ok = collide_balls(
+    away = hypot(nx, ny)
+    own, w, other, spin, _ok = collide_balls(
         (v[0], v[1], 0.0), w, still, still, (nx / away, ny / away), law, phys[P_E_B], work.series
     )
-    speed = hypot(other[0], other[1])
+    cloth.begin(motion, state, 0, t, (x, y), (own[0], own[1]), w, phys)
+    return True, other, spin
+
+
+@kernel(seconds=1, uses=(_met, _run))
+def _predicted(stroke, pot, positions, on_table, cue_law, work, out):
+    """What is predicted of a stroke (5,) at a pot, of ball and pocket; fills ``out`` (SEEN,)."""
+    phys, (ball, pocket) = cue_law.phys, pot
+    met, other, _spin = _met(stroke, ball, positions, on_table, cue_law, work, out)
+    if not met:
+        return
+    px = POCKET_AIMS[pocket, AIM_X] - positions[ball, 0]
+    py = POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
+    run, speed = hypot(px, py), hypot(other[0], other[1])
     out[OBJECT], out[ASIDE] = speed, (px * other[1] - py * other[0]) / (run * max(speed, 1e-9))
     # it slides, and rolls on with 5/7 of its speed
     rolls = (25.0 / 49.0) * speed * speed / (2.0 * phys[P_MU_R] * phys[P_G])
     out[REACH] = min(FAREST, rolls / run)
-    cloth.begin(motion, state, 0, t, (x, y), (own[0], own[1]), w, phys)
+    _run(positions, on_table, ball, Law(phys, cue_law.fidelity, cue_law.n_steps), work, out)
+
+
+@kernel
+def _first_in_way(stroke, positions, on_table, d):
+    """The ball that a stroke (5,) meets first along the straight line; 0: none."""
+    ux, uy, ball, nearest = cos(stroke[3]), sin(stroke[3]), 0, 1e9
+    for i in range(1, N_BALLS):
+        if on_table[i]:
+            px, py = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
+            along, across = px * ux + py * uy, px * uy - py * ux
+            if along > 0.0 and across * across < d * d:
+                run = along - sqrt(d * d - across * across)
+                if run < nearest:
+                    ball, nearest = i, run
+    return ball
+
+
+@kernel(seconds=1, uses=(_met, _run))
+def _contact(stroke, positions, on_table, cue_law, work, out, its):
+    """What is predicted of a stroke (5,) and of the ball that lies in its way; fills ``out`` and ``its`` (SEEN,), and
+    returns that ball, 0 if there is none."""
+    phys, motion, state = cue_law.phys, work.motion, work.state
+    law = Law(phys, cue_law.fidelity, cue_law.n_steps)
+    ball = _first_in_way(stroke, positions, on_table, 2.0 * phys[P_R])
+    for c in range(SEEN):
+        out[c] = its[c] = 0.0
+    out[MISSED], its[NEAR] = 2.0, 9.0
+    if ball == 0:
+        return 0
+    met, other, spin = _met(stroke, ball, positions, on_table, cue_law, work, out)
+    if not met:
+        return 0
     _run(positions, on_table, ball, law, work, out)
+    at = positions[ball, 0], positions[ball, 1]
+    cloth.begin(motion, state, 0, 0.0, at, (other[0], other[1]), spin, phys)
+    _run(positions, on_table, ball, law, work, its)
+    return ball
 
 
 @entry(what="the paths of cue balls", seconds=2, uses=(_predicted,))
@@ -193,7 +237,7 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
         meant = strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3], strokes[i, 4]
         tried[:] = with_errors(*meant, errors[j % errors.shape[0]], noise)
         tried[1], tried[2] = tip_on_disc(tried[1], tried[2], most)
-        _predicted(tried, ball, pots[i, 1], p, here, its, work, out[j])
+        _predicted(tried, (ball, pots[i, 1]), p, here, its, work, out[j])
         reds = False
         for i in range(N_BALLS):
             after[j, i, 0], after[j, i, 1], there[j, i] = p[i, 0], p[i, 1], here[i]
@@ -209,3 +253,27 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
             for i in range(N_BALLS - 1, 15, -1):
                 if there[j, i]:
                     on[j] = VALUES[i]
+
+
+@entry(what="the paths of both balls", seconds=2, uses=(_contact,))
+def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
+    """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors``
+    (k, 5): fills ``out`` (n k, 2, SEEN), of the cue ball and of the first ball in its way, and ``left``: positions,
+    that ball, 0 if it meets none, and whether it is on."""
+    (positions, on_table, game), (after, met, legal) = balls, left
+    phys, ratios, fidelity, n_steps, most, rails = law
+    work, tried = new_work(), np.empty(5)
+    for j in range(out.shape[0]):
+        i = j // errors.shape[0]
+        k = rows[i]
+        own, p, here = row_of(k, phys), positions[k], on_table[k]
+        its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
+        meant = strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3], strokes[i, 4]
+        tried[:] = with_errors(*meant, errors[j % errors.shape[0]], noise)
+        tried[1], tried[2] = tip_on_disc(tried[1], tried[2], most)
+        ball = met[j] = _contact(tried, p, here, its, work, out[j, 0], out[j, 1])
+        legal[j] = ball > 0 and (strikeable(game[k], bits(here) & ~1) >> ball) & 1
+        after[j] = p
+        if ball:
+            after[j, 0, 0], after[j, 0, 1] = out[j, 0, X], out[j, 0, Y]
+            after[j, ball, 0], after[j, ball, 1] = out[j, 1, X], out[j, 1, Y]

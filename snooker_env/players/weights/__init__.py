@@ -5,7 +5,7 @@
 out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading them runs no code.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -22,7 +22,7 @@ FOLDER = Path(__file__).parent
 WORTH = "worth.npz"
 """The file of the ``tactician``'s worth of positions of frames (``python -m agents.learn_worth``)."""
 STROKES = "strokes.npz"
-"""The file of the network of ``stroke_value`` (``python train.py --agent stroke_value``)."""
+"""The file of the networks of ``stroke_value`` (``python train.py --agent stroke_value``)."""
 VALUE_LAYERS = 3  # layers of each network of a value
 
 
@@ -31,6 +31,13 @@ class Learned(NamedTuple):
 
     policy: StrokePolicy
     value: list[list[tuple[Singles, Singles]]]
+
+
+class StrokeLayers(NamedTuple):
+    """What ``stroke_value`` has learned: the layers of a ``StrokeValue`` and of a ``FrameStrokes``, empty before that."""
+
+    visits: Sequence[tuple[Singles, Singles]] = ()
+    frames: Sequence[tuple[Singles, Singles]] = ()
 
 
 def learned_of(arrays: Mapping[str, Singles]) -> Learned:
@@ -60,10 +67,14 @@ def learned_worth(path: Path = FOLDER / WORTH) -> tuple[list[tuple[Singles, Sing
 
 
 @cache
-def learned_strokes(path: Path = FOLDER / STROKES) -> list[tuple[Singles, Singles]]:
-    """The layers of a ``StrokeValue``; by default the package's."""
+def learned_strokes(path: Path = FOLDER / STROKES) -> StrokeLayers:
+    """The layers of the networks of ``stroke_value``; by default the package's."""
     with np.load(path, allow_pickle=False) as arrays:
-        return [(arrays[f"strokes/{k}/weight"], arrays[f"strokes/{k}/bias"]) for k in range(VALUE_LAYERS)]
+        made = [
+            [(arrays[f"{of}/{k}/weight"], arrays[f"{of}/{k}/bias"]) for k in range(VALUE_LAYERS)]
+            for of in StrokeLayers._fields
+        ]
+    return StrokeLayers(*made)
 
 
 def levels() -> list[str]:

@@ -1,0 +1,180 @@
+"""What is a stroke of a frame worth, without playing it? Beside the pots of ``stroke_value``, safeties where no pot is
+likely: of each it predicts where the cue ball and the first ball that it meets come to rest (``cue_ball_path``), and a
+learned worth says what such a position is worth to the other player. A small network corrects what both kinds seem to be
+worth: the points that the striker scores from there on, less the other's. ``train.py --agent stroke_value`` trains it."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..._types import Bools, Floats, Integers, Ints
+from ...game import frame_columns as columns
+from ...game.balls import N_BALLS
+from ...tasks.options import Rules
+from ..frame_search import EASY, Tried
+from ..positions import Positions, PositionsLike, check_played, seeds_of
+from ..proposals import safeties
+from ..prospects import in_parts
+from ..sobol import normal_points
+from ..strokes import COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
+from ..worth import SPREAD, Chance, passed
+from . import cue_ball_path as path
+from .dense_layers import Layers
+from .learned_worth import LearnedWorth
+from .stroke_value import LOOKS, POINTS, StrokeValue
+from .stroke_value import SIZE as POT_SIZE
+
+SAFETIES, SAMPLES = 60, 4
+"""Safeties that are looked at, and errors under which each is predicted; the first is none."""
+STROKES = LOOKS + SAFETIES
+SHARED, SAFE_SIZE = 5, 24
+SIZE = SHARED + POT_SIZE + SAFE_SIZE
+"""What is seen of a stroke: what it seems to be worth, what the position is worth to the striker and, after a miss, to the
+other, reds, whether it is a pot; what ``stroke_value`` sees of a pot; what is predicted of a safety."""
+FOUL = 8.0
+"""What a predicted foul costs beside what the balls as they lie bring the other [points]."""
+_SEED = 7  # of the errors, which are the same for all
+_CHANCE = 2  # the column of what ``stroke_value`` sees that is the pot's chance
+
+
+class Looked(NamedTuple):
+    """The strokes of n positions that are looked at, pots before safeties.
+
+    ``strokes`` (n, STROKES, 5); ``there`` (n, STROKES), whether there is such a stroke; ``seen`` float32 (n, STROKES,
+    SIZE)."""
+
+    strokes: Floats
+    there: Bools
+    seen: NDArray[np.float32]
+
+
+class FrameStrokes:
+    """Ranks strokes of frames without a simulated shot; ``layers``: of the network, empty before it has learned."""
+
+    chance: Chance | None = None
+    """It compares points: no law of the chance to win."""
+
+    def __init__(
+        self,
+        rules: Rules,
+        values: StrokeValue,
+        worth: LearnedWorth,
+        layers: Sequence[tuple[NDArray, NDArray]],
+    ):
+        self.rules, self.values, self.worth = rules, values, worth
+        self.dynamics: Dynamics = values.dynamics
+        self.spread: float = values.value.spread
+        self._layers = Layers(layers, "relu") if layers else None
+        self._noise = rules.noise.pack(self.dynamics.physics.R, real=len(self.dynamics.rails) > 0)
+        self._errors = normal_points(SAMPLES, _SEED)
+        self._errors[0] = 0.0
+
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Tried]:
+        """Strokes in n positions of frames, as ``FrameSearch.rank``: none met a noise sample, the chances are 0. None
+        before a break-off, and where neither a pot nor a ball on is seen."""
+        at = Positions.of(positions).known_to(self.rules)
+        check_played(at.as_visits(), np.arange(len(at)), self.rules.table, self.rules.physics.R)
+        strokes, there, seen = self.look(at, seeds_of(seeds, len(at)))
+        scores = np.where(there, self.scores(seen), -np.inf)
+        game, order = at.game, np.argsort(-scores, axis=1, kind="stable")
+        racks = (
+            at.in_hand
+            & (game[:, columns.STROKES] == 0)
+            & (game[:, columns.RACK] == game[:, columns.ON_TABLE])
+        )
+        counts, tried = np.where(racks, 0, there.sum(axis=1)).tolist(), []
+        for k, count in enumerate(counts):
+            best = order[k, :count]
+            none = np.zeros(count)
+            tried.append(
+                Tried(
+                    strokes[k, best],
+                    none,
+                    scores[k, best].astype(np.float64),
+                    none.astype(np.int64),
+                    (best >= LOOKS).astype(np.int64),
+                )
+            )
+        return tried
+
+    def scores(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
+        """What the strokes seen (n, m, SIZE) are worth [points]: float32 (n, m)."""
+        more = 0.0 if self._layers is None else self._layers(seen.reshape(-1, SIZE)).reshape(seen.shape[:-1])
+        return POINTS * (seen[..., 0] + more)
+
+    def look(self, at: Positions, seeds: Ints) -> Looked:
+        """The strokes that are looked at in n positions, and what is seen of them."""
+        n, visits = len(at), at.as_visits()
+        strokes, there = np.zeros((n, STROKES, COLUMNS)), np.zeros((n, STROKES), np.bool_)
+        seen = np.zeros((n, STROKES, SIZE), np.float32)
+        missed = self.worth(passed(at)).astype(np.float64)  # what the other makes of the balls as they lie
+        found, hard = self.values.candidates(visits, LOOKS, seeds), np.ones(n, np.bool_)
+        rows, pots, kinds = found.rows, seen[:, :LOOKS], seen[:, LOOKS:]
+        strokes[rows, :LOOKS], there[rows, :LOOKS] = found.strokes, True
+        chances = found.seen[..., _CHANCE]
+        pots[rows, :, 0] = (self.values.scores(found.seen) - (1.0 - chances) * missed[rows, None]) / POINTS
+        pots[:, :, 4] = 1.0
+        pots[rows, :, SHARED : SHARED + POT_SIZE] = found.seen
+        hard[rows] = chances.max(axis=1) < EASY
+        others = np.flatnonzero(hard)
+        made = safeties(self, visits[others], SAFETIES, seeds[others])
+        j, c = np.nonzero(made.chances > 0.0)
+        of = others[j]
+        strokes[of, LOOKS + c], there[of, LOOKS + c] = made.strokes[j, c], True
+        if len(of):
+            kinds[of, c, 0], kinds[of, c, SHARED + POT_SIZE :] = self._predicted(
+                at, of, made.strokes[j, c], missed
+            )
+        seen[..., 1], seen[..., 2] = missed[:, None] / 40.0, self.worth(at)[:, None] / 40.0
+        seen[..., 3] = at.on_table[:, 1:16].sum(axis=1)[:, None] / 15.0
+        return Looked(strokes, there, seen)
+
+    def _predicted(self, at: Positions, rows: Ints, strokes: Floats, missed: Floats) -> tuple[Floats, Floats]:
+        """What safeties (m, 5) in ``at[rows]`` seem to be worth, in units of ``POINTS``, (m,), and what is predicted of
+        them, (m, SAFE_SIZE)."""
+        m, k = len(rows), len(self._errors)
+        out, met, places = (
+            np.empty((m * k, 2, path.SEEN)),
+            np.empty(m * k, np.int64),
+            np.empty((m * k, N_BALLS, 2)),
+        )
+        balls, law, legal = (
+            (at.positions, at.on_table, at.game),
+            law_of(self.dynamics, at),
+            np.empty(m * k, np.bool_),
+        )
+
+        def predict(part: slice) -> None:
+            all_of = slice(k * part.start, k * part.stop)
+            left = places[all_of], met[all_of], legal[all_of]
+            path.predict_contacts(
+                balls, rows[part], strokes[part], self._errors, self._noise, law, out[all_of], left
+            )
+
+        in_parts(m, self.values.value.threads, predict)
+        of, lost = np.repeat(rows, k), out[..., path.LOST] > 0.0
+        foul, potted = ~legal | lost[:, 0], legal & lost[:, 1] & ~lost[:, 0]
+        gains = -missed[of]  # a ball that is potted by chance changes little
+        gains[foul] = np.minimum(gains[foul], 0.0) - FOUL
+        rest = np.flatnonzero(~foul & ~potted)
+        left = passed(at[of[rest]])
+        left.positions[:] = places[rest]
+        gains[rest] = -self.worth(left)
+        gains, seen = gains.reshape(m, k) / 20.0, out.reshape(m, k, 2, path.SEEN)
+        first, mean, cue = seen[:, 0], seen.mean(axis=1), seen[:, :, 0]
+        columns_seen = [gains[:, 0], gains.min(axis=1), gains.max(axis=1), gains.std(axis=1)]
+        columns_seen += [one.reshape(m, k).mean(axis=1) for one in (foul, potted, met == 0)]
+        columns_seen += [first[:, 0, path.LOST], np.full(m, np.log(self.spread / SPREAD))]
+        for ball in (0, 1):
+            columns_seen += [
+                mean[:, ball, path.NOSES] / 3.0,
+                mean[:, ball, path.BALLS] / 2.0,
+                mean[:, ball, path.LENGTH] / 3.0,
+                first[:, ball, path.HIT],
+                5.0 * np.minimum(mean[:, ball, path.NEAR], 0.3),
+            ]
+        columns_seen += [strokes[:, SPEED] / 3.0, strokes[:, SIDE], strokes[:, TOP], np.abs(strokes[:, SIDE])]
+        columns_seen.append(np.hypot(cue[..., path.X].std(axis=1), cue[..., path.Y].std(axis=1)))  # [m]
+        return 20.0 / POINTS * gains.mean(axis=1), np.stack(columns_seen, axis=1)
