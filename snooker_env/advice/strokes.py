@@ -113,8 +113,8 @@ StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any
 
 
 def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
-    """A player's strokes in the one position ``at``, with a place in the D if the cue ball is in hand."""
-    in_hand, (here, *_) = bool(at.in_hand[0]), at.positions[0].tolist()
+    """A player's strokes in the one position ``at``, with a place if the cue ball is in hand in the D."""
+    in_hand, (here, *_) = bool(at.in_hand[0] & ~at.anywhere[0]), at.positions[0].tolist()
     out = []
     for (speed, side, top, aim, elevation), place in zip(strokes.values.tolist(), strokes.place, strict=True):
         shrink = max(1.0, hypot(side, top) / FARTHEST)  # as the strike itself keeps the tip on the disc

@@ -261,8 +261,8 @@ class Service:
         if session.frame.phase == "choice":
             session.choose("play")
         (stroke,) = cue_strokes(decided, session.position)
-        if stroke.place is not None:
-            session.place(*stroke.place)
+        if session.frame.in_hand and np.isfinite(decided.place[0]).all():
+            session.place(*decided.place[0].tolist())
         nominated = int(decided.nominate[0])
         sensible = nominated in session.nominations() or (nominated == DECLINED and session.frame.free_ball)
         session.play(stroke, nominated=nominated if sensible else AUTO)

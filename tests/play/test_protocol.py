@@ -554,6 +554,14 @@ def test_in_the_shoot_out_a_clock_runs_and_after_a_foul_the_cue_ball_goes_anywhe
         True,
         True,
     )
+    agent = game.service.seats.players["deciding"] = Deciding(place=[[0.3, 0.45]])
+    game("players", players=["person", "deciding"])
+    assert waited(game, lambda s: not s["thinking"])["trouble"] == ""  # off the D, which is far away
+    assert agent.saw[0].anywhere.all()
+    start = game.session.acts[-1].asked["place"]
+    assert start == pytest.approx([0.3, 0.45], abs=1e-9)
+    game("undo")
+    game("players", players=["person", "person"])
     assert game("place", place=[0.3, 0.4])["place"] == [0.3, 0.4]
     played = game("stroke", speed=1.0, aim=0.5 * pi, place=[0.3, 0.5])["stroke"]
     assert game.get("state")["time_left"] == pytest.approx(600 - duration - 9 - played["duration"], abs=0.003)
