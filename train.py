@@ -4,7 +4,7 @@ players, and report the result.
     python train.py                                    six minutes on two cores: a value and a policy by expert iteration, then PPO
     python train.py --steps 1507328 --imitate 153600   the weights of the package: 17 minutes
     python train.py --agent ppo_mask --seed 1 --out runs/mine
-    python train.py --agent stroke_value               a player that simulates no shot, in 15 minutes
+    python train.py --agent stroke_value               a player that simulates no shot, in 24 minutes
     python train.py --resume --out runs/mine           continue from the last checkpoint after Ctrl-C, a kill or a power cut
 
 Files of a run folder:
@@ -458,7 +458,9 @@ def train_strokes(parser, given, rest, settings):
                 stop.running = "these tables"
                 parts = (training.visits, training.play_visits), (training.frames, training.play_frames)
                 for number, (rounds, play) in enumerate(parts, 1):
-                    with part_of(number, f"its own {rounds.of}", rounds.total, "tables", rounds.done) as progress:
+                    with part_of(
+                        number, f"its own {rounds.of}", rounds.total, "tables", rounds.done
+                    ) as progress:
                         play(progress, stop)
                     if stop.signal:
                         done = f"{len(rounds.rounds)} of {rounds.many} rounds of {rounds.of}"
@@ -484,7 +486,7 @@ def train_strokes(parser, given, rest, settings):
                 "simulated_shots": sum(rounds.simulated for rounds, _ in parts),
                 "curve": {rounds.of: rounds.curve for rounds, _ in parts},
             }
-            without = ", without those of the planner that it learned from"
+            without = ", without those of the planner and the tactician that it learned from"
             report(out, results, learned, figures, best, shared["noise"], without)
         except KeyboardInterrupt:
             print(f"Interrupted. {go_on(out)}", file=sys.stderr)

@@ -22,7 +22,7 @@ tags:
 - gymnasium
 """
 OWN = {
-    STROKES: "`stroke_value`: what strokes at direct pots are worth, for errors from 0.7 to 4.5 times a professional's "
+    STROKES: "`stroke_value`: what strokes of visits and of frames are worth, for errors from 0.7 to 4.5 times a professional's "
     "(`python train.py --agent stroke_value`)",
     WORTH: "`tactician`: what positions of frames are worth, for all levels of errors (`python -m agents.learn_worth`)",
 }

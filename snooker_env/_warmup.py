@@ -115,7 +115,8 @@ def warmup() -> None:
         player(_Saying()).at({"task": "frame"}).play(both, [0])
         for name in ("planner_30", "planner_policy", "stroke_value"):
             player(name).at({"noise": "club"}).play(at, [0])
-        player("tactician_30").at({"task": "frame", "noise": "club", "miss": "clear_path"}).play(both, [0])
+        for name in ("tactician_30", "stroke_value"):
+            player(name).at({"task": "frame", "noise": "club", "miss": "clear_path"}).play(both, [0])
         decide(lambda some: np.zeros(len(some)), both)
         best_places(lambda some: np.zeros(len(some)), both)
         search = StrokeSearch({"noise": "club"}, budget=30)

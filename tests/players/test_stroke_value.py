@@ -78,7 +78,10 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
     # the strokes that were tried, those that were played, and decisions of the planner, of best_pot and of tactician_60
     assert results["steps"] < results["simulated_shots"] <= 3 * results["steps"]
     assert [len(results["curve"][of]) for of in ("visits", "frames")] == [2, 2]
-    assert f"without those of the planner that it learned from: {results['simulated_shots']:,}." in said
+    assert (
+        f"without those of the planner and the tactician that it learned from: {results['simulated_shots']:,}."
+        in said
+    )
     settings = ["rounds=2", "tables=16", "frame_rounds=2", "frames=10"]
     repeated = ["--agent", "stroke_value", "--seed", "3", "--set", *settings]
     assert shlex.split(results["command"]) == ["python", "train.py", *repeated]
