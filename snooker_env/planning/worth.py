@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._jit import entry
-from .._types import Floats, Ints
+from .._types import Bools, Floats, Ints
 from ..game import frame_columns as columns
 from ..game.balls import CUE, N_BALLS, available
 from ..game.sides import swapped
@@ -65,6 +65,12 @@ def _left(game, out):
 def _place(positions, on_table, places):
     for k in range(len(positions)):
         place(positions[k], on_table[k], places[k, 0], places[k, 1], False)
+
+
+def breaks_off(at: Positions) -> Bools:
+    """Whether the strikers of n positions break off a whole rack, (n,)."""
+    begins = at.in_hand & (at.game[:, columns.STROKES] == 0)
+    return begins & (at.game[:, columns.RACK] == at.game[:, columns.ON_TABLE])
 
 
 def chosen(at: Positions, what: int) -> Positions:

@@ -8,7 +8,7 @@ import numpy as np
 from ..game import frame_columns as columns
 from ..planning import Positions
 from ..planning.frame_search import Tried
-from ..planning.worth import Chance, Worth, best_places, chosen, decide, lead_of, left_of
+from ..planning.worth import Chance, Worth, best_places, breaks_off, chosen, decide, lead_of, left_of
 from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options, Rules
 from .player import Player, Ranked, Strokes, placed
@@ -61,9 +61,7 @@ def decided(search: FrameSearcher, plain: Player, options: Options, at: Position
             some = rows[decisions[rows] == what]
             at.game[some] = chosen(at[some], what).game
         plays[rows] = np.isin(decisions[rows], (columns.PLAY, columns.PLACE_ANYWHERE))
-    game = at.game
-    racks = (game[:, columns.STROKES] == 0) & (game[:, columns.RACK] == game[:, columns.ON_TABLE])
-    hand, usual = plays & at.in_hand, racks | at.anywhere
+    hand, usual = plays & at.in_hand, breaks_off(at) | at.anywhere
     for rows in np.flatnonzero(hand & usual), np.flatnonzero(hand & ~usual):
         if len(rows):  # at the break-off, and where it may stand anywhere, as other players do
             some = placed(at[rows], seeds[rows]) if usual[rows[0]] else best_places(worth, at[rows])

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..._types import Bools, Floats, Integers, Ints
-from ...game import frame_columns as columns
 from ...game.balls import N_BALLS
 from ...tasks.options import Rules
 from ..frame_search import EASY, Tried
@@ -19,11 +18,11 @@ from ..proposals import safeties
 from ..prospects import in_parts
 from ..sobol import normal_points
 from ..strokes import COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
-from ..worth import SPREAD, Chance, passed
+from ..worth import SPREAD, Chance, breaks_off, passed
 from . import cue_ball_path as path
 from .dense_layers import Layers
 from .learned_worth import LearnedWorth
-from .stroke_value import LOOKS, POINTS, StrokeValue
+from .stroke_value import LEARNED, LOOKS, POINTS, StrokeValue
 from .stroke_value import SIZE as POT_SIZE
 
 SAFETIES, SAMPLES = 60, 4
@@ -31,8 +30,8 @@ SAFETIES, SAMPLES = 60, 4
 STROKES = LOOKS + SAFETIES
 SHARED, SAFE_SIZE = 5, 24
 SIZE = SHARED + POT_SIZE + SAFE_SIZE
-"""What is seen of a stroke: what it seems to be worth, what the position is worth to the striker and, after a miss, to the
-other, reds, whether it is a pot; what ``stroke_value`` sees of a pot; what is predicted of a safety."""
+"""What is seen of a stroke: what it seems to be worth, what the balls as they lie are worth to the other and to the striker,
+reds, whether it is a pot; what ``stroke_value`` sees of a pot; what is predicted of a safety."""
 FOUL = 8.0
 """What a predicted foul costs beside what the balls as they lie bring the other [points]."""
 _SEED = 7  # of the errors, which are the same for all
@@ -78,25 +77,11 @@ class FrameStrokes:
         check_played(at.as_visits(), np.arange(len(at)), self.rules.table, self.rules.physics.R)
         strokes, there, seen = self.look(at, seeds_of(seeds, len(at)))
         scores = np.where(there, self.scores(seen), -np.inf)
-        game, order = at.game, np.argsort(-scores, axis=1, kind="stable")
-        racks = (
-            at.in_hand
-            & (game[:, columns.STROKES] == 0)
-            & (game[:, columns.RACK] == game[:, columns.ON_TABLE])
-        )
-        counts, tried = np.where(racks, 0, there.sum(axis=1)).tolist(), []
-        for k, count in enumerate(counts):
-            best = order[k, :count]
-            none = np.zeros(count)
-            tried.append(
-                Tried(
-                    strokes[k, best],
-                    none,
-                    scores[k, best].astype(np.float64),
-                    none.astype(np.int64),
-                    (best >= LOOKS).astype(np.int64),
-                )
-            )
+        order, tried = np.argsort(-scores, axis=1, kind="stable"), []
+        for k, count in enumerate(np.where(breaks_off(at), 0, there.sum(axis=1)).tolist()):
+            best, none = order[k, :count], np.zeros(count)
+            points, kinds = scores[k, best].astype(np.float64), (best >= LOOKS).astype(np.int64)
+            tried.append(Tried(strokes[k, best], none, points, none.astype(np.int64), kinds))
         return tried
 
     def scores(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -124,9 +109,8 @@ class FrameStrokes:
         of = others[j]
         strokes[of, LOOKS + c], there[of, LOOKS + c] = made.strokes[j, c], True
         if len(of):
-            kinds[of, c, 0], kinds[of, c, SHARED + POT_SIZE :] = self._predicted(
-                at, of, made.strokes[j, c], missed
-            )
+            seems, more = self._predicted(at, of, made.strokes[j, c], missed)
+            kinds[of, c, 0], kinds[of, c, SHARED + POT_SIZE :] = seems, more
         seen[..., 1], seen[..., 2] = missed[:, None] / 40.0, self.worth(at)[:, None] / 40.0
         seen[..., 3] = at.on_table[:, 1:16].sum(axis=1)[:, None] / 15.0
         return Looked(strokes, there, seen)
@@ -135,23 +119,14 @@ class FrameStrokes:
         """What safeties (m, 5) in ``at[rows]`` seem to be worth, in units of ``POINTS``, (m,), and what is predicted of
         them, (m, SAFE_SIZE)."""
         m, k = len(rows), len(self._errors)
-        out, met, places = (
-            np.empty((m * k, 2, path.SEEN)),
-            np.empty(m * k, np.int64),
-            np.empty((m * k, N_BALLS, 2)),
-        )
-        balls, law, legal = (
-            (at.positions, at.on_table, at.game),
-            law_of(self.dynamics, at),
-            np.empty(m * k, np.bool_),
-        )
+        balls, law = (at.positions, at.on_table, at.game), law_of(self.dynamics, at)
+        out, places = np.empty((m * k, 2, path.SEEN)), np.empty((m * k, N_BALLS, 2))
+        met, legal = np.empty(m * k, np.int64), np.empty(m * k, np.bool_)
 
         def predict(part: slice) -> None:
-            all_of = slice(k * part.start, k * part.stop)
+            all_of, some = slice(k * part.start, k * part.stop), (rows[part], strokes[part])
             left = places[all_of], met[all_of], legal[all_of]
-            path.predict_contacts(
-                balls, rows[part], strokes[part], self._errors, self._noise, law, out[all_of], left
-            )
+            path.predict_contacts(balls, *some, self._errors, self._noise, law, out[all_of], left)
 
         in_parts(m, self.values.value.threads, predict)
         of, lost = np.repeat(rows, k), out[..., path.LOST] > 0.0
@@ -166,7 +141,7 @@ class FrameStrokes:
         first, mean, cue = seen[:, 0], seen.mean(axis=1), seen[:, :, 0]
         columns_seen = [gains[:, 0], gains.min(axis=1), gains.max(axis=1), gains.std(axis=1)]
         columns_seen += [one.reshape(m, k).mean(axis=1) for one in (foul, potted, met == 0)]
-        columns_seen += [first[:, 0, path.LOST], np.full(m, np.log(self.spread / SPREAD))]
+        columns_seen += [first[:, 0, path.LOST], np.full(m, np.log(np.clip(self.spread, *LEARNED) / SPREAD))]
         for ball in (0, 1):
             columns_seen += [
                 mean[:, ball, path.NOSES] / 3.0,

@@ -32,7 +32,7 @@ SIZE = 33
 POINTS = 10.0  # unit of the network's results [points]
 LOOKS, SAMPLES = 60, 3
 """Strokes that are looked at, and errors under which each is predicted; the first is none."""
-_LEARNED = 8.4e-4, 5e-3  # other errors of direction than it has learned from count as these [rad]
+LEARNED = 8.4e-4, 5e-3  # other errors of direction than it has learned from count as these [rad]
 _SEED = 7  # of the errors, which are the same for all
 _LEAST_SPEED = 0.03
 """The errors of speed that are predicted are at least this: else all would come to the same place."""
@@ -94,7 +94,7 @@ class StrokeValue:
             np.maximum(likely - scores.max(axis=1, keepdims=True), -40.0) / 10.0,
             *self._pots(at, strokes, chances, pot),
             *self._ahead(at, strokes, pot),
-            np.full(picks.shape, np.log(np.clip(self.value.spread, *_LEARNED) / SPREAD)),
+            np.full(picks.shape, np.log(np.clip(self.value.spread, *LEARNED) / SPREAD)),
         ]
         return Candidates(rows, strokes, np.stack(columns, axis=-1).astype(np.float32))
 
