@@ -478,7 +478,7 @@ def train_strokes(parser, given, rest, settings):
                 players, visits, lambda total: part_of(3, "evaluation", total, "visits"), **shared
             )
             shots = sum(rounds.tried for rounds, _ in parts)
-            learned = conclusion("stroke_value", shots, 0, figures)
+            learned = conclusion("stroke_value", training.visits.tried, 0, figures)
             results = {
                 "command": shlex.join(["python", "train.py", *settings.words()]),
                 "settings": asdict(settings),

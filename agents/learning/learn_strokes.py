@@ -42,13 +42,13 @@ SETTINGS = "stroke_value.json"
 STROKES_EACH, PARTS = 8, 8
 """Strokes that are played on each table of a round, and parts of the tables with errors of their own."""
 SCALES = 0.7, 4.5
-"""Errors of the visits, times those of a professional: half of them below 1.12."""
+"""Errors of the visits and frames, times those of a professional; evenly spread in the logarithm."""
 BEST, OTHERS, ERRORS = 10, 10, 4
 """Strokes of a position that are tried: those that seem best, others at random; and execution errors of each."""
 EXPLORE, AMONG = 0.1, 8
 """Share of strokes that are not the one that seems best, but one of the ``AMONG`` best."""
 WIDTHS, BATCH, RATE, DECAY = (128, 64), 512, 2e-3, 1e-4
-PASSES, LAST_PASSES = 15, {"visits": 60, "frames": 40}
+PASSES, LAST_PASSES = 15, {"visits": 60, "frames": 20}
 """Over the positions after each round, and after the last one."""
 AGAINST = None, None, "best_pot", "tactician_60"
 """Who plays the parts of a round of frames against it, in turn; None: itself."""
@@ -188,7 +188,7 @@ class StrokeSettings:
     tables: int = 1024
     """Of a round of visits."""
     frame_rounds: int = 3
-    frames: int = 1024
+    frames: int = 512
     """Of a round of frames."""
     cue: str = "real"
 
@@ -198,7 +198,7 @@ class StrokeSettings:
         made = cls(seed, **changes_of(changes, [f.name for f in fields(cls)][1:]))
         integer("seed", made.seed, 0, 80)
         for name in ("rounds", "frame_rounds"):
-            integer(name, getattr(made, name), 1, 99)
+            integer(name, getattr(made, name), 1, 50)
         for name in ("tables", "frames"):
             integer(name, getattr(made, name), HELD, 100_000)
         choice("cue", made.cue, ("real", "free"))
@@ -232,6 +232,24 @@ class StrokeSettings:
         ]
 
 
+_VERSION = (
+    LOOKS,
+    SAMPLES,
+    SIZE,
+    FRAME_SIZE,
+    STROKES_EACH,
+    PARTS,
+    SCALES,
+    BEST,
+    OTHERS,
+    ERRORS,
+    EXPLORE,
+    AMONG,
+    AGAINST,
+)
+"""What the data of rounds depend on beside the settings: rounds of other ones are not resumed."""
+
+
 class Rounds:
     """Rounds of "visits" or "frames", ``of``, of a run in the folder ``out``; those that it holds already are read.
 
@@ -240,7 +258,7 @@ class Rounds:
     def __init__(self, out, settings, of, many, tables, first):
         self.out, self.settings, self.of, self.many, self.tables = out, settings, of, many, tables
         self.first, self.rounds, self.curve, self.layers = first, [], [], ()
-        self._asked = [*map(str, (*astuple(settings), LOOKS, SAMPLES, SIZE, FRAME_SIZE, SCALES))]
+        self._asked = [*map(str, (*astuple(settings), *_VERSION))]
         while len(self.rounds) < many and self._file().is_file():
             rows = _kept(self._file())
             if rows.pop("asked").tolist() != self._asked:
@@ -287,10 +305,10 @@ class Rounds:
         shares = (np.arange(PARTS) + rng.random(PARTS)) / PARTS
         split = np.array_split(np.arange(first, first + self.tables), PARTS)
         for part, (share, seeds) in enumerate(zip(shares, split, strict=True)):
-            scale = SCALES[0] * (SCALES[1] / SCALES[0]) ** share**2
+            scale = SCALES[0] * (SCALES[1] / SCALES[0]) ** share
             parts.append(play(self.layers, noise_option(f"professional*{scale}"), part, seeds, rng))
             progress.at(played_on := played_on + len(seeds), self.figures)
-            if stop.signal is not None:
+            if stop.signal is not None and part + 1 < PARTS:
                 return
         seen, worth, table = map(np.concatenate, zip(*parts, strict=True))
         rows = {"seen": seen, "worth": worth, "table": table, "shots": np.array(simulated() - before)}

@@ -8,6 +8,7 @@ import numpy as np
 from ..game import frame_columns as columns
 from ..planning import Positions
 from ..planning.frame_search import Tried
+from ..planning.positions import seeds_of
 from ..planning.worth import Chance, Worth, best_places, breaks_off, chosen, decide, lead_of, left_of
 from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options, Rules
@@ -44,7 +45,7 @@ class Decided(NamedTuple):
 
 def decided(search: FrameSearcher, plain: Player, options: Options, at: Positions, seeds: Any) -> Decided:
     """What who follows ``search`` does in n positions of frames; where it finds no stroke, that of ``plain``."""
-    worth = search.worth
+    worth, seeds = search.worth, seeds_of(seeds, len(at))
     n, at = len(at), at.known_to(search.rules).copy()
     values, places = np.tile(_IDLE, (n, 1)), np.full((n, 2), np.nan)
     decisions, declare = np.full(n, columns.PLAY), np.full(n, SAYS_NOTHING)

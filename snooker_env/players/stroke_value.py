@@ -43,7 +43,7 @@ class StrokeValuePlayer(BoundPlayer):
         """See ``Player.play``."""
         at = Positions.of(positions)
         if at.of_frames:
-            return self.decided(at, np.asarray(seeds)).strokes
+            return self.decided(at, seeds).strokes
         at, places, found, scores = self._scored(at, seeds)
         values = np.zeros((len(at), COLUMNS))
         values[found.rows] = found.strokes[np.arange(len(scores)), scores.argmax(axis=1)]
@@ -57,7 +57,7 @@ class StrokeValuePlayer(BoundPlayer):
         """Its strokes, best first, with what they are worth [points]."""
         at = Positions.of(positions)
         if at.of_frames:
-            return ranked(self.search, self.decided(at, np.asarray(seeds)))
+            return ranked(self.search, self.decided(at, seeds))
         at, places, found, scores = self._scored(at, seeds)
         made: list[Ranked] = self._plain.rank(at, seeds)
         for j, k in enumerate(found.rows.tolist()):

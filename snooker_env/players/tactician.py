@@ -47,14 +47,14 @@ class Tactician(BoundPlayer):
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
         at = Positions.of(positions)
-        return self.decided(at, np.asarray(seeds)).strokes if at.of_frames else self._visits.play(at, seeds)
+        return self.decided(at, seeds).strokes if at.of_frames else self._visits.play(at, seeds)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their chances to win; in visits their points."""
         at = Positions.of(positions)
         if not at.of_frames:
             return self._visits.rank(at, seeds)
-        return ranked(self.search, self.decided(at, np.asarray(seeds)))
+        return ranked(self.search, self.decided(at, seeds))
 
     def chance_to_win(self, positions: PositionsLike) -> Floats:
         """Return how likely the striker of each position wins the frame, if both play on as the ``tactician`` does.

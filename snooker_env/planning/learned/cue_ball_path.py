@@ -1,5 +1,5 @@
-"""Where will a pot leave the cue ball? As a player predicts it: the cue ball alone, past balls that stay where they
-are. No shot is simulated.
+"""Where will a stroke leave the cue ball, and in a safety the ball that it meets? As a player predicts it: each of them
+alone, past balls that stay where they are. No shot is simulated.
 
 The solved aim says where the cue ball meets the ball to be potted. From there it moves by the closed forms of ``cloth``;
 each meeting with a nose or another ball is a single impact. Its path is looked at in chords, three for the parabola of a
@@ -11,7 +11,7 @@ from math import cos, hypot, sin, sqrt
 import numpy as np
 
 from ..._jit import entry, kernel
-from ...game.balls import N_BALLS, SPOTS, VALUES, bits
+from ...game.balls import N_BALLS, SPOTS, VALUES, bits, touching_balls
 from ...game.frame_columns import strikeable
 from ...geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ...physics import cloth
@@ -54,7 +54,7 @@ def _moment(motion, state, t0, t1, share, x, y, normal, phys):
 
 @kernel(seconds=3, uses=(collide_balls, collide_cushion))
 def _run(positions, on_table, skip, law, work, out):
-    """Follow the cue ball of ``work.motion``, which has just met ball ``skip``, to where it stops; fills ``out``."""
+    """Follow the ball of ``work.motion``, which has just met ball ``skip`` or is it, to where it stops; fills ``out``."""
     phys, motion, state = law.phys, work.motion, work.state
     R, d = phys[P_R], 2.0 * phys[P_R]
     right, top = HALF_WIDTH - R, HALF_LENGTH - R
@@ -259,7 +259,7 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
 def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
     """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors``
     (k, 5): fills ``out`` (n k, 2, SEEN), of the cue ball and of the first ball in its way, and ``left``: positions,
-    that ball, 0 if it meets none, and whether it is on."""
+    that ball, 0 if it meets none, and whether the stroke meets it as the rules ask."""
     (positions, on_table, game), (after, met, legal) = balls, left
     phys, ratios, fidelity, n_steps, most, rails = law
     work, tried = new_work(), np.empty(5)
@@ -267,12 +267,15 @@ def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
         i = j // errors.shape[0]
         k = rows[i]
         own, p, here = row_of(k, phys), positions[k], on_table[k]
+        near = touching_balls(p, here)
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         meant = strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3], strokes[i, 4]
         tried[:] = with_errors(*meant, errors[j % errors.shape[0]], noise)
         tried[1], tried[2] = tip_on_disc(tried[1], tried[2], most)
         ball = met[j] = _contact(tried, p, here, its, work, out[j, 0], out[j, 1])
-        legal[j] = ball > 0 and (strikeable(game[k], bits(here) & ~1) >> ball) & 1
+        fair = strikeable(game[k], bits(here) & ~1)
+        # away from a touching ball on all is fair; into a touching one is a push
+        legal[j] = ball > 0 and (not (near >> ball) & 1) and (near & fair or (fair >> ball) & 1)
         after[j] = p
         if ball:
             after[j, 0, 0], after[j, 0, 1] = out[j, 0, X], out[j, 0, Y]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..._types import Bools, Floats, Integers, Ints
-from ...game.balls import N_BALLS
+from ...game.balls import N_BALLS, VALUES
 from ...tasks.options import Rules
 from ..frame_search import EASY, Tried
 from ..positions import Positions, PositionsLike, check_played, seeds_of
@@ -34,6 +34,9 @@ SIZE = SHARED + POT_SIZE + SAFE_SIZE
 reds, whether it is a pot; what ``stroke_value`` sees of a pot; what is predicted of a safety."""
 FOUL = 8.0
 """What a predicted foul costs beside what the balls as they lie bring the other [points]."""
+POTTED = 0.5
+"""Of the safeties that are predicted to pot a ball that is on, about so many do."""
+_NOTHING = Tried(np.empty((0, COLUMNS)), *np.empty((2, 0)), *np.empty((2, 0), np.int64))
 _SEED = 7  # of the errors, which are the same for all
 _CHANCE = 2  # the column of what ``stroke_value`` sees that is the pot's chance
 
@@ -74,14 +77,16 @@ class FrameStrokes:
         """Strokes in n positions of frames, as ``FrameSearch.rank``: none met a noise sample, the chances are 0. None
         before a break-off, and where neither a pot nor a ball on is seen."""
         at = Positions.of(positions).known_to(self.rules)
+        keys, rows = seeds_of(seeds, len(at)), np.flatnonzero(~breaks_off(at))
         check_played(at.as_visits(), np.arange(len(at)), self.rules.table, self.rules.physics.R)
-        strokes, there, seen = self.look(at, seeds_of(seeds, len(at)))
+        strokes, there, seen = self.look(at[rows], keys[rows])
         scores = np.where(there, self.scores(seen), -np.inf)
-        order, tried = np.argsort(-scores, axis=1, kind="stable"), []
-        for k, count in enumerate(np.where(breaks_off(at), 0, there.sum(axis=1)).tolist()):
-            best, none = order[k, :count], np.zeros(count)
-            points, kinds = scores[k, best].astype(np.float64), (best >= LOOKS).astype(np.int64)
-            tried.append(Tried(strokes[k, best], none, points, none.astype(np.int64), kinds))
+        order, counts = np.argsort(-scores, axis=1, kind="stable"), there.sum(axis=1).tolist()
+        tried = [_NOTHING] * len(at)
+        for j, k in enumerate(rows.tolist()):
+            best, none = order[j, : counts[j]], np.zeros(counts[j])
+            points, kinds = scores[j, best].astype(np.float64), (best >= LOOKS).astype(np.int64)
+            tried[k] = Tried(strokes[j, best], none, points, none.astype(np.int64), kinds)
         return tried
 
     def scores(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -94,7 +99,8 @@ class FrameStrokes:
         n, visits = len(at), at.as_visits()
         strokes, there = np.zeros((n, STROKES, COLUMNS)), np.zeros((n, STROKES), np.bool_)
         seen = np.zeros((n, STROKES, SIZE), np.float32)
-        missed = self.worth(passed(at)).astype(np.float64)  # what the other makes of the balls as they lie
+        # what the other and the striker make of the balls as they lie
+        missed, goes_on = self.worth(passed(at)).astype(np.float64), self.worth(at).astype(np.float64)
         found, hard = self.values.candidates(visits, LOOKS, seeds), np.ones(n, np.bool_)
         rows, pots, kinds = found.rows, seen[:, :LOOKS], seen[:, LOOKS:]
         strokes[rows, :LOOKS], there[rows, :LOOKS] = found.strokes, True
@@ -109,15 +115,17 @@ class FrameStrokes:
         of = others[j]
         strokes[of, LOOKS + c], there[of, LOOKS + c] = made.strokes[j, c], True
         if len(of):
-            seems, more = self._predicted(at, of, made.strokes[j, c], missed)
+            seems, more = self._predicted(at, of, made.strokes[j, c], missed, goes_on)
             kinds[of, c, 0], kinds[of, c, SHARED + POT_SIZE :] = seems, more
-        seen[..., 1], seen[..., 2] = missed[:, None] / 40.0, self.worth(at)[:, None] / 40.0
+        seen[..., 1], seen[..., 2] = missed[:, None] / 40.0, goes_on[:, None] / 40.0
         seen[..., 3] = at.on_table[:, 1:16].sum(axis=1)[:, None] / 15.0
         return Looked(strokes, there, seen)
 
-    def _predicted(self, at: Positions, rows: Ints, strokes: Floats, missed: Floats) -> tuple[Floats, Floats]:
+    def _predicted(
+        self, at: Positions, rows: Ints, strokes: Floats, missed: Floats, goes_on: Floats
+    ) -> tuple[Floats, Floats]:
         """What safeties (m, 5) in ``at[rows]`` seem to be worth, in units of ``POINTS``, (m,), and what is predicted of
-        them, (m, SAFE_SIZE)."""
+        them, (m, SAFE_SIZE). ``missed``, ``goes_on`` (n,): what the other and the striker make of the balls of ``at``."""
         m, k = len(rows), len(self._errors)
         balls, law = (at.positions, at.on_table, at.game), law_of(self.dynamics, at)
         out, places = np.empty((m * k, 2, path.SEEN)), np.empty((m * k, N_BALLS, 2))
@@ -131,7 +139,8 @@ class FrameStrokes:
         in_parts(m, self.values.value.threads, predict)
         of, lost = np.repeat(rows, k), out[..., path.LOST] > 0.0
         foul, potted = ~legal | lost[:, 0], legal & lost[:, 1] & ~lost[:, 0]
-        gains = -missed[of]  # a ball that is potted by chance changes little
+        gains = -missed[of]
+        gains[potted] += POTTED * (VALUES[met] + goes_on[of] + missed[of])[potted]
         gains[foul] = np.minimum(gains[foul], 0.0) - FOUL
         rest = np.flatnonzero(~foul & ~potted)
         left = passed(at[of[rest]])
