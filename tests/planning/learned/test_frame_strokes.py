@@ -6,7 +6,7 @@ import numpy as np
 import snooker_env as sn
 from snooker_env.planning import Position, Positions
 from snooker_env.planning.learned import cue_ball_path as path
-from snooker_env.planning.learned.frame_strokes import SAFETIES
+from snooker_env.planning.learned.frame_strokes import POT_SIZE, SAFETIES, SHARED
 from snooker_env.planning.learned.stroke_value import LOOKS
 from snooker_env.planning.proposals import safeties
 from snooker_env.planning.strokes import law_of
@@ -94,6 +94,10 @@ def test_what_strokes_seem_to_be_worth_is_about_what_they_are_worth():
         said = seems[rows, which]
         assert np.corrcoef(said, worth)[0, 1] > alike
         assert abs(said.mean() - worth.mean()) < 9.0
+    fouls = (
+        looked.seen[rows, which, SHARED + POT_SIZE + 4] == 1.0
+    )  # of the safeties: under every error that is predicted
+    assert fouls.sum() > 20 and abs(said[fouls].mean() - worth[fouls].mean()) < 6.0
 
 
 def test_a_touching_ball_that_is_on_counts_as_struck_and_a_push_is_a_foul():
