@@ -94,10 +94,10 @@ def test_what_strokes_seem_to_be_worth_is_about_what_they_are_worth():
         said = seems[rows, which]
         assert np.corrcoef(said, worth)[0, 1] > alike
         assert abs(said.mean() - worth.mean()) < 9.0
-    fouls = (
-        looked.seen[rows, which, SHARED + POT_SIZE + 4] == 1.0
-    )  # of the safeties: under every error that is predicted
-    assert fouls.sum() > 20 and abs(said[fouls].mean() - worth[fouls].mean()) < 6.0
+    # of the safeties, under every error that is predicted
+    fouls = looked.seen[rows, which, SHARED + POT_SIZE + 4] == 1.0
+    assert fouls.sum() > 20 and abs(said[fouls].mean() - worth[fouls].mean()) < 12.0
+    assert said[fouls].mean() < said[~fouls].mean()
 
 
 def test_a_touching_ball_that_is_on_counts_as_struck_and_a_push_is_a_foul():
