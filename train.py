@@ -4,7 +4,7 @@ players, and report the result.
     python train.py                                    six minutes on two cores: a value and a policy by expert iteration, then PPO
     python train.py --steps 1507328 --imitate 153600   the weights of the package: 17 minutes
     python train.py --agent ppo_mask --seed 1 --out runs/mine
-    python train.py --agent stroke_value               a player that simulates no shot, in 24 minutes
+    python train.py --agent stroke_value               a player that simulates no shot, in 15 minutes
     python train.py --resume --out runs/mine           continue from the last checkpoint after Ctrl-C, a kill or a power cut
 
 Files of a run folder:

@@ -40,8 +40,8 @@ judge planner 18403328
 # To those of planner, two rounds of 384 frames against itself and others: 205,141 positions, each with 120 shots of search and 8 that judge,
 # and some 12,000 strokes of the others, 120 shots each.
 judge tactician 46101376
-# The values of three levels, the worth of the tactician, and 19 million shots of its own: strokes that are tried, play, and who plays against it.
-judge stroke_value 102000000
+# The values of three levels, the worth of the tactician, and 13 million shots of its own: strokes that are tried, play, and who plays against it.
+judge stroke_value 96000000
 judge ppo_value 18403328
 
 # Plain PPO, five training seeds.
