@@ -21,6 +21,7 @@ from ._common.command import Command, at_least, run, save_json
 AGENTS = (
     "ghost_ball",
     "ppo_value",
+    "stroke_value",
     "search",
     "planner_30",
     "planner_60",
