@@ -406,7 +406,7 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
         shown("page.skip()")
     assert shown.page.inner_text("#go") == "Pause"
     shown.page.click("#go")
-    assert shown.page.inner_text("#go") == "Continue"
+    shown.until("document.getElementById('go').innerText === 'Continue'")
     end = time.monotonic() + 60
     while not shown("page.state.paused && !page.behind"):
         assert time.monotonic() < end
