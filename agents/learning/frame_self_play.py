@@ -84,9 +84,9 @@ def frames(shared, args, threads):
         return strokes
 
     tables = play_frames(rules, args["seed"], many, act, other, threads)
-    rows = _followed(_joined(rows), tables)
-    rows["equals"] = np.full(len(rows["won"]), other is None)
-    return _with(rows, _joined(beside)) if beside else rows
+    played = _followed(_joined(rows), tables)
+    played["equals"] = np.full(len(played["won"]), other is None)
+    return _with(played, _joined(beside)) if beside else played
 
 
 def play_frames(rules, seed, many, act, other, threads):

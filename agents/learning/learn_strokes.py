@@ -91,8 +91,9 @@ def fitted(seen, worth, table, seed, passes, seems=None):
     else:
         plain, base, lossy = seems, seems, nn.functional.huber_loss
         with torch.no_grad():  # it begins by adding nothing
-            network[-1].weight.mul_(0.1)
-            network[-1].bias.zero_()
+            last: nn.Linear = network[-1]  # type: ignore[assignment]
+            last.weight.mul_(0.1)
+            last.bias.zero_()
     wanted = torch.from_numpy(((worth - base) / POINTS).astype(np.float32))
     used = np.flatnonzero(~held)
     batch = min(BATCH, len(used))

@@ -1,7 +1,7 @@
 """How does a player play that predicts where balls come to rest, without a shot? The stroke that its networks say is worth
 most, in visits a pot; where none is on, that of ``ghost_ball``. In frames it plays safeties, too, and decides by their worth."""
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from ..planning.positions import seeds_of
 from ..planning.strokes import COLUMNS, Dynamics
 from ..tasks.options import Options
 from .choices import GhostBall
-from .frame_decisions import Decided, decided, ranked
+from .frame_decisions import Decided, FrameSearcher, decided, ranked
 from .player import BoundPlayer, Ranked, Strokes, placed
 from .weights import StrokeLayers, learned_at, learned_strokes, learned_worth, level_for
 
@@ -57,7 +57,7 @@ class StrokeValuePlayer(BoundPlayer):
         """Its strokes, best first, with what they are worth [points]."""
         at = Positions.of(positions)
         if at.of_frames:
-            return ranked(self.search, self.decided(at, seeds))
+            return ranked(cast(FrameSearcher, self.search), self.decided(at, seeds))
         at, places, found, scores = self._scored(at, seeds)
         made: list[Ranked] = self._plain.rank(at, seeds)
         for j, k in enumerate(found.rows.tolist()):

@@ -1,7 +1,7 @@
 """How does the planner of the whole game play? One search for pots, safeties and escapes, one worth for both
 players, and all decisions of a frame by that worth (``frame_decisions``)."""
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from ..planning.positions import PositionsLike
 from ..planning.worth import decide, lead_of, left_of
 from ..tasks.options import Options
 from .choices import GhostBall
-from .frame_decisions import Decided, decided, ranked
+from .frame_decisions import Decided, FrameSearcher, decided, ranked
 from .player import BoundPlayer, Ranked, Strokes
 from .search import MOST, SearchPlayer
 from .weights import learned_at, learned_worth, level_for
@@ -54,7 +54,7 @@ class Tactician(BoundPlayer):
         at = Positions.of(positions)
         if not at.of_frames:
             return self._visits.rank(at, seeds)
-        return ranked(self.search, self.decided(at, seeds))
+        return ranked(cast(FrameSearcher, self.search), self.decided(at, seeds))
 
     def chance_to_win(self, positions: PositionsLike) -> Floats:
         """Return how likely the striker of each position wins the frame, if both play on as the ``tactician`` does.

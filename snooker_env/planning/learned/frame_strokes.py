@@ -36,7 +36,7 @@ FOUL = 8.0
 """What a predicted foul costs beside what the balls as they lie bring the other [points]."""
 POTTED = 0.5
 """Of the safeties that are predicted to pot a ball that is on, about so many do."""
-_NOTHING = Tried(np.empty((0, COLUMNS)), *np.empty((2, 0)), *np.empty((2, 0), np.int64))
+_NONE = np.empty(0), np.empty(0), np.empty(0, np.int64), np.empty(0, np.int64)
 _SEED = 7  # of the errors, which are the same for all
 _CHANCE = 2  # the column of what ``stroke_value`` sees that is the pot's chance
 
@@ -82,7 +82,7 @@ class FrameStrokes:
         strokes, there, seen = self.look(at[rows], keys[rows])
         scores = np.where(there, self.scores(seen), -np.inf)
         order, counts = np.argsort(-scores, axis=1, kind="stable"), there.sum(axis=1).tolist()
-        tried = [_NOTHING] * len(at)
+        tried = [Tried(np.empty((0, COLUMNS)), *_NONE)] * len(at)
         for j, k in enumerate(rows.tolist()):
             best, none = order[j, : counts[j]], np.zeros(counts[j])
             points, kinds = scores[j, best].astype(np.float64), (best >= LOOKS).astype(np.int64)
