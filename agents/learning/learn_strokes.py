@@ -31,7 +31,7 @@ from snooker_env.players import VISITS, Strokes
 from snooker_env.players.player import placed
 from snooker_env.players.search import SearchPlayer
 from snooker_env.players.stroke_value import StrokeValuePlayer
-from snooker_env.players.weights import STROKES, VALUE_LAYERS, StrokeLayers
+from snooker_env.players.weights import STROKES, StrokeLayers, layers_of
 
 from ..cluster.keep import packed
 from .hyperparameters import changes_of
@@ -329,9 +329,7 @@ class Rounds:
         self.rounds.append(rows)
         if weights.is_file():
             arrays = _kept(weights)
-            self.layers = [
-                (arrays[f"{of}/{i}/weight"], arrays[f"{of}/{i}/bias"]) for i in range(VALUE_LAYERS)
-            ]
+            self.layers = layers_of(arrays, of)
             self.curve.append(json.loads(str(arrays["figures"])))
             return
         seed, passes = (0, LAST_PASSES[of]) if self.complete else (k, PASSES)

@@ -221,6 +221,13 @@ def _contact(stroke, positions, on_table, cue_law, work, out, its):
     return ball
 
 
+@kernel
+def _with_error(meant, error, noise, most, tried):
+    """Fill ``tried`` (5,) with the stroke ``meant`` (5,) under a standard normal ``error`` (5,)."""
+    tried[:] = with_errors(meant[0], meant[1], meant[2], meant[3], meant[4], error, noise)
+    tried[1], tried[2] = tip_on_disc(tried[1], tried[2], most)
+
+
 @entry(what="the paths of cue balls", seconds=2, uses=(_predicted,))
 def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
     """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,), each under standard normal
@@ -234,9 +241,7 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
         k = rows[i]
         own, ball, p, here = row_of(k, phys), pots[i, 0], positions[k], on_table[k]
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
-        meant = strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3], strokes[i, 4]
-        tried[:] = with_errors(*meant, errors[j % errors.shape[0]], noise)
-        tried[1], tried[2] = tip_on_disc(tried[1], tried[2], most)
+        _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
         _predicted(tried, (ball, pots[i, 1]), p, here, its, work, out[j])
         reds = False
         for i in range(N_BALLS):
@@ -269,9 +274,7 @@ def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
         own, p, here = row_of(k, phys), positions[k], on_table[k]
         near = touching_balls(p, here)
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
-        meant = strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3], strokes[i, 4]
-        tried[:] = with_errors(*meant, errors[j % errors.shape[0]], noise)
-        tried[1], tried[2] = tip_on_disc(tried[1], tried[2], most)
+        _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
         ball = met[j] = _contact(tried, p, here, its, work, out[j, 0], out[j, 1])
         fair = strikeable(game[k], bits(here) & ~1)
         # away from a touching ball on all is fair; into a touching one is a push

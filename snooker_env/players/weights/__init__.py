@@ -23,7 +23,7 @@ WORTH = "worth.npz"
 """The file of the ``tactician``'s worth of positions of frames (``python -m agents.learn_worth``)."""
 STROKES = "strokes.npz"
 """The file of the networks of ``stroke_value`` (``python train.py --agent stroke_value``)."""
-VALUE_LAYERS = 3  # layers of each network of a value
+LAYERS_EACH = 3  # of each network but the policy
 
 
 class Learned(NamedTuple):
@@ -40,10 +40,15 @@ class StrokeLayers(NamedTuple):
     frames: Sequence[tuple[Singles, Singles]] = ()
 
 
+def layers_of(arrays: Mapping[str, Singles], of: str) -> list[tuple[Singles, Singles]]:
+    """Weight and bias of each layer of a network in the arrays of a file."""
+    return [(arrays[f"{of}/{k}/weight"], arrays[f"{of}/{k}/bias"]) for k in range(LAYERS_EACH)]
+
+
 def learned_of(arrays: Mapping[str, Singles]) -> Learned:
     """The policy and the value in the arrays of a file."""
     policy = {name: (arrays[f"policy/{name}/weight"], arrays[f"policy/{name}/bias"]) for name in LAYERS}
-    layers = [(arrays[f"value/{k}/weight"], arrays[f"value/{k}/bias"]) for k in range(VALUE_LAYERS)]
+    layers = layers_of(arrays, "value")
     members = [[(weight[m], bias[m]) for weight, bias in layers] for m in range(len(layers[0][0]))]
     return Learned(StrokePolicy(policy), members)
 
@@ -62,19 +67,14 @@ def learned_at(level: str) -> Learned:
 def learned_worth(path: Path = FOLDER / WORTH) -> tuple[list[tuple[Singles, Singles]], Chance]:
     """The layers of a ``LearnedWorth``, for all levels, and the chance to win; by default the package's."""
     with np.load(path, allow_pickle=False) as arrays:
-        layers = [(arrays[f"worth/{k}/weight"], arrays[f"worth/{k}/bias"]) for k in range(VALUE_LAYERS)]
-        return layers, Chance(*arrays["chance"].tolist())
+        return layers_of(arrays, "worth"), Chance(*arrays["chance"].tolist())
 
 
 @cache
 def learned_strokes(path: Path = FOLDER / STROKES) -> StrokeLayers:
     """The layers of the networks of ``stroke_value``; by default the package's."""
     with np.load(path, allow_pickle=False) as arrays:
-        made = [
-            [(arrays[f"{of}/{k}/weight"], arrays[f"{of}/{k}/bias"]) for k in range(VALUE_LAYERS)]
-            for of in StrokeLayers._fields
-        ]
-    return StrokeLayers(*made)
+        return StrokeLayers(*(layers_of(arrays, of) for of in StrokeLayers._fields))
 
 
 def levels() -> list[str]:
