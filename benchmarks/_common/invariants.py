@@ -15,6 +15,7 @@ from math import hypot, inf, isfinite, sqrt
 import numba
 import numpy as np
 
+from snooker_env.kernels import entry, kernel
 from snooker_env.physics import flight
 from snooker_env.physics.arrays import Boundaries, Ends
 from snooker_env.physics.cloth import AIR, AX, AY, COLUMNS, FALLING, GONE, REST, T0, T_END, VX, VY, X, Y
@@ -82,12 +83,12 @@ _BALL_BALL, _CUSHION, _JAW, _POT = (
 _DROP, _RETURN = int(EventKind.DROP), int(EventKind.RETURN)
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _energy(v, w, R):
     return 0.5 * (v[0] * v[0] + v[1] * v[1]) + 0.2 * R * R * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _aloft(rows, state, i, t, phys):
     """Height of ball i above the bed, its rate, and their energy per unit mass; 0 but for one that flies."""
     if state[i] != AIR:
@@ -96,13 +97,13 @@ def _aloft(rows, state, i, t, phys):
     return z, u, phys[P_G] * z + 0.5 * u * u
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _note(worst, what, x):
     if not x <= worst[what]:  # a NaN counts
         worst[what] = x if x == x else inf
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _step(gap, speed, accel, left):
     """The time in which two bodies cannot close more than the gap."""
     reach = max(gap, LEAST)
@@ -111,7 +112,7 @@ def _step(gap, speed, accel, left):
     return min(left, 2.0 * reach / (speed + sqrt(speed * speed + 2.0 * accel * reach)))
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _follow(rows, state, a, b, start, stop, d, phys):
     """The deepest overlap of balls a and b (at distance d) in [start, stop]."""
     ax, ay = rows[a, AX] - rows[b, AX], rows[a, AY] - rows[b, AY]
@@ -130,7 +131,7 @@ def _follow(rows, state, a, b, start, stop, d, phys):
         t = stop if not t + step < stop else t + step
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _all_energy(rows, state, t, phys):
     """Energy of all balls at t, those in the air with no more than is certain; how many are in the air."""
     total, air = 0.0, 0
@@ -144,7 +145,7 @@ def _all_energy(rows, state, t, phys):
     return total, air
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _beyond(r, noses, falls):
     """How far a centre is outside the rectangle about the noses and falls [m]."""
     out = -inf
@@ -161,7 +162,7 @@ def _beyond(r, noses, falls):
     return out
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _in_jaw(jaw, x, y, R):
     """How deep a centre is in a jaw (-inf: it does not face it), and how far from where it would be in it.
 
@@ -180,7 +181,7 @@ def _in_jaw(jaw, x, y, R):
     return -inf, hypot(ahead - nearest * cos_half, beside - nearest * sin_half)
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _in_boundary(r, noses, jaws, R):
     """How deep a centre is in a nose or jaw; how far it is from the next jaw."""
     deepest, clear = -inf, inf
@@ -194,7 +195,7 @@ def _in_boundary(r, noses, jaws, R):
     return deepest, clear
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def _along_boundary(rows, state, i, stop, noses, jaws, R, phys):
     """The deepest place of ball i in noses and jaws over its present piece, until ``stop``."""
     t, deepest = rows[i, T0], -inf
@@ -218,7 +219,7 @@ def _along_boundary(rows, state, i, stop, noses, jaws, R, phys):
         t = stop if not t + step < stop else t + step
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@numba.njit(nogil=True, error_model="numpy")  # an inner kernel of ours makes no arrays
 def _check(segments, what, n, duration, phys, boundaries, worst):
     noses, jaws, falls, R = boundaries
     D = 2.0 * R
@@ -362,7 +363,7 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
                 _note(worst, OVERLAP, D - hypot(rows[i, X] - rows[j, X], rows[i, Y] - rows[j, Y]))
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@entry
 def _check_all(log, ends, n, phys, boundaries, worst):
     for k in range(len(worst)):
         if ends.status[k] == 0:

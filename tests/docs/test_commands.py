@@ -48,8 +48,11 @@ SHORT = {
 }
 """Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
 
-SLOW = {"benchmarks.pockets", "benchmarks.rack", "benchmarks.stability", "benchmarks.tradeoff"}
-"""Those of ``SHORT`` that compile much."""
+SLOW = {
+    f"benchmarks.{name}"
+    for name in "learner pockets rack scene speed stability tradeoff value_inputs vector".split()
+}
+"""Those of ``SHORT`` that compile or train much."""
 
 ELSEWHERE = {
     "pytest": ".ci/run",
