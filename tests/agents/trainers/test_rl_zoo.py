@@ -22,7 +22,10 @@ def test_what_the_zoo_does_not_know_stands_apart(name):
 
 @pytest.mark.parametrize(
     ("name", "more"),
-    [("ppo_target", ["n_steps:16", "batch_size:64", "n_epochs:1"]), ("tqc_target", ["learning_starts:32"])],
+    [
+        ("ppo_target", ["n_steps:16", "batch_size:64", "n_epochs:1"]),
+        pytest.param("tqc_target", ["learning_starts:32"], marks=pytest.mark.slow),
+    ],
 )
 def test_it_trains_and_its_model_is_evaluated(tmp_path, name, more):
     needed("rl_zoo3")
