@@ -25,7 +25,7 @@ from commands.noise_option import noise_option
 from snooker_env.benchmark import simulated
 from snooker_env.checks import choice, integer, refuse
 from snooker_env.planning import Planner, Positions, processors
-from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
+from snooker_env.planning.learned import frame_strokes
 from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SAMPLES, SIZE, StrokeValue
 from snooker_env.players import VISITS, Strokes
 from snooker_env.players.player import placed
@@ -237,7 +237,7 @@ _VERSION = (
     LOOKS,
     SAMPLES,
     SIZE,
-    FRAME_SIZE,
+    frame_strokes.SIZE,
     STROKES_EACH,
     PARTS,
     SCALES,
@@ -247,6 +247,10 @@ _VERSION = (
     EXPLORE,
     AMONG,
     AGAINST,
+    frame_strokes.SAFETIES,
+    frame_strokes.SAMPLES,
+    frame_strokes.FOUL,
+    frame_strokes.POTTED,
 )
 """What the data of rounds depend on beside the settings: rounds of other ones are not resumed."""
 
