@@ -9,6 +9,7 @@ table of the judging is among them.
 """
 
 import shutil
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -167,6 +168,35 @@ def written(folder, name, task, player, form, parts):
     return figures
 
 
+def differing(folder, many):
+    """Numbers of the episodes, among ``many`` evenly spread ones, that the recovered environment does not play again bit
+    for bit, from their seeds by their actions; and how many were played."""
+    import minari
+
+    data = minari.MinariDataset(folder / "data")
+    env = data.recover_environment()
+    numbers = np.unique(np.linspace(0, data.total_episodes - 1, many).round().astype(int)).tolist()
+    seeds = [one["seed"] for one in data.storage.get_episode_metadata(numbers)]
+    wrong = []
+    for episode, seed in zip(data.iterate_episodes(numbers), seeds, strict=True):
+        seen, _ = env.reset(seed=int(seed))
+        observations, infos, rest = [seen], {name: [0] for name in INFOS}, []
+        for action in episode.actions:
+            seen, *ended, info = env.step(action)
+            observations.append(seen)
+            rest.append(ended)
+            for name in INFOS:
+                infos[name].append(info[name])
+        shown = episode.observations if isinstance(episode.observations, dict) else {"": episode.observations}
+        again = {key: np.array([one[key] if key else one for one in observations]) for key in shown}
+        kept = np.array([episode.rewards, episode.terminations, episode.truncations]).T
+        same = all(np.array_equal(again[key], shown[key]) for key in shown) and np.array_equal(kept, rest)
+        if not same or any(np.not_equal(infos[name], episode.infos[name]).any() for name in INFOS):
+            wrong.append(episode.id)
+    env.close()
+    return wrong, len(numbers)
+
+
 def card(name, task, player, form, spec, figures):
     """The data card, in the hub's format: YAML and text."""
     origin = provenance()
@@ -250,6 +280,8 @@ def main(argv=None):
     help_ = "actions: whole strokes, or the nearest of 540 choices, with masks [strokes]"
     parser.add_argument("--form", default="strokes", metavar="{strokes,choices}", help=help_)
     parser.add_argument("--threads", type=int, help="threads that play the tables [one for each core]")
+    help_ = "then play so many of its episodes again, from their seeds by their actions: the same bits?"
+    parser.add_argument("--check", type=int, default=0, metavar="N", help=help_)
     args = parser.parse_args(argv)
     try:
         import minari  # noqa: F401 - what is missing is said before anything is played
@@ -258,6 +290,7 @@ def main(argv=None):
     try:
         task, form = task_of(args.task), choice("form", args.form, FORMS)
         integer("strokes", args.strokes, 1, 10**9)
+        integer("check", args.check, 0, 10**9)
         free_options(task, form)
         if not is_name(args.player) or not args.player.replace("_", "").isalnum():
             raise refuse("player", args.player, f"must be the name of a player: {', '.join(sn.players())}")
@@ -294,4 +327,10 @@ def main(argv=None):
     print(
         f"{folder}: {counted}, mean return {figures['return']:.2f} +- {figures['error']:.2f}, {figures['megabytes']:.1f} MB"
     )
+    if args.check:
+        wrong, many = differing(folder, args.check)
+        print(f"{many - len(wrong)} of {many} episodes are played again bit for bit")
+        if wrong:
+            print(f"others, by their numbers: {', '.join(map(str, wrong))}", file=sys.stderr)
+            return 1
     return 0

@@ -108,7 +108,8 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
     assert np.array_equal(env.reset(seed=seed)[0]["observations"], long[0].observations["observations"][0])
     before = (folder / "data" / "main_data.hdf5").stat().st_size
     shutil.rmtree(parts)  # from nothing again: the same data set
-    assert dataset.main([*command, "30"]) == 0
+    assert dataset.main([*command, "30", "--check", "4"]) == 0
+    assert "4 of 4 episodes are played again bit for bit" in capsys.readouterr().out
     again = list(minari.MinariDataset(folder / "data").iterate_episodes())
     assert all(np.array_equal(a.actions, b.actions) for a, b in zip(long, again, strict=True))
     assert abs((folder / "data" / "main_data.hdf5").stat().st_size - before) < 1000
@@ -116,7 +117,41 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
     card = yaml.safe_load(head)
     assert card["license"] == "mit" and "minari" in card["tags"] and card["size_categories"] == ["n<1K"]
     assert f"{data.total_steps} strokes of {data.total_episodes} whole episodes" in text
-    assert "strokes/s" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("of", "task"),
+    [
+        ("rewards", "SnookerBreak-v0"),
+        ("observations", "SnookerSafety-v0"),
+        ("infos/points", "SnookerBreak-v0"),
+    ],
+)
+def test_a_changed_number_is_found_when_episodes_are_played_again(tmp_path, capsys, of, task):
+    pytest.importorskip("minari")
+    import h5py
+
+    command = [
+        "--out",
+        str(tmp_path),
+        "--task",
+        task,
+        "--player",
+        "ghost_ball",
+        "--strokes",
+        "5",
+        "--check",
+        "9",
+    ]
+    assert dataset.main(command) == 0
+    said = capsys.readouterr().out
+    assert "6 of 6 episodes are played again bit for bit" in said and "strokes/s" in said
+    (folder,) = (tmp_path / "snooker").iterdir()
+    with h5py.File(folder / "data" / "main_data.hdf5", "r+") as file:
+        values = file[f"episode_2/{of}"]
+        values[-1] = values[-1] + 1
+    assert dataset.differing(folder, 6) == ([2], 6)
+    assert dataset.differing(folder, 2) == ([], 2)
 
 
 def test_a_policy_is_cloned_from_one(tmp_path, monkeypatch):
