@@ -64,7 +64,7 @@ def fitted(observations, masks, choices, episodes, seed=0):
         return network(x[rows]).masked_fill(~m[rows], -1e9)
 
     used, kept, best = np.flatnonzero(~held), np.flatnonzero(held), (np.inf, None)
-    for _ in range(PASSES):
+    for k in range(PASSES):
         network.train()
         for rows in np.array_split(rng.permutation(used), max(1, len(used) // BATCH)):
             loss = nn.functional.cross_entropy(scores(rows), y[rows])
@@ -76,6 +76,9 @@ def fitted(observations, masks, choices, episodes, seed=0):
             off = nn.functional.cross_entropy(scores(kept), y[kept]).item()
         if off < best[0]:
             best = off, copy.deepcopy(network.state_dict())
+        print(
+            f"pass {k + 1} of {PASSES}: loss {off:.3f} on the strokes that are kept from the fit", flush=True
+        )
     network.load_state_dict(best[1])
     with torch.no_grad():
         same = (scores(kept).argmax(dim=1) == y[kept]).float().mean().item()
@@ -104,6 +107,8 @@ def main(words=None):
     parser.add_argument("--visits", type=int, default=500, help="held-out tables of the comparison [500]")
     parser.add_argument("--seed", type=int, default=0)
     args = parser.parse_args(words)
+    if not Path(args.data, "main_data.hdf5").is_file():
+        parser.error(f"data = {args.data!r}: must be the folder `data` of a data set of Minari")
     torch.set_num_threads(1)
     data = minari.MinariDataset(args.data)
     observations, masks, choices, episodes = strokes_of(data)

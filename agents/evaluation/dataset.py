@@ -299,7 +299,8 @@ def main(argv=None):
         parser.error(str(error))
     kind = "" if form == "strokes" else f"-{form}"
     name = f"snooker/{task.id.removeprefix('Snooker').removesuffix('-v0').lower()}-{args.player}{kind}-v0"
-    kept = args.out / "parts" / name.replace("/", "-")
+    out = args.out.absolute()  # Minari joins a relative one to itself
+    kept = out / "parts" / name.replace("/", "-")
     began, parts, strokes, new = time.perf_counter(), [], 0, 0
     with Progress(f"{args.player} plays {task.id}", args.strokes, "strokes") as progress:
         while strokes < args.strokes:
@@ -317,7 +318,7 @@ def main(argv=None):
             strokes += len(_kept(file)["rewards"])
             progress.at(strokes)
     seconds = time.perf_counter() - began
-    folder = args.out / name
+    folder = out / name
     figures = written(folder, name, task, args.player, form, map(_kept, parts))
     if new:
         print(

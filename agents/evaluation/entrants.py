@@ -47,7 +47,9 @@ class Entrant:
                 path = str(PRETRAINED / f"{path}.zip")
             some = [path] if Path(path).exists() else _names(path) or sorted(glob.glob(path))
             if not some:
-                models = "MODULE:CLASS, or name existing models: a .zip, a run folder, a pattern"
+                if Path(path).suffix in (".zip", ".npz") and not glob.has_magic(path):
+                    raise refuse("agent", path, "must be a model file: it is missing")
+                models = "MODULE:CLASS, or name existing models: a .zip or .npz, a run folder, a pattern"
                 raise refuse("agent", path, f"must be {', '.join(players())}, {models}")
             runs += some
         if equals and not label:

@@ -127,26 +127,19 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
         ("infos/points", "SnookerBreak-v0"),
     ],
 )
-def test_a_changed_number_is_found_when_episodes_are_played_again(tmp_path, capsys, of, task):
+def test_a_changed_number_is_found_when_episodes_are_played_again(tmp_path, capsys, monkeypatch, of, task):
     pytest.importorskip("minari")
     import h5py
 
     command = [
-        "--out",
-        str(tmp_path),
-        "--task",
-        task,
-        "--player",
-        "ghost_ball",
-        "--strokes",
-        "5",
-        "--check",
-        "9",
+        *("--out", "made", "--task", task),  # a folder by its relative name
+        *("--player", "ghost_ball", "--strokes", "5", "--check", "9"),
     ]
+    monkeypatch.chdir(tmp_path)
     assert dataset.main(command) == 0
     said = capsys.readouterr().out
     assert "6 of 6 episodes are played again bit for bit" in said and "strokes/s" in said
-    (folder,) = (tmp_path / "snooker").iterdir()
+    (folder,) = (tmp_path / "made" / "snooker").iterdir()
     with h5py.File(folder / "data" / "main_data.hdf5", "r+") as file:
         values = file[f"episode_2/{of}"]
         values[-1] = values[-1] + 1
