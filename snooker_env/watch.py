@@ -31,10 +31,8 @@ from .replays import Replay, replay
 NAME = "snooker_env.watch"
 FILMS = (".mp4", ".gif")
 SUFFIXES = (".html", ".json", *FILMS)
-USUAL, TACTICIAN = "planner", "tactician"
-"""Who plays a visit and a frame unless someone is named."""
-FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}
-"""Options of a frame that is watched."""
+USUAL, TACTICIAN = "planner", "tactician"  # who plays a visit and a frame unless someone is named
+FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}  # options of a frame that is watched
 
 
 def episode(who: Player, seed: int, **options: Any) -> SnookerEnv:

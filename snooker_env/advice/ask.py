@@ -14,8 +14,7 @@ from . import judging
 from .practice import Practice, one_position, practice_of
 from .strokes import Advice, CueStroke, cue_strokes
 
-AGENT, OF_FRAMES = "planner_500", "tactician"
-"""Who is asked if nobody is named: in a visit, and in a frame."""
+AGENT, OF_FRAMES = "planner_500", "tactician"  # who is asked if nobody is named: in a visit, and in a frame
 INSTEAD = "random"
 """Whose strokes are judged where none of an agent's is fair: many of the choices of ``action="discrete"``."""
 CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ

@@ -25,17 +25,13 @@ from ..tasks.noise import LEVELS, POT_SPEED, TWICE, Noise
 from .practice import Practice, practice_of
 from .recorded import CALLED, Recorded, direction_of
 
-BASE = "professional"
-"""Whose errors the estimates are multiples of."""
-LEAST, MOST = 0.02, 50.0
-"""Smallest and largest error that is thought of, over a professional's."""
+BASE = "professional"  # whose errors the estimates are multiples of
+LEAST, MOST = 0.02, 50.0  # smallest and largest error that is thought of, over a professional's
 SCALES = np.geomspace(LEAST, MOST, 600)
-SHARES = np.linspace(0.005, 0.9, 40)
-"""Shares of safeties among guessed pots that are thought of, each alike."""
+SHARES = np.linspace(0.005, 0.9, 40)  # shares of safeties among guessed pots that are thought of, each alike
 RADII = np.geomspace(0.12, 60.0, 27)
 """Sizes of errors that are tried in the tolerance of a pot, in standard deviations of a professional."""
-WAYS = 32
-"""Errors of each radius that are tried."""
+WAYS = 32  # errors of each radius that are tried
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,8 +15,7 @@ from .results import completed, strokes_of
 from .schema import fault, faults_of_fields, shortened
 from .tasks import TASKS, Task
 
-MOST = 12
-"""Faults of rows that are named."""
+MOST = 12  # faults of rows that are named
 SURE = 3.29
 """Standard errors that a fresh mean may be away: 99.9 %."""
 

@@ -17,14 +17,12 @@ from ..players import FRAMES, VISITS, Player, decided, decision_seeds
 from ..players import player as player_named
 from .tasks import Task
 
-BATCH = 100
-"""Episodes that are played side by side."""
+BATCH = 100  # episodes that are played side by side
 SUMS = ("strokes", "points", "pots", "fouls")
 COLUMNS = ("run", "table", "score", *SUMS, "cleared", "opponent_points", "ended")
 """Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark_files.md)."""
 STROKES = COLUMNS.index("strokes")
-Kept = list[NDArray[np.float32]]
-"""The strokes of each episode: its actions, one row each."""
+Kept = list[NDArray[np.float32]]  # the strokes of each episode: its actions, one row each
 
 
 @dataclass

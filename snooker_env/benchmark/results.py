@@ -25,10 +25,8 @@ from .schema import DATE, NAME, PROTOCOL, VERSION, line
 from .statistics import RESAMPLES, Resamples, figure, iqm, unseen
 from .tasks import TASKS, Task
 
-BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}
-"""Training budgets [simulated shots]."""
-SLACK = 1.02
-"""By how much a budget may be exceeded: training runs in whole rollouts."""
+BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}  # training budgets [simulated shots]
+SLACK = 1.02  # by how much a budget may be exceeded: training runs in whole rollouts
 
 
 def budget_of(shots: int | None) -> str:

@@ -8,12 +8,10 @@ from typing import Any
 from .provenance import LIBRARIES
 
 NAME, VERSION = "snooker_env.benchmark.result", 3
-PROTOCOL = 1
-"""Version of the rules: tables, episodes, figures. Only results of one version compare."""
+PROTOCOL = 1  # Version of the rules: tables, episodes, figures. Only results of one version compare.
 PACKAGES = ("0.3.0.dev0", "1.0.0")
 """Versions of the package whose results compare by these rules, the present one last."""
-BEGUN = "2026-11-21T00:00:00Z"
-"""No result is older than the project."""
+BEGUN = "2026-11-21T00:00:00Z"  # no result is older than the project
 DATE = "%Y-%m-%dT%H:%M:%SZ"
 NUMBER = (int, float)
 _ALIKE = "machines with the same one play strokes alike, bit for bit"
@@ -52,16 +50,14 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "incomplete": (str, True, "why episodes are missing; null: none are"),
     "strokes.sha256": (str, False, "digest of the strokes, against damage"),
     "strokes.data": (str, False, "every stroke that was played, see below"),
-}
-"""Dotted name: type, whether it may be null, meaning."""
+}  # dotted name: type, whether it may be null, meaning
 _PLAYED = "schema", "protocol", "task", "columns", "rows", "figures", "strokes"
 _PROVED = (*_PLAYED, "agent.class", "agent.budget", "software.snooker_env")
 UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED))
 """Fields that a replay cannot prove; class and budget follow from them."""
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")
-MOST_WHOLE = 2**53
-"""Whole numbers up to here are exact in every reader of JSON."""
+MOST_WHOLE = 2**53  # whole numbers up to here are exact in every reader of JSON
 RANGES: dict[str, tuple[float, float]] = {
     name: (0.0, 1e12) if kind is NUMBER else (0, MOST_WHOLE)
     for name, (kind, _, _) in FIELDS.items()
@@ -73,8 +69,7 @@ RANGES["protocol.episodes"] = RANGES["machine.cores"] = 1, 2**20
 _CONTROL = r"\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"
 _LINE = re.compile(f"[^{_CONTROL}]{{1,200}}"), "one line of at most 200 characters"
 LONG_LINE = re.compile(f"[^{_CONTROL}]{{0,2000}}"), "one line of at most 2,000 characters"
-MOST_SOURCES = 100
-"""Training seeds of one result."""
+MOST_SOURCES = 100  # training seeds of one result
 PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
     "agent.label": (LABEL, "1 to 20 letters, digits or . + - _"),
     **{name: (re.compile(r"[\w.+!-]{1,60}"), "a version") for name in FIELDS if name.startswith("software.")},
@@ -82,8 +77,7 @@ PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
     **dict.fromkeys(("command", "incomplete"), LONG_LINE),
     "machine.arithmetic": (re.compile("[0-9a-f]{16}"), "16 hexadecimal digits"),
     "commit": (re.compile(r"[0-9a-f]{7,64}(-dirty)?"), "a commit's hash, with -dirty if files were changed"),
-}
-"""Texts that must have a form."""
+}  # texts that must have a form
 
 
 def faults_of_fields(

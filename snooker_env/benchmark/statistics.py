@@ -15,8 +15,7 @@ import numpy as np
 
 from .._types import Floats
 
-RESAMPLES = 2000
-"""Number of bootstrap samples."""
+RESAMPLES = 2000  # number of bootstrap samples
 
 
 def iqm(values: Any) -> float:

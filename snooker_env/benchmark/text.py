@@ -24,8 +24,7 @@ from .provenance import commit, machine, software
 from .statistics import Resamples, figure
 from .tasks import TASKS
 
-TASK = TASKS["SnookerBreak-v0"]
-"""Its judged tables, its errors and its rules are those of the track."""
+TASK = TASKS["SnookerBreak-v0"]  # its judged tables, its errors and its rules are those of the track
 VISITS, MOST = 50, 200
 """Tables of a result, the first ones judged; and the most there are."""
 STROKES, TRIES = 10, 3

@@ -24,8 +24,7 @@ OUTPUTS: dict[str, tuple[str, type[np.generic]]] = {
     "rewards": ("rewards", np.float64),
     "terminations": ("terminated", np.bool_),
     "truncations": ("truncated", np.bool_),
-}
-"""Results that a step can write into the caller's arrays: their names in ``StepOutput``, and dtypes."""
+}  # results that a step can write into the caller's arrays: their names in ``StepOutput``, and dtypes
 
 
 def seeds_of(seed: Any, n: int) -> list[int | None]:

@@ -20,8 +20,7 @@ FPS = 30
 HOLD = 15  # pictures of the table after each stroke of a film, with the referee's words
 
 
-Picture: TypeAlias = Bytes | str | None
-"""uint8 (H, W, 3) with "rgb_array", str with "ansi", else None."""
+Picture: TypeAlias = Bytes | str | None  # uint8 (H, W, 3) with "rgb_array", str with "ansi", else None
 
 
 def recorder_asking() -> Any:

@@ -143,8 +143,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         """The strokes of each table in the last step or reset, if they are shown."""
         self._crew = Threads(threads, watch=None if render_mode is None else self._saw)
 
-    _game_of = staticmethod(game_of)
-    """The options, and who sits opposite the agent."""
+    _game_of = staticmethod(game_of)  # the options, and who sits opposite the agent
 
     def _tables_of(self, opponent: Any, limit: int) -> Tables:
         return tables_of(self.options, opponent, self.num_envs, limit)

@@ -26,10 +26,8 @@ from ..tasks.noise import LEVELS
 from .session import DECLINED, Act, Session
 
 PERSON = "person"
-OPPONENT = "tactician_500"
-"""Who plays against a person unless someone is named."""
-OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")
-"""The agents that can always be chosen."""
+OPPONENT = "tactician_500"  # who plays against a person unless someone is named
+OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
 
 
 class Seats:

@@ -15,8 +15,7 @@ from ..tasks.options import Options, Rules
 from .player import Player, Ranked, Strokes, placed
 from .search import RANKED
 
-LOST = 0.01
-"""The chance to win below which it concedes a frame in which it needs snookers, where it may."""
+LOST = 0.01  # the chance to win below which it concedes a frame in which it needs snookers, where it may
 _IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
 
 

@@ -70,5 +70,4 @@ def say_assumed(path: str | Path, options: Mapping[str, Any]) -> None:
         say(f"{path}: aim=absolute is assumed, as in Snooker-v0; {told}")
 
 
-_SAID: list[str] = []
-"""The model of which that was said."""
+_SAID: list[str] = []  # the model of which that was said

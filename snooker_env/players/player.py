@@ -34,8 +34,7 @@ CODES: dict[str, tuple[int, ...]] = {
     "nominate": (AUTO, 0, *range(YELLOW, YELLOW + COLOURS)),
     "decision": (PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE),
     "declare": (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS),
-}
-"""The codes of what is said with a stroke."""
+}  # the codes of what is said with a stroke
 
 
 @dataclass(frozen=True)
@@ -274,8 +273,7 @@ class BoundPlayer:
     """
 
     name: str = ""
-    training_shots: int | None = None
-    """All simulated shots of its training; None: not known."""
+    training_shots: int | None = None  # all simulated shots of its training; None: not known
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:

@@ -13,7 +13,7 @@ from ..physics.engine import EventKind
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from ..simulation import Shot, simulate, simulate_batch
-from .shot_diagram import SLIDES, View, region_of
+from .shot_diagram import SLIDES, View, places_of, region_of
 from .shot_paths import contacts, cue_ball, paths
 from .sketch import CAPTIONS, Sketch, rgb
 
@@ -147,44 +147,35 @@ def fan_options(
         ball = _object(ball, here)
         pocket, line = _line(r, ball, pocket, table, physics.R)
         aims = line + _SHIFTS
-    drawn = []
+    drawn, b = [], len(aims)
     for top in tops:
         for side in sides:
             struck = [strike(speed, one, side, top, elevation, physics) for one in aims]
+            v, w = np.zeros((b, len(r), 2)), np.zeros((b, len(r), 3))
+            v[:, CUE], w[:, CUE] = [one[:2] for one, _ in struck], [spin for _, spin in struck]
             k = 0
             if aim is None:
-                batch = _batch(r, here, struck, table, physics)
+                tiled = np.tile(r, (b, 1, 1)), v, w
+                batch = simulate_batch(*tiled, table, physics, on_table=np.tile(here, (b, 1)))
                 good = np.flatnonzero(batch.potted[:, ball] == pocket)
                 if not len(good):
                     near = f"no aim within {np.degrees(_SHIFTS[-1]):.0f} degrees of the ghost ball does"
                     allowed = f"must pot ball {ball} into pocket {pocket}, and {near}"
                     raise refuse("(top, side, speed)", (top, side, speed), allowed)
                 k = int(good[len(good) // 2])
-            v, w = np.zeros((len(r), 2)), np.zeros((len(r), 3))
-            v[CUE], w[CUE] = struck[k][0][:2], struck[k][1]
-            drawn.append(Option(top, side, float(aims[k]), simulate(r, v, w, table, physics, on_table=here)))
+            shot = simulate(r, v[k], w[k], table, physics, on_table=here)
+            drawn.append(Option(top, side, float(aims[k]), shot))
     return drawn
-
-
-def _batch(r, here, struck, table, physics):
-    b = len(struck)
-    v, w = np.zeros((b, len(r), 2)), np.zeros((b, len(r), 3))
-    v[:, CUE], w[:, CUE] = [one[:2] for one, _ in struck], [spin for _, spin in struck]
-    tiled = np.tile(r, (b, 1, 1)), v, w
-    return simulate_batch(*tiled, table, physics, on_table=np.tile(here, (b, 1)))
 
 
 def _places(position, on_table):
     """Positions (n, 2) and flags (n,) of a Position or of an array."""
-    if hasattr(position, "arrays"):
-        if on_table is not None:
-            raise refuse_what("on_table", "given", "must be left out with a Position, which has its own")
-        return position.arrays()[:2]
-    r = array("position", position, (-1, 2))
-    if not 2 <= len(r) <= N_BALLS:
-        raise refuse_what("position", f"{len(r)} places", f"must be 2 to {N_BALLS}, the cue ball first")
-    here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
-    if here.shape != (len(r),) or here.dtype != np.bool_ or not here[CUE]:
+    own = hasattr(position, "arrays")
+    if own and on_table is not None:
+        raise refuse_what("on_table", "given", "must be left out with a Position, which has its own")
+    r, here = places_of(position, 2)
+    here = here if on_table is None else np.array(on_table)
+    if not own and (here.shape != (len(r),) or here.dtype != np.bool_ or not here[CUE]):
         raise refuse("on_table", on_table, f"must be bool of shape ({len(r)},), True for the cue ball")
     return r, here
 

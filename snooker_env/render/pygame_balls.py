@@ -236,8 +236,7 @@ def _lamp(half, radius, fx, fy):
 
 
 def _shadows(positions, heights, over, where, radius):
-    """A soft shadow from each lamp, fainter for a lower light, and the dark place where the ball touches, which is
-    fainter under a ball that flies; ``heights`` in radii."""
+    """A soft shadow from each lamp, fainter for a lower light, and one where the ball touches; ``heights`` in radii."""
     images = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3

@@ -286,10 +286,8 @@ def _leather(canvas, image, x, y, throat):
     length = np.hypot(x0 - x1, y0 - y1)
     ux, uy = (x0 - x1) / length, (y0 - y1) / length  # towards the table
     out = np.linspace(-0.05, length, 200)
-    aside = half + _RIM
-    outer = [
-        canvas.box(x1 + ux * out + s * uy * aside, y1 + uy * out - s * ux * aside, CUSHION) for s in (-1, 1)
-    ]
+    wx, wy = uy * (half + _RIM), ux * (half + _RIM)  # aside
+    outer = [canvas.box(x1 + ux * out + s * wx, y1 + uy * out - s * wy, CUSHION) for s in (-1, 1)]
     over = np.flatnonzero(np.maximum(*outer) < -0.007)
     end = float(out[over[0]]) if len(over) else length
     hole = _capsule(x, y, throat)

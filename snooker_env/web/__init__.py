@@ -4,8 +4,7 @@ other."""
 import json
 from pathlib import Path
 
-WEB = Path(__file__).resolve().parent
-"""The folder of what a browser is sent."""
+WEB = Path(__file__).resolve().parent  # the folder of what a browser is sent
 _TABLE = WEB / "table"
 
 
