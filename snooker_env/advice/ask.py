@@ -5,18 +5,16 @@ from pathlib import Path
 from typing import Any
 
 from .._check import integer
-from ..planning import Positions
 from ..planning.positions import PositionsLike
 from ..players import Player
 from ..players import player as player_of
 from ..tasks.noise import NoiseLike
 from . import judging
-from .practice import Practice, one_position, practice_of
-from .strokes import Advice, CueStroke, cue_strokes
+from .practice import one_position, practice_of
+from .strokes import Advice, cue_strokes
 
 AGENT, OF_FRAMES = "planner_500", "tactician"  # who is asked if nobody is named: in a visit, and in a frame
-INSTEAD = "random"
-"""Whose strokes are judged where none of an agent's is fair: many of the choices of ``action="discrete"``."""
+INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices
 CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
 
 
@@ -102,7 +100,10 @@ def advise(
     asked = player_of(agent, trust=trust)
 
     def tried(one: Player) -> list[judging.Tried]:
-        strokes = judging.tried(practice, at, _ranked(one, practice, at, seed)[: CONSIDERED * n])
+        bound = one.at(practice.options)
+        rank = getattr(bound, "rank", None)
+        played = bound.play(at, [seed]) if rank is None else rank(at, [seed])[0].strokes
+        strokes = judging.tried(practice, at, cue_strokes(played, at)[: CONSIDERED * n])
         return judging.distinct(strokes) if distinct else strokes
 
     judge: Any = {"samples": samples, "visits": visits, "seed": seed}
@@ -122,10 +123,3 @@ def advise(
         noise=noise if isinstance(noise, str) else asdict(practice.noise),
         **judge,
     )
-
-
-def _ranked(asked: Player, practice: Practice, at: Positions, seed: int) -> list[CueStroke]:
-    """The player's ranking in the one position ``at``, best first, or the one stroke that it plays."""
-    bound = asked.at(practice.options)
-    rank = getattr(bound, "rank", None)
-    return cue_strokes(bound.play(at, [seed]) if rank is None else rank(at, [seed])[0].strokes, at)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from math import erf, hypot, pi, remainder, sqrt
 from statistics import NormalDist
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,7 @@ BASE = "professional"  # whose errors the estimates are multiples of
 LEAST, MOST = 0.02, 50.0  # smallest and largest error that is thought of, over a professional's
 SCALES = np.geomspace(LEAST, MOST, 600)
 SHARES = np.linspace(0.005, 0.9, 40)  # shares of safeties among guessed pots that are thought of, each alike
-RADII = np.geomspace(0.12, 60.0, 27)
-"""Sizes of errors that are tried in the tolerance of a pot, in standard deviations of a professional."""
+RADII = np.geomspace(0.12, 60.0, 27)  # sizes of errors that are tried [a professional's standard deviations]
 WAYS = 32  # errors of each radius that are tried
 
 
@@ -96,8 +95,7 @@ class PlayerErrors:
         return asdict(self)
 
 
-@dataclass(frozen=True, eq=False)
-class Pots:
+class Pots(NamedTuple):
     """The strokes with a called pot: their rows, and the chances of the pots for each of ``SCALES``."""
 
     rows: list[int]
@@ -105,15 +103,13 @@ class Pots:
     made: Any  # bool (n,)
 
 
-@dataclass(frozen=True, eq=False)
-class Fitted:
-    """The errors of a player, the posterior of the direction's over ``SCALES``, the pots that were called, and the strokes,
-    without the guessed pots that were likelier to be safeties."""
+class Fitted(NamedTuple):
+    """The errors of a player, and what was found on the way."""
 
     errors: PlayerErrors
-    direction: Floats | None
-    pots: Pots
-    strokes: list[Recorded]
+    direction: Floats | None  # the posterior of its error over ``SCALES``
+    pots: Pots  # those that were called
+    strokes: list[Recorded]  # without the guessed pots that were likelier to be safeties
 
 
 def estimate_errors(strokes: Sequence[Recorded], *, options: Any = None, seed: int = 0) -> PlayerErrors:
@@ -163,9 +159,8 @@ def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
     directions, speeds, widths = measured(strokes, practice)
     guessed = np.array([one.guessed for one in strokes]) & ~np.isnan(directions)
     mixed, meant = guesses(directions[guessed], widths[guessed])
-    wrong = np.flatnonzero(guessed)[~meant]
     strokes = list(strokes)
-    for k in wrong.tolist():
+    for k in np.flatnonzero(guessed)[~meant].tolist():
         strokes[k] = replace(strokes[k], ball=None, pocket=None, potted=None, guessed=False)
         directions[k] = np.nan
     pots = tolerances(strokes, practice, seed)
@@ -184,9 +179,8 @@ def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
         allowed = "with intended and played, with a pot and played, or with a pot and potted"
         raise refuse_what("strokes", "none that tells an error", f"must hold strokes {allowed}")
     aside, faster = mean_of(e, unit), mean_of(v, base.speed_rel)
-    return Fitted(
-        PlayerErrors(direction=direction, speed=speed, aside=aside, faster=faster), weights, pots, strokes
-    )
+    errors = PlayerErrors(direction=direction, speed=speed, aside=aside, faster=faster)
+    return Fitted(errors, weights, pots, strokes)
 
 
 def direct(e: Floats) -> Floats:
@@ -233,8 +227,7 @@ def estimate(weights: Floats, unit: float, strokes: int) -> Estimate:
 
 
 def mean_of(e: Floats, unit: float) -> Estimate | None:
-    """The mean of errors (n,) with its 95 % interval by Student's law (Hill's expansion of its quantile); None of fewer
-    than three."""
+    """The mean of errors (n,), its 95 % interval by Student's law (Hill's expansion of its quantile); None if n < 3."""
     n = len(e)
     if n < 3:
         return None
@@ -245,8 +238,7 @@ def mean_of(e: Floats, unit: float) -> Estimate | None:
 
 
 def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats, Floats]:
-    """Errors of direction and speed (n,) in a professional's standard deviations, NaN where they were not measured; and
-    ``CALLED`` in these."""
+    """Errors of direction and speed (n,) in a professional's standard deviations, NaN if unknown; and ``CALLED`` in these."""
     directions, speeds, widths = np.full((3, len(strokes)), np.nan)
     base, physics = LEVELS[BASE], practice.options.rules.physics
     unit = np.radians(base.direction_deg(physics, speed=0.0))
@@ -301,7 +293,7 @@ def solved(strokes: list[Recorded], practice: Practice) -> Floats:
         cue = one.played or {"speed": one.speed or POT_SPEED, "side": 0.0, "top": 0.0}
         tip = hypot(cue["side"], cue["top"])
         inside = min(1.0, most / tip) if tip > 0.0 else 1.0
-        out[k] = min(max(cue["speed"], 0.2), 7.0), inside * cue["side"], inside * cue["top"], 0.0, 0.0
+        out[k, :3] = min(max(cue["speed"], 0.2), 7.0), inside * cue["side"], inside * cue["top"]
     rows = [k for k, one in enumerate(strokes) if one.intended is None]
     if rows:
         at = Positions.of([strokes[k].position for k in rows])

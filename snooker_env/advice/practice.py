@@ -24,8 +24,7 @@ from .strokes import CueStroke
 
 PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")
 """The options that say where strokes are played. All others belong to a game."""
-FRAME_OPTIONS = tuple(Options.group("frame"))
-"""Those of a frame that count as well where a position is of one."""
+FRAME_OPTIONS = tuple(Options.group("frame"))  # those that count as well where a position is of a frame
 MOST_SCORE = 1000  # largest score of a player in a position of a frame
 JUDGING, GOING_ON = 1, 2
 """Of noise samples: not those that chose a stroke judge it, so that a lucky choice is not overestimated."""
@@ -77,17 +76,14 @@ class Practice:
 
     def prospects(self, at: Positions) -> tuple[Floats, Floats]:
         """Values of positions for this player by the rule of thumb, and chances of their four widest pots."""
-        rule = SURE if self.sure else RULE_OF_THUMB
-        return prospects_of(
-            at, self._spread, rule, threads=self.exact.threads, rails=self.options.rules.rails
-        )
+        rule, rails = SURE if self.sure else RULE_OF_THUMB, self.options.rules.rails
+        return prospects_of(at, self._spread, rule, threads=self.exact.threads, rails=rails)
 
 
 def practice_of(
     noise: NoiseLike, options: Any = None, source: Any = None, *, of_frames: bool = False
 ) -> Practice:
-    """The practice table for a noise and ``options``; None: those of an environment ``source``. ``of_frames``: whether
-    strokes of frames are played on it."""
+    """The practice table for a noise and ``options``; None: those of an environment ``source``."""
     if options is None:
         options = getattr(bare(source), "options", None)
         options = options if isinstance(options, Options) else {}

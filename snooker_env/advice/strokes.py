@@ -108,8 +108,7 @@ class CueStroke:
         return encoded(form, self.numbers()[None], places)[0].astype(np.float32)
 
 
-StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any
-"""The types that arguments called ``stroke`` accept, see ``CueStroke.of``."""
+StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any  # what ``CueStroke.of`` takes
 
 
 def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
@@ -213,11 +212,8 @@ class Suggestion(CueStroke):
 
     @property
     def figure(self) -> float:
-        """What it is ordered by: in a frame the chance to win; else a pot's expected points, or the share without a
-        foul."""
-        if self.win is not None:
-            return self.win
-        return self.points if self.kind == "pot" else self.chance
+        """What it is ordered by: in a frame the chance to win; else a pot's points expected, or the share without a foul."""
+        return self.win if self.win is not None else self.points if self.kind == "pot" else self.chance
 
     @property
     def stroke(self) -> CueStroke:

@@ -19,8 +19,7 @@ from .practice import GOING_ON, Practice, keys
 PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(2) for s in (1, 3, 5) for t in (1, 3)])
 """Choices tried: 1.3, 2.3 and 3.6 m/s, tip 0.2 R up or down. Without errors, extremes are overestimated."""
 BEST = 3  # number of strokes that meet noise samples
-EVEN_SAMPLES = (354, 1840, 979, 2326, 3875)
-"""Keys of five noise samples in which the errors of each kind are evenly spread."""
+EVEN_SAMPLES = (354, 1840, 979, 2326, 3875)  # keys of five noise samples in which errors are evenly spread
 
 
 def played_on(practice: Practice, left: Positions, visits: Ints, seed: int) -> Floats:

@@ -15,8 +15,7 @@ _STILL = 0.1  # tip offsets over R up to this count as the middle of the ball
 _FAR_OFF = 0.3  # from this offset on: "deep" screw, and "top" instead of follow
 _STUN = 0.25  # A ball whose rotation is within this share of its speed arrives without spin
 _SIDE = 0.05  # tip offsets over R from which side is mentioned
-_FULLNESS = (0.38, 0.62, 0.87)
-"""Offsets of a ball over its diameter up to which it is struck three-quarter, half or quarter."""
+_FULLNESS = (0.38, 0.62, 0.87)  # offsets over the diameter up to which a hit is three-quarter, half, quarter
 RAISED = 0.05  # elevation [rad] from which a raised cue is mentioned
 TIGHT = 0.05  # largest gap [m] to a ball that the cue ball lies tight behind
 AT_CUSHION = 0.15  # largest gap [m] to the cushion at an end that the cue ball is played to
@@ -85,8 +84,7 @@ def stroke_words(
 
 
 def lie_words(x: float, y: float, ball: int, apart: float) -> str:
-    """Where a cue ball at (x, y) lies: behind a ``ball`` that hides the balls on, its centre ``apart`` [m] away, in
-    baulk or at an end; "" elsewhere. ``ball`` -1: a ball on is seen."""
+    """Where a cue ball lies: behind a ``ball`` (-1: none) ``apart`` [m] away, in baulk or at an end; "" elsewhere."""
     if ball >= 0:
         return f"{'tight ' if apart - 2.0 * BALL_RADIUS <= TIGHT else ''}behind the {ball_words(ball)}"
     if HALF_LENGTH - BALL_RADIUS - abs(y) <= AT_CUSHION:
@@ -114,8 +112,7 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does without errors. ``how``: an escape's first cushion, or how full a ball is struck; "" if it is
-    played away from a ball that it touches."""
+    """What a stroke does; ``how``: an escape's first cushion, or how full a ball is struck, "" if away from a touching one."""
     if kind == "pot":
         how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
         return f"{ball_words(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
@@ -142,8 +139,7 @@ def points_words(points: float) -> str:
 
 
 def figures_words(kind: str, chance: float, points: float, judged: bool = False) -> str:
-    """The figures of a stroke: chance and points expected of a pot, otherwise how often it is fair. ``judged``: its
-    worth as a safety is said elsewhere."""
+    """A pot's chance and points expected, else how often it is fair; ``judged``: its worth as a safety is said elsewhere."""
     if kind == "pot":
         return f"pot {percent(chance)}, {points_words(points)} expected"
     unjudged = kind in ("contact", "escape") and not judged

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from .._check import choice, number, refuse
-from .._types import NoiseName
 from ..advice import CueStroke, Suggestion, advise, destinations
 from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
 from ..geometry import BAULK_Y, POCKET_AIMS, POCKETS
@@ -57,8 +56,7 @@ def pocket_named(field: str, value: Any) -> int:
 
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
-RIVALS = 2
-"""Further strokes that are judged for each suggestion after the first: many are other ways of one pot."""
+RIVALS = 2  # further strokes judged for each suggestion after the first: many are other ways of one pot
 
 
 def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
@@ -97,13 +95,10 @@ def paths(shot: Shot) -> dict[str, Any]:
     }
 
 
-def scatter(
-    session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int
-) -> dict[str, Any]:
-    """Where cue ball and object ball stop under execution errors, and the paths without them."""
+def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any]:
+    """Where cue ball and object ball stop with ``errors`` (noise, samples, seed), and the paths without them."""
     shot = exact(session, stroke)
-    how: Any = {"noise": noise, "samples": samples, "seed": seed, "options": {"cue": session.cue}}
-    stops = destinations(session.planned(), stroke, **how)
+    stops = destinations(session.planned(), stroke, **errors, options={"cue": session.cue})
     figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
     return paths(shot) | figures | {"cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4")}
 
@@ -119,14 +114,10 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
     return {"choice": DECIDED.get(int(decided.decision[0]), "play"), "choices": found}
 
 
-def suggestions(
-    session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int
-) -> dict[str, Any]:
-    """At most n strokes of the agent, the best of each ``_idea``, in words and data, with paths without errors; whose they
-    are, and their order."""
+def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:
+    """At most n strokes of the agent, the best of each ``_idea``, in words, data and paths; whose they are, their order."""
     choice("agent", agent, seats.agents)
-    how: Any = {"noise": noise, "n": n + RIVALS * (n - 1), "samples": samples, "seed": seed}
-    how["options"] = {"cue": session.cue}
+    how: Any = {**errors, "n": n + RIVALS * (n - 1), "options": {"cue": session.cue}}
     at = session.planned()
     if not session.practice:  # alone at the table nobody wins
         at, how["options"]["miss"] = session.position, session.miss
@@ -138,23 +129,17 @@ def suggestions(
         twin = session.twin()
         if one.place is not None:
             twin.place(*one.place)
-        out.append(one.to_dict() | _named(one) | paths(exact(twin, one.stroke)))
+        names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
+        names |= {
+            name: NAMES[k] if k >= 0 else None for name, k in (("ball", one.ball), ("first", one.first))
+        }
+        out.append(one.to_dict() | names | paths(exact(twin, one.stroke)))
     return {"agent": agent, "order": advice.order, "suggestions": out}
 
 
 def _idea(one: Suggestion) -> tuple[Any, ...]:
-    """What two ways of one stroke share: ball and pocket of a pot; else its kind, the ball's name, red or a colour, and
-    whether the cue ball stays in baulk, in the middle or at the top."""
+    """What two ways of one stroke share: ball and pocket of a pot; else its kind, red or a colour, the cue ball's third."""
     if one.kind == "pot":
         return one.ball, one.pocket
     third = None if one.stops is None else int(np.digitize(one.stops[1], (BAULK_Y, -BAULK_Y)))
     return one.kind, NAMES[one.ball].split()[0] if one.ball >= 0 else None, third
-
-
-def _named(one: Suggestion) -> dict[str, Any]:
-    """Ball and pocket of a suggestion by name; None where there is none."""
-    return {
-        "ball": NAMES[one.ball] if one.ball >= 0 else None,
-        "pocket": POCKETS[one.pocket] if one.pocket >= 0 else None,
-        "first": NAMES[one.first] if one.first >= 0 else None,
-    }

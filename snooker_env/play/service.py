@@ -82,11 +82,7 @@ class Seats:
         return decided
 
 
-DECIDED = {
-    PLAY_AGAIN: "play_again",
-    REPLACE: "replace",
-    PLACE_ANYWHERE: "anywhere",
-}  # decisions after a foul other than to play
+DECIDED = {PLAY_AGAIN: "play_again", REPLACE: "replace", PLACE_ANYWHERE: "anywhere"}  # other than to play
 LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 
 
@@ -130,9 +126,11 @@ class Service:
         return ("You" if self.session.practice and not self.seats.is_agent(0) else one), other
 
     @contextmanager
-    def reading(self) -> Iterator[Session]:
-        """The game, for reading: no other thread changes it meanwhile."""
+    def reading(self, revision: int | None = None) -> Iterator[Session]:
+        """The game, for reading: no other thread changes it meanwhile; ``StaleError``: an old revision."""
         with self._changed:
+            if revision not in (None, self.revision):
+                raise StaleError
             yield self.session
 
     @contextmanager
@@ -140,13 +138,11 @@ class Service:
         self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False
     ) -> Iterator[Session]:
         """The game, for changing it. ``pause``: agents then wait; ``any_turn``: also in an agent's turn."""
-        with self._changed:
-            if revision not in (None, self.revision):
-                raise StaleError
+        with self.reading(revision) as session:
             if not any_turn and self.agent_to_play():
-                whose = self.seats.label(self.session.frame.striker)
+                whose = self.seats.label(session.frame.striker)
                 raise refuse("turn", whose, "must be a person's: an agent is to play")
-            yield self.session
+            yield session
             self.paused, self.trouble = pause, ""
             self._moved()
 
@@ -156,18 +152,15 @@ class Service:
         if not self._asking.acquire(timeout=10.0):
             raise BusyError("other questions are being answered")
         try:
-            with self._changed:
-                if revision not in (None, self.revision):
-                    raise StaleError
-                twin = self.session.twin()
+            with self.reading(revision) as session:
+                twin = session.twin()
             yield twin
         finally:
             self._asking.release()
 
     @property
     def judge(self) -> Judge | None:
-        """Who says how likely each seat wins: the ``tactician``, with the larger errors of both seats, and at least a
-        professional's; None where nobody wins, alone at the table."""
+        """Who says how likely each seat wins, with the larger errors of both, at least a professional's; None for nobody."""
         if not self._judged or self.session.practice:
             return None
         level = max(("professional", *self.session.noise), key=lambda name: LEVELS[name].direction_deg())

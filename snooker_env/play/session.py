@@ -32,8 +32,7 @@ from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew
 
-DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0, "anywhere": 1.0}
-"""Last component of an action for each choice after a foul."""
+DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0, "anywhere": 1.0}  # the last of an action
 DECLINED = 0  # the nomination of a player who does not use a free ball
 MOST_FRAMES = 99  # the longest match
 STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
@@ -53,8 +52,7 @@ class Act:
 
 
 class Session:
-    """A frame to play, set up, undo, save and load; ``seed``: of all random numbers; ``cue``: "real" or "free"; ``flight``:
-    balls fly, and the cue can be raised to 70 degrees."""
+    """A frame to play, set up, undo, save and load; ``flight``: balls fly, and the cue can be raised to 70 degrees."""
 
     noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
@@ -276,10 +274,9 @@ class Session:
 
     def concede(self) -> Act:
         """End the frame: the striker concedes."""
-        frame = self.frame
-        if frame.phase == "over":
-            raise refuse("phase", frame.phase, "must not be over")
-        return self._ended("concede", frame.concede(frame.striker))
+        if self.frame.phase == "over":
+            raise refuse("phase", "over", "must not be over")
+        return self._ended("concede", self.frame.concede(self.frame.striker))
 
     def claim(self) -> Act:
         """The striker, more than seven points ahead with the black alone on the table, claims the frame."""
@@ -295,11 +292,10 @@ class Session:
         frame = self.frame
         if not frame.in_hand or frame.phase != "stroke":
             raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
-        self.tables.positions[0, CUE] = place_cue(
-            self.tables.positions[0], self.tables.on_table[0], x, y, anywhere=frame.anywhere
-        )
+        places = self.tables.positions[0]
+        places[CUE] = place_cue(places, self.tables.on_table[0], x, y, anywhere=frame.anywhere)
         self.acts[self.at - 1] = replace(self.acts[self.at - 1], state=self.state)
-        px, py = self.tables.positions[0, CUE].tolist()
+        px, py = places[CUE].tolist()
         return px, py
 
     def set_up(
