@@ -66,8 +66,7 @@ def parser() -> argparse.ArgumentParser:
     add("--agent", help=f"{what} [{USUAL}; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
     add("--opponent", help="its player [the agent itself]")
-    what = "break.html, .json, .mp4 or .gif; left out: opened in the browser"
-    add("--out", type=Path, help=what)
+    add("--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser")
     add("--layout", default="held_out", help="of the tables, as for Snooker-v0")
     add("--noise", default="professional", help="execution noise")
     add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
@@ -185,9 +184,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except OSError as error:
-        print(
-            f"{NAME}: {error.filename or 'the output'} cannot be written: {error.strerror}", file=sys.stderr
-        )
+        what = error.filename or "the output"
+        print(f"{NAME}: {what} cannot be written: {error.strerror}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print(f"{NAME}: interrupted", file=sys.stderr)

@@ -11,10 +11,15 @@ from .tasks import TASKS, Task
 
 WIDTH = 100
 CLASSES = {"model_free": "model-free", "planning": "planning", "undeclared": "undecl."}
-TRAINED = {"none": "0", "50k": "50 k", "1M": "1 M", "5M": "5 M", "open": "open", "unknown": "?"}
-"""In the order of the table."""
-Table = tuple[list[str], list[list[str]]]
-"""Heading and rows."""
+TRAINED = {
+    "none": "0",
+    "50k": "50 k",
+    "1M": "1 M",
+    "5M": "5 M",
+    "open": "open",
+    "unknown": "?",
+}  # in this order
+Table = tuple[list[str], list[list[str]]]  # heading and rows
 
 LEGEND = (
     "score: mean of all episodes with its 95 % bootstrap interval over training seeds and episodes; a share that was "

@@ -88,8 +88,7 @@ class Repeater:
         return actions
 
 
-Round = tuple[Bools, dict[str, Any], Bools, Bools]
-"""Where the player was asked for a stroke; the environment's info after it; done; terminated."""
+Round = tuple[Bools, dict[str, Any], Bools, Bools]  # asked for a stroke; the info after it; done; terminated
 
 
 def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None = None) -> Iterator[Round]:

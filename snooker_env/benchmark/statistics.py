@@ -56,9 +56,7 @@ def _drawn(size, draws, n, seed):
 
 
 class Resamples:
-    """n bootstrap samples of matrices (runs, visits).
-
-    Equal numbers of visits give the same visits in each sample (pairs); other seeds give other runs."""
+    """n bootstrap samples of matrices (runs, visits): as many visits, the same ones (pairs); other seeds, other runs."""
 
     def __init__(self, runs: int, visits: int, n: int = RESAMPLES, seed: int = 0):
         self._runs = _drawn(runs, max(1, runs - 1), n, (1, seed))
@@ -76,12 +74,9 @@ class Resamples:
     def iqms(self, scores: Any) -> Floats:
         """The inter-quartile mean of a matrix, float (runs, visits), in each sample: float64 (n,)."""
         values, which = np.unique(scores, return_inverse=True)
-        which = which.reshape(scores.shape)
-        weights = sum(
-            self._runs[:, r, None] * (self._visits @ np.eye(len(values))[which[r]])
-            for r in range(len(scores))
-        )
-        return _middle_mean(values, weights)
+        which, eye = which.reshape(scores.shape), np.eye(len(values))
+        each = (self._runs[:, r, None] * (self._visits @ eye[one]) for r, one in enumerate(which))
+        return _middle_mean(values, sum(each))
 
 
 def interval(samples: Any, level: float = 0.95) -> tuple[float, float]:

@@ -55,8 +55,7 @@ class TextPlayer(ProgramPlayer):
 
     def _answered(self, state: dict[str, Any]) -> bytes:
         answer = super()._answered(state | {"error": self._error})
-        counted = {"answers": 1, "read": len(state["text"]), "written": len(answer)}
-        for name, more in counted.items():
+        for name, more in (("answers", 1), ("read", len(state["text"])), ("written", len(answer))):
             self.counts[name] += more
         return answer
 
@@ -122,7 +121,9 @@ def judge_text(
     head["budget"] = {"strokes": STROKES, "tries": TRIES, "timeout": agent.timeout}
     rows: list[dict[str, int]] = []
     if out.exists():
-        rows = _rows_in(out, head) if resume else _must_be_new(out)
+        if not resume:
+            raise refuse("out", str(out), "must be a new file; --resume goes on with one")
+        rows = _rows_in(out, head)
 
     def keep(done: bool = False) -> dict[str, Any]:
         about = {"software": software(), "machine": machine(), "commit": commit()} if done else {}
@@ -135,10 +136,6 @@ def judge_text(
     if len(rows) < visits:
         play_text(agent, visits, rows, keep)
     return keep(done=True)
-
-
-def _must_be_new(out: Path) -> Any:
-    raise refuse("out", str(out), "must be a new file; --resume goes on with one")
 
 
 def _rows_in(out: Path, head: dict[str, Any]) -> list[dict[str, int]]:

@@ -15,8 +15,7 @@ from ..game.frame_columns import BALL_ON, POINTS
 from ..tasks.frame import Frames
 from ..tasks.tables import Tables
 
-STARTS = ("state", "states", "position", "positions")
-"""Keys of the reset options that say where an episode starts that is not dealt."""
+STARTS = ("state", "states", "position", "positions")  # reset options that say where an episode starts
 ONE = ("state", "position", "breaker")
 MANY = ("reset_mask", *STARTS, "breaker")  # keys of the reset options of one table and of many
 OUTPUTS: dict[str, tuple[str, type[np.generic]]] = {

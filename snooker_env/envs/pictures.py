@@ -74,8 +74,7 @@ class Pictures:
     ) -> Picture:
         """Table k with the paths of the last stroke of its ``history``; ``recent``: of each episode strokes, and how many."""
         if self.mode is None:
-            modes = '"rgb_array", "ansi" or "human"'
-            how = f"make the environment with render_mode={modes}"
+            how = 'make the environment with render_mode="rgb_array", "ansi" or "human"'
             gymnasium.logger.warn(f"render() without render_mode; {how}")
         if self.mode == "rgb_array":
             motion = lambda: chain.from_iterable(self._motion(*some) for some in recent)  # noqa: E731
@@ -115,9 +114,9 @@ class Pictures:
             return
         from ..render.window import Window, display_missing
 
-        if self._window is None and display_missing():
-            return
         if self._window is None:
+            if display_missing():
+                return
             self._window = Window(size=None if self.size == SIZE else self.size)
         if played:
             film, _ = next(self._films(history, 1))
@@ -158,15 +157,13 @@ class Pictures:
 
         paths = ghosts = last = None
         turns = {0: np.array([1.0, 0.0, 0.0, 0.0])}  # spots as in films
-        # otherwise it did not lead to this table
-        if history and np.array_equal(history[-1].positions, tables.positions[k]):
+        if history and np.array_equal(history[-1].positions, tables.positions[k]):  # it led to this table
             shot = history[-1].shot
             trails = (0, *(np.flatnonzero(shot.potted[1:] >= 0) + 1).tolist())  # cue ball and potted balls
             paths, ghosts = ball_paths(shot, trails), {0: contacts(shot)}
             last = bars(history, self.players)[-1][1]
-            # as the film of the stroke left it
             if shot.on_table[0] and np.array_equal(shot.positions[0], tables.positions[k][0]):
-                turns = {0: Turning(shot, 0).at(shot.duration)}
+                turns = {0: Turning(shot, 0).at(shot.duration)}  # as the film of the stroke left it
         bar = standing_bar(tables, k, self.players, last)
         over: Any = {"paths": paths, "ghosts": ghosts, "turns": turns, "text": tables.text(k), "bar": bar}
         return scene(self.table, tables.positions[k], tables.on_table[k], **over)

@@ -32,10 +32,8 @@ PICTURES = ("rgb_array", "ansi")
 _ONE_TABLE = "simulate_batch, or SnookerEnv for one table"
 NOT_OF_A_TABLE: dict[str, str] = dict.fromkeys(("last_shot", "history", "keep_history"), _ONE_TABLE)
 NOT_OF_A_TABLE |= {name: name for name in ("step", "render", "close")}
-NOT_OF_A_TABLE |= {
-    "reset": 'reset(options={"reset_mask": ...})',
-    "set_state": 'reset(options={"states": ...})',
-}
+NOT_OF_A_TABLE |= {"reset": 'reset(options={"reset_mask": ...})'}
+NOT_OF_A_TABLE |= {"set_state": 'reset(options={"states": ...})'}
 NOT_OF_A_TABLE |= {"get_wrapper_attr": "call", "set_wrapper_attr": "another environment"}
 NOT_OF_A_TABLE |= {"spec": "the attribute spec", "unwrapped": "this environment"}
 """Names that ``call`` refuses, and their replacements: the tables play, end and begin together."""
@@ -122,9 +120,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             choice("render_mode", render_mode, PICTURES)
         self.render_mode = render_mode
         self.options, opponent = self._game_of(options, keywords)
-        steps = max_episode_steps
-        limit = NEVER if steps is None else integer("max_episode_steps", steps, 1, NEVER)
-        self.tables = self._tables_of(opponent, limit)
+        limit = NEVER if max_episode_steps is None else max_episode_steps
+        self.tables = self._tables_of(opponent, integer("max_episode_steps", limit, 1, NEVER))
         # what ``call`` shows of a table; its own table, without an opponent, is never played on
         alone = self.options.but(opponent="none")
         self._one = SnookerEnv(alone, render_mode=render_mode, render_size=render_size)
@@ -139,8 +136,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self._keyed = np.zeros(n, np.bool_)  # has the table's stream a key?
         self._begun = np.zeros(n, np.bool_)
         self._done = np.zeros(n, np.bool_)
-        self._recent: list[list[Played]] = [[] for _ in range(n)]
-        """The strokes of each table in the last step or reset, if they are shown."""
+        self._recent: list[list[Played]] = [[] for _ in range(n)]  # of the last step or reset, if shown
         self._crew = Threads(threads, watch=None if render_mode is None else self._saw)
 
     _game_of = staticmethod(game_of)  # the options, and who sits opposite the agent

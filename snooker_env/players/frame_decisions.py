@@ -32,14 +32,11 @@ class FrameSearcher(Protocol):
 
 
 class Decided(NamedTuple):
-    """What a player does in n positions.
-
-    ``strokes``: n ``Strokes``; ``tried``: of each position what its search tried, None where it plays no stroke or found
-    none; ``start``: the positions that the strokes are played from, after decisions, with placed cue balls."""
+    """What a player does in n positions."""
 
     strokes: Strokes
-    tried: list[Tried | None]
-    start: Positions
+    tried: list[Tried | None]  # what its search tried; None where it plays no stroke or found none
+    start: Positions  # what the strokes are played from, after decisions, with placed cue balls
 
 
 def decided(search: FrameSearcher, plain: Player, options: Options, at: Positions, seeds: Any) -> Decided:
@@ -83,8 +80,7 @@ def decided(search: FrameSearcher, plain: Player, options: Options, at: Position
 
 
 def ranked(search: FrameSearcher, made: Decided) -> list[Ranked]:
-    """The strokes that met noise samples, all where none did, at most ``RANKED``, best first; their scores are chances
-    to win, or points if the search knows no law for these."""
+    """The strokes that met noise samples, else all, at most ``RANKED``, best first, with chances to win, or points."""
     strokes, tried, _ = made
     considered = []
     for k, one in enumerate(tried):

@@ -26,10 +26,9 @@ from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_N
 from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
 
-RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
-"""What ``Player.at`` takes: an environment, an ``Options``, or a dict of its fields."""
-
-
+RulesLike: TypeAlias = (
+    Environment | Options | Mapping[str, Any]
+)  # the latter: a dict of fields of ``Options``
 CODES: dict[str, tuple[int, ...]] = {
     "nominate": (AUTO, 0, *range(YELLOW, YELLOW + COLOURS)),
     "decision": (PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE),
@@ -176,11 +175,8 @@ class Strokes:
                 raise refuse(name, part.max().item(), "must be left out: the actions do not hold it")
         if box.elevation:
             if (steep := self.elevation.max(initial=0.0)) > box.steepest + 1e-9:
-                raise refuse(
-                    "elevation",
-                    float(steep),
-                    f"must be at most {box.steepest:.3g} rad, as the option elevation says",
-                )
+                allowed = f"must be at most {box.steepest:.3g} rad, as the option elevation says"
+                raise refuse("elevation", float(steep), allowed)
             parts.append(2.0 * self.elevation / box.steepest - 1.0)
         if box.placement:
             parts += self._placed(at)
@@ -200,10 +196,7 @@ class Strokes:
         across = np.clip(x / D_RADIUS, -1.0, 1.0)
         depth = D_RADIUS * np.sqrt(1.0 - across * across)
         back = np.clip((BAULK_Y - y) / np.maximum(depth, 1e-9), 0.0, 1.0)
-        return [
-            np.where(at.anywhere, x / HALF_WIDTH, across),
-            np.where(at.anywhere, y / HALF_LENGTH, 2.0 * back - 1.0),
-        ]
+        return list(np.where(at.anywhere, (x / HALF_WIDTH, y / HALF_LENGTH), (across, 2.0 * back - 1.0)))
 
     def _nominated(self, at: Positions) -> Floats:
         """The component of the nomination: sixths of the range after a red, sevenths with a free ball."""
@@ -342,15 +335,11 @@ def decision_seeds(seed: int, tables: Ints, decision: int | Ints) -> Ints:
     """
     state = np.uint64(seed & 0xFFFFFFFFFFFFFFFF) + np.zeros(len(tables), np.uint64)
     for part in (np.asarray(tables), np.broadcast_to(np.asarray(decision), len(tables))):
-        state = _mixed(state + _ODD * (part.astype(np.uint64) + np.uint64(1)))
+        x = state + _ODD * (part.astype(np.uint64) + np.uint64(1))  # splitmix64 (Steele, Lea & Flood 2014)
+        x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        state = x ^ (x >> np.uint64(31))
     return (state >> np.uint64(32)).astype(np.int64)
-
-
-def _mixed(x: Any) -> Any:
-    """splitmix64 of uint64 numbers (Steele, Lea & Flood 2014)."""
-    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    return x ^ (x >> np.uint64(31))
 
 
 def decided(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats:

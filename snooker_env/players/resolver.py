@@ -17,19 +17,9 @@ from .search import BUDGET, LEAST, MOST, SearchPlayer
 from .stroke_value import StrokeValuePlayer
 from .tactician import Tactician
 
-GROUP = "snooker_env.players"
-"""Entry points for players of other packages: NAME = MODULE:MAKER, called without arguments."""
-READERS = "snooker_env.models"
-"""Entry points that read models: MODULE:READER, called with a path; None if the file is not theirs."""
-BUILT_IN = (
-    "random",
-    "ghost_ball",
-    "best_pot",
-    "search",
-    "planner",
-    "tactician",
-    "stroke_value",
-)  # the players in the package
+GROUP = "snooker_env.players"  # entry points for players: NAME = MODULE:MAKER, called without arguments
+READERS = "snooker_env.models"  # entry points that read models, called with a path; None if it is not theirs
+BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician", "stroke_value")
 RENAMED = {"lookahead": "search"}  # names of players of version 0.3 that are still understood
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
 PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
@@ -224,9 +214,8 @@ def _strokes(name: str, path: Path) -> Any:
     try:
         return learned_strokes(path)
     except (OSError, KeyError, ValueError):
-        raise refuse(
-            "player", name, "must name a file strokes.npz of train.py --agent stroke_value"
-        ) from None
+        allowed = "must name a file strokes.npz of train.py --agent stroke_value"
+        raise refuse("player", name, allowed) from None
 
 
 def _learned(model: str) -> Any:

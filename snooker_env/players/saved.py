@@ -91,17 +91,14 @@ class SavedNetwork:
 
 
 def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = "player") -> SeenPlayer:
-    """The player of a model's ``.zip``, with ``options`` of ``model_options``; ValueError for other files and for
-    those of ``train.py``."""
+    """The player of a model's ``.zip``, with ``options`` of ``model_options``; ValueError for those of ``train.py``."""
     try:
         ours = path.is_dir() or by_train(entries(path))
     except Exception as error:
         raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
     if ours:
-        words = (
-            "must be read in a clone of the repository, without options: it is a model or a run of train.py"
-        )
-        raise refuse(field, str(path), words)
+        words = "must be read in a clone of the repository, without options"
+        raise refuse(field, str(path), f"{words}: it is a model or a run of train.py")
     model = FittingModel.of(path, options, field)
     made = SeenPlayer(SavedNetwork(model, trust), name=str(path))
     say_assumed(path, model.options)

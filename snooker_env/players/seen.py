@@ -7,18 +7,8 @@ import numpy as np
 
 from .._check import choice, refuse_what
 from .._types import Bools, Floats, Ints, Observation, Singles
+from ..game import frame_columns as columns
 from ..game.balls import mask_of_present
-from ..game.frame_columns import (
-    ANYWHERE,
-    COLUMNS,
-    IN_HAND,
-    ON_TABLE,
-    PLACE_ANYWHERE,
-    RACK,
-    SCORE_0,
-    VISIT_COLUMNS,
-    WINNER,
-)
 from ..physics.conditions import nominal, normalised
 from ..planning import Positions
 from ..planning.positions import seeds_of
@@ -125,7 +115,7 @@ class SeenPlayer(BoundPlayer):
             return Strokes(values, np.where(self._puts(shown), start.positions[:, 0], places))
         nominate, decision, declare = sayings(self._rules, actions, shown.game)
         shown = shown.copy()
-        shown.game[decision == PLACE_ANYWHERE, IN_HAND] = shown.game[decision == PLACE_ANYWHERE, ANYWHERE] = 1
+        shown.game[np.ix_(decision == columns.PLACE_ANYWHERE, [columns.IN_HAND, columns.ANYWHERE])] = 1
         values, start = decoded(self._rules, shown, rows, actions, nominate)
         places = np.where(self._puts(shown), start.positions[:, 0], places)
         return Strokes(values, places, nominate, decision, declare)
@@ -182,7 +172,12 @@ def conditions_seen(at: Positions, rules: Rules) -> Singles:
 
 def begun(at: Positions) -> Positions:
     """Positions of visits as those of frames: the striker's points alone have been scored."""
-    game = np.zeros((len(at), COLUMNS), np.int64)
-    game[:, :VISIT_COLUMNS], game[:, SCORE_0], game[:, WINNER] = at.game, at.points, -1
-    game[:, ON_TABLE] = game[:, RACK] = [mask_of_present(on_table) & ~1 for on_table in at.on_table]
+    game = np.zeros((len(at), columns.COLUMNS), np.int64)
+    game[:, : columns.VISIT_COLUMNS], game[:, columns.SCORE_0], game[:, columns.WINNER] = (
+        at.game,
+        at.points,
+        -1,
+    )
+    masks = np.array([mask_of_present(on_table) & ~1 for on_table in at.on_table], np.int64)
+    game[:, [columns.ON_TABLE, columns.RACK]] = masks[:, None]
     return Positions(at.positions, at.on_table, game, None, at.conditions)

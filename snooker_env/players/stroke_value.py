@@ -21,8 +21,7 @@ from .weights import StrokeLayers, learned_at, learned_strokes, learned_worth, l
 
 
 class StrokeValuePlayer(BoundPlayer):
-    """The best of the strokes of a ``StrokeValue``, in frames of a ``FrameStrokes``; ``learned``: the layers of their
-    networks, by default the package's."""
+    """The best stroke of a ``StrokeValue``, in frames of a ``FrameStrokes``; ``learned``: by default the package's layers."""
 
     name = "stroke_value"
 

@@ -100,9 +100,8 @@ class Tactician(BoundPlayer):
             black.game[:, columns.PHASE] = columns.STROKE
             gains[rows] = np.abs(worth(black))  # it begins, or the other does
         won = at.game[:, columns.WINNER] == 0
-        return np.where(
-            over, won, search.chance(lead_of(at) + gains, left_of(at), lead_of(at), search.spread)
-        )
+        chances = search.chance(lead_of(at) + gains, left_of(at), lead_of(at), search.spread)
+        return np.where(over, won, chances)
 
     def decided(self, at: Positions, seeds: Any) -> Decided:
         """What it does in positions of frames, what it tried in those in which it strikes, and from where."""

@@ -1,5 +1,4 @@
-"""Where are the pages' files, and how is ``table.js`` made? Of the files of ``table/``, one after the
-other."""
+"""Where are the pages' files, and how is ``table.js`` made? Of the files of ``table/``, one after the other."""
 
 import json
 from pathlib import Path
@@ -9,8 +8,7 @@ _TABLE = WEB / "table"
 
 
 def table_js(*, player: bool = True) -> str:
-    """The JavaScript module that draws a table and, with ``player``, plays a replay; it imports nothing, so that a
-    page can hold it."""
+    """The JavaScript module that draws a table and, with ``player``, plays a replay; it imports nothing: a page can hold it."""
     names = ("decode", "pen", "paint", "draw", "chance", *(("graph", "play") if player else ()))
     parts = [(_TABLE / f"{name}.js").read_text("utf-8") for name in names]
     if player:
