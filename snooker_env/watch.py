@@ -1,11 +1,8 @@
 """How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
 
-The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the
-replay is written to a temporary file and opened in the browser. The cue is real. Visits are played on held-out tables, the
-seeds one after the other; --at-least takes the first of --tries visits with so many points, else the longest. The
-same seed gives the same visit as ``benchmark.play_visits`` plays on that table. With --frame: a whole frame, against
---opponent, with the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The
-replay shows how likely each player was to win, by the ``tactician``.
+Without --out the replay, an HTML file, is opened in the browser. Visits are played with a real cue on held-out tables,
+the seeds one after the other, as ``benchmark.play_visits`` does; --at-least takes the first of --tries visits with so many
+points, else the longest. With --frame: a frame against --opponent, with the miss rule "clear_path".
 """
 
 import argparse

@@ -34,19 +34,9 @@ def advise(
 ) -> Advice:
     """Return the strokes that a player would play in a position, best first, and their outcomes.
 
-    Each stroke is played ``samples`` times, with the same execution errors whichever player is asked. Of the
-    visits that go on, ``visits`` are played to their end by a fast player (``snooker_env.advice.visits``), so
-    ``points`` is what a good player makes of the position, not the best.
-
-    Of the strokes that the player ranks, the first ``n`` are returned that are fair: no foul without errors,
-    nor in most samples. In a frame they are ordered by the chance to win it; each says what the other finds, of
-    whose next visits ``visits`` are played, too. In a visit pots are ordered by points expected, others by how
-    often they are fair, because what a stroke is worth as a safety is not judged there; those that the player
-    prefers, pots or others, come first. Where none is fair, many choices of ``action="discrete"`` are judged,
-    too; where none of these is, the stroke that is fair most often is returned, and its words say so.
-
-    The errors are drawn from ``seed`` alone, independent of the random stream that a saved state carries: the
-    same seed gives the same advice, and advice never reveals the errors of the next stroke.
+    docs/play/advice.md says how strokes are judged and ordered. Each is played ``samples`` times, with the same
+    execution errors whichever player is asked; those errors are drawn from ``seed`` alone, independent of the random
+    stream that a saved state carries, so advice never reveals the errors of the next stroke.
 
     Parameters
     ----------

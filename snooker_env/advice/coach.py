@@ -1,8 +1,6 @@
 """What costs a player most, and what should be practised? ``coach``: errors, pots made and expected, costs, drills.
 
-Costs are those of ``costs``, each with the 95 % interval of a bootstrap over strokes. They hold luck: whether as many pots
-were made as such errors make says ``expected``. Which strokes were chosen is not judged. Miss calls, free balls and
-decisions after a foul are not known: who comes next plays from where the balls lie.
+Costs are those of ``costs``, each with the 95 % interval of a bootstrap over strokes; they hold luck (docs/play/coach.md).
 """
 
 from collections.abc import Sequence
@@ -169,22 +167,23 @@ def coach(
     found = fitted(kept, base, seed)
     kept = found.strokes
     points, counts = lost(kept, bench, seed)
-    visits = max(1, visits_of(kept))
+    visits = visits_of(kept)
     rng = np.random.default_rng((seed, RESAMPLES))
-    drawn = points[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / visits
-    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), points.sum(axis=0) / visits
+    drawn = points[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / max(1, visits)
+    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), points.sum(axis=0) / max(1, visits)
     parts: dict[str, Estimate] = {}
     for name, (value, low, high), many in zip(PARTS, np.vstack([sums, ends]).T.tolist(), counts, strict=True):
         if many:
             parts[name] = Estimate(value=value, low=low, high=high, strokes=int(many))
-    first = max(parts, key=lambda name: parts[name].value) if parts else None
-    most = first if first is not None and parts[first].value > 0.0 else None
+    ranked = sorted((name for name in parts if parts[name].value > 0.0), key=lambda name: -parts[name].value)
+    most = ranked[0] if ranked else None
+    drill = {"potting": _potting, "position": _position, "safety": _safety}
     largest = (drawn.argmax(axis=1) == PARTS.index(most)) & (drawn.max(axis=1) > 0.0) if most else np.zeros(1)
     chances = found.pots.chances
     return Coaching(
         errors=found.errors,
         strokes=len(kept),
-        visits=visits_of(kept),
+        visits=visits,
         called=len(found.pots.rows),
         made=int(found.pots.made.sum()),
         expected=None if found.direction is None else _counted(chances, found.direction),
@@ -193,7 +192,9 @@ def coach(
         costs=parts,
         most=most,
         sure=float(largest.mean()),
-        drills=drills_for(kept, parts, points, found.errors),
+        drills=tuple(
+            drill[name](kept, parts[name], points[:, PARTS.index(name)], found.errors) for name in ranked
+        ),
     )
 
 
@@ -218,15 +219,6 @@ def _counted(chances: Floats, weights: Floats) -> Estimate | None:
     half = 1.96 * sqrt(max(0.0, float(spread @ weights + counts**2 @ weights) - mean * mean))
     low, high = max(0.0, mean - half), min(float(len(chances)), mean + half)
     return Estimate(value=mean, low=low, high=high, strokes=len(chances))
-
-
-def drills_for(
-    strokes: list[Recorded], costs: dict[str, Estimate], parts: Floats, errors: PlayerErrors
-) -> tuple[Drill, ...]:
-    """A drill for each part that costs something, first for what costs most."""
-    ranked = sorted((name for name in costs if costs[name].value > 0.0), key=lambda name: -costs[name].value)
-    made = {"potting": _potting, "position": _position, "safety": _safety}
-    return tuple(made[name](strokes, costs[name], parts[:, PARTS.index(name)], errors) for name in ranked)
 
 
 def _potting(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:

@@ -1,11 +1,7 @@
 """How large are a player's errors of direction and speed? ``estimate_errors``: estimates with 95 % intervals.
 
-**The model** is that of ``snooker_env.tasks.noise``: the errors of strokes are independent and normal with mean 0. The
-direction of the cue ball errs by ``sigma_d`` at 1.5 m/s, and at a cue speed V by sqrt(1 + V^2) / sqrt(1 + 1.5^2) times as
-much (V in m/s); the speed errs by the share ``sigma_v``. Two numbers are estimated, each as a multiple s of a
-professional's.
-
-What a stroke says of s, by its likelihood, and what is estimated: docs/play/coach.md, "How errors are estimated".
+The model is that of ``snooker_env.tasks.noise``; two multiples s of a professional's errors are estimated, by the
+likelihoods of docs/play/coach.md, "How errors are estimated".
 """
 
 from collections.abc import Sequence

@@ -1,6 +1,6 @@
 """What is one stroke? ``CueStroke``: speed, tip, aim, elevation and place; validated, and as an action."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from math import hypot
 from typing import Any, TypeAlias, overload
@@ -283,9 +283,6 @@ class Advice(Sequence[Suggestion]):
 
     def __getitem__(self, index: int | slice) -> Suggestion | tuple[Suggestion, ...]:
         return self.suggestions[index]
-
-    def __iter__(self) -> Iterator[Suggestion]:
-        return iter(self.suggestions)
 
     @property
     def order(self) -> str:

@@ -3,9 +3,9 @@
 from bisect import bisect_left
 from math import copysign, cos, degrees, sin, sqrt
 
-from ..game.balls import NAMES
 from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from ..physics.parameters import Physics
+from ..replays.words import ball_name
 from .room import Room
 from .strokes import CueStroke
 
@@ -19,11 +19,6 @@ _FULLNESS = (0.38, 0.62, 0.87)  # offsets over the diameter up to which a hit is
 RAISED = 0.05  # elevation [rad] from which a raised cue is mentioned
 TIGHT = 0.05  # largest gap [m] to a ball that the cue ball lies tight behind
 AT_CUSHION = 0.15  # largest gap [m] to the cushion at an end that the cue ball is played to
-
-
-def ball_words(ball: int) -> str:
-    """The colour of a ball."""
-    return "red" if 1 <= ball <= 15 else NAMES[ball].replace("_", " ")
 
 
 def rolling(speed: float, top: float, distance: float, physics: Physics) -> float:
@@ -86,7 +81,7 @@ def stroke_words(
 def lie_words(x: float, y: float, ball: int, apart: float) -> str:
     """Where a cue ball lies: behind a ``ball`` (-1: none) ``apart`` [m] away, in baulk or at an end; "" elsewhere."""
     if ball >= 0:
-        return f"{'tight ' if apart - 2.0 * BALL_RADIUS <= TIGHT else ''}behind the {ball_words(ball)}"
+        return f"{'tight ' if apart - 2.0 * BALL_RADIUS <= TIGHT else ''}behind the {ball_name(ball)}"
     if HALF_LENGTH - BALL_RADIUS - abs(y) <= AT_CUSHION:
         return f"to the {'top' if y > 0 else 'baulk'} cushion"
     return "to baulk" if y < BAULK_Y else ""
@@ -114,17 +109,17 @@ def contact_words(x: float, y: float, aim: float) -> str:
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
     """What a stroke does; ``how``: an escape's first cushion, or how full a ball is struck, "" if away from a touching one."""
     if kind == "pot":
-        how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
-        return f"{ball_words(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
+        how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_name(first)}"
+        return f"{ball_name(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
     if kind == "in-off":
-        return f"in-off from the {ball_words(first)}" if first >= 0 else "in-off, nothing struck"
+        return f"in-off from the {ball_name(first)}" if first >= 0 else "in-off, nothing struck"
     if kind == "foul":
-        return f"foul, {ball_words(first)} first" if first >= 0 else "foul, nothing struck"
+        return f"foul, {ball_name(first)} first" if first >= 0 else "foul, nothing struck"
     if kind == "escape":
-        return f"escape{f' off the {how}' if how else ''} to the {ball_words(ball)}"
+        return f"escape{f' off the {how}' if how else ''} to the {ball_name(ball)}"
     if not how:
-        return f"{'safety ' if kind == 'safety' else ''}away from the touching {ball_words(ball)}"
-    return f"{'safety off' if kind == 'safety' else 'contact with'} the {ball_words(ball)}, {how}"
+        return f"{'safety ' if kind == 'safety' else ''}away from the touching {ball_name(ball)}"
+    return f"{'safety off' if kind == 'safety' else 'contact with'} the {ball_name(ball)}, {how}"
 
 
 def percent(share: float) -> str:

@@ -116,12 +116,7 @@ def completed(record: dict[str, Any], task: Task) -> dict[str, Any]:
 
 
 def result_of(
-    task: Task,
-    agent: Agent,
-    episodes: int,
-    played: PlayedEpisodes,
-    alone: PlayedEpisodes,
-    about: dict[str, Any],
+    task: Task, agent: Agent, many: int, played: PlayedEpisodes, alone: PlayedEpisodes, about: dict[str, Any]
 ) -> dict[str, Any]:
     """The record of a run. ``alone``: played on one table; ``about``: "command", "load", "incomplete"."""
     shots, why = agent.shots_declared, about["incomplete"]
@@ -130,7 +125,7 @@ def result_of(
     one_table = 1e3 * alone.seconds / alone.decisions if alone.decisions else None
     record = {
         "schema": {},
-        "protocol": {"version": PROTOCOL, "episodes": episodes, "official": False},
+        "protocol": {"version": PROTOCOL, "episodes": many, "official": False},
         "task": task.id,
         "agent": who | {"class": None, "simulated_shots": shots, "declared": shots is not None},
         "software": software(),

@@ -61,11 +61,6 @@ def known_options(options: Any, known: tuple[str, ...]) -> dict[str, Any]:
     return options
 
 
-def both_play(tables: Tables) -> bool:
-    """Whether the caller plays both sides of the tables."""
-    return isinstance(tables, Frames) and len(tables.seats) == 2 and tables.seats[1].player is None
-
-
 def breakers_of(options: dict[str, Any], tables: Tables) -> dict[str, Ints]:
     """Who breaks instead of the draw: ``breakers`` of ``Frames.reset``; empty without "breaker"."""
     if "breaker" not in options:
@@ -96,7 +91,8 @@ class Start:
         cls, state: Any, tables: Tables, generator: np.random.Generator, *, to_play: bool = False
     ) -> "Start":
         """From a dict; ValueError if it is no valid state here, or with ``to_play`` has no stroke left."""
-        either = {"either": True} if both_play(tables) else {}
+        both = isinstance(tables, Frames) and len(tables.seats) == 2 and tables.seats[1].player is None
+        either = {"either": True} if both else {}  # the caller plays both sides
         return cls(state=tables.checked(state, generator, to_play=to_play, **either))
 
     def take(self, tables: Tables, k: int) -> dict[str, Any] | None:

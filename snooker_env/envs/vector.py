@@ -42,28 +42,16 @@ NOT_OF_A_TABLE |= {"spec": "the attribute spec", "unwrapped": "this environment"
 class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     """Many tables side by side, bit for bit as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
-    ``SnookerEnv`` specifies actions, observations, rewards and infos.
+    ``SnookerEnv`` says what actions, observations, rewards and infos are, docs/environment/many_tables.md the rest.
 
-    **Opponents.** "random" and "ghost_ball" run as kernels. Any other player is asked once for all tables
-    that wait for it. A callable is called table by table or, if it has a method ``many(observations,
-    generators, masks) -> actions``, that once.
+    ``reset(seed=...)`` takes an int, a list or None, ``reset(options=...)`` "reset_mask", bool (num_envs,), the tables
+    to reset; "state" or "position" for all of them, or "states" or "positions", one for each; "breaker", 0 the agent or
+    1 the opponent, an int or one for each. Tables that start from one state meet the same execution errors; with a seed
+    as well, table k draws from seed + k. Positions hold no random stream: each table draws its own errors.
 
-    **Reset.** ``reset(seed=...)`` takes an int, a list or None, as ``SyncVectorEnv`` does.
-    ``reset(options=...)`` takes these keys:
-
-    | key | value |
-    |---|---|
-    | "reset_mask" | bool array (num_envs,): the tables to reset; without it, all |
-    | "state", "states" | a state of ``SnookerEnv.get_state`` for all of them, or a list with one for each |
-    | "position", "positions" | a ``snooker_env.Position`` for all of them, or a list with one for each |
-    | "breaker" | who breaks a frame: 0 the agent or 1 the opponent; an int, or one for each |
-
-    Tables that start from one state meet the same execution errors. With a seed as well, table k draws from
-    seed + k. Positions hold no random stream: each table draws its own errors.
-
-    **Results in your arrays.** ``reset`` and ``step`` can write into arrays of the caller, for instance in
-    shared memory: ``out={"observations": ..., "rewards": ..., "terminations": ..., "truncations": ...}``. Any
-    of them may be passed, C-contiguous and with the right shape and dtype; the same arrays are then returned.
+    ``reset`` and ``step`` write into arrays of the caller, for instance in shared memory, and return them:
+    ``out={"observations": ..., "rewards": ..., "terminations": ..., "truncations": ...}``, any of them, C-contiguous
+    and with the right shape and dtype.
 
     Parameters
     ----------

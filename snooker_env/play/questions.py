@@ -35,11 +35,6 @@ def place_asked(field: str, value: Any) -> tuple[float, float]:
     return number(f"{field}[0]", value[0], -10, 10), number(f"{field}[1]", value[1], -10, 10)
 
 
-def ball_named(field: str, value: Any) -> int:
-    """Id of the object ball with a name ("red 3", "blue")."""
-    return NAMES.index(choice(field, value, NAMES[1:]))
-
-
 def colour_named(field: str, value: Any) -> int:
     """Id of the colour with a name."""
     return colour(choice(field, value, COLOUR_NAMES))
@@ -64,7 +59,8 @@ def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
     pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:
         raise refuse("aim_at", asked, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
-    ball, pocket = ball_named("aim_at.pot[0]", pair[0]), pocket_named("aim_at.pot[1]", pair[1])
+    ball = NAMES.index(choice("aim_at.pot[0]", pair[0], NAMES[1:]))
+    pocket = pocket_named("aim_at.pot[1]", pair[1])
     if not session.tables.on_table[0, ball]:
         raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
     target = POCKET_AIMS[[pocket], :2]

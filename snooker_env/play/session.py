@@ -175,11 +175,10 @@ class Session:
         layout: str | None = None,
         seed: int = 0,
         breaker: int = 0,
-        game: RulesName | None = None,
+        game: Any = None,
         best_of: int = 1,
     ) -> None:
-        """Begin a match of so many frames, an odd number, or a single frame; earlier acts are forgotten. ``layout``
-        and ``game``: those of before unless they are given. ValueError for what cannot be."""
+        """Begin a match of an odd number of frames; ``layout`` and ``game``: those of before unless they are given."""
         if integer("best_of", best_of, 1, MOST_FRAMES) % 2 == 0:
             raise refuse("best_of", best_of, "must be odd, so that one player wins")
         self._deal(self._but(layout, game), seed, breaker)

@@ -38,7 +38,8 @@ class FittingModel:
                 choices = getattr(model.actions, "n", 0)
                 if outline(space(kind, frame=frame, replaced=replaced, choices=choices)) == saved.observation:
                     if outline(model.actions) != saved.action:
-                        raise model.other_actions
+                        told = "give the options of its training, for example placement=True"
+                        raise saved.refused(f"must be a model whose actions are {model.actions}: {told}")
                     return model
         raise saved.refused(_VIEW)
 
@@ -47,12 +48,6 @@ class FittingModel:
         """The space of its actions."""
         flat: Any = self.options | {"observation": "flat"}
         return Options(**flat).rules.actions.space
-
-    @property
-    def other_actions(self) -> ValueError:
-        """The error for a model with another action space; not raised."""
-        told = "give the options of its training, for example placement=True"
-        return self.saved.refused(f"must be a model whose actions are {self.actions}: {told}")
 
     def network(self, trust: bool) -> Any:
         """Load its policy: the code in its pickles runs. ValueError without ``trust``."""

@@ -57,29 +57,12 @@ class Tactician(BoundPlayer):
         return ranked(cast(FrameSearcher, self.search), self.decided(at, seeds))
 
     def chance_to_win(self, positions: PositionsLike) -> Floats:
-        """Return how likely the striker of each position wins the frame, if both play on as the ``tactician`` does.
+        """Return how likely the strikers of n positions of frames win, if both play on as the ``tactician`` does.
 
-        The worth of the position is added to the lead, and a law (``planning.worth.Chance``) says what that lead at
-        the end is worth while so many points are still on the table. Nothing is simulated: a millisecond for one
-        position.
-
-        Parameters
-        ----------
-        positions : PositionsLike
-            n positions of frames, as their strikers see them. A cue ball in hand is not placed: the worth was
-            learned of such positions, too. After a foul, and where the striker has won the lot, the best decision
-            is taken.
-
-        Returns
-        -------
-        numpy.ndarray
-            float64 (n,), in [0, 1]. Of a frame that is over 0 or 1.
-
-        Raises
-        ------
-        ValueError
-            If the player is not bound, the positions are of visits, which nobody wins, or the player was made
-            without a law of the chance.
+        Float64 (n,), in [0, 1]; 0 or 1 of a frame that is over. The worth of the position is added to the lead, and a
+        law (``planning.worth.Chance``) says what that is worth while so many points are on the table. A cue ball in hand
+        is not placed; after a foul or a lot that was won the best decision is taken. ValueError if the player is not
+        bound or has no law, or positions are of visits.
         """
         rules, at, search = self.options.rules, Positions.of(positions), self.search
         if not at.of_frames:

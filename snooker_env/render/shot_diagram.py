@@ -309,7 +309,7 @@ def summary(shot: Shot, first: int | None) -> list[str]:
 
 
 def _name(ball):
-    return "cue ball" if ball == 0 else NAMES[ball].replace("_", " ")
+    return "cue ball" if ball == 0 else NAMES[ball]
 
 
 def _write_legend(sketch, shot, row):

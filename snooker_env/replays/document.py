@@ -155,8 +155,7 @@ class Replay:
         """
         from .film import frames, shown
 
-        films = shown(self.strokes, self.table, self.players, self.title, self.win_chance)
-        return frames(films, fps, speed, size)
+        return frames(shown(self), fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
