@@ -14,8 +14,7 @@ def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], objec
     """Write a file so that ``path`` holds the old or the new content, complete, whenever the machine stops.
 
     ``content``: bytes, a text, or a function that writes the file at a path with the same suffix. On failure
-    nothing is left, and the OSError names ``path``. A device or a pipe is written directly.
-    """
+    nothing is left, and the OSError names ``path``. A device or a pipe is written directly."""
     target, data = Path(os.path.realpath(path)), content.encode() if isinstance(content, str) else content
     write = data if callable(data) else lambda file: file.write_bytes(data)
     if target.exists() and not target.is_file():

@@ -2,8 +2,7 @@
 
 Without --out the replay, an HTML file, is opened in the browser. Visits are played with a real cue on held-out tables,
 the seeds one after the other, as ``benchmark.play_visits`` does; --at-least takes the first of --tries visits with so many
-points, else the longest. With --frame: a frame against --opponent, with the miss rule "clear_path".
-"""
+points, else the longest. With --frame: a frame against --opponent, with the miss rule "clear_path"."""
 
 import argparse
 import os

@@ -1,8 +1,7 @@
 """How large are a player's errors of direction and speed? ``estimate_errors``: estimates with 95 % intervals.
 
 The model is that of ``snooker_env.tasks.noise``; two multiples s of a professional's errors are estimated, by the
-likelihoods of docs/play/coach.md, "How errors are estimated".
-"""
+likelihoods of docs/play/coach.md, "How errors are estimated"."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace

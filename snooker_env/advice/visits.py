@@ -6,8 +6,7 @@
 3. Where there is no direct pot, so it chooses among strokes at what it sees of the balls on, or escapes.
 
 This is a shallow search, made to play hundreds of visits in a second. From open tables under professional
-noise it scores about 58 points a visit; "planner_500" about 120.
-"""
+noise it scores about 58 points a visit; "planner_500" about 120."""
 
 import numpy as np
 

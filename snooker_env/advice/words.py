@@ -66,13 +66,11 @@ def place_words(x: float, y: float) -> str:
     return f"from {' and '.join(parts)} the brown spot" if parts else "from the brown spot"
 
 
-def stroke_words(
-    stroke: CueStroke, distance: float | None, physics: Physics, room: Room | None = None
-) -> str:
-    """Speed, spin, elevation and place in words; ``room``: what is done to the stroke, which is said if it matters."""
+def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics, way: Room | None = None) -> str:
+    """Speed, spin, elevation and place in words; ``way``: the room of the cue, which is said if it matters."""
     words = f"{stroke.speed:.1f} m/s, {spin_words(stroke, distance, physics)}"
-    if room is not None and (room.moved or (room.raised and room.elevation >= RAISED)):
-        words += f", {room.words}"
+    if way is not None and (way.moved or (way.raised and way.elevation >= RAISED)):
+        words += f", {way.words}"
     elif stroke.elevation >= RAISED:
         words += f", cue raised {degrees(stroke.elevation):.0f} degrees"
     return words if stroke.place is None else f"{words}, {place_words(*stroke.place)}"

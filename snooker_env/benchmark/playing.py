@@ -1,6 +1,5 @@
 """How are episodes played? Side by side. Actions are rounded to float32 before they are played and kept; seeds
-of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch.
-"""
+of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch."""
 
 import time
 from collections.abc import Iterator
@@ -124,9 +123,7 @@ def play_episodes(
     return PlayedEpisodes(rows, strokes, decide.decisions, decide.seconds, decide.simulated)
 
 
-def rows_of(
-    task: Task, tables: SnookerVectorEnv, seeds: list[int], decide: Any, run: int = 0
-) -> list[list[int]]:
+def rows_of(task: Task, tables: Any, seeds: list[int], decide: Any, run: int = 0) -> list[list[int]]:
     """The rows of the episodes with these seeds, as ``decide`` plays them."""
     n = len(seeds)
     sums: dict[str, Floats] = {name: np.zeros(n) for name in SUMS}

@@ -1,7 +1,6 @@
 """What stands in a result file, and how is it written and read? ``schema`` documents every field.
 
-Figures follow from rows and label alone: the same label draws the same bootstrap samples. ``check`` compares.
-"""
+Figures follow from rows and label alone: the same label draws the same bootstrap samples. ``check`` compares."""
 
 import base64
 import hashlib

@@ -1,6 +1,5 @@
 """What are the tasks? Ids with a version, the options that they freeze, and how an agent is judged on each.
-Only how an agent sees and acts stays free. docs/benchmark.md holds the rules.
-"""
+Only how an agent sees and acts stays free. docs/benchmark.md holds the rules."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields

@@ -2,8 +2,7 @@
 
 It is asked as every program is (docs/play/protocol.md) and reads ``text``, the table in words. Unlike there, an
 answer that is no stroke is not the end: the state comes again with what was wrong as ``error``, ``TRIES`` times in all;
-after that the visit is forfeited, with the points made before. docs/benchmark.md holds the rules.
-"""
+after that the visit is forfeited, with the points made before. docs/benchmark.md holds the rules."""
 
 import json
 from collections.abc import Callable

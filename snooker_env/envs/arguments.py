@@ -87,13 +87,11 @@ class Start:
     arrays: tuple[Floats, Bools, Ints] | None = None  # ``planning.Position.arrays``
 
     @classmethod
-    def of(
-        cls, state: Any, tables: Tables, generator: np.random.Generator, *, to_play: bool = False
-    ) -> "Start":
+    def of(cls, state: Any, tables: Tables, rng: np.random.Generator, *, to_play: bool = False) -> "Start":
         """From a dict; ValueError if it is no valid state here, or with ``to_play`` has no stroke left."""
         both = isinstance(tables, Frames) and len(tables.seats) == 2 and tables.seats[1].player is None
         either = {"either": True} if both else {}  # the caller plays both sides
-        return cls(state=tables.checked(state, generator, to_play=to_play, **either))
+        return cls(state=tables.checked(state, rng, to_play=to_play, **either))
 
     def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
         """Put it on table k; returns the state of its NumPy generator, None for a position."""
@@ -158,8 +156,7 @@ def arrays_of(
 ) -> dict[str, NDArray[Any]]:
     """The caller's arrays for results of n tables, by name; ``size``: of a flat observation.
 
-    ``boxes``: spaces of dict observations, whose arrays are only checked; None for flat ones.
-    """
+    ``boxes``: spaces of dict observations, whose arrays are only checked; None for flat ones."""
     if out is None:
         return {}
     if not isinstance(out, dict):

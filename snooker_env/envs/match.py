@@ -143,8 +143,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame; without a seed the random stream goes on.
 
-        ``options``: see Start and end, else ValueError; other keys are ignored: PettingZoo's tests pass some.
-        """
+        ``options``: see Start and end, else ValueError; other keys are ignored: PettingZoo's tests pass some."""
         if isinstance(options, dict):
             options = {key: options[key] for key in ONE if key in options}
         options = known_options(options, ONE)
@@ -180,8 +179,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         """Play the action of the selected player, None once it has terminated or is truncated.
 
         ValueError for an action outside the space, ResetNeeded if no player is left: then nothing is played.
-        SimulationError if the shot cannot be computed.
-        """
+        SimulationError if the shot cannot be computed."""
         if not self.agents:
             what = f"the frame {self.tables.unplayable}"
             raise gymnasium.error.ResetNeeded(f"{what}: call reset() before step()")

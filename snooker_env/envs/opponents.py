@@ -93,9 +93,8 @@ def tables_of(options: Options, opponent: Any, n: int, limit: int = NEVER) -> Ta
     if options.task == "visit":
         return kind(options.rules, n, limit=limit)
     if options.opponent == OBJECT and opponent is None:
-        raise refuse(
-            "opponent", OBJECT, "must come with the object: pass it as opponent=... beside the options"
-        )
+        words = "must come with the object: pass it as opponent=... beside the options"
+        raise refuse("opponent", OBJECT, words)
     seats = [Seat.of(options.rules)]
     if options.opponent != "none":
         player = opponent_of(options.opponent if opponent is None else opponent, options)

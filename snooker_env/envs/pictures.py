@@ -1,7 +1,7 @@
 """How does an environment show itself? As a picture, as text, or in a window with the moving shot."""
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from itertools import chain, zip_longest
 from typing import Any, TypeAlias
 
@@ -58,9 +58,7 @@ class PictureSource:
 class Pictures:
     """The pictures of one environment, ``size`` [pixels], ``players`` on the bar; a copy has no window."""
 
-    def __init__(
-        self, table: Table, mode: str | None, size: Sequence[int] = SIZE, players: tuple[str, ...] = ()
-    ):
+    def __init__(self, table: Table, mode: str | None, size: Any = SIZE, players: tuple[str, ...] = ()):
         self.table, self.mode = table, mode
         self.players: tuple[str, ...] = players
         self.size: tuple[int, int] = checked_size(size, "render_size")

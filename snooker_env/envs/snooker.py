@@ -87,8 +87,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         """Begin a new episode, see Episode; without a seed the random stream goes on.
 
         Returns the observation and the info. ValueError for an unknown key, or a state or position that is
-        invalid or has no stroke left.
-        """
+        invalid or has no stroke left."""
         options = known_options(options, ONE)
         starts = starts_of(options, self.tables, self.np_random)
         breakers = breakers_of(options, self.tables)
@@ -105,8 +104,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
         Returns observation, reward, terminated, truncated, info. ValueError for an action outside the space,
         ResetNeeded if no episode is going on: then nothing is played. SimulationError if a shot cannot be
-        computed: the balls lie as before, but for a cue ball that was placed.
-        """
+        computed: the balls lie as before, but for a cue ball that was placed."""
         a = self.options.rules.actions.check(action)
         tables = self.tables
         if tables.finished()[0]:

@@ -1,7 +1,6 @@
 """How do thousands of tables play side by side? As kernels, on several threads.
 
-gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
-"""
+gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")"""
 
 import copy
 from collections.abc import Collection, Iterator, Sequence
@@ -145,8 +144,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
         Table k draws from seed + k, or from element k of a list; without a seed the streams go on. Returns
         observations and infos: an array for each key, and under "_key" which tables it holds for. ValueError
-        for invalid options, ResetNeeded if a table outside the mask has never been reset.
-        """
+        for invalid options, ResetNeeded if a table outside the mask has never been reset."""
         options, tables = known_options(options, MANY), self.tables
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
         starts, breakers = starts_of(options, tables, self._one.np_random), breakers_of(options, tables)
@@ -185,8 +183,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         (num_envs,). Returns observations and infos as ``reset`` (with SAME_STEP also "final_obs" and
         "final_info"), rewards float64 (num_envs,), terminations and truncations bool (num_envs,). ValueError
         for an action outside the space, ResetNeeded before the first reset, and with DISABLED if an episode
-        is over: then nothing is played. After a SimulationError all tables need a reset.
-        """
+        is over: then nothing is played. After a SimulationError all tables need a reset."""
         a = self.options.rules.actions.check_many(actions, self.num_envs)
         arrays = self._arrays_of(out, OUTPUTS)
         self._require_begun()
@@ -253,8 +250,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Read or call something of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call`` does.
 
-        ValueError if the name does not belong to one table, AttributeError if there is none.
-        """
+        ValueError if the name does not belong to one table, AttributeError if there is none."""
         if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
             instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
             words = "must be something public that a table has for itself"

@@ -82,8 +82,7 @@ class ProgramPlayer(BoundPlayer):
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """Return what the program answers in each of n positions; it is told the ``seeds``, int (n,).
 
-        AgentError if the program ends, is too slow, or its answer is no stroke.
-        """
+        AgentError if the program ends, is too slow, or its answer is no stroke."""
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at)).tolist()

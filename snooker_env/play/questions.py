@@ -126,9 +126,7 @@ def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors:
         if one.place is not None:
             twin.place(*one.place)
         names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
-        names |= {
-            name: NAMES[k] if k >= 0 else None for name, k in (("ball", one.ball), ("first", one.first))
-        }
+        names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
         out.append(one.to_dict() | names | paths(exact(twin, one.stroke)))
     return {"agent": agent, "order": advice.order, "suggestions": out}
 

@@ -1,7 +1,6 @@
 """Which requests does the server answer, and how? ``docs/play/protocol.md`` describes every route.
 
-A handler takes the checked fields of a request and returns JSON types; a ValueError names an invalid field.
-"""
+A handler takes the checked fields of a request and returns JSON types; a ValueError names an invalid field."""
 
 import re
 from collections.abc import Callable

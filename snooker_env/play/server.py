@@ -3,8 +3,7 @@
 Every request is checked before anything is done: the token in its path, in constant time; ``Host``, so that
 no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
 path, length, type and form of the body. Requests are limited in head, body, time and number. Every error is
-answered by one JSON object.
-"""
+answered by one JSON object."""
 
 import hmac
 import json

@@ -1,8 +1,7 @@
 """How do persons, programs and agents share one game? Behind one lock; agents think on copies of it.
 
 A number, the revision, grows with every change; a request that waits for a change names the last revision it
-has seen. An agent's stroke is dropped if the game has changed in the meantime.
-"""
+has seen. An agent's stroke is dropped if the game has changed in the meantime."""
 
 import threading
 from collections.abc import Iterator, Mapping, Sequence

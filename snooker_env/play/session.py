@@ -2,9 +2,9 @@
 
 ``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. Each act is
 an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so a stroke that is undone
-and played again meets the same execution errors.
-"""
+and played again meets the same execution errors."""
 
+import re
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -384,10 +384,7 @@ class Session:
             alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}
             return self.tables.checked(state | alone, self._generator, either=True)
         except ValueError as error:
-            text = str(error)
-            for prefix in ("state.frame.", "state."):
-                text = text.replace(prefix, "")
-            raise ValueError(text) from None
+            raise ValueError(re.sub(r"state\.(frame\.)?", "", str(error))) from None
 
     def _write(self, frame: Frame, strokes: int) -> None:
         write_frame(frame, strokes, self.tables.game[0], self.tables.saved, 0)

@@ -102,10 +102,7 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; else the geometric player's.
-
-    All else is as by the kernels of ``tasks.ghost_ball``; the opponent of that name has these alone.
-    """
+    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; all else as by ``tasks.ghost_ball``."""
 
     name, training_shots = "ghost_ball", 0
 

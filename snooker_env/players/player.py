@@ -1,8 +1,7 @@
 """What is a player? A function of positions and a seed, bound once (``at``), then asked (``play``).
 
 It keeps nothing between two calls: the same position and seed give the same stroke, whether asked for one
-table or a thousand.
-"""
+table or a thousand."""
 
 import copy
 from collections.abc import Mapping, Sequence
@@ -153,8 +152,7 @@ class Strokes:
         ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n
         positions, on which the meaning of a place and a nomination depends. ValueError if the environment
         reads other actions, or a raised cue, a decision or a declaration that they do not hold; a place and a
-        nomination that they do not hold are left out.
-        """
+        nomination that they do not hold are left out."""
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
             what = f"action={options.action!r}, aim={options.aim!r}"
@@ -243,15 +241,13 @@ class Player(Protocol):
     def at(self, rules: RulesLike) -> "Player":
         """Return a new player bound to physics, table, fidelity, noise and, for frames, the game.
 
-        Strokes do not depend on how actions are read. ValueError if the player cannot play under the options.
-        """
+        Strokes do not depend on how actions are read. ValueError if the player cannot play under the options."""
         ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """Return what it does in n positions, of visits or of frames as the striker sees them.
 
-        ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once.
-        """
+        ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once."""
         ...
 
 

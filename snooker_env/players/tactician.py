@@ -62,8 +62,7 @@ class Tactician(BoundPlayer):
         Float64 (n,), in [0, 1]; 0 or 1 of a frame that is over. The worth of the position is added to the lead, and a
         law (``planning.worth.Chance``) says what that is worth while so many points are on the table. A cue ball in hand
         is not placed; after a foul or a lot that was won the best decision is taken. ValueError if the player is not
-        bound or has no law, or positions are of visits.
-        """
+        bound or has no law, or positions are of visits."""
         rules, at, search = self.options.rules, Positions.of(positions), self.search
         if not at.of_frames:
             raise refuse_what("positions", "those of visits", "must be of frames: nobody wins a visit")

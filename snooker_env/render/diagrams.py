@@ -3,8 +3,7 @@ likely each player of a frame was to win.
 
 ``plot``, ``compare``, ``fan`` and ``density`` draw with matplotlib on the axes that they are given, or on a
 new figure, and return the axes: baulk left and black right, y [m] to the right and x [m] down.
-``win_chance`` does so over the strokes of a frame, without a table.
-"""
+``win_chance`` does so over the strokes of a frame, without a table."""
 
 from .chance_diagram import win_chance
 from .density_diagram import bandwidth_of as bandwidth_of

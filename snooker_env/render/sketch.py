@@ -97,9 +97,7 @@ def flipped(points: Any) -> Floats:
 class Sketch:
     """Axes with a table on them; ``ax`` None makes a new figure, one with a sketch stays as it is."""
 
-    def __init__(
-        self, table: Table, R: float, region: Region, ax: "Axes | None" = None, *, strip: float = 0.0
-    ):
+    def __init__(self, table: Table, R: float, region: Region, ax: "Axes | None" = None, *, strip: float = 0):
         plt = pyplot()
         self.table: Table = table
         self.R: float = R
@@ -262,12 +260,10 @@ class Sketch:
             points = np.concatenate([np.linspace(a, b, n) for a, b, n in lines])
         self._busy.append(np.column_stack([points, np.full(len(points), size)]))
 
-    def text(
-        self, y: float, x: float, words: str, colour: Any = "text", size: float = 1.0, **more: Any
-    ) -> None:
+    def text(self, y: float, x: float, words: str, colour: Any = "text", size: float = 1, **how: Any) -> None:
         """Text at a place of the picture; ``size`` in units of the usual font."""
         style = {"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"}
-        self.ax.text(y, x, words, **style | more)
+        self.ax.text(y, x, words, **style | how)
 
     def rows(self, n: int) -> list[float]:
         """The x of n lines of text in the strip under the picture [m]."""

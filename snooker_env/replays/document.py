@@ -119,8 +119,7 @@ class Replay:
     def to_dict(self) -> dict[str, Any]:
         """The replay as JSON types, see docs/play/replay.md; treat what is inside as read-only.
 
-        ValueError if a shot has no path, or more than 22 balls.
-        """
+        ValueError if a shot has no path, or more than 22 balls."""
         if self._data is None:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
             physics = self.shots[0].physics
@@ -151,8 +150,7 @@ class Replay:
         """The pictures of the film, each uint8 (height, width, 3): treat them as read-only.
 
         ``fps`` and ``speed`` (over that of the strokes) in (0, 1000], else ValueError; ``size``: width and
-        height [pixels]. Without pygame ImportError.
-        """
+        height [pixels]. Without pygame ImportError."""
         from .film import frames, shown
 
         return frames(shown(self), fps, speed, size)
@@ -162,8 +160,7 @@ class Replay:
 
         ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
         ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF: 15, 640 x 360).
-        ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra.
-        """
+        ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra."""
         target = Path(path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)
         if suffix in (".mp4", ".gif"):

@@ -2,8 +2,7 @@
 
 ``python -m agents.export`` writes them from the models that ``train.py`` made. A file holds the NumPy arrays
 ``policy/LAYER/weight`` and ``policy/LAYER/bias`` of a ``StrokePolicy``, and ``value/LAYER/weight`` (members,
-out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading them runs no code.
-"""
+out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading them runs no code."""
 
 from collections.abc import Mapping, Sequence
 from functools import cache
