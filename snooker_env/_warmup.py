@@ -27,10 +27,6 @@ def warmup() -> None:
     Call it in the parent process before worker processes start; otherwise each worker compiles for itself.
     Progress is reported on stderr, unless everything comes from the cache or ``SNOOKER_ENV_QUIET=1`` is set.
 
-    Returns
-    -------
-    None
-
     Examples
     --------
     >>> import snooker_env as sn

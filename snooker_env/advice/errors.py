@@ -184,8 +184,7 @@ def direct(e: Floats) -> Floats:
 
 
 def guesses(e: Floats, widths: Floats) -> tuple[Floats, Any]:
-    """Log-likelihood (scales,) of errors (n,) at guessed pots, some of which were safeties: these lie evenly within
-    ``widths`` (n,); all in a professional's standard deviations. And which are likelier to be pots, bool (n,)."""
+    """Log-likelihood (scales,) of errors (n,) at guessed pots, some safeties, evenly within ``widths``; which are pots."""
     if not len(e):
         return np.zeros(len(SCALES)), np.zeros(0, np.bool_)
     pot = np.exp(-0.5 * (e / SCALES[:, None]) ** 2) / (SCALES[:, None] * sqrt(2.0 * pi))
@@ -256,8 +255,7 @@ def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Float
 
 
 def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
-    """The line that a stroke at a pot should have had, for the tip as it was played [rad], and how much more the direction
-    differs from it than it errs: the tip's own error moves the line, too, by the throw of its spin."""
+    """The line that a stroke at a pot should have had, for its tip [rad]; how much more the direction differs than it errs."""
     physics, base = practice.options.rules.physics, LEVELS[BASE]
     assert one.played is not None
     step = 0.02
@@ -266,7 +264,7 @@ def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
         for name, by in (("side", 0.0), ("side", 1.0), ("side", -1.0), ("top", 1.0), ("top", -1.0))
     ]
     aim, right, left, up, down = solved(moved, practice)[:, 3].tolist()
-    tip = base.offset_mm * 1e-3 / physics.R
+    tip = base.offset_mm * 1e-3 / physics.R  # its error moves the line, too, by the throw of its spin
     squirted = direction_of({"aim": 0.0, "side": step}, physics) / step
     parts = (
         np.radians(base.aim_deg),
@@ -278,8 +276,7 @@ def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
 
 
 def solved(strokes: list[Recorded], practice: Practice) -> Floats:
-    """The strokes (n, 5) that were meant: as recorded, or at the middle of the pocket with the speed and tip played, else
-    in the middle of the ball with the speed recorded, or ``POT_SPEED``."""
+    """The strokes (n, 5) that were meant: as recorded, else at the pocket's middle, as played or with the speed recorded."""
     out, most = np.zeros((len(strokes), 5)), practice.options.rules.physics.max_offset
     for k, one in enumerate(strokes):
         if one.intended is not None:

@@ -45,8 +45,7 @@ def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
 
 
 def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] | None:
-    """All figures of an agent's rows: "score", "iqm" (for points only), "profile" (with "at_least"), "by_run", "best", and means
-    of columns. A figure is {"value", "low", "high", "exact"}. None if the runs are not complete."""
+    """All figures of an agent's rows, as docs/benchmark_files.md says; None if the runs are not complete."""
     columns = matrix(rows)
     if columns is None:
         return None

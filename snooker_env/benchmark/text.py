@@ -1,8 +1,6 @@
 """How well does a program play that reads words, as a language model does? Visits on fixed tables, within budgets.
 
-It is asked as every program is (docs/play/protocol.md) and reads ``text``, the table in words. Unlike there, an
-answer that is no stroke is not the end: the state comes again with what was wrong as ``error``, ``TRIES`` times in all;
-after that the visit is forfeited, with the points made before. docs/benchmark.md holds the rules."""
+Rules: docs/benchmark.md. An answer that is no stroke is not the end here: the state comes again with an ``error``."""
 
 import json
 from collections.abc import Callable
@@ -24,10 +22,8 @@ from .statistics import Resamples, figure
 from .tasks import TASKS
 
 TASK = TASKS["SnookerBreak-v0"]  # its judged tables, its errors and its rules are those of the track
-VISITS, MOST = 50, 200
-"""Tables of a result, the first ones judged; and the most there are."""
-STROKES, TRIES = 10, 3
-"""Budgets: strokes of a visit, and answers for a stroke."""
+VISITS, MOST = 50, 200  # tables of a result, the first ones judged; and the most there are
+STROKES, TRIES = 10, 3  # budgets: strokes of a visit, and answers for a stroke
 COUNTS = ("points", "strokes", "pots", "fouls", "forfeited", "answers", "refused", "read", "written")
 """Of a visit: ``refused``: answers that were no stroke; ``read``, ``written``: characters of ``text`` and of answers."""
 

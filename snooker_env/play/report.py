@@ -1,7 +1,4 @@
-"""What is on the table, and what may be done? The game as JSON types for page and programs, and as text.
-
-The state of the game is that of its last act, and what may be done now. A stroke is sent with the tables
-before and after it, so that whoever shows it needs nothing else."""
+"""What is on the table, and what may be done? The game as JSON types for page and programs, and as text."""
 
 from typing import Any
 

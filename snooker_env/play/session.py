@@ -1,8 +1,7 @@
 """What is the game on the page? One frame in memory, with a list of acts to undo and redo.
 
-``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. Each act is
-an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so a stroke that is undone
-and played again meets the same execution errors."""
+Each stroke and decision is an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so a stroke
+that is undone and played again meets the same execution errors."""
 
 import re
 from dataclasses import dataclass, field, replace

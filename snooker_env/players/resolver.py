@@ -22,8 +22,7 @@ READERS = "snooker_env.models"  # entry points that read models, called with a p
 BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician", "stroke_value")
 RENAMED = {"lookahead": "search"}  # names of players of version 0.3 that are still understood
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
-PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
-"""How names of programs begin, and their player, which is loaded as an entry point is."""
+PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"  # loaded as an entry point
 _SEARCHING = re.compile(
     r"(best_pot|search|lookahead|tactician|stroke_value|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?"
 )

@@ -22,8 +22,7 @@ from ..tasks.options import Options, Rules
 from ..tasks.visit import Visits
 from .player import BoundPlayer, Strokes, placed
 
-OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")
-"""How a network sees and acts; with a miss rule it sees the layout that "replace" restores."""
+OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")  # with "miss" it sees more
 
 
 @runtime_checkable

@@ -20,8 +20,7 @@ from .sketch import CAPTIONS, Sketch, rgb
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-TOPS, SIDES = (-0.4, -0.2, 0.0, 0.2, 0.4), (-0.25, 0.0, 0.25)
-"""Default tip offsets of a fan, over R."""
+TOPS, SIDES = (-0.4, -0.2, 0.0, 0.2, 0.4), (-0.25, 0.0, 0.25)  # default tip offsets over R
 SHADES = ((58, 132, 240), (150, 205, 255), (255, 255, 255), (255, 190, 120), (240, 84, 46))
 """Colours of the tops from lowest to highest: screw is blue, follow is red."""
 _MARKS = ("<", "o", ">")  # of side: left, none, right
@@ -36,19 +35,6 @@ class Strokes(NamedTuple):
     sides: Sequence[float]
     elevation: float = 0.0
     aim: float | None = None
-
-
-class _Options(NamedTuple):
-    """The options of ``fan``."""
-
-    elevation: float = 0.0
-    aim: float | None = None
-    table: TableLike = "match"
-    physics: PhysicsLike = None
-    on_table: Flags | None = None
-    view: View = "shot"
-    labels: bool = False
-    title: str = ""
 
 
 class Option(NamedTuple):
@@ -69,7 +55,14 @@ def fan(
     speed: float = 2.0,
     tops: Sequence[float] = TOPS,
     sides: Sequence[float] = SIDES,
-    **options: Any,
+    elevation: float = 0.0,
+    aim: float | None = None,
+    table: TableLike = "match",
+    physics: PhysicsLike = None,
+    on_table: Flags | None = None,
+    view: View = "shot",
+    labels: bool = False,
+    title: str = "",
 ) -> "Axes":
     """Draw the cue ball's paths of one pot, played with every pair of a top and a side.
 
@@ -90,10 +83,12 @@ def fan(
         Speed that the cue gives [m/s].
     tops, sides : sequence of float
         Tip offsets over R, up and to the right; ValueError if one of the strokes cannot pot the ball.
-    **options
-        ``elevation``: of the cue [rad]. ``aim``: direction of every stroke [rad]; then no ball needs to be
-        potted. ``table``, ``physics``: as in ``snooker_env.simulate``. ``on_table``: bool (n,), False for
-        balls of an array to leave out. ``view`` ("shot" by default), ``labels``, ``title``: as in ``plot``.
+    elevation, aim : float
+        Of the cue [rad]; direction of every stroke [rad], if it is given: then no ball needs to be potted.
+    table, physics, on_table
+        As in ``snooker_env.simulate``; ``on_table``, bool (n,): False for balls of an array to leave out.
+    view, labels, title
+        As in ``plot``.
 
     Returns
     -------
@@ -107,7 +102,6 @@ def fan(
     >>> len([line for line in ax.get_lines() if line.get_gid() == "fan"])
     2
     """
-    elevation, aim, table, physics, on_table, view, labels, title = _Options(**options)
     table, physics = Table.of(table), Physics.of(physics)
     r, here = _places(position, on_table)
     drawn = fan_options(r, here, ball, pocket, Strokes(speed, tops, sides, elevation, aim), table, physics)

@@ -12,8 +12,7 @@ from .pygame_view import draw
 from .scene import Film, Scene
 from .table_picture import SIZE, Size, View, checked_size
 
-SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
-"""Speeds that the user can choose, in multiples of the caller's."""
+SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)  # that the user can choose, in multiples of the caller's
 KEYS = "space: pause    right: step    enter: skip    up/down: speed    L: letters    P: paths    esc: close"
 WAITING = "waiting for the next stroke"
 _HINT = 0.026  # part of the window's height for the line with its status
