@@ -76,8 +76,8 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
-def _film(args: argparse.Namespace) -> dict[str, Any]:
-    """The options of the film that is wanted, {} for a page."""
+def _checked(args: argparse.Namespace) -> dict[str, Any]:
+    """The options of the film that is wanted, {} for a page; ValueError for arguments that do not belong together."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     choice("out", suffix, SUFFIXES)
     film: dict[str, Any] = {}
@@ -92,6 +92,21 @@ def _film(args: argparse.Namespace) -> dict[str, Any]:
         film["size"] = int(width), int(height)
     if film and suffix not in FILMS:
         raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
+    if args.opponent and not args.frame:
+        allowed = "must be left out without --frame: nobody plays against a visit"
+        raise refuse("opponent", args.opponent, allowed)
+    if args.frame and args.at_least:
+        raise refuse("at_least", args.at_least, "must be left out with --frame")
+    integer("seed", args.seed, 0, 2**63)
+    integer("tries", args.tries, 1, 10**9)
+    if args.out:
+        if args.out.is_dir():
+            raise refuse("out", str(args.out), "must be a file, not a folder")
+        try:
+            args.out.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            words = f"must be a file that can be written ({error.strerror})"
+            raise refuse("out", str(args.out), words) from None
     return film
 
 
@@ -118,27 +133,6 @@ def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
             break
     assert longest is not None  # there is one try at least
     return longest, its, [label]
-
-
-def _checked(args: argparse.Namespace) -> dict[str, Any]:
-    """The options of the film that is wanted; ValueError for arguments that do not belong together."""
-    film = _film(args)
-    if args.opponent and not args.frame:
-        allowed = "must be left out without --frame: nobody plays against a visit"
-        raise refuse("opponent", args.opponent, allowed)
-    if args.frame and args.at_least:
-        raise refuse("at_least", args.at_least, "must be left out with --frame")
-    integer("seed", args.seed, 0, 2**63)
-    integer("tries", args.tries, 1, 10**9)
-    if args.out:
-        if args.out.is_dir():
-            raise refuse("out", str(args.out), "must be a file, not a folder")
-        try:
-            args.out.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            words = f"must be a file that can be written ({error.strerror})"
-            raise refuse("out", str(args.out), words) from None
-    return film
 
 
 def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:

@@ -178,7 +178,7 @@ def coach(
     ranked = sorted((name for name in parts if parts[name].value > 0.0), key=lambda name: -parts[name].value)
     most = ranked[0] if ranked else None
     drill = {"potting": _potting, "position": _position, "safety": _safety}
-    by_part = dict(zip(PARTS, points.T, strict=True))
+    by_part: dict[str, Floats] = {name: points[:, k] for k, name in enumerate(PARTS)}
     largest = (drawn.argmax(axis=1) == PARTS.index(most)) & (drawn.max(axis=1) > 0.0) if most else np.zeros(1)
     chances = found.pots.chances
     return Coaching(

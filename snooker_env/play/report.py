@@ -91,6 +91,7 @@ def report(service: Service) -> dict[str, Any]:
     act = session.acts[session.at - 1]
     before = session.acts[session.at - 2] if session.at > 1 else None
     state = table_after(act, service.labels, service.win_chances([act])[0], before)
+    waits = f"{seats.label(frame.striker)} {'waits: press Continue.' if service.paused else 'is thinking.'}"
     of_session = ("begun", "practice", "game", "best_of", "frames", "match_over", "cue")
     state |= {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
@@ -109,18 +110,10 @@ def report(service: Service) -> dict[str, Any]:
         "strokes": len(session.strokes),
         "undo": session.at > 1,
         "redo": session.at < len(session.acts),
-        "words": _agents_words(service) or state["words"],
+        "words": (service.trouble or waits) if service.agent_to_play() else state["words"],
     }
     places = {NAMES.index(name): (x, y) for name, (x, y) in state["positions"].items()}
     return state | {"text": table_text(places, on, lines, _facts(session, state, places))}
-
-
-def _agents_words(service: Service) -> str:
-    """What is said while it is an agent's turn, else ""."""
-    if not service.agent_to_play():
-        return ""
-    who = service.seats.label(service.session.frame.striker)
-    return service.trouble or (f"{who} waits: press Continue." if service.paused else f"{who} is thinking.")
 
 
 def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[float, float]]) -> list[str]:

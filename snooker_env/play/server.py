@@ -71,11 +71,8 @@ class TimedReader:
 
     def readline(self, limit: int = -1) -> bytes:
         """A line of the head; RefusedError if the head is too long."""
-        while b"\n" not in self._held:
-            if len(self._held) > self._left:
-                raise RefusedError(431, f"the head of a request must be at most {MOST_HEAD} bytes")
-            if not self._fill():
-                break
+        while b"\n" not in self._held and len(self._held) <= self._left and self._fill():
+            pass
         line, mark, self._held = self._held.partition(b"\n")
         line += mark
         self._left -= len(line)

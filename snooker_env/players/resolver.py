@@ -23,9 +23,8 @@ BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician"
 RENAMED = {"lookahead": "search"}  # names of players of version 0.3 that are still understood
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
 PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"  # loaded as an entry point
-_SEARCHING = re.compile(
-    r"(best_pot|search|lookahead|tactician|stroke_value|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?"
-)
+_KINDS = "best_pot|search|lookahead|tactician|stroke_value|planner(?:_value|_policy)?"
+_SEARCHING = re.compile(rf"({_KINDS})(?:_(\d+))?(?:@(.+))?")
 
 
 def players() -> list[str]:

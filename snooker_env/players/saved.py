@@ -15,8 +15,6 @@ from ..tasks.saved_models import SavedModel, by_train, entries, one_thread, outl
 from .model_options import say_assumed
 from .seen import SeenPlayer
 
-_VIEW = "must be a model trained on the observation of a visit or a frame, and nothing else"
-
 
 @dataclass(frozen=True)
 class FittingModel:
@@ -41,7 +39,8 @@ class FittingModel:
                         told = "give the options of its training, for example placement=True"
                         raise saved.refused(f"must be a model whose actions are {model.actions}: {told}")
                     return model
-        raise saved.refused(_VIEW)
+        view = "must be a model trained on the observation of a visit or a frame, and nothing else"
+        raise saved.refused(view)
 
     @property
     def actions(self) -> Any:

@@ -127,8 +127,8 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
     over = lamps(scene.table)
     images = []
     for ball, places in scene.ghosts.items():
-        for place in view(places):
-            images.append(_at(place, _body, tuple(COLOURS[ball].tolist()), round(radius, 2), _FADED))
+        faded = tuple(COLOURS[ball].tolist()), round(radius, 2), _FADED
+        images += [_at(place, _body, *faded) for place in view(places)]
     where = view(scene.positions)
     images += _shadows(scene.positions, scene.heights / scene.ball_radius, over, where, radius)
     for k in np.argsort(scene.heights, kind="stable").tolist():
@@ -201,7 +201,6 @@ def _rays(positions, over):
 
 def _mirrored(positions, over, where, radius):
     """Reflections: each lamp's where the normal is half-way between the lamp and the eye, straight above."""
-    images = []
     ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
     across, far = _rays(positions, ends.reshape(-1, 2))
     up = LAMP_HEIGHT / far + 1
@@ -210,10 +209,9 @@ def _mirrored(positions, over, where, radius):
     lean = lean.reshape(len(where), len(over), 3, 2)  # of each lamp its first end, middle and last end
     centre = where[:, None] + radius * lean[:, :, 1, ::-1]
     length = np.abs(lean[:, :, 2, 1] - lean[:, :, 0, 1]) * radius / 2
-    for places, lengths in zip(centre, length, strict=True):
-        for place, half in zip(places, lengths.tolist(), strict=True):
-            images.append(_at(place, _lamp, round(4 * max(half, 0.07 * radius)), round(radius, 1)))
-    return images
+    halves = [round(4 * max(half, 0.07 * radius)) for half in length.ravel().tolist()]
+    each = zip(centre.reshape(-1, 2), halves, strict=True)
+    return [_at(place, _lamp, half, round(radius, 1)) for place, half in each]
 
 
 @lru_cache(maxsize=2048)
