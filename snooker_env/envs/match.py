@@ -143,7 +143,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame; without a seed the random stream goes on.
 
-        ``options``: see Start and end, else ValueError; other keys are ignored: PettingZoo's tests pass some."""
+        ``options``: see the class, else ValueError; other keys are ignored: PettingZoo's tests pass some."""
         if isinstance(options, dict):
             options = {key: options[key] for key in ONE if key in options}
         options = known_options(options, ONE)
