@@ -25,7 +25,7 @@ _FIRST_LOG = 512
 
 
 def _balls(positions, velocities, spins, on_table, flies, batch, checked=False):
-    """New arrays of a shot, where balls fly with heights and rates of these; ``checked``: limits, else the engine says so."""
+    """New arrays of a shot, where balls fly with heights and their rates; ``checked``: limits, too."""
     lead = (-1,) if batch else ()
     farthest, fastest, most_spin = (FARTHEST, FASTEST, MOST_SPIN) if checked else (None, None, None)
     r = array("positions", positions, (*lead, -1, _columns(positions, flies)), farthest, "m")
@@ -137,7 +137,7 @@ def play(
     path: bool = True,
     doubt: bool = False,
 ) -> Shot:
-    """``simulate`` of ``_balls``, not counted nor changed; ``path``: for ``Shot.at``; ``doubt``: numbers are checked first."""
+    """``simulate`` of ``_balls``, not counted; ``path``: for ``Shot.at``; ``doubt``: numbers are checked."""
     capacity = min(_FIRST_LOG, max_events)
     while True:
         state = [a[None].copy() for a in balls]

@@ -77,7 +77,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _checked(args: argparse.Namespace) -> dict[str, Any]:
-    """The options of the film that is wanted, {} for a page; ValueError for arguments that do not belong together."""
+    """The options of the film that is wanted, {} for a page; ValueError for arguments that do not agree."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     choice("out", suffix, SUFFIXES)
     film: dict[str, Any] = {}

@@ -1,6 +1,6 @@
 """What costs a player most, and what should be practised? ``coach``: errors, pots made and expected, costs, drills.
 
-Costs are those of ``costs``, each with the 95 % interval of a bootstrap over strokes; they hold luck (docs/play/coach.md).
+Costs are those of ``costs``, with the 95 % interval of a bootstrap over strokes (docs/play/coach.md).
 """
 
 from collections.abc import Sequence
@@ -210,7 +210,7 @@ def _weights_of(bench: Practice, base: Practice) -> Floats:
 
 
 def _counted(chances: Floats, weights: Floats) -> Estimate | None:
-    """How many of the called pots (n, scales) are made: the mean over the weights, the normal interval of the count."""
+    """How many called pots (n, scales) are made: the mean over the weights, the normal interval of the count."""
     if not len(chances):
         return None
     counts, spread = chances.sum(axis=0), (chances * (1.0 - chances)).sum(axis=0)

@@ -23,7 +23,7 @@ SLOW, FAST, TIP = 0.8, 4.5, 0.35  # of these strokes: cue speeds [m/s], the larg
 
 
 def lost(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, Ints]:
-    """Points lost against a player with the errors of ``bench``, (n, 3) by ``PARTS``; how many strokes tell each, (3,)."""
+    """Points lost against the errors of ``bench``, (n, 3) by ``PARTS``; how many strokes tell each, (3,)."""
     parts, counts = np.zeros((len(strokes), 3)), np.zeros(3, np.int64)
     known = [k for k, one in enumerate(strokes) if one.after is not None]
     at = {k: one_position(strokes[k].position, strokes[k].scores) for k in known}
@@ -65,7 +65,7 @@ def values(bench: Practice, strokes: list[Recorded]) -> Floats:
 
 
 def best_at(bench: Practice, at: Positions, one: Recorded, seed: int) -> tuple[float, float, float] | None:
-    """The target's best stroke at the called pot: its chance, its worth if made and if missed; None if it is not direct."""
+    """The target's best stroke at the called pot: chance, worth if made and if missed; None if not direct."""
     direct = pots(at, 16)
     which = np.flatnonzero((direct.ball[0] == one.ball) & (direct.pocket[0] == one.pocket))
     if not len(which):

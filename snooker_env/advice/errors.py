@@ -184,7 +184,7 @@ def direct(e: Floats) -> Floats:
 
 
 def guesses(e: Floats, widths: Floats) -> tuple[Floats, Any]:
-    """Log-likelihood (scales,) of errors (n,) at guessed pots, some safeties, evenly within ``widths``; which are pots."""
+    """Log-likelihood (scales,) of guessed pots (n,), or safeties evenly within ``widths``; which are pots."""
     if not len(e):
         return np.zeros(len(SCALES)), np.zeros(0, np.bool_)
     pot = np.exp(-0.5 * (e / SCALES[:, None]) ** 2) / (SCALES[:, None] * sqrt(2.0 * pi))
@@ -221,7 +221,7 @@ def estimate(weights: Floats, unit: float, strokes: int) -> Estimate:
 
 
 def mean_of(e: Floats, unit: float) -> Estimate | None:
-    """The mean of errors (n,), its 95 % interval by Student's law (Hill's expansion of its quantile); None if n < 3."""
+    """The mean of errors (n,), its 95 % interval by Student's law (Hill's expansion); None if n < 3."""
     n = len(e)
     if n < 3:
         return None
@@ -232,7 +232,7 @@ def mean_of(e: Floats, unit: float) -> Estimate | None:
 
 
 def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats, Floats]:
-    """Errors of direction and speed (n,) in a professional's standard deviations, NaN if unknown; and ``CALLED`` in these."""
+    """Errors of direction and speed (n,) over a professional's, NaN if unknown; and ``CALLED`` over it."""
     directions, speeds, widths = np.full((3, len(strokes)), np.nan)
     base, physics = LEVELS[BASE], practice.options.rules.physics
     unit = np.radians(base.direction_deg(physics, speed=0.0))
@@ -255,7 +255,7 @@ def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Float
 
 
 def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
-    """The line that a stroke at a pot should have had, for its tip [rad]; how much more the direction differs than it errs."""
+    """The line that a stroke at a pot should have had [rad]; by how much more the direction differs than it errs."""
     physics, base = practice.options.rules.physics, LEVELS[BASE]
     assert one.played is not None
     step = 0.02
@@ -276,7 +276,7 @@ def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
 
 
 def solved(strokes: list[Recorded], practice: Practice) -> Floats:
-    """The strokes (n, 5) that were meant: as recorded, else at the pocket's middle, as played or with the speed recorded."""
+    """The strokes (n, 5) that were meant: as recorded, else at the middle of the pocket."""
     out, most = np.zeros((len(strokes), 5)), practice.options.rules.physics.max_offset
     for k, one in enumerate(strokes):
         if one.intended is not None:

@@ -131,7 +131,7 @@ def fair(practice: Practice, strokes: list[Tried], n: int, **how: int) -> list[S
 
 
 def _compared(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
-    """The best stroke of a frame, compared with the best of ``others`` of the other kind, a pot or none, or the next best."""
+    """The best stroke of a frame, compared with the best of the other kind, a pot or none, or the next best."""
     one = best[0]
     rivals = [other for other in others if (other.kind == "pot") != (one.kind == "pot")]
     if not (rivals or best[1:]):

@@ -98,7 +98,7 @@ def practice_of(noise: Any, options: Any = None, source: Any = None, *, of_frame
 
 
 def one_position(source: Any, scores: Any = None) -> Positions:
-    """The one position in a source as its next stroke is played, without points in its visit; a frame with ``scores``."""
+    """The one position in a source as its next stroke is played, without points; a frame with ``scores``."""
     tables = getattr(bare(source), "tables", None)
     if isinstance(tables, Tables) and not tables.begun.all():
         words = "must have a position: call reset() first"

@@ -193,7 +193,7 @@ class Suggestion(CueStroke):
 
     @property
     def figure(self) -> float:
-        """What it is ordered by: in a frame the chance to win; else a pot's points expected, or the share without a foul."""
+        """What it is ordered by: in a frame the chance to win, else a pot's points, or the share without a foul."""
         return self.win if self.win is not None else self.points if self.kind == "pot" else self.chance
 
     @property

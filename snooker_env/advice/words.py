@@ -77,7 +77,7 @@ def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics, wa
 
 
 def lie_words(x: float, y: float, ball: int, apart: float) -> str:
-    """Where a cue ball lies: behind a ``ball`` (-1: none) ``apart`` [m] away, in baulk or at an end; "" elsewhere."""
+    """Where a cue ball lies: behind a ``ball`` (or -1) ``apart`` [m] away, in baulk, at an end; "" elsewhere."""
     if ball >= 0:
         return f"{'tight ' if apart - 2.0 * BALL_RADIUS <= TIGHT else ''}behind the {ball_name(ball)}"
     if HALF_LENGTH - BALL_RADIUS - abs(y) <= AT_CUSHION:
@@ -105,7 +105,7 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does; ``how``: an escape's first cushion, or how full a ball is struck, "" if away from a touching one."""
+    """What a stroke does; ``how``: an escape's cushion, how full a ball is struck, "" away from a touching one."""
     if kind == "pot":
         how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_name(first)}"
         return f"{ball_name(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
@@ -132,7 +132,7 @@ def points_words(points: float) -> str:
 
 
 def figures_words(kind: str, chance: float, points: float, judged: bool = False) -> str:
-    """A pot's chance and points expected, else how often it is fair; ``judged``: its worth as a safety is said elsewhere."""
+    """A pot's chance and points, else how often it is fair; ``judged``: its worth as a safety is said elsewhere."""
     if kind == "pot":
         return f"pot {percent(chance)}, {points_words(points)} expected"
     unjudged = kind in ("contact", "escape") and not judged

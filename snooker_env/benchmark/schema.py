@@ -80,7 +80,7 @@ PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
 def faults_of_fields(
     record: Any, fields: Any = FIELDS, ranges: Any = (), version: int = VERSION
 ) -> list[str]:
-    """A line for each fault of a record; ``fields``, ``ranges``: as ``FIELDS``, beside ``RANGES``; ``version``: for messages."""
+    """A line for each fault of a record; ``fields``, ``ranges``: as ``FIELDS``, and beside ``RANGES``."""
     ranges = RANGES | dict(ranges)
     if not isinstance(record, dict):
         return ["the file must hold one JSON object"]

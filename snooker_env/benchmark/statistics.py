@@ -56,7 +56,7 @@ def _drawn(size, draws, n, seed):
 
 
 class Resamples:
-    """n bootstrap samples of matrices (runs, visits): as many visits, the same ones (pairs); other seeds, other runs."""
+    """n bootstrap samples of matrices (runs, visits): as many visits are the same ones; seeds draw runs."""
 
     def __init__(self, runs: int, visits: int, n: int = RESAMPLES, seed: int = 0):
         self._runs = _drawn(runs, max(1, runs - 1), n, (1, seed))

@@ -1,6 +1,6 @@
 """How well does a program play that reads words, as a language model does? Visits on fixed tables, within budgets.
 
-Rules: docs/benchmark.md. An answer that is no stroke is not the end here: the state comes again with an ``error``."""
+Rules: docs/benchmark.md. An answer that is no stroke is not the end: the state comes again with an ``error``."""
 
 import json
 from collections.abc import Callable

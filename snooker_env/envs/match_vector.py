@@ -20,7 +20,7 @@ from .vector import SnookerVectorEnv
 
 
 class MatchVectorEnv(SnookerVectorEnv):
-    """Many frames or matches of two players: ``match_env``, bit for bit, on n tables (docs/environment/two_players.md).
+    """Many frames or matches of two players: ``match_env``, bit for bit, on n tables; for self-play.
 
     A step is one turn on each table, of the player whose turn it is there: ``strikers``, whose observations are
     returned. Infos are as player 0 sees them; rewards float64 (n, 2), one for each player. A table whose match has ended

@@ -23,7 +23,7 @@ STROKE = ("speed", "aim", "side", "top", "elevation", "place", "nominate", "nois
 
 
 def written(session: Session) -> dict[str, Any]:
-    """The game from its last new table on: a result of ``Session.save`` with the first table, "acts" and "end"."""
+    """The game from its last new table on: a ``Session.save`` of the first table, "acts" and "end"."""
     acts = session.acts[: session.at]
     first = max(k for k, act in enumerate(acts) if not act.asked)
     begun = session.save() | {"state": acts[first].state}
@@ -31,7 +31,7 @@ def written(session: Session) -> dict[str, Any]:
 
 
 def opened(session: Session, saved: Any) -> None:
-    """Restore a result of ``written`` or ``Session.save``. ValueError names what is invalid: then nothing has changed."""
+    """Restore a result of ``written`` or ``Session.save``; ValueError if it is invalid, nothing has changed."""
     if not isinstance(saved, dict) or "acts" not in saved:
         session.load(saved)
         return

@@ -111,7 +111,7 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
 
 
 def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:
-    """At most n strokes of the agent, the best of each ``_idea``, in words, data and paths; whose they are, their order."""
+    """At most n strokes of the agent, the best of each ``_idea``, in words, data and paths; their order."""
     choice("agent", agent, seats.agents)
     how: Any = {**errors, "n": n + RIVALS * (n - 1), "options": {"cue": session.cue}}
     at = session.planned()
@@ -132,7 +132,7 @@ def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors:
 
 
 def _idea(one: Suggestion) -> tuple[Any, ...]:
-    """What two ways of one stroke share: ball and pocket of a pot; else its kind, red or a colour, the cue ball's third."""
+    """What ways of one stroke share: ball and pocket of a pot; else kind, red or colour, third of the table."""
     if one.kind == "pot":
         return one.ball, one.pocket
     third = None if one.stops is None else int(np.digitize(one.stops[1], (BAULK_Y, -BAULK_Y)))

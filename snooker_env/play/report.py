@@ -46,7 +46,7 @@ def scene(service: Service) -> dict[str, Any]:
 def table_after(
     act: Act, labels: tuple[str, str], win_chance: float | None, before: Act | None = None
 ) -> dict[str, Any]:
-    """The table and the scoreboard after an act; ``win_chance``: of seat 0, None for unknown; ``before``: the act before."""
+    """The table and the scoreboard after an act; ``win_chance``: of seat 0; ``before``: the act before it."""
     state, frame = act.state, Frame.from_dict(act.state["frame"])
     present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"

@@ -159,7 +159,7 @@ class Service:
 
     @property
     def judge(self) -> Judge | None:
-        """Who says how likely each seat wins, with the larger errors of both, at least a professional's; None for nobody."""
+        """Who says how likely each seat wins, with the larger errors, at least a professional's; or None."""
         if not self._judged or self.session.practice:
             return None
         level = max(("professional", *self.session.noise), key=lambda name: LEVELS[name].direction_deg())

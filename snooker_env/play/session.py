@@ -51,7 +51,7 @@ class Act:
 
 
 class Session:
-    """A frame to play, set up, undo, save and load; ``flight``: balls fly, and the cue can be raised to 70 degrees."""
+    """A frame to play, set up, undo, save and load; ``flight``: balls fly, the cue is raised to 70 degrees."""
 
     noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
@@ -177,7 +177,7 @@ class Session:
         game: Any = None,
         best_of: int = 1,
     ) -> None:
-        """Begin a match of an odd number of frames; ``layout`` and ``game``: those of before unless they are given."""
+        """Begin a match of an odd number of frames; ``layout`` and ``game`` stay unless they are given."""
         if integer("best_of", best_of, 1, MOST_FRAMES) % 2 == 0:
             raise refuse("best_of", best_of, "must be odd, so that one player wins")
         self._deal(self._but(layout, game), seed, breaker)

@@ -29,7 +29,7 @@ class Decided(NamedTuple):
 class FramePlayer(BoundPlayer):
     """Plays frames by what its ``search`` says; where that finds no stroke, that of ``_plain``."""
 
-    search: Any = None  # a ``FrameSearch`` or ``FrameStrokes`` where it is bound: ``rules``, ``worth``, ``chance``, ``rank``
+    search: Any = None  # a ``FrameSearch`` or ``FrameStrokes`` where it is bound
     _plain: Any = None
 
     def decided(self, at: Positions, seeds: Any) -> Decided:
@@ -73,7 +73,7 @@ class FramePlayer(BoundPlayer):
         return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)
 
     def _considered(self, at: Positions, seeds: Any) -> list[Ranked]:
-        """The strokes that met noise samples, else all, at most ``RANKED``, best first, with chances to win, or points."""
+        """The strokes that met noise samples, else all, at most ``RANKED``, best first, with chances or points."""
         search, (strokes, tried, _) = self.search, self.decided(at, seeds)
         considered = []
         for k, one in enumerate(tried):

@@ -85,7 +85,7 @@ class SavedNetwork:
 
 
 def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = "player") -> SeenPlayer:
-    """The player of a model's ``.zip``, with ``options`` of ``model_options``; ValueError for those of ``train.py``."""
+    """The player of a model's ``.zip``, with ``options``; ValueError for those of ``train.py``."""
     try:
         ours = path.is_dir() or by_train(entries(path))
     except Exception as error:

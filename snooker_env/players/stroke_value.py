@@ -21,7 +21,7 @@ from .weights import StrokeLayers, learned_at, learned_strokes, learned_worth, l
 
 
 class StrokeValuePlayer(FramePlayer):
-    """The best stroke of a ``StrokeValue``, in frames of a ``FrameStrokes``; ``learned``: by default the package's layers."""
+    """The best stroke of a ``StrokeValue``, in frames of a ``FrameStrokes``, with the layers ``learned``."""
 
     name = "stroke_value"
 

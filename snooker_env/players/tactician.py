@@ -24,7 +24,7 @@ from .weights import learned_at, learned_worth, level_for
 
 
 class Tactician(FramePlayer):
-    """The best stroke of a ``FrameSearch``, in visits of the planner; ``learned``: layers of a ``LearnedWorth``, ``Chance``."""
+    """The best stroke of a ``FrameSearch``, in visits of the planner; ``learned``: layers and a ``Chance``."""
 
     kind = "tactician"
 

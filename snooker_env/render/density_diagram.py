@@ -28,7 +28,7 @@ def bandwidth_of(points: Floats) -> float:
 
 
 def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float) -> tuple[Floats, Floats]:
-    """A density estimate (nx, ny) [1/m^2] with Gaussian kernels from corner ``low`` to ``high``, and its cells' size [m]."""
+    """A density (nx, ny) [1/m^2] with Gaussian kernels from corner ``low`` to ``high``, and its cells' size [m]."""
     # tails beyond the corners are folded back: the sum is the share of points inside
     n = np.maximum(1, np.round((high - low) / CELL).astype(int))
     size = (high - low) / n

@@ -226,7 +226,7 @@ def _lamp(half, radius, fx, fy):
 
 
 def _shadows(positions, heights, over, where, radius):
-    """A soft shadow from each lamp, fainter for a lower light, and one where the ball touches; ``heights`` in radii."""
+    """A soft shadow from each lamp, and one where the ball touches; ``heights`` in radii."""
     images = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3

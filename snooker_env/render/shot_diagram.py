@@ -137,7 +137,7 @@ def region_of(view: Any, points: Floats, table: Table) -> Region:
 
 
 def places_of(position: Any, least: int = 0) -> tuple[Floats, Any]:
-    """Places (n, 2) [m] and flags (n,) of the balls of a ``Position`` or of an array, ``least`` to ``N_BALLS`` of them."""
+    """Places (n, 2) [m] and flags (n,) of a ``Position`` or of an array of ``least`` to ``N_BALLS``."""
     if hasattr(position, "arrays"):
         return position.arrays()[:2]
     r = array("position", position, (-1, 2))

@@ -140,7 +140,7 @@ class Tip(NamedTuple):
 
 
 def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
-    """The strike for a velocity and spin: ``physics.cue.struck`` solved; level, if no side or slip tells its elevation."""
+    """The strike for a velocity and spin: ``physics.cue.struck`` solved; level, if no side or slip is left."""
     v, w = np.asarray(velocity, np.float64), np.asarray(spin, np.float64)
     slip = v + physics.R * np.array([-w[1], w[0]])
     size = float(np.hypot(*slip))
