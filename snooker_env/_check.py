@@ -107,10 +107,7 @@ _FLOAT = np.dtype(np.float64)
 def array(
     field: str, value: Any, shape: tuple[int, ...], most: float | None = np.inf, unit: str = ""
 ) -> Floats:
-    """A new finite C-ordered float64 array of this shape (-1: any length), all within ``most`` [unit].
-
-    ``most`` None: the numbers are checked elsewhere.
-    """
+    """A new float64 array of this shape (-1: any), C-ordered, finite within ``most`` [unit]; None: not checked."""
     if type(value) is np.ndarray and value.dtype is _FLOAT:
         a = value.copy()
     else:

@@ -7,16 +7,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")
-"""Names of the temporary files; a process that was killed leaves one behind."""
+UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")  # temporary files; one that was killed leaves one
 
 
 def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], object]) -> None:
     """Write a file so that ``path`` holds the old or the new content, complete, whenever the machine stops.
 
     ``content``: bytes, a text, or a function that writes the file at a path with the same suffix. On failure
-    nothing is left, and the OSError names ``path``. A device or a pipe is written directly.
-    """
+    nothing is left, and the OSError names ``path``. A device or a pipe is written directly."""
     target, data = Path(os.path.realpath(path)), content.encode() if isinstance(content, str) else content
     write = data if callable(data) else lambda file: file.write_bytes(data)
     if target.exists() and not target.is_file():
@@ -37,8 +35,8 @@ def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], objec
         raise
 
 
-def read_json(path: str | Path) -> Any:
-    """What a file of JSON in UTF-8 holds; ValueError for NaN or Infinity, too, and for a key twice in one object."""
+def strict_json(text: str) -> Any:
+    """What a text of JSON holds; ValueError for NaN or Infinity, too, and for a key twice in one object."""
 
     def no_number(name: str) -> Any:
         raise ValueError(f"{name} is no number of JSON")
@@ -51,8 +49,12 @@ def read_json(path: str | Path) -> Any:
             made[name] = value
         return made
 
+    return json.loads(text, parse_constant=no_number, object_pairs_hook=once)
+
+
+def read_json(path: str | Path) -> Any:
+    """``strict_json`` of a file in UTF-8; the ValueError names it."""
     try:
-        text = Path(path).read_text(encoding="utf-8")
-        return json.loads(text, parse_constant=no_number, object_pairs_hook=once)
+        return strict_json(Path(path).read_text(encoding="utf-8"))
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: must be JSON ({error})") from None

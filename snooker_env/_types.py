@@ -32,8 +32,7 @@ Place: TypeAlias = tuple[float, float]  # x and y [m]
 # Names.
 Fidelity: TypeAlias = Literal["fast", "standard", "reference"] | str
 """How impacts are solved. Any str is allowed: ``"euler:N"`` is the paper's own scheme with N steps."""
-Solver: TypeAlias = tuple[int, int]
-"""A fidelity as the kernels read it: a code, and the N of ``"euler:N"`` or 0."""
+Solver: TypeAlias = tuple[int, int]  # a fidelity as the kernels read it: a code, and the N of "euler:N" or 0
 PhysicsName: TypeAlias = Literal["paper", "match", "carom"]
 TableName: TypeAlias = Literal["match", "tight", "uk8", "pool9", "carom"]
 NoiseName: TypeAlias = Literal["none", "professional", "amateur", "club", "robot", "olympiad"]
@@ -43,8 +42,7 @@ MissRule: TypeAlias = Literal["off", "clear_path", "attempt"]
 CueKind: TypeAlias = Literal["free", "real"]
 
 # These depend on an environment's options, so that no annotation can say more.
-Action: TypeAlias = Any
-"""For a Box space an array or sequence of numbers (k,), for ``action="discrete"`` an int."""
+Action: TypeAlias = Any  # for a Box an array or sequence of numbers (k,), for ``action="discrete"`` an int
 Observation: TypeAlias = Any
 """float32 (k,) with ``observation="flat"``; with "balls" a dict of float32 arrays, "balls" (22, 5) and
 "state" (k,); with "masked" a dict of "observations", float32 (k,), and "action_mask", int8 (choices,)."""

@@ -1,6 +1,6 @@
 """How does one compile everything in advance? ``warmup`` calls each kernel of this package once."""
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -11,23 +11,14 @@ from .simulation import simulate
 
 
 class _Still:
-    """Sees observations and plays one stroke: for the kernels of players as opponents."""
+    """Sees observations and plays one stroke; with ``options`` of a frame it says something beside it."""
 
-    options: ClassVar[dict[str, Any]] = {}
+    def __init__(self, **options: Any):
+        self.options = options
 
     def act(self, observations: Any, masks: Any, seeds: Any) -> list[list[float]]:
         """The same stroke for each observation."""
-        return [[0.0] * 4] * len(seeds)
-
-
-class _Saying:
-    """Sees frames, and says something beside its stroke."""
-
-    options: ClassVar[dict[str, Any]] = {"task": "frame", "decision": True}
-
-    def act(self, observations: Any, masks: Any, seeds: Any) -> list[list[float]]:
-        """The same for each observation."""
-        return [[0.0] * 5] * len(seeds)
+        return [[0.0] * (4 + ("decision" in self.options))] * len(seeds)
 
 
 def warmup() -> None:
@@ -35,10 +26,6 @@ def warmup() -> None:
 
     Call it in the parent process before worker processes start; otherwise each worker compiles for itself.
     Progress is reported on stderr, unless everything comes from the cache or ``SNOOKER_ENV_QUIET=1`` is set.
-
-    Returns
-    -------
-    None
 
     Examples
     --------
@@ -112,7 +99,7 @@ def warmup() -> None:
         prospects_of(at, 1e-3)
         both = Positions.of(match)
         player("ghost_ball").at({"task": "frame"}).play(both, [0])
-        player(_Saying()).at({"task": "frame"}).play(both, [0])
+        player(_Still(task="frame", decision=True)).at({"task": "frame"}).play(both, [0])
         for name in ("planner_30", "planner_policy", "stroke_value"):
             player(name).at({"noise": "club"}).play(at, [0])
         for name in ("tactician_30", "stroke_value"):

@@ -289,8 +289,7 @@ def _jaw(pocket, start, onward, outward):
 
 
 def _bed(length, width, corner, middle, **ball):
-    ball = MappingProxyType(ball)
-    return Bed(length=length, width=width, corner=corner, middle=middle, ball=ball)
+    return Bed(length=length, width=width, corner=corner, middle=middle, ball=MappingProxyType(ball))
 
 
 _INCH = 0.0254

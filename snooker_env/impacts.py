@@ -1,5 +1,7 @@
 """How does one compute a single impact, or a strike? Checked input in, plain arrays out."""
 
+from typing import Any
+
 import numpy as np
 
 from ._check import array, refuse
@@ -16,9 +18,8 @@ from .shot import SimulationError
 
 @entry(what="the impact of two balls", uses=(contact.collide_balls,))
 def _collide_balls(v1, w1, v2, w2, normal, phys, fidelity, n_steps):
-    return contact.collide_balls(
-        v1, w1, v2, w2, normal, Law(phys, fidelity, n_steps), phys[P_E_B], np.empty(WORK)
-    )
+    law = Law(phys, fidelity, n_steps)
+    return contact.collide_balls(v1, w1, v2, w2, normal, law, phys[P_E_B], np.empty(WORK))
 
 
 @entry(what="the impact with a cushion", uses=(contact.collide_cushion,))
@@ -37,12 +38,20 @@ def _unit_normal(normal):
     return nx / size, ny / size
 
 
-def _velocity(name, value):
-    return tuple(array(name, value, (3,), FASTEST_IMPACT, "m/s").tolist())
+def _vector(name, value):
+    most, unit = (FASTEST_IMPACT, "m/s") if name.startswith("v") else (MOST_SPIN_IMPACT, "rad/s")
+    return tuple(array(name, value, (3,), most, unit).tolist())
 
 
-def _spin(name, value):
-    return tuple(array(name, value, (3,), MOST_SPIN_IMPACT, "rad/s").tolist())
+def _solved(kernel, what, before, normal, physics, fidelity) -> Any:
+    """Velocities and spins after an impact, of those ``before`` by name; SimulationError if it does not end."""
+    physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
+    args = tuple(_vector(name, value) for name, value in before.items())
+    *after, solved = kernel(*args, _unit_normal(normal), physics.packed_for(solver), *solver)
+    if not solved:
+        words = f"did not end at fidelity {fidelity!r}; try another fidelity"
+        raise SimulationError(f"the {what} of {', '.join(before)} = {args} {words}")
+    return tuple(map(np.array, after))
 
 
 def collide_balls(
@@ -82,16 +91,8 @@ def collide_balls(
     >>> v1.round(3).tolist(), v2.round(3).tolist()
     ([0.055, 0.0, 0.0], [0.945, 0.0, 0.0])
     """
-    physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
-    args = _velocity("v1", v1), _spin("w1", w1), _velocity("v2", v2), _spin("w2", w2)
-    v1_after, w1_after, v2_after, w2_after, solved = _collide_balls(
-        *args, _unit_normal(normal), physics.packed_for(solver), *solver
-    )
-    if not solved:
-        raise SimulationError(
-            f"the impact of v1, w1, v2, w2 = {args} did not end at fidelity {fidelity!r}; try another fidelity"
-        )
-    return np.array(v1_after), np.array(w1_after), np.array(v2_after), np.array(w2_after)
+    before = {"v1": v1, "w1": w1, "v2": v2, "w2": w2}
+    return _solved(_collide_balls, "impact", before, normal, physics, fidelity)
 
 
 def collide_cushion(
@@ -124,16 +125,7 @@ def collide_cushion(
     >>> bool(v[0] < 0)
     True
     """
-    physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
-    args = _velocity("v", v), _spin("w", w)
-    v_after, w_after, solved = _collide_cushion(
-        *args, _unit_normal(normal), physics.packed_for(solver), *solver
-    )
-    if not solved:
-        raise SimulationError(
-            f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity"
-        )
-    return np.array(v_after), np.array(w_after)
+    return _solved(_collide_cushion, "cushion impact", {"v": v, "w": w}, normal, physics, fidelity)
 
 
 def strike(

@@ -4,8 +4,7 @@
 own. ``kernel`` compiles an inner kernel, which only kernels can call. Both use strict IEEE arithmetic and
 release the GIL. In a mask of balls, bit i stands for ball i. The functions ``balls_on``, ``bits``,
 ``clear_segment``, ``executed``, ``find_pots``, ``line_of`` and ``window`` are inner kernels: call them from
-an ``entry`` of your own.
-"""
+an ``entry`` of your own."""
 
 from ._jit import entry, kernel
 from .game.balls import balls_on_kernel as balls_on

@@ -33,7 +33,7 @@ def match_env(
     Returns
     -------
     snooker_env.envs.match.MatchEnv
-        The environment; its docstring is the specification. ImportError without PettingZoo.
+        The environment. ImportError without PettingZoo.
 
     Examples
     --------

@@ -5,7 +5,6 @@ import sys
 import threading
 import time
 from collections import deque
-from types import TracebackType
 from typing import Any, TextIO
 
 __all__ = ["Progress"]
@@ -74,9 +73,7 @@ class Progress:
             self._speaker.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
         if self._to is None:
             return
         self._ended.set()

@@ -1,8 +1,7 @@
 """How does Stable-Baselines3 train on many tables? ``SnookerVecEnv``, on the native vector environment.
 
 from snooker_env.sb3 import SnookerVecEnv
-MaskablePPO("MlpPolicy", SnookerVecEnv(64, action="discrete")).learn(100_000)
-"""
+MaskablePPO("MlpPolicy", SnookerVecEnv(64, action="discrete")).learn(100_000)"""
 
 import time
 
@@ -84,8 +83,7 @@ class SnookerVecEnv(VecEnv):
         """Begin new episodes on all tables, with the seeds and options set before; returns the observations.
 
         ``set_options([{"state": ...}, ...])``, or "position" or "breaker": one for each table. Of a state's
-        random stream and a seed, the seed holds. ValueError if the options differ in kind, or are invalid.
-        """
+        random stream and a seed, the seed holds. ValueError if the options differ in kind, or are invalid."""
         options = None
         if any(self._options):
             key = next((key for key in ("position", "breaker") if key in self._options[0]), "state")

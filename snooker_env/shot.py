@@ -82,8 +82,7 @@ class Shot:
         at its time. From ``duration`` on all is at rest (with ``spin_decel`` 0 a spin about the vertical
         stays). A potted ball lies in its place of ``positions`` from its pot on, a ball off the table where
         it was put; one in the air has its mean velocity from event to event. ValueError if a time is negative
-        or not finite, or the shot has no path.
-        """
+        or not finite, or the shot has no path."""
         single = np.ndim(np.asarray(t)) == 0
         times = array("t", [t] if single else t, (-1,))
         if times.size and times.min() < 0:
@@ -103,8 +102,7 @@ class Shot:
         """Draw the shot with matplotlib, on the axes ``ax`` or a new figure; returns the axes.
 
         ``options``: see ``snooker_env.render.diagrams.plot``. ValueError for a wrong option or a shot without
-        a path, ImportError without matplotlib.
-        """
+        a path, ImportError without matplotlib."""
         from .render.diagrams import plot
 
         return plot(self, ax, **options)

@@ -3,8 +3,7 @@
 import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,14 +20,12 @@ from .shot import EVENT, Shot, ShotBatch, SimulationError
 from .shot import check_path as check_path  # for the layers above
 
 MAX_EVENTS = 100_000
-MAX_BALLS = 4096
-"""The most balls of one shot: the times of all pairs are stored (134 MB)."""
+MAX_BALLS = 4096  # of one shot: the times of all pairs are stored (134 MB)
 _FIRST_LOG = 512
 
 
 def _balls(positions, velocities, spins, on_table, flies, batch, checked=False):
-    """The arrays of a shot, new: positions, velocities, spins, on_table; where balls fly also their heights and the rates of
-    these. ``checked``: within the limits, too, else the engine says so."""
+    """New arrays of a shot, where balls fly with heights and their rates; ``checked``: limits, too."""
     lead = (-1,) if batch else ()
     farthest, fastest, most_spin = (FARTHEST, FASTEST, MOST_SPIN) if checked else (None, None, None)
     r = array("positions", positions, (*lead, -1, _columns(positions, flies)), farthest, "m")
@@ -140,11 +137,7 @@ def play(
     path: bool = True,
     doubt: bool = False,
 ) -> Shot:
-    """``simulate`` of a layout, not counted; ``balls``, its arrays (see ``_balls``), are not changed.
-
-    ``fidelity``: as of ``parse_fidelity``. ``path`` False leaves out the paths that ``Shot.at`` needs. ``doubt``: the
-    numbers are checked first.
-    """
+    """``simulate`` of ``_balls``, not counted; ``path``: for ``Shot.at``; ``doubt``: numbers are checked."""
     capacity = min(_FIRST_LOG, max_events)
     while True:
         state = [a[None].copy() for a in balls]
@@ -160,9 +153,8 @@ def play(
         if out.status[0] == UNSOUND:
             _refuse(balls, physics, table)
         raise _failure(out, 0, events)
-    return Shot(
-        state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics, table
-    )
+    ends = state[0][0], out.potted[0], state[3][0], float(out.duration[0])
+    return Shot(*ends, events, segments, physics, table)
 
 
 def simulate_batch(
@@ -185,11 +177,7 @@ def simulate_batch(
     positions, velocities, spins : array_like, float (b, n, 2), (b, n, 2) and (b, n, 3)
         Centres of the balls [m], velocities [m/s] and angular velocities [rad/s]; these and the following as in
         ``simulate``.
-    table : str, Table or None
-        The same for all shots.
-    physics : None, str, dict or Physics
-        The same for all shots.
-    fidelity : str
+    table, physics, fidelity
         The same for all shots.
     on_table : array_like, bool (b, n), optional
         False for the balls to leave out; None: all are on the table.
@@ -242,8 +230,7 @@ def simulate_batch(
     return ShotBatch(r, out.potted, here, out.duration, out.n_events, logs)
 
 
-@dataclass
-class _Run:
+class _Run(NamedTuple):
     potted: np.ndarray
     status: np.ndarray
     n_events: np.ndarray
@@ -272,9 +259,8 @@ _NO_KICKS = np.empty(0)
 
 
 def _take_log(log_size, path_size):
-    """``log_space`` of one shot: this thread's last one if the size fits, as making it takes longer than most
-    shots. It is taken out until results are copied: a shot inside a shot (a signal, a trace function) makes
-    its own."""
+    """``log_space`` of one shot: this thread's last one if the size fits, as making it takes longer than most shots. It is
+    taken out until results are copied: a shot inside a shot (a signal, a trace function) makes its own."""
     log = _KEPT.__dict__.pop("log", None)
     if log is None or (log.time.shape[1], log.segments.shape[1]) != (log_size, path_size):
         return log_space(1, log_size, path_size)

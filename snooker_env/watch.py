@@ -1,12 +1,8 @@
 """How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
 
-The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the
-replay is written to a temporary file and opened in the browser. The cue is real. Visits are played on held-out tables, the
-seeds one after the other; --at-least takes the first of --tries visits with so many points, else the longest. The
-same seed gives the same visit as ``benchmark.play_visits`` plays on that table. With --frame: a whole frame, against
---opponent, with the miss rule "clear_path"; --agent is then ``tactician`` unless it is named. The
-replay shows how likely each player was to win, by the ``tactician``.
-"""
+Without --out the replay, an HTML file, is opened in the browser. Visits are played with a real cue on held-out tables,
+the seeds one after the other, as ``benchmark.play_visits`` does; --at-least takes the first of --tries visits with so many
+points, else the longest. With --frame: a frame against --opponent, with the miss rule "clear_path"."""
 
 import argparse
 import os
@@ -31,10 +27,8 @@ from .replays import Replay, replay
 NAME = "snooker_env.watch"
 FILMS = (".mp4", ".gif")
 SUFFIXES = (".html", ".json", *FILMS)
-USUAL, TACTICIAN = "planner", "tactician"
-"""Who plays a visit and a frame unless someone is named."""
-FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}
-"""Options of a frame that is watched."""
+USUAL, TACTICIAN = "planner", "tactician"  # who plays a visit and a frame unless someone is named
+FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}  # options of a frame that is watched
 
 
 def episode(who: Player, seed: int, **options: Any) -> SnookerEnv:
@@ -68,8 +62,7 @@ def parser() -> argparse.ArgumentParser:
     add("--agent", help=f"{what} [{USUAL}; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
     add("--opponent", help="its player [the agent itself]")
-    what = "break.html, .json, .mp4 or .gif; left out: opened in the browser"
-    add("--out", type=Path, help=what)
+    add("--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser")
     add("--layout", default="held_out", help="of the tables, as for Snooker-v0")
     add("--noise", default="professional", help="execution noise")
     add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
@@ -83,8 +76,8 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
-def _film(args: argparse.Namespace) -> dict[str, Any]:
-    """The options of the film that is wanted, {} for a page."""
+def _checked(args: argparse.Namespace) -> dict[str, Any]:
+    """The options of the film that is wanted, {} for a page; ValueError for arguments that do not agree."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     choice("out", suffix, SUFFIXES)
     film: dict[str, Any] = {}
@@ -99,6 +92,21 @@ def _film(args: argparse.Namespace) -> dict[str, Any]:
         film["size"] = int(width), int(height)
     if film and suffix not in FILMS:
         raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
+    if args.opponent and not args.frame:
+        allowed = "must be left out without --frame: nobody plays against a visit"
+        raise refuse("opponent", args.opponent, allowed)
+    if args.frame and args.at_least:
+        raise refuse("at_least", args.at_least, "must be left out with --frame")
+    integer("seed", args.seed, 0, 2**63)
+    integer("tries", args.tries, 1, 10**9)
+    if args.out:
+        if args.out.is_dir():
+            raise refuse("out", str(args.out), "must be a file, not a folder")
+        try:
+            args.out.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            words = f"must be a file that can be written ({error.strerror})"
+            raise refuse("out", str(args.out), words) from None
     return film
 
 
@@ -125,27 +133,6 @@ def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
             break
     assert longest is not None  # there is one try at least
     return longest, its, [label]
-
-
-def _checked(args: argparse.Namespace) -> dict[str, Any]:
-    """The options of the film that is wanted; ValueError for arguments that do not belong together."""
-    film = _film(args)
-    if args.opponent and not args.frame:
-        allowed = "must be left out without --frame: nobody plays against a visit"
-        raise refuse("opponent", args.opponent, allowed)
-    if args.frame and args.at_least:
-        raise refuse("at_least", args.at_least, "must be left out with --frame")
-    integer("seed", args.seed, 0, 2**63)
-    integer("tries", args.tries, 1, 10**9)
-    if args.out:
-        if args.out.is_dir():
-            raise refuse("out", str(args.out), "must be a file, not a folder")
-        try:
-            args.out.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            words = f"must be a file that can be written ({error.strerror})"
-            raise refuse("out", str(args.out), words) from None
-    return film
 
 
 def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
@@ -187,9 +174,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except OSError as error:
-        print(
-            f"{NAME}: {error.filename or 'the output'} cannot be written: {error.strerror}", file=sys.stderr
-        )
+        what = error.filename or "the output"
+        print(f"{NAME}: {what} cannot be written: {error.strerror}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print(f"{NAME}: interrupted", file=sys.stderr)

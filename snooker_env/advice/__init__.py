@@ -1,8 +1,7 @@
 """Advice: the strokes that a player would play in a position, and their outcomes, as data and in words.
 
 In words the ``snooker_env.POCKETS`` are called green pocket, yellow pocket, right middle, top right, top left
-and left middle. Left and right are as seen from the baulk end: right is the yellow side (+x).
-"""
+and left middle. Left and right are as seen from the baulk end: right is the yellow side (+x)."""
 
 from .ask import advise
 from .coach import Coaching, coach

@@ -21,10 +21,15 @@ from .recorded import read_strokes
 def main(argv: Sequence[str] | None = None) -> int:
     """Print advice for a position; with the word "coach" first, what recorded strokes say of a player."""
     argv = sys.argv[1:] if argv is None else argv
-    return _coach(argv[1:]) if argv[:1] == ["coach"] else _advice(argv)
+    try:
+        _coach(argv[1:]) if argv[:1] == ["coach"] else _advice(argv)
+    except (ValueError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    return 0
 
 
-def _coach(argv: Sequence[str]) -> int:
+def _coach(argv: Sequence[str]) -> None:
     about = "A player's errors, pots made and expected, what costs most, and drills."
     parser = argparse.ArgumentParser("python -m snooker_env.advice coach", description=about)
     parser.add_argument("file", metavar="FILE", help="recorded strokes (JSON), or a replay (JSON or page)")
@@ -35,17 +40,12 @@ def _coach(argv: Sequence[str]) -> int:
     parser.add_argument("--seed", type=int, default=0, help="seed of the simulated strokes (default: 0)")
     parser.add_argument("--json", action="store_true", help="print all figures as JSON")
     args = parser.parse_args(argv)
-    try:
-        strokes = read_strokes(args.file, player=args.player)
-        found = coach(strokes, target=args.target, options={"cue": args.cue}, seed=args.seed)
-    except (ValueError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
+    strokes = read_strokes(args.file, player=args.player)
+    found = coach(strokes, target=args.target, options={"cue": args.cue}, seed=args.seed)
     print(json.dumps(found.to_dict(), indent=1) if args.json else found)
-    return 0
 
 
-def _advice(argv: Sequence[str]) -> int:
+def _advice(argv: Sequence[str]) -> None:
     about = """Ranked strokes of a player, and their outcomes. With the word "coach" first: what recorded strokes say of a
         player, see "coach --help"."""
     parser = argparse.ArgumentParser("python -m snooker_env.advice", description=about)
@@ -58,9 +58,8 @@ def _advice(argv: Sequence[str]) -> int:
         ("visits", 40, "visits of each that are continued"),
         ("seed", 0, "seed of the noise samples"),
     ):
-        parser.add_argument(
-            f"--{name}", type=type(default), default=default, help=f"{words} (default: {default})"
-        )
+        usual = f"{words} (default: {default})"
+        parser.add_argument(f"--{name}", type=type(default), default=default, help=usual)
     whom = f"{', '.join(players())}, a model's .zip or MODULE:CLASS (default: {AGENT}; with --scores {OF_FRAMES})"
     parser.add_argument("--agent", help=whom)
     frame = "scores of who plays and of the other: the position is of a frame, and safeties are judged"
@@ -70,19 +69,15 @@ def _advice(argv: Sequence[str]) -> int:
     parser.add_argument("--json", action="store_true", help="print all figures as JSON")
     add_model_options(parser)
     args = parser.parse_args(argv)
-    try:
-        names = ("agent", "scores", "noise", "n", "samples", "visits", "seed", "trust")
-        how: dict[str, Any] = {name: getattr(args, name) for name in names}
-        if args.options:
-            asked = [args.agent] if args.agent else []
-            (how["agent"],) = named(asked, args.trust, options_of_words(args.options))
-        advice = advise(Position.load(args.position), options={"cue": args.cue}, **how)
-    except (ValueError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
+    names = ("agent", "scores", "noise", "n", "samples", "visits", "seed", "trust")
+    how: dict[str, Any] = {name: getattr(args, name) for name in names}
+    if args.options:
+        asked = [args.agent] if args.agent else []
+        (how["agent"],) = named(asked, args.trust, options_of_words(args.options))
+    advice = advise(Position.load(args.position), options={"cue": args.cue}, **how)
     if args.json:
         print(json.dumps(advice.to_dict(), indent=1))
-        return 0
+        return
     print(advice.order)
     for k, one in enumerate(advice, 1):
         (low, high), (least, most) = one.chance_interval, one.points_interval
@@ -93,7 +88,6 @@ def _advice(argv: Sequence[str]) -> int:
         print(f"   {chance} {100 * low:.0f} to {100 * high:.0f} %{points}{won} (95 %)", end="")
         x, y = one.stops or (0.0, 0.0)
         print(f"; cue ball stops at ({x:.2f}, {y:.2f}) m, spread {one.spread:.2f} m" if one.stops else "")
-    return 0
 
 
 if __name__ == "__main__":

@@ -5,19 +5,16 @@ from pathlib import Path
 from typing import Any
 
 from .._check import integer
-from ..planning import Positions
 from ..planning.positions import PositionsLike
 from ..players import Player
 from ..players import player as player_of
 from ..tasks.noise import NoiseLike
 from . import judging
-from .practice import Practice, one_position, practice_of
-from .strokes import Advice, CueStroke, cue_strokes
+from .practice import one_position, practice_of
+from .strokes import Advice, cue_strokes
 
-AGENT, OF_FRAMES = "planner_500", "tactician"
-"""Who is asked if nobody is named: in a visit, and in a frame."""
-INSTEAD = "random"
-"""Whose strokes are judged where none of an agent's is fair: many of the choices of ``action="discrete"``."""
+AGENT, OF_FRAMES = "planner_500", "tactician"  # who is asked if nobody is named: in a visit, and in a frame
+INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices
 CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
 
 
@@ -37,19 +34,9 @@ def advise(
 ) -> Advice:
     """Return the strokes that a player would play in a position, best first, and their outcomes.
 
-    Each stroke is played ``samples`` times, with the same execution errors whichever player is asked. Of the
-    visits that go on, ``visits`` are played to their end by a fast player (``snooker_env.advice.visits``), so
-    ``points`` is what a good player makes of the position, not the best.
-
-    Of the strokes that the player ranks, the first ``n`` are returned that are fair: no foul without errors,
-    nor in most samples. In a frame they are ordered by the chance to win it; each says what the other finds, of
-    whose next visits ``visits`` are played, too. In a visit pots are ordered by points expected, others by how
-    often they are fair, because what a stroke is worth as a safety is not judged there; those that the player
-    prefers, pots or others, come first. Where none is fair, many choices of ``action="discrete"`` are judged,
-    too; where none of these is, the stroke that is fair most often is returned, and its words say so.
-
-    The errors are drawn from ``seed`` alone, independent of the random stream that a saved state carries: the
-    same seed gives the same advice, and advice never reveals the errors of the next stroke.
+    docs/play/advice.md says how strokes are judged and ordered. Each is played ``samples`` times, with the same
+    execution errors whichever player is asked; those errors are drawn from ``seed`` alone, independent of the random
+    stream that a saved state carries, so advice never reveals the errors of the next stroke.
 
     Parameters
     ----------
@@ -103,7 +90,10 @@ def advise(
     asked = player_of(agent, trust=trust)
 
     def tried(one: Player) -> list[judging.Tried]:
-        strokes = judging.tried(practice, at, _ranked(one, practice, at, seed)[: CONSIDERED * n])
+        bound = one.at(practice.options)
+        rank = getattr(bound, "rank", None)
+        played = bound.play(at, [seed]) if rank is None else rank(at, [seed])[0].strokes
+        strokes = judging.tried(practice, at, cue_strokes(played, at)[: CONSIDERED * n])
         return judging.distinct(strokes) if distinct else strokes
 
     judge: Any = {"samples": samples, "visits": visits, "seed": seed}
@@ -123,10 +113,3 @@ def advise(
         noise=noise if isinstance(noise, str) else asdict(practice.noise),
         **judge,
     )
-
-
-def _ranked(asked: Player, practice: Practice, at: Positions, seed: int) -> list[CueStroke]:
-    """The player's ranking in the one position ``at``, best first, or the one stroke that it plays."""
-    bound = asked.at(practice.options)
-    rank = getattr(bound, "rank", None)
-    return cue_strokes(bound.play(at, [seed]) if rank is None else rank(at, [seed])[0].strokes, at)

@@ -1,8 +1,6 @@
 """What costs a player most, and what should be practised? ``coach``: errors, pots made and expected, costs, drills.
 
-Costs are those of ``costs``, each with the 95 % interval of a bootstrap over strokes. They hold luck: whether as many pots
-were made as such errors make says ``expected``. Which strokes were chosen is not judged. Miss calls, free balls and
-decisions after a foul are not known: who comes next plays from where the balls lie.
+Costs are those of ``costs``, with the 95 % interval of a bootstrap over strokes (docs/play/coach.md).
 """
 
 from collections.abc import Sequence
@@ -17,12 +15,11 @@ from .._types import Floats
 from ..planning import clear_paths, pots
 from ..tasks.noise import LEVELS, NoiseLike
 from .costs import PARTS, lost
-from .errors import BASE, SCALES, Estimate, Fitted, PlayerErrors, checked, fitted
+from .errors import BASE, SCALES, Estimate, PlayerErrors, checked, fitted
 from .practice import Practice, practice_of
 from .recorded import Recorded
 
-WIDE, NARROW = 0.23, 0.06
-"""Tolerances [deg] above which a pot is easy, and below which it is hard, as of the layouts ``pots:D``."""
+WIDE, NARROW = 0.23, 0.06  # tolerances [deg] above which a pot is easy, below which hard, as of ``pots:D``
 RESAMPLES = 2000
 WORDS = {
     "easy": "pots of which the aim may err by more than 0.23 degrees",
@@ -105,10 +102,8 @@ class Coaching:
                 lines.append(f"error of {name}: no stroke tells it")
                 continue
             value, low, high = scale * one.value, scale * one.low, scale * one.high
-            lines.append(
-                f"error of {name}: {value:.3g} {unit} [{low:.3g}, {high:.3g}], {one.value / usual:.1f} times a "
-                f"professional's, from {one.strokes} strokes"
-            )
+            often = f"{one.value / usual:.1f} times a professional's, from {one.strokes} strokes"
+            lines.append(f"error of {name}: {value:.3g} {unit} [{low:.3g}, {high:.3g}], {often}")
         for name, one, unit, scale, words in (
             ("aims", errors.aside, "deg", 1.0, ("left", "right")),
             ("strikes", errors.faster, "%", 100.0, ("too hard", "too softly")),
@@ -117,18 +112,16 @@ class Coaching:
                 way = words[one.value < 0.0]
                 lines.append(f"on average {name} {scale * abs(one.value):.2g} {unit} {way}")
         if self.expected is not None and self.likely is not None:
-            lines.append(
-                f"pots: {self.made} of {self.called} made; such errors make {self.expected.value:.0f} "
-                f"[{self.expected.low:.0f}, {self.expected.high:.0f}], the target {self.likely.value:.0f}"
-            )
+            one = self.expected
+            such = f"such errors make {one.value:.0f} [{one.low:.0f}, {one.high:.0f}]"
+            made = f"pots: {self.made} of {self.called} made; {such}, the target {self.likely.value:.0f}"
+            lines.append(made)
         for name, one in self.costs.items():
-            lines.append(
-                f"{name} costs {one.value:.2f} [{one.low:.2f}, {one.high:.2f}] points a visit, {one.strokes} strokes"
-            )
+            words = f"{one.value:.2f} [{one.low:.2f}, {one.high:.2f}] points a visit, {one.strokes} strokes"
+            lines.append(f"{name} costs {words}")
         if self.most is not None:
-            lines.append(
-                f"{self.most} costs most: so it is in {100 * self.sure:.0f} % of the resampled strokes"
-            )
+            share = f"{100 * self.sure:.0f} % of the resampled strokes"
+            lines.append(f"{self.most} costs most: so it is in {share}")
         lines += [f"practise {one.layout}: {one.reason}" for one in self.drills]
         return "\n".join(lines)
 
@@ -174,33 +167,33 @@ def coach(
     found = fitted(kept, base, seed)
     kept = found.strokes
     points, counts = lost(kept, bench, seed)
-    visits = max(1, visits_of(kept))
+    visits = visits_of(kept)
     rng = np.random.default_rng((seed, RESAMPLES))
-    drawn = points[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / visits
-    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), points.sum(axis=0) / visits
-    figures = zip(PARTS, np.vstack([sums, ends]).T.tolist(), counts.tolist(), strict=True)
-    parts = {
-        name: Estimate(value=value, low=low, high=high, strokes=many)
-        for name, (value, low, high), many in figures
-        if many
-    }
-    first = max(parts, key=lambda name: parts[name].value) if parts else None
-    most = first if first is not None and parts[first].value > 0.0 else None
+    drawn = points[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / max(1, visits)
+    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), points.sum(axis=0) / max(1, visits)
+    parts: dict[str, Estimate] = {}
+    for name, (value, low, high), many in zip(PARTS, np.vstack([sums, ends]).T.tolist(), counts, strict=True):
+        if many:
+            parts[name] = Estimate(value=value, low=low, high=high, strokes=int(many))
+    ranked = sorted((name for name in parts if parts[name].value > 0.0), key=lambda name: -parts[name].value)
+    most = ranked[0] if ranked else None
+    drill = {"potting": _potting, "position": _position, "safety": _safety}
+    by_part: dict[str, Floats] = {name: points[:, k] for k, name in enumerate(PARTS)}
     largest = (drawn.argmax(axis=1) == PARTS.index(most)) & (drawn.max(axis=1) > 0.0) if most else np.zeros(1)
-    sure = float(largest.mean())
+    chances = found.pots.chances
     return Coaching(
         errors=found.errors,
         strokes=len(kept),
-        visits=visits_of(kept),
+        visits=visits,
         called=len(found.pots.rows),
         made=int(found.pots.made.sum()),
-        expected=pots_expected(found),
-        likely=pots_of_target(found, bench, base),
+        expected=None if found.direction is None else _counted(chances, found.direction),
+        likely=_counted(chances, _weights_of(bench, base)),
         target=target if isinstance(target, str) else asdict(bench.noise),
         costs=parts,
         most=most,
-        sure=sure,
-        drills=drills_for(kept, parts, points, found.errors),
+        sure=float(largest.mean()),
+        drills=tuple(drill[name](kept, parts[name], by_part[name], found.errors) for name in ranked),
     )
 
 
@@ -209,39 +202,22 @@ def visits_of(strokes: Sequence[Recorded]) -> int:
     return sum(not one.goes_on for one in strokes) + strokes[-1].goes_on
 
 
-def pots_expected(found: Fitted) -> Estimate | None:
-    """How many of the called pots such errors make: the mean over the posterior, and the normal interval of the count."""
-    if found.direction is None or not found.pots.rows:
-        return None
-    return _counted(found.pots.chances, found.direction)
-
-
-def pots_of_target(found: Fitted, bench: Practice, base: Practice) -> Estimate | None:
-    """How many of the called pots a player of the target level makes."""
-    if not found.pots.rows:
-        return None
+def _weights_of(bench: Practice, base: Practice) -> Floats:
+    """Weights (scales,) of a player of the target level, whose errors are known."""
     physics = base.options.rules.physics
     times = bench.noise.direction_deg(physics) / LEVELS[BASE].direction_deg(physics)
-    weights = np.zeros(len(SCALES))
-    weights[int(np.abs(np.log(SCALES / max(times, SCALES[0]))).argmin())] = 1.0
-    return _counted(found.pots.chances, weights)
+    return np.eye(len(SCALES))[int(np.abs(np.log(SCALES / max(times, SCALES[0]))).argmin())]
 
 
-def _counted(chances: Floats, weights: Floats) -> Estimate:
+def _counted(chances: Floats, weights: Floats) -> Estimate | None:
+    """How many called pots (n, scales) are made: the mean over the weights, the normal interval of the count."""
+    if not len(chances):
+        return None
     counts, spread = chances.sum(axis=0), (chances * (1.0 - chances)).sum(axis=0)
     mean = float(counts @ weights)
     half = 1.96 * sqrt(max(0.0, float(spread @ weights + counts**2 @ weights) - mean * mean))
     low, high = max(0.0, mean - half), min(float(len(chances)), mean + half)
     return Estimate(value=mean, low=low, high=high, strokes=len(chances))
-
-
-def drills_for(
-    strokes: list[Recorded], costs: dict[str, Estimate], parts: Floats, errors: PlayerErrors
-) -> tuple[Drill, ...]:
-    """A drill for each part that costs something, first for what costs most."""
-    ranked = sorted((name for name in costs if costs[name].value > 0.0), key=lambda name: -costs[name].value)
-    made = {"potting": _potting, "position": _position, "safety": _safety}
-    return tuple(made[name](strokes, costs[name], parts[:, PARTS.index(name)], errors) for name in ranked)
 
 
 def _potting(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:

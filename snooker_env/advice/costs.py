@@ -1,6 +1,4 @@
-"""What do strokes cost a player? Points of a frame lost by potting, position and safety, against a target's strokes; the
-formulas stand in docs/play/coach.md, "What costs most".
-"""
+"""What do strokes cost a player? Points of a frame lost by potting, position and safety (docs/play/coach.md)."""
 
 from typing import Any
 
@@ -16,15 +14,16 @@ from .practice import JUDGING, Practice, keys, one_position
 from .recorded import Recorded
 
 PARTS = ("potting", "position", "safety")
-LOOKS, BEST, SAMPLES = 24, 4, 24
-"""Strokes at a called pot that are tried without errors, the best of them that are then played so many times with."""
-SLOW, FAST, TIP = 0.8, 4.5, 0.35
-"""Of these strokes: cue speeds [m/s], and the largest height of the tip over R."""
+LOOKS, BEST, SAMPLES = (
+    24,
+    4,
+    24,
+)  # strokes tried at a called pot, the best of them, how often these are played
+SLOW, FAST, TIP = 0.8, 4.5, 0.35  # of these strokes: cue speeds [m/s], the largest height of the tip over R
 
 
 def lost(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, Ints]:
-    """Points that strokes lost against a player with the errors of ``bench``, (n, 3) in the order of ``PARTS``, and how many
-    strokes tell each part, (3,)."""
+    """Points lost against the errors of ``bench``, (n, 3) by ``PARTS``; how many strokes tell each, (3,)."""
     parts, counts = np.zeros((len(strokes), 3)), np.zeros(3, np.int64)
     known = [k for k, one in enumerate(strokes) if one.after is not None]
     at = {k: one_position(strokes[k].position, strokes[k].scores) for k in known}
@@ -48,9 +47,7 @@ def lost(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, I
 
 def worth_of(bench: Practice, at: list[Positions]) -> Floats:
     """What positions of frames are worth to their strikers (n,)."""
-    if not at:
-        return np.empty(0)
-    return np.asarray(bench.judge.worth(joined(at)), np.float64)
+    return np.asarray(bench.judge.worth(joined(at)), np.float64) if at else np.empty(0)
 
 
 def values(bench: Practice, strokes: list[Recorded]) -> Floats:
@@ -58,30 +55,25 @@ def values(bench: Practice, strokes: list[Recorded]) -> Floats:
     out = np.array([float(one.points - one.penalty) for one in strokes])
     going = [k for k, one in enumerate(strokes) if one.after is not None and not one.after.over]
     after = []
-    for k in going:
-        one = strokes[k]
-        mine, others = one.scores[0] + one.points, one.scores[1] + one.penalty
-        scores = (mine, others) if one.goes_on else (others, mine)
-        assert one.after is not None
-        after.append(one_position(one.after, tuple(min(score, 1000) for score in scores)))
+    for one in (strokes[k] for k in going):
+        scores = one.scores[0] + one.points, one.scores[1] + one.penalty
+        scores = tuple(min(score, 1000) for score in (scores if one.goes_on else scores[::-1]))
+        after.append(one_position(one.after, scores))
     signs = np.array([1.0 if strokes[k].goes_on else -1.0 for k in going])
     out[going] += signs * worth_of(bench, after)
     return out
 
 
 def best_at(bench: Practice, at: Positions, one: Recorded, seed: int) -> tuple[float, float, float] | None:
-    """The target's best stroke at the called pot: its chance, and what it is worth if made and if missed. None where no
-    direct pot is the called one."""
+    """The target's best stroke at the called pot: chance, worth if made and if missed; None if not direct."""
     direct = pots(at, 16)
     which = np.flatnonzero((direct.ball[0] == one.ball) & (direct.pocket[0] == one.pocket))
     if not len(which):
         return None
     u = sobol_points(LOOKS, 2, seed)
     tips = np.column_stack([SLOW * (FAST / SLOW) ** u[:, 0], np.zeros(LOOKS), TIP * (2.0 * u[:, 1] - 1.0)])
-    asked, before = bench.judge, lead_of(at)
-    proposed = strokes_at(
-        at.as_visits(), np.full((1, LOOKS), which[0]), tips[None], asked.spread, asked.dynamics
-    )
+    asked, before, each = bench.judge, lead_of(at), np.full((1, LOOKS), which[0])
+    proposed = strokes_at(at.as_visits(), each, tips[None], asked.spread, asked.dynamics)
     strokes, chances = proposed.strokes[0], proposed.chances[0]
 
     def outcomes(tried: Floats, samples: Any) -> tuple[Any, Floats]:
@@ -95,9 +87,8 @@ def best_at(bench: Practice, at: Positions, one: Recorded, seed: int) -> tuple[f
     best = np.argsort(-looks, kind="stable")[:BEST]
     many = 1 if bench.sure else SAMPLES
     samples = None if bench.sure else np.tile(keys(seed, JUDGING, many), len(best))
-    went, worth = (
-        part.reshape(len(best), many) for part in outcomes(np.repeat(strokes[best], many, 0), samples)
-    )
+    played = outcomes(np.repeat(strokes[best], many, 0), samples)
+    went, worth = (part.reshape(len(best), many) for part in played)
     k = int(worth.mean(axis=1).argmax())
     if not went[k].any():
         return None

@@ -1,18 +1,13 @@
 """How large are a player's errors of direction and speed? ``estimate_errors``: estimates with 95 % intervals.
 
-**The model** is that of ``snooker_env.tasks.noise``: the errors of strokes are independent and normal with mean 0. The
-direction of the cue ball errs by ``sigma_d`` at 1.5 m/s, and at a cue speed V by sqrt(1 + V^2) / sqrt(1 + 1.5^2) times as
-much (V in m/s); the speed errs by the share ``sigma_v``. Two numbers are estimated, each as a multiple s of a
-professional's.
-
-What a stroke says of s, by its likelihood, and what is estimated: docs/play/coach.md, "How errors are estimated".
-"""
+The model is that of ``snooker_env.tasks.noise``; two multiples s of a professional's errors are estimated, by the
+likelihoods of docs/play/coach.md, "How errors are estimated"."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from math import erf, hypot, pi, remainder, sqrt
 from statistics import NormalDist
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,17 +20,12 @@ from ..tasks.noise import LEVELS, POT_SPEED, TWICE, Noise
 from .practice import Practice, practice_of
 from .recorded import CALLED, Recorded, direction_of
 
-BASE = "professional"
-"""Whose errors the estimates are multiples of."""
-LEAST, MOST = 0.02, 50.0
-"""Smallest and largest error that is thought of, over a professional's."""
+BASE = "professional"  # whose errors the estimates are multiples of
+LEAST, MOST = 0.02, 50.0  # smallest and largest error that is thought of, over a professional's
 SCALES = np.geomspace(LEAST, MOST, 600)
-SHARES = np.linspace(0.005, 0.9, 40)
-"""Shares of safeties among guessed pots that are thought of, each alike."""
-RADII = np.geomspace(0.12, 60.0, 27)
-"""Sizes of errors that are tried in the tolerance of a pot, in standard deviations of a professional."""
-WAYS = 32
-"""Errors of each radius that are tried."""
+SHARES = np.linspace(0.005, 0.9, 40)  # shares of safeties among guessed pots that are thought of, each alike
+RADII = np.geomspace(0.12, 60.0, 27)  # sizes of errors that are tried [a professional's standard deviations]
+WAYS = 32  # errors of each radius that are tried
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,8 +90,7 @@ class PlayerErrors:
         return asdict(self)
 
 
-@dataclass(frozen=True, eq=False)
-class Pots:
+class Pots(NamedTuple):
     """The strokes with a called pot: their rows, and the chances of the pots for each of ``SCALES``."""
 
     rows: list[int]
@@ -109,15 +98,13 @@ class Pots:
     made: Any  # bool (n,)
 
 
-@dataclass(frozen=True, eq=False)
-class Fitted:
-    """The errors of a player, the posterior of the direction's over ``SCALES``, the pots that were called, and the strokes,
-    without the guessed pots that were likelier to be safeties."""
+class Fitted(NamedTuple):
+    """The errors of a player, and what was found on the way."""
 
     errors: PlayerErrors
-    direction: Floats | None
-    pots: Pots
-    strokes: list[Recorded]
+    direction: Floats | None  # the posterior of its error over ``SCALES``
+    pots: Pots  # those that were called
+    strokes: list[Recorded]  # without the guessed pots that were likelier to be safeties
 
 
 def estimate_errors(strokes: Sequence[Recorded], *, options: Any = None, seed: int = 0) -> PlayerErrors:
@@ -167,9 +154,8 @@ def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
     directions, speeds, widths = measured(strokes, practice)
     guessed = np.array([one.guessed for one in strokes]) & ~np.isnan(directions)
     mixed, meant = guesses(directions[guessed], widths[guessed])
-    wrong = np.flatnonzero(guessed)[~meant]
     strokes = list(strokes)
-    for k in wrong.tolist():
+    for k in np.flatnonzero(guessed)[~meant].tolist():
         strokes[k] = replace(strokes[k], ball=None, pocket=None, potted=None, guessed=False)
         directions[k] = np.nan
     pots = tolerances(strokes, practice, seed)
@@ -188,9 +174,8 @@ def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
         allowed = "with intended and played, with a pot and played, or with a pot and potted"
         raise refuse_what("strokes", "none that tells an error", f"must hold strokes {allowed}")
     aside, faster = mean_of(e, unit), mean_of(v, base.speed_rel)
-    return Fitted(
-        PlayerErrors(direction=direction, speed=speed, aside=aside, faster=faster), weights, pots, strokes
-    )
+    errors = PlayerErrors(direction=direction, speed=speed, aside=aside, faster=faster)
+    return Fitted(errors, weights, pots, strokes)
 
 
 def direct(e: Floats) -> Floats:
@@ -199,8 +184,7 @@ def direct(e: Floats) -> Floats:
 
 
 def guesses(e: Floats, widths: Floats) -> tuple[Floats, Any]:
-    """Log-likelihood (scales,) of errors (n,) at guessed pots, some of which were safeties: these lie evenly within
-    ``widths`` (n,); all in a professional's standard deviations. And which are likelier to be pots, bool (n,)."""
+    """Log-likelihood (scales,) of guessed pots (n,), or safeties evenly within ``widths``; which are pots."""
     if not len(e):
         return np.zeros(len(SCALES)), np.zeros(0, np.bool_)
     pot = np.exp(-0.5 * (e / SCALES[:, None]) ** 2) / (SCALES[:, None] * sqrt(2.0 * pi))
@@ -237,8 +221,7 @@ def estimate(weights: Floats, unit: float, strokes: int) -> Estimate:
 
 
 def mean_of(e: Floats, unit: float) -> Estimate | None:
-    """The mean of errors (n,) with its 95 % interval by Student's law (Hill's expansion of its quantile); None of fewer
-    than three."""
+    """The mean of errors (n,), its 95 % interval by Student's law (Hill's expansion); None if n < 3."""
     n = len(e)
     if n < 3:
         return None
@@ -249,8 +232,7 @@ def mean_of(e: Floats, unit: float) -> Estimate | None:
 
 
 def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats, Floats]:
-    """Errors of direction and speed (n,) in a professional's standard deviations, NaN where they were not measured; and
-    ``CALLED`` in these."""
+    """Errors of direction and speed (n,) over a professional's, NaN if unknown; and ``CALLED`` over it."""
     directions, speeds, widths = np.full((3, len(strokes)), np.nan)
     base, physics = LEVELS[BASE], practice.options.rules.physics
     unit = np.radians(base.direction_deg(physics, speed=0.0))
@@ -273,8 +255,7 @@ def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Float
 
 
 def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
-    """The line that a stroke at a pot should have had, for the tip as it was played [rad], and how much more the direction
-    differs from it than it errs: the tip's own error moves the line, too, by the throw of its spin."""
+    """The line that a stroke at a pot should have had [rad]; by how much more the direction differs than it errs."""
     physics, base = practice.options.rules.physics, LEVELS[BASE]
     assert one.played is not None
     step = 0.02
@@ -283,7 +264,7 @@ def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
         for name, by in (("side", 0.0), ("side", 1.0), ("side", -1.0), ("top", 1.0), ("top", -1.0))
     ]
     aim, right, left, up, down = solved(moved, practice)[:, 3].tolist()
-    tip = base.offset_mm * 1e-3 / physics.R
+    tip = base.offset_mm * 1e-3 / physics.R  # its error moves the line, too, by the throw of its spin
     squirted = direction_of({"aim": 0.0, "side": step}, physics) / step
     parts = (
         np.radians(base.aim_deg),
@@ -295,8 +276,7 @@ def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
 
 
 def solved(strokes: list[Recorded], practice: Practice) -> Floats:
-    """The strokes (n, 5) that were meant: as recorded, or at the middle of the pocket with the speed and tip played, else
-    in the middle of the ball with the speed recorded, or ``POT_SPEED``."""
+    """The strokes (n, 5) that were meant: as recorded, else at the middle of the pocket."""
     out, most = np.zeros((len(strokes), 5)), practice.options.rules.physics.max_offset
     for k, one in enumerate(strokes):
         if one.intended is not None:
@@ -305,7 +285,7 @@ def solved(strokes: list[Recorded], practice: Practice) -> Floats:
         cue = one.played or {"speed": one.speed or POT_SPEED, "side": 0.0, "top": 0.0}
         tip = hypot(cue["side"], cue["top"])
         inside = min(1.0, most / tip) if tip > 0.0 else 1.0
-        out[k] = min(max(cue["speed"], 0.2), 7.0), inside * cue["side"], inside * cue["top"], 0.0, 0.0
+        out[k, :3] = min(max(cue["speed"], 0.2), 7.0), inside * cue["side"], inside * cue["top"]
     rows = [k for k, one in enumerate(strokes) if one.intended is None]
     if rows:
         at = Positions.of([strokes[k].position for k in rows])

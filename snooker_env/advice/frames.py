@@ -33,8 +33,7 @@ class Outlook(NamedTuple):
 def outlooks(
     practice: Practice, starts: Positions, each: Ints, stops: Stops, n: int, visits: int, seed: int
 ) -> list[Outlook]:
-    """The outlook of n strokes, each played equally often from ``starts``: ``each`` (n * tries,) says which one is
-    played in a row of ``stops``. Of the visits of the other ``visits`` are played to their end."""
+    """The outlook of n strokes: ``each`` (n * tries,) says which; ``visits`` are played to their end."""
     after = stops.afterstates
     wins = practice.judge.valued(lead_of(starts)[each], after)[:, 0].reshape(n, -1)
     comes = np.flatnonzero(others_next(after))

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from math import hypot, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -62,10 +62,7 @@ def tried(practice: Practice, at: Positions, strokes: list[CueStroke]) -> list[T
     stops = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
     hidden = ~clear_paths(starts).any_part
     ends = lies(stops) if at.of_frames else [""] * len(strokes)
-    return [
-        Tried(one, starts[k : k + 1], *_trial(practice, starts, stops, k, one, bool(hidden[k]), ends[k]))
-        for k, one in enumerate(strokes)
-    ]
+    return [_trial(practice, starts, stops, k, one, hidden[k], ends[k]) for k, one in enumerate(strokes)]
 
 
 def joined(positions: list[Positions]) -> Positions:
@@ -79,10 +76,9 @@ def joined(positions: list[Positions]) -> Positions:
 
 
 def _trial(
-    practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool, lie: str
-) -> tuple[str, int, int, int, str, str, Room]:
-    """Kind, ball, pocket, first ball, words, words without room, and room of stroke k; ``hidden``: no straight path
-    to a ball on; ``lie``: where it leaves the cue ball, in words."""
+    practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: Any, lie: str
+) -> Tried:
+    """Stroke k; ``hidden``: no straight path leads to a ball on; ``lie``: where it leaves the cue ball, in words."""
     room = room_for(stroke.numbers(), starts[k : k + 1], practice.options.rules)
     first, pocket, how = int(trial.first[k]), -1, ""
     ball, (x, y) = first, starts.positions[k, CUE].tolist()
@@ -105,11 +101,9 @@ def _trial(
     distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
     what, physics = say.what_words(kind, ball, pocket, first, how), practice.options.rules.physics
     played = replace(stroke, side=room.side, top=room.top)  # its spin is that of the tip that is reached
-    words, alike = (
-        ", ".join(filter(None, (what, say.stroke_words(played, distance, physics, way), lie)))
-        for way in (room, None)
-    )
-    return kind, ball, pocket, first, words, alike, room
+    how_played = (say.stroke_words(played, distance, physics, way) for way in (room, None))
+    words, alike = (", ".join(filter(None, (what, how, lie))) for how in how_played)
+    return Tried(stroke, starts[k : k + 1], kind, ball, pocket, first, words, alike, room)
 
 
 def distinct(strokes: list[Tried]) -> list[Tried]:
@@ -137,15 +131,13 @@ def fair(practice: Practice, strokes: list[Tried], n: int, **how: int) -> list[S
 
 
 def _compared(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
-    """The best stroke of a frame with the chance to win that it compares with: of the best of ``others`` of the other
-    kind, pots or not, or of the next best."""
+    """The best stroke of a frame, compared with the best of the other kind, a pot or none, or the next best."""
     one = best[0]
     rivals = [other for other in others if (other.kind == "pot") != (one.kind == "pot")]
-    rivals = rivals or best[1:]
-    if not rivals:
+    if not (rivals or best[1:]):
         return one
-    rival = max(rivals, key=lambda other: other.figure)
-    kind = rival.kind if (rival.kind == "pot") != (one.kind == "pot") else ""
+    rival = max(rivals or best[1:], key=lambda other: other.figure)
+    kind = rival.kind if rivals else ""
     return replace(one, against=rival.win, words=one.words + say.against_words(rival.figure, kind))
 
 

@@ -17,18 +17,15 @@ from ..planning.positions import bare
 from ..planning.worth import chosen
 from ..players.seen import begun
 from ..players.tactician import Tactician
-from ..tasks.noise import Noise, NoiseLike, errors_of
+from ..tasks.noise import Noise, errors_of
 from ..tasks.options import Options
 from ..tasks.tables import Tables
 from .strokes import CueStroke
 
-PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")
-"""The options that say where strokes are played. All others belong to a game."""
-FRAME_OPTIONS = tuple(Options.group("frame"))
-"""Those of a frame that count as well where a position is of one."""
+PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")  # of the table
+FRAME_OPTIONS = tuple(Options.group("frame"))  # those that count as well where a position is of a frame
 MOST_SCORE = 1000  # largest score of a player in a position of a frame
-JUDGING, GOING_ON = 1, 2
-"""Of noise samples: not those that chose a stroke judge it, so that a lucky choice is not overestimated."""
+JUDGING, GOING_ON = 1, 2  # of noise samples: those that chose a stroke do not judge it, for it may be lucky
 
 
 class Practice:
@@ -77,17 +74,12 @@ class Practice:
 
     def prospects(self, at: Positions) -> tuple[Floats, Floats]:
         """Values of positions for this player by the rule of thumb, and chances of their four widest pots."""
-        rule = SURE if self.sure else RULE_OF_THUMB
-        return prospects_of(
-            at, self._spread, rule, threads=self.exact.threads, rails=self.options.rules.rails
-        )
+        rule, rails = SURE if self.sure else RULE_OF_THUMB, self.options.rules.rails
+        return prospects_of(at, self._spread, rule, threads=self.exact.threads, rails=rails)
 
 
-def practice_of(
-    noise: NoiseLike, options: Any = None, source: Any = None, *, of_frames: bool = False
-) -> Practice:
-    """The practice table for a noise and ``options``; None: those of an environment ``source``. ``of_frames``: whether
-    strokes of frames are played on it."""
+def practice_of(noise: Any, options: Any = None, source: Any = None, *, of_frames: bool = False) -> Practice:
+    """The practice table for a noise and ``options``; None: those of an environment ``source``."""
     if options is None:
         options = getattr(bare(source), "options", None)
         options = options if isinstance(options, Options) else {}
@@ -106,8 +98,7 @@ def practice_of(
 
 
 def one_position(source: Any, scores: Any = None) -> Positions:
-    """The one position in a source, as its next stroke is played: with no decision before it, and no points in its
-    visit. ``scores`` make a frame of it. ValueError if there is not one to play."""
+    """The one position in a source as its next stroke is played, without points; a frame with ``scores``."""
     tables = getattr(bare(source), "tables", None)
     if isinstance(tables, Tables) and not tables.begun.all():
         words = "must have a position: call reset() first"

@@ -1,7 +1,5 @@
 """What is recorded of a stroke, and how is it read from a file? ``Recorded``: what was meant, what was played, what came.
-Who knows how much of a stroke: docs/play/coach.md. The pot that is guessed of a replay is the direct one whose line is
-nearest to that of the stroke, within ``CALLED``.
-"""
+Who knows how much of a stroke: docs/play/coach.md."""
 
 import base64
 import binascii
@@ -29,11 +27,12 @@ from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from .strokes import CueStroke
 
 FORMAT, VERSION = "snooker-strokes", 1
-CALLED = radians(2.0)
-"""How far the line of a stroke may be from that of a pot which it is taken to be meant for [rad]: four standard deviations
-of a club player's hard stroke."""
+CALLED = radians(
+    2.0
+)  # how far a stroke may be from the pot that it is guessed for: 4 sigma of a club player's hard one
 CUE_PARTS = ("speed", "side", "top", "aim", "elevation")
 MOST_PENALTY, MOST_POINTS = 7, 16
+_AIMS = POCKET_AIMS[:, [AIM_X, AIM_Y]]
 _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
 
 
@@ -144,9 +143,8 @@ class Recorded:
         """Make the stroke that a dict of ``to_dict`` describes; ``ball`` may be the name of a colour, ``pocket`` a name of
         ``snooker_env.POCKETS``. ValueError for an unknown key."""
         if not isinstance(kept, Mapping):
-            raise refuse_what(
-                "stroke", f"a {type(kept).__name__}", "must be a dict of the fields of Recorded"
-            )
+            allowed = "must be a dict of the fields of Recorded"
+            raise refuse_what("stroke", f"a {type(kept).__name__}", allowed)
         names = [f.name for f in fields(cls)]
         for key in kept:
             choice("field of the stroke", key, names)
@@ -328,7 +326,8 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
     rest, left = start.copy(), here.copy()
     for ball, state, row in zip(which, states, _numbers(one["paths"]["f8"], "f8", 7), strict=True):
         rest[ball], left[ball] = row[1:3], state != cloth.GONE
-    fell = {ball: _pocket_at(rest[ball]) for ball in one["pots"]}
+    # the pocket nearest to where it fell
+    fell = {ball: int(np.hypot(*(_AIMS - rest[ball]).T).argmin()) for ball in one["pots"]}
     if one["after"] is not None:
         rest, left = _numbers(one["after"]["places"], "f8", 2), _present(one["after"]["on_table"])
     scored = one["points"] > 0 and not one["penalty"]
@@ -356,11 +355,6 @@ def _numbers(text: str, kind: str, columns: int) -> Floats:
     """Numbers (n, columns) of base64, little-endian."""
     raw = base64.b64decode(text, validate=True)
     return np.frombuffer(raw, np.dtype(kind).newbyteorder("<")).reshape(-1, columns).astype(np.float64)
-
-
-def _pocket_at(place: Floats) -> int:
-    """The pocket that is nearest to where a ball fell."""
-    return int(np.argmin(np.hypot(*(POCKET_AIMS[:, [AIM_X, AIM_Y]] - place).T)))
 
 
 def _present(ids: Sequence[int]) -> Any:

@@ -13,8 +13,7 @@ from ..physics.cue_room import MOVED, OVER_NOTHING, OVER_RAIL, RAISED, UNPLAYABL
 from ..planning import Positions
 from ..tasks.options import Rules
 
-RAIL = "rail"
-"""What is in the way if no ball is."""
+RAIL = "rail"  # what is in the way if no ball is
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,10 +78,8 @@ def room_for(stroke: Floats, at: Positions, rules: Rules) -> Room:
     ratio = physics.end_mass_ratio if tables is None else float(tables[0, END_MASS_RATIO])
     # kernels are compiled for arrays that can be written
     places, present, rails = at.positions[0].copy(), at.on_table[0].copy(), np.array(rules.rails)
-    numbers = physics.R, physics.max_offset, ratio
-    played, done, over, behind = in_room_over(
-        tuple(stroke.tolist()), places, present, rails, *map(float, numbers)
-    )
+    numbers = map(float, (physics.R, physics.max_offset, ratio))
+    played, done, over, behind = in_room_over(tuple(stroke.tolist()), places, present, rails, *numbers)
     _, side, top, _, elevation = played
     bits = {"raised": RAISED, "moved": MOVED, "unplayable": UNPLAYABLE}
     found: Any = {name: bool(done & bit) for name, bit in bits.items()}

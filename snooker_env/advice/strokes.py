@@ -1,6 +1,6 @@
 """What is one stroke? ``CueStroke``: speed, tip, aim, elevation and place; validated, and as an action."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from math import hypot
 from typing import Any, TypeAlias, overload
@@ -71,8 +71,7 @@ class CueStroke:
     def of(cls, stroke: "StrokeLike") -> "CueStroke":
         """Convert a dict with fields of ``CueStroke``, or an object with such attributes, to a ``CueStroke``.
 
-        ValueError if a field is unknown, missing or out of range.
-        """
+        ValueError if a field is unknown, missing or out of range."""
         if isinstance(stroke, cls):
             return stroke
         names = [f.name for f in fields(cls)]
@@ -101,15 +100,13 @@ class CueStroke:
 
         ``elevation``, ``placement``, ``decision``: whether the action holds these. Without a place the cue
         ball is put in the middle of the baulk line; the decision is to play. ValueError for a raised cue
-        that the action does not hold.
-        """
+        that the action does not hold."""
         form = Actions("absolute", elevation, placement, Physics(), ("decision",) if decision else ())
         places = None if self.place is None else [self.place]
         return encoded(form, self.numbers()[None], places)[0].astype(np.float32)
 
 
-StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any
-"""The types that arguments called ``stroke`` accept, see ``CueStroke.of``."""
+StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any  # what ``CueStroke.of`` takes
 
 
 def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
@@ -135,47 +132,30 @@ class Suggestion(CueStroke):
     room : Room
         How the cue finds room for it: ``cue="real"`` may raise it and move its tip.
     kind : {"pot", "contact", "safety", "escape", "in-off", "foul"}
-        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores
-        nothing; what it is worth as a safety is not judged. "safety": the same in a frame, where it is judged.
-        "escape": the same where no straight path leads to a ball on. "in-off": it loses the cue ball. "foul":
-        any other foul.
-    ball : int
-        Id of the ball that it pots without errors or, if none, strikes first; of a touching ball that it is played
-        away from, that one; -1 if it strikes nothing.
-    pocket : int
-        Pocket of that ball, an index into ``snooker_env.POCKETS``; -1 if it is not potted.
-    first : int
-        Id of the ball that it strikes first without errors; -1 if none.
+        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores nothing;
+        "safety" in a frame, where that is judged; "escape" where no straight path leads to a ball on. "in-off": it loses
+        the cue ball. "foul": any other foul.
+    ball, pocket, first : int
+        Id of the ball that it pots without errors or, if none, strikes first or plays away from, and its pocket, an
+        index into ``snooker_env.POCKETS``; id of the ball that it strikes first. -1 if none.
     chance : float
-        Of a pot: the share of the samples in which that ball went into that pocket without a foul.
-        Otherwise: the share without a foul.
+        Of a pot: the share of the samples in which that ball went into that pocket without a foul, else that without a
+        foul.
     chance_interval : (float, float)
         Wilson's 95 % interval of the chance; without noise, the chance itself twice.
-    points : float
+    points, points_interval : float, (float, float)
         Expected points of the visit from this stroke on, continued by the fast player of
-        ``snooker_env.advice.visits``; a stronger one may score more.
-    points_interval : (float, float)
-        95 % interval of that mean: the sampling error of the strokes and of the visits.
+        ``snooker_env.advice.visits``, and the 95 % interval of that mean by the sampling error.
     foul, in_off : float
         Shares of the samples with a foul, and in which the cue ball was potted.
     stops : (float, float) or None
         Mean stopping point of the cue ball [m] where it stayed on the table; None if it never did.
     spread : float or None
         Root of the mean square distance from that point [m].
-    win : float or None
-        Of a frame: the chance to win it, the mean over the samples; None in a visit, as all below. It is the
-        ``tactician``'s, whoever is asked: the lead that its learned worth expects, turned into a chance.
-    win_interval : (float, float) or None
-        95 % interval of that mean: the sampling error alone, not that of the worth.
-    against : float or None
-        Of the first stroke: the chance to win of the best stroke of the other sort, a pot or none, or if none was
-        ranked of the next best.
-    replies, leaves : float or None
-        Where the stroke brings the opponent to the table: the share of its next visits in which it pots, and
-        their mean points, played by the same fast player from the first ``visits`` of these samples. After a foul it
-        plays from where the balls lie; penalties do not count. None if no such visit was played.
-    snookers : float or None
-        The share of these samples in which the opponent has no straight path to a ball on.
+    win, win_interval, against, replies, leaves, snookers : float, (float, float), float, float, float, float or None
+        Of a frame, see docs/play/advice.md: the chance to win it and the 95 % interval by the sampling error; of the first
+        stroke the chance to win of the best one of the other sort; where the opponent comes to the table, the share of its
+        next visits in which it pots, their mean points, and how often it is snookered.
     words : str
         All this in one line of text.
 
@@ -213,11 +193,8 @@ class Suggestion(CueStroke):
 
     @property
     def figure(self) -> float:
-        """What it is ordered by: in a frame the chance to win; else a pot's expected points, or the share without a
-        foul."""
-        if self.win is not None:
-            return self.win
-        return self.points if self.kind == "pot" else self.chance
+        """What it is ordered by: in a frame the chance to win, else a pot's points, or the share without a foul."""
+        return self.win if self.win is not None else self.points if self.kind == "pot" else self.chance
 
     @property
     def stroke(self) -> CueStroke:
@@ -287,9 +264,6 @@ class Advice(Sequence[Suggestion]):
 
     def __getitem__(self, index: int | slice) -> Suggestion | tuple[Suggestion, ...]:
         return self.suggestions[index]
-
-    def __iter__(self) -> Iterator[Suggestion]:
-        return iter(self.suggestions)
 
     @property
     def order(self) -> str:

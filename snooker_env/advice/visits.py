@@ -6,8 +6,7 @@
 3. Where there is no direct pot, so it chooses among strokes at what it sees of the balls on, or escapes.
 
 This is a shallow search, made to play hundreds of visits in a second. From open tables under professional
-noise it scores about 58 points a visit; "planner_500" about 120.
-"""
+noise it scores about 58 points a visit; "planner_500" about 120."""
 
 import numpy as np
 
@@ -19,8 +18,7 @@ from .practice import GOING_ON, Practice, keys
 PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(2) for s in (1, 3, 5) for t in (1, 3)])
 """Choices tried: 1.3, 2.3 and 3.6 m/s, tip 0.2 R up or down. Without errors, extremes are overestimated."""
 BEST = 3  # number of strokes that meet noise samples
-EVEN_SAMPLES = (354, 1840, 979, 2326, 3875)
-"""Keys of five noise samples in which the errors of each kind are evenly spread."""
+EVEN_SAMPLES = (354, 1840, 979, 2326, 3875)  # keys of five noise samples in which errors are evenly spread
 
 
 def played_on(practice: Practice, left: Positions, visits: Ints, seed: int) -> Floats:

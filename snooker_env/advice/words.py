@@ -3,9 +3,9 @@
 from bisect import bisect_left
 from math import copysign, cos, degrees, sin, sqrt
 
-from ..game.balls import NAMES
 from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from ..physics.parameters import Physics
+from ..replays.words import ball_name
 from .room import Room
 from .strokes import CueStroke
 
@@ -15,16 +15,10 @@ _STILL = 0.1  # tip offsets over R up to this count as the middle of the ball
 _FAR_OFF = 0.3  # from this offset on: "deep" screw, and "top" instead of follow
 _STUN = 0.25  # A ball whose rotation is within this share of its speed arrives without spin
 _SIDE = 0.05  # tip offsets over R from which side is mentioned
-_FULLNESS = (0.38, 0.62, 0.87)
-"""Offsets of a ball over its diameter up to which it is struck three-quarter, half or quarter."""
+_FULLNESS = (0.38, 0.62, 0.87)  # offsets over the diameter up to which a hit is three-quarter, half, quarter
 RAISED = 0.05  # elevation [rad] from which a raised cue is mentioned
 TIGHT = 0.05  # largest gap [m] to a ball that the cue ball lies tight behind
 AT_CUSHION = 0.15  # largest gap [m] to the cushion at an end that the cue ball is played to
-
-
-def ball_words(ball: int) -> str:
-    """The colour of a ball."""
-    return "red" if 1 <= ball <= 15 else NAMES[ball].replace("_", " ")
 
 
 def rolling(speed: float, top: float, distance: float, physics: Physics) -> float:
@@ -72,23 +66,20 @@ def place_words(x: float, y: float) -> str:
     return f"from {' and '.join(parts)} the brown spot" if parts else "from the brown spot"
 
 
-def stroke_words(
-    stroke: CueStroke, distance: float | None, physics: Physics, room: Room | None = None
-) -> str:
-    """Speed, spin, elevation and place in words; ``room``: what is done to the stroke, which is said if it matters."""
+def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics, way: Room | None = None) -> str:
+    """Speed, spin, elevation and place in words; ``way``: the room of the cue, which is said if it matters."""
     words = f"{stroke.speed:.1f} m/s, {spin_words(stroke, distance, physics)}"
-    if room is not None and (room.moved or (room.raised and room.elevation >= RAISED)):
-        words += f", {room.words}"
+    if way is not None and (way.moved or (way.raised and way.elevation >= RAISED)):
+        words += f", {way.words}"
     elif stroke.elevation >= RAISED:
         words += f", cue raised {degrees(stroke.elevation):.0f} degrees"
     return words if stroke.place is None else f"{words}, {place_words(*stroke.place)}"
 
 
 def lie_words(x: float, y: float, ball: int, apart: float) -> str:
-    """Where a cue ball at (x, y) lies: behind a ``ball`` that hides the balls on, its centre ``apart`` [m] away, in
-    baulk or at an end; "" elsewhere. ``ball`` -1: a ball on is seen."""
+    """Where a cue ball lies: behind a ``ball`` (or -1) ``apart`` [m] away, in baulk, at an end; "" elsewhere."""
     if ball >= 0:
-        return f"{'tight ' if apart - 2.0 * BALL_RADIUS <= TIGHT else ''}behind the {ball_words(ball)}"
+        return f"{'tight ' if apart - 2.0 * BALL_RADIUS <= TIGHT else ''}behind the {ball_name(ball)}"
     if HALF_LENGTH - BALL_RADIUS - abs(y) <= AT_CUSHION:
         return f"to the {'top' if y > 0 else 'baulk'} cushion"
     return "to baulk" if y < BAULK_Y else ""
@@ -114,20 +105,19 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does without errors. ``how``: an escape's first cushion, or how full a ball is struck; "" if it is
-    played away from a ball that it touches."""
+    """What a stroke does; ``how``: an escape's cushion, how full a ball is struck, "" away from a touching one."""
     if kind == "pot":
-        how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
-        return f"{ball_words(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
+        how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_name(first)}"
+        return f"{ball_name(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
     if kind == "in-off":
-        return f"in-off from the {ball_words(first)}" if first >= 0 else "in-off, nothing struck"
+        return f"in-off from the {ball_name(first)}" if first >= 0 else "in-off, nothing struck"
     if kind == "foul":
-        return f"foul, {ball_words(first)} first" if first >= 0 else "foul, nothing struck"
+        return f"foul, {ball_name(first)} first" if first >= 0 else "foul, nothing struck"
     if kind == "escape":
-        return f"escape{f' off the {how}' if how else ''} to the {ball_words(ball)}"
+        return f"escape{f' off the {how}' if how else ''} to the {ball_name(ball)}"
     if not how:
-        return f"{'safety ' if kind == 'safety' else ''}away from the touching {ball_words(ball)}"
-    return f"{'safety off' if kind == 'safety' else 'contact with'} the {ball_words(ball)}, {how}"
+        return f"{'safety ' if kind == 'safety' else ''}away from the touching {ball_name(ball)}"
+    return f"{'safety off' if kind == 'safety' else 'contact with'} the {ball_name(ball)}, {how}"
 
 
 def percent(share: float) -> str:
@@ -142,8 +132,7 @@ def points_words(points: float) -> str:
 
 
 def figures_words(kind: str, chance: float, points: float, judged: bool = False) -> str:
-    """The figures of a stroke: chance and points expected of a pot, otherwise how often it is fair. ``judged``: its
-    worth as a safety is said elsewhere."""
+    """A pot's chance and points, else how often it is fair; ``judged``: its worth as a safety is said elsewhere."""
     if kind == "pot":
         return f"pot {percent(chance)}, {points_words(points)} expected"
     unjudged = kind in ("contact", "escape") and not judged

@@ -139,10 +139,12 @@ def _run(args: Any) -> int:
     for file in files:
         file.parent.mkdir(parents=True, exist_ok=True)
     warmup()
-    worst = 0
+    worst, more = 0, {name: getattr(args, name) for name in ("episodes", "resume", "threads")}
     for task, file in zip(tasks, files, strict=True):
         if worst < 130:
-            worst = max(worst, _told(_judged(task, agent, file, args), task, file))
+            with _ticking(task.id, "episodes") as tick:
+                result = judge(task, agent, out=file, command=args.line, tick=tick, **more)
+            worst = max(worst, _told(result, task, file))
     return worst
 
 
@@ -159,13 +161,6 @@ def _text(args: Any) -> int:
         said += f", {figures['read']:,.0f} characters read and {figures['written']:,.0f} written"
     print(f"text  {agent.label}: {said}: {out}")
     return 0
-
-
-def _judged(task: Task, agent: Agent, file: Path, args: Any) -> dict[str, Any]:
-    """Play a task and say how far it is."""
-    more: Any = {name: getattr(args, name) for name in ("episodes", "resume", "threads")}
-    with _ticking(task.id, "episodes") as tick:
-        return judge(task, agent, out=file, command=args.line, tick=tick, **more)
 
 
 @contextmanager

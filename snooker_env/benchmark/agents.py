@@ -60,8 +60,7 @@ class Agent:
         """The agent of a text of ``sn.player``, of LABEL=SOURCE,SOURCE,... (training seeds) or of a player.
 
         Label and training shots that are None come from the text or class, and from a player known by name;
-        ``**more``: other attributes. No code of a class or a file runs. ValueError if nothing has that name.
-        """
+        ``**more``: other attributes. No code of a class or a file runs. ValueError if nothing has that name."""
         agent = str(agent) if isinstance(agent, Path) else agent
         sources: list[Any] = [agent]
         if isinstance(agent, str) and not agent.startswith(PROGRAM) and not Path(agent).exists():

@@ -15,10 +15,8 @@ from .results import completed, strokes_of
 from .schema import fault, faults_of_fields, shortened
 from .tasks import TASKS, Task
 
-MOST = 12
-"""Faults of rows that are named."""
-SURE = 3.29
-"""Standard errors that a fresh mean may be away: 99.9 %."""
+MOST = 12  # faults of rows that are named
+SURE = 3.29  # standard errors that a fresh mean may be away: 99.9 %
 
 
 def faults(record: Any, threads: int | None = None) -> list[str]:
@@ -210,16 +208,12 @@ def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int |
 def afresh(
     record: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None
 ) -> tuple[float, float, list[str]]:
-    """Have its agent play a complete, sound result's task on seeds that it cannot know, from ``seed`` on: the mean score,
-    the standard error of its difference to the result, and a line for each fault."""
+    """Have its agent play on unknown seeds: the mean score, the error of its difference to the file, faults."""
     if record["figures"] is None:
         raise refuse("incomplete", record["incomplete"], "must be null to compare means")
     played = _by(agent, record, range(seed, seed + episodes), threads)
-    runs, column = len(agent.sources), COLUMNS.index("score")
-    of_file, fresh = (
-        np.reshape([row[column] for row in rows], (runs, -1)).mean(0)
-        for rows in (record["rows"], played.rows)
-    )
+    runs, column, both = len(agent.sources), COLUMNS.index("score"), (record["rows"], played.rows)
+    of_file, fresh = (np.reshape([row[column] for row in rows], (runs, -1)).mean(0) for rows in both)
     old, mean = of_file.mean(), float(fresh.mean())
     error = float(np.sqrt(of_file.var(ddof=1) / len(of_file) + fresh.var(ddof=1) / len(fresh)))
     near = f"must be within {SURE * error:.2g} of {mean:g}, as on fresh seeds"

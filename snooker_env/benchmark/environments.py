@@ -7,8 +7,7 @@ from ..envs.snooker import SnookerEnv
 from ..envs.vector import SnookerVectorEnv
 from .tasks import FREE, TASKS
 
-KEYWORDS = ("max_episode_steps", "render_mode", "autoreset_mode", "threads", "render_size")
-"""Keywords of ``SnookerVectorEnv`` that are no options of the game."""
+KEYWORDS = ("max_episode_steps", "render_mode", "autoreset_mode", "threads", "render_size")  # no options
 
 
 class TaskEnv(SnookerEnv):

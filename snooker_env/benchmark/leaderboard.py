@@ -1,6 +1,7 @@
 """How are results compared? A table for each task, and performance profiles, at most 100 columns wide."""
 
 from collections.abc import Iterable, Sequence
+from html import escape
 from textwrap import wrap
 from typing import Any
 
@@ -11,10 +12,15 @@ from .tasks import TASKS, Task
 
 WIDTH = 100
 CLASSES = {"model_free": "model-free", "planning": "planning", "undeclared": "undecl."}
-TRAINED = {"none": "0", "50k": "50 k", "1M": "1 M", "5M": "5 M", "open": "open", "unknown": "?"}
-"""In the order of the table."""
-Table = tuple[list[str], list[list[str]]]
-"""Heading and rows."""
+TRAINED = {
+    "none": "0",
+    "50k": "50 k",
+    "1M": "1 M",
+    "5M": "5 M",
+    "open": "open",
+    "unknown": "?",
+}  # in this order
+Table = tuple[list[str], list[list[str]]]  # heading and rows
 
 LEGEND = (
     "score: mean of all episodes with its 95 % bootstrap interval over training seeds and episodes; a share that was "
@@ -34,9 +40,8 @@ AWAITED = "Agents whose results are not there yet stand as missing."
 
 def plain(text: str) -> str:
     """A text that a file gives, as one line of Markdown without markup of its own."""
-    for sign, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("[", "&#91;"), ("`", "&#96;")):
-        text = text.replace(sign, entity)
-    return " ".join(text.split())
+    safe = escape(text, quote=False).replace("[", "&#91;").replace("`", "&#96;")
+    return " ".join(safe.split())
 
 
 def board(results: Iterable[dict[str, Any]], task: Task) -> Table:

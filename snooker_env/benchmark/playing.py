@@ -1,6 +1,5 @@
 """How are episodes played? Side by side. Actions are rounded to float32 before they are played and kept; seeds
-of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch.
-"""
+of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch."""
 
 import time
 from collections.abc import Iterator
@@ -17,14 +16,12 @@ from ..players import FRAMES, VISITS, Player, decided, decision_seeds
 from ..players import player as player_named
 from .tasks import Task
 
-BATCH = 100
-"""Episodes that are played side by side."""
+BATCH = 100  # episodes that are played side by side
 SUMS = ("strokes", "points", "pots", "fouls")
 COLUMNS = ("run", "table", "score", *SUMS, "cleared", "opponent_points", "ended")
 """Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark_files.md)."""
 STROKES = COLUMNS.index("strokes")
-Kept = list[NDArray[np.float32]]
-"""The strokes of each episode: its actions, one row each."""
+Kept = list[NDArray[np.float32]]  # the strokes of each episode: its actions, one row each
 
 
 @dataclass
@@ -90,8 +87,7 @@ class Repeater:
         return actions
 
 
-Round = tuple[Bools, dict[str, Any], Bools, Bools]
-"""Where the player was asked for a stroke; the environment's info after it; done; terminated."""
+Round = tuple[Bools, dict[str, Any], Bools, Bools]  # asked for a stroke; the info after it; done; terminated
 
 
 def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None = None) -> Iterator[Round]:
@@ -127,9 +123,7 @@ def play_episodes(
     return PlayedEpisodes(rows, strokes, decide.decisions, decide.seconds, decide.simulated)
 
 
-def rows_of(
-    task: Task, tables: SnookerVectorEnv, seeds: list[int], decide: Any, run: int = 0
-) -> list[list[int]]:
+def rows_of(task: Task, tables: Any, seeds: list[int], decide: Any, run: int = 0) -> list[list[int]]:
     """The rows of the episodes with these seeds, as ``decide`` plays them."""
     n = len(seeds)
     sums: dict[str, Floats] = {name: np.zeros(n) for name in SUMS}

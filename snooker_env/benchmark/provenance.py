@@ -13,8 +13,7 @@ import numpy as np
 
 from ..envs.vector import SnookerVectorEnv
 
-LIBRARIES = ("numpy", "numba", "gymnasium", "torch", "stable_baselines3", "sb3_contrib")
-"""Libraries whose versions a result file holds."""
+LIBRARIES = ("numpy", "numba", "gymnasium", "torch", "stable_baselines3", "sb3_contrib")  # in a result
 
 
 def commit() -> str | None:

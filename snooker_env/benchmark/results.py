@@ -1,7 +1,6 @@
 """What stands in a result file, and how is it written and read? ``schema`` documents every field.
 
-Figures follow from rows and label alone: the same label draws the same bootstrap samples. ``check`` compares.
-"""
+Figures follow from rows and label alone: the same label draws the same bootstrap samples. ``check`` compares."""
 
 import base64
 import hashlib
@@ -25,10 +24,8 @@ from .schema import DATE, NAME, PROTOCOL, VERSION, line
 from .statistics import RESAMPLES, Resamples, figure, iqm, unseen
 from .tasks import TASKS, Task
 
-BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}
-"""Training budgets [simulated shots]."""
-SLACK = 1.02
-"""By how much a budget may be exceeded: training runs in whole rollouts."""
+BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}  # training budgets [simulated shots]
+SLACK = 1.02  # by how much a budget may be exceeded: training runs in whole rollouts
 
 
 def budget_of(shots: int | None) -> str:
@@ -48,8 +45,7 @@ def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
 
 
 def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] | None:
-    """All figures of an agent's rows: "score", "iqm" (for points only), "profile" (with "at_least"), "by_run", "best", and means
-    of columns. A figure is {"value", "low", "high", "exact"}. None if the runs are not complete."""
+    """All figures of an agent's rows, as docs/benchmark_files.md says; None if the runs are not complete."""
     columns = matrix(rows)
     if columns is None:
         return None
@@ -118,12 +114,7 @@ def completed(record: dict[str, Any], task: Task) -> dict[str, Any]:
 
 
 def result_of(
-    task: Task,
-    agent: Agent,
-    episodes: int,
-    played: PlayedEpisodes,
-    alone: PlayedEpisodes,
-    about: dict[str, Any],
+    task: Task, agent: Agent, many: int, played: PlayedEpisodes, alone: PlayedEpisodes, about: dict[str, Any]
 ) -> dict[str, Any]:
     """The record of a run. ``alone``: played on one table; ``about``: "command", "load", "incomplete"."""
     shots, why = agent.shots_declared, about["incomplete"]
@@ -132,7 +123,7 @@ def result_of(
     one_table = 1e3 * alone.seconds / alone.decisions if alone.decisions else None
     record = {
         "schema": {},
-        "protocol": {"version": PROTOCOL, "episodes": episodes, "official": False},
+        "protocol": {"version": PROTOCOL, "episodes": many, "official": False},
         "task": task.id,
         "agent": who | {"class": None, "simulated_shots": shots, "declared": shots is not None},
         "software": software(),

@@ -20,8 +20,7 @@ CENTURY = 100
 MAXIMUM = 147
 """Points of the largest break with 15 reds: a black after each red, then the colours."""
 EASY = POT_WINDOWS["easy"][0]
-HIGH = 6
-"""Pink and black are colours of high value."""
+HIGH = 6  # pink and black are colours of high value
 FIGURES = {
     **{f"{name}_a_visit": (name, "visits") for name in ("points", "pots", "fouls")},
     **{name: (name, "visits") for name in ("centuries", "maximums", "clearances")},

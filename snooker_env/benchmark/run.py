@@ -14,10 +14,8 @@ from .provenance import machine
 from .results import read_result, result_of, strokes_of, write_result
 from .tasks import Task
 
-ONE_TABLE = 20
-"""Decisions at least that are timed on one table alone."""
-SAVED = 60.0
-"""Seconds between two files while it plays."""
+ONE_TABLE = 20  # decisions at least that are timed on one table alone
+SAVED = 60.0  # seconds between two files while it plays
 
 
 def judge(

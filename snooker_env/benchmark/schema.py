@@ -8,12 +8,9 @@ from typing import Any
 from .provenance import LIBRARIES
 
 NAME, VERSION = "snooker_env.benchmark.result", 3
-PROTOCOL = 1
-"""Version of the rules: tables, episodes, figures. Only results of one version compare."""
-PACKAGES = ("0.3.0.dev0", "1.0.0")
-"""Versions of the package whose results compare by these rules, the present one last."""
-BEGUN = "2026-11-21T00:00:00Z"
-"""No result is older than the project."""
+PROTOCOL = 1  # Version of the rules: tables, episodes, figures. Only results of one version compare.
+PACKAGES = ("0.3.0.dev0", "1.0.0")  # versions whose results compare by these rules, the present one last
+BEGUN = "2026-11-21T00:00:00Z"  # no result is older than the project
 DATE = "%Y-%m-%dT%H:%M:%SZ"
 NUMBER = (int, float)
 _ALIKE = "machines with the same one play strokes alike, bit for bit"
@@ -52,29 +49,24 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "incomplete": (str, True, "why episodes are missing; null: none are"),
     "strokes.sha256": (str, False, "digest of the strokes, against damage"),
     "strokes.data": (str, False, "every stroke that was played, see below"),
-}
-"""Dotted name: type, whether it may be null, meaning."""
+}  # dotted name: type, whether it may be null, meaning
 _PLAYED = "schema", "protocol", "task", "columns", "rows", "figures", "strokes"
 _PROVED = (*_PLAYED, "agent.class", "agent.budget", "software.snooker_env")
-UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED))
-"""Fields that a replay cannot prove; class and budget follow from them."""
+UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED))  # class and budget follow from them
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")
-MOST_WHOLE = 2**53
-"""Whole numbers up to here are exact in every reader of JSON."""
-RANGES: dict[str, tuple[float, float]] = {
+MOST_WHOLE = 2**53  # whole numbers up to here are exact in every reader of JSON
+RANGES: dict[str, tuple[float, float]] = {  # lowest and highest value of every field that is a number
     name: (0.0, 1e12) if kind is NUMBER else (0, MOST_WHOLE)
     for name, (kind, _, _) in FIELDS.items()
     if kind in (int, NUMBER)
 }
 RANGES["agent.simulated_shots"] = 0, MOST_WHOLE
 RANGES["protocol.episodes"] = RANGES["machine.cores"] = 1, 2**20
-"""Lowest and highest value of every field that is a number."""
 _CONTROL = r"\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"
 _LINE = re.compile(f"[^{_CONTROL}]{{1,200}}"), "one line of at most 200 characters"
 LONG_LINE = re.compile(f"[^{_CONTROL}]{{0,2000}}"), "one line of at most 2,000 characters"
-MOST_SOURCES = 100
-"""Training seeds of one result."""
+MOST_SOURCES = 100  # training seeds of one result
 PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
     "agent.label": (LABEL, "1 to 20 letters, digits or . + - _"),
     **{name: (re.compile(r"[\w.+!-]{1,60}"), "a version") for name in FIELDS if name.startswith("software.")},
@@ -82,19 +74,14 @@ PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
     **dict.fromkeys(("command", "incomplete"), LONG_LINE),
     "machine.arithmetic": (re.compile("[0-9a-f]{16}"), "16 hexadecimal digits"),
     "commit": (re.compile(r"[0-9a-f]{7,64}(-dirty)?"), "a commit's hash, with -dirty if files were changed"),
-}
-"""Texts that must have a form."""
+}  # texts that must have a form
 
 
 def faults_of_fields(
-    record: Any,
-    fields: dict[str, tuple[Any, bool, str]] | None = None,
-    ranges: Mapping[str, tuple[float, float]] | None = None,
-    version: int = VERSION,
+    record: Any, fields: Any = FIELDS, ranges: Any = (), version: int = VERSION
 ) -> list[str]:
-    """What is wrong with the fields of a record, a line each. ``fields``: dotted name -> type, whether it may be null,
-    meaning; ``ranges``: name -> lowest and highest number, beside those of a result; ``version``: for messages."""
-    fields, ranges = FIELDS if fields is None else fields, {**RANGES, **(ranges or {})}
+    """A line for each fault of a record; ``fields``, ``ranges``: as ``FIELDS``, and beside ``RANGES``."""
+    ranges = RANGES | dict(ranges)
     if not isinstance(record, dict):
         return ["the file must hold one JSON object"]
     wrong = []
@@ -104,19 +91,17 @@ def faults_of_fields(
             value = value.get(part, _MISSING) if isinstance(value, dict) else _MISSING
         if value is _MISSING:
             wrong.append(f"{name}: is missing")
-        elif not (value is None and empty) and (
-            not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool)  # True is no number
+        elif not (value is None and empty) and (  # True is no number
+            not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool)
         ):
             wrong.append(fault(name, value, _WORDS.get(kind, "a number") + " or null" * empty))
         elif value is not None and (allowed := _allowed(name, value, ranges)):
             wrong.append(fault(name, value, allowed))
-    names = (
-        [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in fields else [name]
-        for name, value in record.items()
-    )
-    return wrong + [
-        f"{one}: is no field of version {version}" for some in names for one in some if one not in fields
-    ]
+    for name, value in record.items():
+        inner = isinstance(value, dict) and name not in fields
+        names = [f"{name}.{key}" for key in value] if inner else [name]
+        wrong += [f"{one}: is no field of version {version}" for one in names if one not in fields]
+    return wrong
 
 
 _MISSING = object()

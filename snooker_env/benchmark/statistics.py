@@ -15,8 +15,7 @@ import numpy as np
 
 from .._types import Floats
 
-RESAMPLES = 2000
-"""Number of bootstrap samples."""
+RESAMPLES = 2000  # number of bootstrap samples
 
 
 def iqm(values: Any) -> float:
@@ -57,9 +56,7 @@ def _drawn(size, draws, n, seed):
 
 
 class Resamples:
-    """n bootstrap samples of matrices (runs, visits).
-
-    Equal numbers of visits give the same visits in each sample (pairs); other seeds give other runs."""
+    """n bootstrap samples of matrices (runs, visits): as many visits are the same ones; seeds draw runs."""
 
     def __init__(self, runs: int, visits: int, n: int = RESAMPLES, seed: int = 0):
         self._runs = _drawn(runs, max(1, runs - 1), n, (1, seed))
@@ -77,12 +74,9 @@ class Resamples:
     def iqms(self, scores: Any) -> Floats:
         """The inter-quartile mean of a matrix, float (runs, visits), in each sample: float64 (n,)."""
         values, which = np.unique(scores, return_inverse=True)
-        which = which.reshape(scores.shape)
-        weights = sum(
-            self._runs[:, r, None] * (self._visits @ np.eye(len(values))[which[r]])
-            for r in range(len(scores))
-        )
-        return _middle_mean(values, weights)
+        which, eye = which.reshape(scores.shape), np.eye(len(values))
+        each = (self._runs[:, r, None] * (self._visits @ eye[one]) for r, one in enumerate(which))
+        return _middle_mean(values, sum(each))
 
 
 def interval(samples: Any, level: float = 0.95) -> tuple[float, float]:

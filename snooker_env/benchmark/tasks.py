@@ -1,6 +1,5 @@
 """What are the tasks? Ids with a version, the options that they freeze, and how an agent is judged on each.
-Only how an agent sees and acts stays free. docs/benchmark.md holds the rules.
-"""
+Only how an agent sees and acts stays free. docs/benchmark.md holds the rules."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -110,8 +109,7 @@ _BREAK = (1, 10, 25, 50, 75, 100, 147)
 _LEAD = (-60, -40, -20, -10, -4, 0, 1)
 _MEASURES = {"points": ("points a visit", 500), "pots": ("share of balls potted", 1000)}
 _MEASURES |= {"legal": ("share of escapes", 500), "won": ("share of frames won", 200)}
-_MEASURES |= {"lead": ("points of lead gained", 500)}
-"""Of each score: the name of its mean, and the number of episodes."""
+_MEASURES |= {"lead": ("points of lead gained", 500)}  # of each score: the name of its mean, its episodes
 
 
 def _task(name: str, title: str, layout: str, score: str, judged: str = "", **more: Any) -> Task:
@@ -123,7 +121,7 @@ def _task(name: str, title: str, layout: str, score: str, judged: str = "", **mo
     return Task(id=f"Snooker{name}-v0", title=title, score=score, **more)
 
 
-_LEGAL = {"reward": "legal", "one_stroke": True}
+_LEGAL = {"changes": {"reward": "legal", "one_stroke": True}}
 _FRAME = {"task": "frame", "opponent": "planner", "miss": "clear_path"}
 _CLUB = {"changes": {"noise": "club"}, "thresholds": _BREAK}
 _SAFE = {"changes": _FRAME | {"one_stroke": True}, "thresholds": _LEAD}
@@ -131,9 +129,7 @@ _ALL = (
     _task("Break", "build a break on an opened table", "opened", "points", "held_out", thresholds=_BREAK),
     _task("BreakClub", "the same with a club player's errors", "opened", "points", "held_out", **_CLUB),
     _task("PotHard", "pot one hard ball", "pots:hard", "pots", changes={"reward": "pots"}),
-    _task(
-        "Escape", "one stroke out of a snooker, no foul", "escape", "legal", "held_out_escape", changes=_LEGAL
-    ),
+    _task("Escape", "one stroke out of a snooker, no foul", "escape", "legal", "held_out_escape", **_LEGAL),
     _task("Safety", "one stroke where no pot is on", "safety", "lead", "held_out_safety", **_SAFE),
     _task("Frame", "win a frame against planner", "break_off", "won", changes=_FRAME | {"reward": "win"}),
 )

@@ -1,9 +1,6 @@
 """How well does a program play that reads words, as a language model does? Visits on fixed tables, within budgets.
 
-It is asked as every program is (docs/play/protocol.md) and reads ``text``, the table in words. Unlike there, an
-answer that is no stroke is not the end: the state comes again with what was wrong as ``error``, ``TRIES`` times in all;
-after that the visit is forfeited, with the points made before. docs/benchmark.md holds the rules.
-"""
+Rules: docs/benchmark.md. An answer that is no stroke is not the end: the state comes again with an ``error``."""
 
 import json
 from collections.abc import Callable
@@ -24,12 +21,9 @@ from .provenance import commit, machine, software
 from .statistics import Resamples, figure
 from .tasks import TASKS
 
-TASK = TASKS["SnookerBreak-v0"]
-"""Its judged tables, its errors and its rules are those of the track."""
-VISITS, MOST = 50, 200
-"""Tables of a result, the first ones judged; and the most there are."""
-STROKES, TRIES = 10, 3
-"""Budgets: strokes of a visit, and answers for a stroke."""
+TASK = TASKS["SnookerBreak-v0"]  # its judged tables, its errors and its rules are those of the track
+VISITS, MOST = 50, 200  # tables of a result, the first ones judged; and the most there are
+STROKES, TRIES = 10, 3  # budgets: strokes of a visit, and answers for a stroke
 COUNTS = ("points", "strokes", "pots", "fouls", "forfeited", "answers", "refused", "read", "written")
 """Of a visit: ``refused``: answers that were no stroke; ``read``, ``written``: characters of ``text`` and of answers."""
 
@@ -56,8 +50,7 @@ class TextPlayer(ProgramPlayer):
 
     def _answered(self, state: dict[str, Any]) -> bytes:
         answer = super()._answered(state | {"error": self._error})
-        counted = {"answers": 1, "read": len(state["text"]), "written": len(answer)}
-        for name, more in counted.items():
+        for name, more in (("answers", 1), ("read", len(state["text"])), ("written", len(answer))):
             self.counts[name] += more
         return answer
 
@@ -123,7 +116,9 @@ def judge_text(
     head["budget"] = {"strokes": STROKES, "tries": TRIES, "timeout": agent.timeout}
     rows: list[dict[str, int]] = []
     if out.exists():
-        rows = _rows_in(out, head) if resume else _must_be_new(out)
+        if not resume:
+            raise refuse("out", str(out), "must be a new file; --resume goes on with one")
+        rows = _rows_in(out, head)
 
     def keep(done: bool = False) -> dict[str, Any]:
         about = {"software": software(), "machine": machine(), "commit": commit()} if done else {}
@@ -136,10 +131,6 @@ def judge_text(
     if len(rows) < visits:
         play_text(agent, visits, rows, keep)
     return keep(done=True)
-
-
-def _must_be_new(out: Path) -> Any:
-    raise refuse("out", str(out), "must be a new file; --resume goes on with one")
 
 
 def _rows_in(out: Path, head: dict[str, Any]) -> list[dict[str, int]]:

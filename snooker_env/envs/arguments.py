@@ -15,8 +15,7 @@ from ..game.frame_columns import BALL_ON, POINTS
 from ..tasks.frame import Frames
 from ..tasks.tables import Tables
 
-STARTS = ("state", "states", "position", "positions")
-"""Keys of the reset options that say where an episode starts that is not dealt."""
+STARTS = ("state", "states", "position", "positions")  # reset options that say where an episode starts
 ONE = ("state", "position", "breaker")
 MANY = ("reset_mask", *STARTS, "breaker")  # keys of the reset options of one table and of many
 OUTPUTS: dict[str, tuple[str, type[np.generic]]] = {
@@ -24,8 +23,7 @@ OUTPUTS: dict[str, tuple[str, type[np.generic]]] = {
     "rewards": ("rewards", np.float64),
     "terminations": ("terminated", np.bool_),
     "truncations": ("truncated", np.bool_),
-}
-"""Results that a step can write into the caller's arrays: their names in ``StepOutput``, and dtypes."""
+}  # results that a step can write into the caller's arrays: their names in ``StepOutput``, and dtypes
 
 
 def seeds_of(seed: Any, n: int) -> list[int | None]:
@@ -63,11 +61,6 @@ def known_options(options: Any, known: tuple[str, ...]) -> dict[str, Any]:
     return options
 
 
-def both_play(tables: Tables) -> bool:
-    """Whether the caller plays both sides of the tables."""
-    return isinstance(tables, Frames) and len(tables.seats) == 2 and tables.seats[1].player is None
-
-
 def breakers_of(options: dict[str, Any], tables: Tables) -> dict[str, Ints]:
     """Who breaks instead of the draw: ``breakers`` of ``Frames.reset``; empty without "breaker"."""
     if "breaker" not in options:
@@ -94,12 +87,11 @@ class Start:
     arrays: tuple[Floats, Bools, Ints] | None = None  # ``planning.Position.arrays``
 
     @classmethod
-    def of(
-        cls, state: Any, tables: Tables, generator: np.random.Generator, *, to_play: bool = False
-    ) -> "Start":
+    def of(cls, state: Any, tables: Tables, rng: np.random.Generator, *, to_play: bool = False) -> "Start":
         """From a dict; ValueError if it is no valid state here, or with ``to_play`` has no stroke left."""
-        either = {"either": True} if both_play(tables) else {}
-        return cls(state=tables.checked(state, generator, to_play=to_play, **either))
+        both = isinstance(tables, Frames) and len(tables.seats) == 2 and tables.seats[1].player is None
+        either = {"either": True} if both else {}  # the caller plays both sides
+        return cls(state=tables.checked(state, rng, to_play=to_play, **either))
 
     def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
         """Put it on table k; returns the state of its NumPy generator, None for a position."""
@@ -164,8 +156,7 @@ def arrays_of(
 ) -> dict[str, NDArray[Any]]:
     """The caller's arrays for results of n tables, by name; ``size``: of a flat observation.
 
-    ``boxes``: spaces of dict observations, whose arrays are only checked; None for flat ones.
-    """
+    ``boxes``: spaces of dict observations, whose arrays are only checked; None for flat ones."""
     if out is None:
         return {}
     if not isinstance(out, dict):

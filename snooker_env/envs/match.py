@@ -31,30 +31,12 @@ PLAYERS = ("player_0", "player_1")
 
 class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     """A frame of snooker between two players, one stroke a step; with ``task="match"`` the best of ``frames``
-    frames. docs/environment/two_players.md explains it with examples.
+    frames. docs/environment/two_players.md is the specification.
 
-    ## Turns
-    ``agent_selection`` stays as long as the player scores. After a foul the player who comes to the table is
-    selected, and the last component of its action is its decision.
-
-    ## Action
-    ``Box(-1, 1, (7,), float32)``: speed, side, top, aim, place in the D (two numbers), decision, as in
-    ``SnookerEnv``; with ``elevation=True`` the elevation before the place, with ``nominate=True`` the
-    nomination before the decision, with ``concede``, ``claim`` or ``lot`` a declaration at the end.
-    ``placement=False`` and ``decision=False`` leave these out. "Play again" and "replace the balls" play no
-    stroke: the step only passes the turn to the offender. ``action="discrete"``: ``Discrete(540)`` or longer;
-    the choices of the player whose turn it is are ``action_mask(agent)`` and ``infos[agent]["action_mask"]``.
-
-    ## Observation, reward, info
-    As in a frame of ``SnookerEnv``, from each player's side. ``reward="points"`` (default): the points that
-    the step added to the player's score minus those added to the other's; "win": +1 and -1 at the end;
-    "frames": +1 and -1 when a frame of a match ends. Infos: ``points`` to ``events`` are of the last stroke,
-    whoever played it; ``opponent_strokes`` is 1 for the one who did not; ``winner`` is -1, 0 or 1 for both.
-
-    ## Start and end
-    The seed says who breaks, or ``reset(options={"breaker": 0 or 1})``; "state" and "position" start from
-    there, a position with player_0's turn. Both players terminate when the frame or match ends by the rules,
-    also at once in a state of a finished frame, and are truncated after ``max_strokes`` strokes together.
+    ``agent_selection`` stays as long as the player scores. Actions: ``Box(-1, 1, (7,), float32)``, speed, side, top,
+    aim, place in the D (two numbers), decision after a foul, or more or fewer with the options; or ``Discrete(540)``,
+    with ``action_mask(agent)``. Observations and infos are those of a frame of ``SnookerEnv`` as each player sees it;
+    the rewards of both sum to zero. ``reset(options=...)`` takes "state", "position" or "breaker" (0 or 1).
 
     Parameters
     ----------
@@ -77,14 +59,6 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     metadata |= {"name": "snooker_match_v0", "is_parallelizable": False}
 
     tables: Frames
-    possible_agents: list[str]
-    agents: list[str]
-    observation_spaces: dict[str, Any]
-    action_spaces: dict[str, Any]
-    rewards: dict[str, float]
-    terminations: dict[str, bool]
-    truncations: dict[str, bool]
-    infos: dict[str, dict[str, Any]]
 
     def __init__(
         self,
@@ -169,8 +143,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame; without a seed the random stream goes on.
 
-        ``options``: see Start and end, else ValueError; other keys are ignored: PettingZoo's tests pass some.
-        """
+        ``options``: see the class, else ValueError; other keys are ignored: PettingZoo's tests pass some."""
         if isinstance(options, dict):
             options = {key: options[key] for key in ONE if key in options}
         options = known_options(options, ONE)
@@ -206,8 +179,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         """Play the action of the selected player, None once it has terminated or is truncated.
 
         ValueError for an action outside the space, ResetNeeded if no player is left: then nothing is played.
-        SimulationError if the shot cannot be computed.
-        """
+        SimulationError if the shot cannot be computed."""
         if not self.agents:
             what = f"the frame {self.tables.unplayable}"
             raise gymnasium.error.ResetNeeded(f"{what}: call reset() before step()")

@@ -22,11 +22,9 @@ from .vector import SnookerVectorEnv
 class MatchVectorEnv(SnookerVectorEnv):
     """Many frames or matches of two players: ``match_env``, bit for bit, on n tables; for self-play.
 
-    A step is one turn on each table, of the player whose turn it is there: ``strikers``. Observations are
-    those of the strikers, from their own side; infos have the keys of ``SnookerEnv`` as player 0 sees them,
-    with the last stroke of either player, and "striker". Rewards are float64 (n, 2), one for each player;
-    they sum to zero. A table whose frame or match has ended stands still until
-    ``reset(options={"reset_mask": ...})``: its actions are ignored, its rewards are 0, and its flags stay.
+    A step is one turn on each table, of the player whose turn it is there: ``strikers``, whose observations are
+    returned. Infos are as player 0 sees them; rewards float64 (n, 2), one for each player. A table whose match has ended
+    stands still until ``reset(options={"reset_mask": ...})``.
 
     Parameters
     ----------
@@ -93,8 +91,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         """Play one turn on each table, see ``SnookerVectorEnv.step``; without ``out``.
 
         ``actions`` are the strikers'; with seats whose actions differ two such arrays, one for each player.
-        Observations are of the players whose turn it is now; rewards float64 (num_envs, 2).
-        """
+        Observations are of the players whose turn it is now; rewards float64 (num_envs, 2)."""
         _refuse_out(out)
         tables = self.tables
         if not self._alike and not (isinstance(actions, tuple | list) and len(actions) == 2):

@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
-from .._check import choice, refuse
+from .._check import choice, refuse, refuse_what
 from ..tasks.declarations import SAYS
 from ..tasks.frame import TABLES, Frames, Opponent, Seat
 from ..tasks.ghost_ball import GhostBallOpponent
@@ -15,7 +15,6 @@ from ..tasks.options import NEVER, OBJECT, OPPONENTS, Options, options_of
 from ..tasks.tables import Tables
 
 KERNELS: dict[str, type[Opponent]] = {"random": UniformOpponent, "ghost_ball": GhostBallOpponent}
-"""Opponents that play as kernels, without a call of Python."""
 
 
 def opponent_of(opponent: Any, options: Options) -> Opponent:
@@ -62,8 +61,8 @@ def match_options(options: Options | None, keywords: Mapping[str, Any]) -> Optio
     if options.task == "visit" or options.opponent != "none" or options.trust or options.one_stroke:
         names = "task", "opponent", "trust", "one_stroke"
         what = ", ".join(f"{name}={getattr(options, name)!r}" for name in names)
-        allowed = 'must be task="frame" or "match", opponent="none", trust=False and one_stroke=False: a match has two players'
-        raise ValueError(f"options = {what}: {allowed}")
+        allowed = 'must be task="frame" or "match", opponent="none", trust=False and one_stroke=False'
+        raise refuse_what("options", what, f"{allowed}: a match has two players")
     return options
 
 

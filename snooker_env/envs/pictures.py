@@ -1,7 +1,7 @@
 """How does an environment show itself? As a picture, as text, or in a window with the moving shot."""
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from itertools import chain, zip_longest
 from typing import Any, TypeAlias
 
@@ -20,8 +20,7 @@ FPS = 30
 HOLD = 15  # pictures of the table after each stroke of a film, with the referee's words
 
 
-Picture: TypeAlias = Bytes | str | None
-"""uint8 (H, W, 3) with "rgb_array", str with "ansi", else None."""
+Picture: TypeAlias = Bytes | str | None  # uint8 (H, W, 3) with "rgb_array", str with "ansi", else None
 
 
 def recorder_asking() -> Any:
@@ -59,9 +58,7 @@ class PictureSource:
 class Pictures:
     """The pictures of one environment, ``size`` [pixels], ``players`` on the bar; a copy has no window."""
 
-    def __init__(
-        self, table: Table, mode: str | None, size: Sequence[int] = SIZE, players: tuple[str, ...] = ()
-    ):
+    def __init__(self, table: Table, mode: str | None, size: Any = SIZE, players: tuple[str, ...] = ()):
         self.table, self.mode = table, mode
         self.players: tuple[str, ...] = players
         self.size: tuple[int, int] = checked_size(size, "render_size")
@@ -75,8 +72,7 @@ class Pictures:
     ) -> Picture:
         """Table k with the paths of the last stroke of its ``history``; ``recent``: of each episode strokes, and how many."""
         if self.mode is None:
-            modes = '"rgb_array", "ansi" or "human"'
-            how = f"make the environment with render_mode={modes}"
+            how = 'make the environment with render_mode="rgb_array", "ansi" or "human"'
             gymnasium.logger.warn(f"render() without render_mode; {how}")
         if self.mode == "rgb_array":
             motion = lambda: chain.from_iterable(self._motion(*some) for some in recent)  # noqa: E731
@@ -116,9 +112,9 @@ class Pictures:
             return
         from ..render.window import Window, display_missing
 
-        if self._window is None and display_missing():
-            return
         if self._window is None:
+            if display_missing():
+                return
             self._window = Window(size=None if self.size == SIZE else self.size)
         if played:
             film, _ = next(self._films(history, 1))
@@ -159,15 +155,13 @@ class Pictures:
 
         paths = ghosts = last = None
         turns = {0: np.array([1.0, 0.0, 0.0, 0.0])}  # spots as in films
-        # otherwise it did not lead to this table
-        if history and np.array_equal(history[-1].positions, tables.positions[k]):
+        if history and np.array_equal(history[-1].positions, tables.positions[k]):  # it led to this table
             shot = history[-1].shot
             trails = (0, *(np.flatnonzero(shot.potted[1:] >= 0) + 1).tolist())  # cue ball and potted balls
             paths, ghosts = ball_paths(shot, trails), {0: contacts(shot)}
             last = bars(history, self.players)[-1][1]
-            # as the film of the stroke left it
             if shot.on_table[0] and np.array_equal(shot.positions[0], tables.positions[k][0]):
-                turns = {0: Turning(shot, 0).at(shot.duration)}
+                turns = {0: Turning(shot, 0).at(shot.duration)}  # as the film of the stroke left it
         bar = standing_bar(tables, k, self.players, last)
         over: Any = {"paths": paths, "ghosts": ghosts, "turns": turns, "text": tables.text(k), "bar": bar}
         return scene(self.table, tables.positions[k], tables.on_table[k], **over)

@@ -22,58 +22,23 @@ from .pictures import FPS, MODES, SIZE, Pictures
 class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     """Shot selection in snooker: one step is one whole shot, simulated until all balls rest and then judged.
 
-    This is the short form of docs/environment/specification.md, which has each formula, entry and key.
+    docs/environment/specification.md is the specification, with each formula, entry and key. In short:
 
-    ## Task
-    ``task="visit"`` (default): the agent builds a break until the first stroke that pots nothing, a foul or a
-    clearance. "frame": it plays a frame against ``opponent`` (docs/environment/opponents.md); a step is its
-    stroke and all of the opponent's after it. "match": the best of ``frames`` frames, in which they break in
-    turn.
-
-    ## Action space
-    ``action="box"`` (default): ``Box(-1, 1, (4,), float32)`` or longer, in this order, each component linear.
-    What is up to 1e-6 outside is clipped, as rounding; more is refused.
-
-    | component | -1 | +1 | present with |
-    |---|---|---|---|
-    | cue speed | 0.2 m/s | 7.0 m/s | always |
-    | side, top: offset of the tip over R | 0.5 left, below | 0.5 right, above | always; in a disc of 0.5 |
-    | aim | -180 deg from +x | +180 deg, anticlockwise | ``aim="absolute"`` |
-    | aim, from the line of the best pot | 3 deg to the right | 3 deg to the left | ``aim="target"`` |
-    | elevation of the cue | 0 deg | 30 deg | ``elevation=True`` |
-    | place of a cue ball in hand, across the D | 0.292 m left | 0.292 m right | ``placement=True`` |
-    | and back in the D | on the baulk line | on the edge | ``placement=True`` |
-    | nomination: a colour, or the free ball | yellow | black | ``nominate=True`` |
-    | decision after a foul; 0: to play | play again | replace the balls | ``decision=True`` |
-    | declaration; 0: to play | concedes | claims the frame | ``concede``, ``claim``, ``lot`` |
-
-    ``action="discrete"``: ``Discrete(540)``, ((pot * 9 + speed) * 3 + side) * 5 + top, its aim solved for.
-    ``nominate`` makes them 7 x 540; ``concede``, ``claim`` and ``lot`` each add one. ``action_masks()`` are
-    the available ones.
-
-    ## Observation space
-    ``observation="flat"`` (default): ``Box(-1.1, 1.1, (121,), float32)``: for the cue ball, 15 reds and
-    yellow to black x / 0.889 m, y / 1.7845 m, on the table, value / 7, ball on; then reds / 15, the ball on
-    (8, one-hot), in hand, break / 155. Origin: the table's centre; +x: the yellow side, +y: the black end. A
-    frame appends 19 numbers (scores, whose turn, free ball, ...), a miss rule 66 more. "balls": the same as
-    ``Dict(balls=(22, 5), state=(11,))``. "masked", of discrete actions: ``Dict(observations, action_mask)``.
-
-    ## Rewards
-    In a visit "points" (default): of the stroke, in [0, 15]; "points_and_fouls": less penalties; "pots",
-    "legal": 1 for a stroke that scores, or is no foul. In a frame "points": growth of the lead since the last
-    reward; "win": +1 or -1 at the end; in a match "frames": growth of the lead in frames.
-
-    ## Episode
-    A visit terminates as said above, and is never truncated by itself. A frame terminates by the rules, and
-    is truncated after ``max_strokes`` strokes of both players. With ``one_stroke=True`` either terminates
-    after its first step; of a frame the agent has the first stroke.
-    The seed says how tables are dealt (``layout``) and who breaks. ``reset(options=...)`` takes "state" (of
-    ``get_state``), "position" (a ``snooker_env.Position``) or "breaker" (0 the agent, 1 the opponent). The
-    info has the same keys each time.
-
-    ## Arguments
-    ``snooker_env.Options`` describes each option. All but an opponent that is an object are JSON types, so that
-    ``EnvSpec.to_json`` round-trips.
+    * **Task.** "visit" (default): a break until the first stroke that pots nothing, a foul or a clearance; "frame",
+      against ``opponent``: a step is a stroke and all of the opponent's after it; "match": the best of ``frames``.
+    * **Action.** ``Box(-1, 1, (4,), float32)``: cue speed, 0.2 to 7 m/s; side and top, tip offsets up to 0.5 R right
+      and up, in a disc; aim, up to 180 deg anticlockwise from +x, or with ``aim="target"`` 3 deg from the line of the
+      best pot. Longer with ``elevation``, ``placement``, ``nominate``, ``decision``, ``concede``, ``claim``, ``lot``.
+      What is up to 1e-6 outside is clipped, as rounding; more is refused. ``action="discrete"``: ``Discrete(540)``
+      or more, ((pot * 9 + speed) * 3 + side) * 5 + top, its aim solved for; ``action_masks()`` are the available ones.
+    * **Observation.** ``Box(-1.1, 1.1, (121,), float32)``: for the cue ball, 15 reds and yellow to black x / 0.889 m,
+      y / 1.7845 m, on the table, value / 7, ball on; then reds / 15, the ball on (8, one-hot), in hand, break / 155. A
+      frame appends 19 numbers, a miss rule 66 more. "balls": the same as ``Dict(balls=(22, 5), state=(11,))``.
+      "masked", of discrete actions: ``Dict(observations, action_mask)``.
+    * **Reward.** "points" (default): of the stroke, of a frame the growth of the lead; or of a visit
+      "points_and_fouls", "pots", "legal", of a frame "win", of a match "frames".
+    * **Episode.** A frame is truncated after ``max_strokes`` strokes of both players; ``one_stroke=True``: it ends
+      after one step. ``reset(options=...)`` takes "state", "position" or "breaker" (0 the agent, 1 the opponent).
 
     Parameters
     ----------
@@ -122,8 +87,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         """Begin a new episode, see Episode; without a seed the random stream goes on.
 
         Returns the observation and the info. ValueError for an unknown key, or a state or position that is
-        invalid or has no stroke left.
-        """
+        invalid or has no stroke left."""
         options = known_options(options, ONE)
         starts = starts_of(options, self.tables, self.np_random)
         breakers = breakers_of(options, self.tables)
@@ -140,8 +104,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
         Returns observation, reward, terminated, truncated, info. ValueError for an action outside the space,
         ResetNeeded if no episode is going on: then nothing is played. SimulationError if a shot cannot be
-        computed: the balls lie as before, but for a cue ball that was placed.
-        """
+        computed: the balls lie as before, but for a cue ball that was placed."""
         a = self.options.rules.actions.check(action)
         tables = self.tables
         if tables.finished()[0]:

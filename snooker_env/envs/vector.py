@@ -1,7 +1,6 @@
 """How do thousands of tables play side by side? As kernels, on several threads.
 
-gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
-"""
+gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")"""
 
 import copy
 from collections.abc import Collection, Iterator, Sequence
@@ -32,10 +31,8 @@ PICTURES = ("rgb_array", "ansi")
 _ONE_TABLE = "simulate_batch, or SnookerEnv for one table"
 NOT_OF_A_TABLE: dict[str, str] = dict.fromkeys(("last_shot", "history", "keep_history"), _ONE_TABLE)
 NOT_OF_A_TABLE |= {name: name for name in ("step", "render", "close")}
-NOT_OF_A_TABLE |= {
-    "reset": 'reset(options={"reset_mask": ...})',
-    "set_state": 'reset(options={"states": ...})',
-}
+NOT_OF_A_TABLE |= {"reset": 'reset(options={"reset_mask": ...})'}
+NOT_OF_A_TABLE |= {"set_state": 'reset(options={"states": ...})'}
 NOT_OF_A_TABLE |= {"get_wrapper_attr": "call", "set_wrapper_attr": "another environment"}
 NOT_OF_A_TABLE |= {"spec": "the attribute spec", "unwrapped": "this environment"}
 """Names that ``call`` refuses, and their replacements: the tables play, end and begin together."""
@@ -44,28 +41,16 @@ NOT_OF_A_TABLE |= {"spec": "the attribute spec", "unwrapped": "this environment"
 class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     """Many tables side by side, bit for bit as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
-    ``SnookerEnv`` specifies actions, observations, rewards and infos.
+    ``SnookerEnv`` says what actions, observations, rewards and infos are, docs/environment/many_tables.md the rest.
 
-    **Opponents.** "random" and "ghost_ball" run as kernels. Any other player is asked once for all tables
-    that wait for it. A callable is called table by table or, if it has a method ``many(observations,
-    generators, masks) -> actions``, that once.
+    ``reset(seed=...)`` takes an int, a list or None, ``reset(options=...)`` "reset_mask", bool (num_envs,), the tables
+    to reset; "state" or "position" for all of them, or "states" or "positions", one for each; "breaker", 0 the agent or
+    1 the opponent, an int or one for each. Tables that start from one state meet the same execution errors; with a seed
+    as well, table k draws from seed + k. Positions hold no random stream: each table draws its own errors.
 
-    **Reset.** ``reset(seed=...)`` takes an int, a list or None, as ``SyncVectorEnv`` does.
-    ``reset(options=...)`` takes these keys:
-
-    | key | value |
-    |---|---|
-    | "reset_mask" | bool array (num_envs,): the tables to reset; without it, all |
-    | "state", "states" | a state of ``SnookerEnv.get_state`` for all of them, or a list with one for each |
-    | "position", "positions" | a ``snooker_env.Position`` for all of them, or a list with one for each |
-    | "breaker" | who breaks a frame: 0 the agent or 1 the opponent; an int, or one for each |
-
-    Tables that start from one state meet the same execution errors. With a seed as well, table k draws from
-    seed + k. Positions hold no random stream: each table draws its own errors.
-
-    **Results in your arrays.** ``reset`` and ``step`` can write into arrays of the caller, for instance in
-    shared memory: ``out={"observations": ..., "rewards": ..., "terminations": ..., "truncations": ...}``. Any
-    of them may be passed, C-contiguous and with the right shape and dtype; the same arrays are then returned.
+    ``reset`` and ``step`` write into arrays of the caller, for instance in shared memory, and return them:
+    ``out={"observations": ..., "rewards": ..., "terminations": ..., "truncations": ...}``, any of them, C-contiguous
+    and with the right shape and dtype.
 
     Parameters
     ----------
@@ -122,9 +107,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             choice("render_mode", render_mode, PICTURES)
         self.render_mode = render_mode
         self.options, opponent = self._game_of(options, keywords)
-        steps = max_episode_steps
-        limit = NEVER if steps is None else integer("max_episode_steps", steps, 1, NEVER)
-        self.tables = self._tables_of(opponent, limit)
+        limit = NEVER if max_episode_steps is None else max_episode_steps
+        self.tables = self._tables_of(opponent, integer("max_episode_steps", limit, 1, NEVER))
         # what ``call`` shows of a table; its own table, without an opponent, is never played on
         alone = self.options.but(opponent="none")
         self._one = SnookerEnv(alone, render_mode=render_mode, render_size=render_size)
@@ -139,12 +123,10 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self._keyed = np.zeros(n, np.bool_)  # has the table's stream a key?
         self._begun = np.zeros(n, np.bool_)
         self._done = np.zeros(n, np.bool_)
-        self._recent: list[list[Played]] = [[] for _ in range(n)]
-        """The strokes of each table in the last step or reset, if they are shown."""
+        self._recent: list[list[Played]] = [[] for _ in range(n)]  # of the last step or reset, if shown
         self._crew = Threads(threads, watch=None if render_mode is None else self._saw)
 
-    _game_of = staticmethod(game_of)
-    """The options, and who sits opposite the agent."""
+    _game_of = staticmethod(game_of)  # the options, and who sits opposite the agent
 
     def _tables_of(self, opponent: Any, limit: int) -> Tables:
         return tables_of(self.options, opponent, self.num_envs, limit)
@@ -162,8 +144,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
         Table k draws from seed + k, or from element k of a list; without a seed the streams go on. Returns
         observations and infos: an array for each key, and under "_key" which tables it holds for. ValueError
-        for invalid options, ResetNeeded if a table outside the mask has never been reset.
-        """
+        for invalid options, ResetNeeded if a table outside the mask has never been reset."""
         options, tables = known_options(options, MANY), self.tables
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
         starts, breakers = starts_of(options, tables, self._one.np_random), breakers_of(options, tables)
@@ -202,8 +183,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         (num_envs,). Returns observations and infos as ``reset`` (with SAME_STEP also "final_obs" and
         "final_info"), rewards float64 (num_envs,), terminations and truncations bool (num_envs,). ValueError
         for an action outside the space, ResetNeeded before the first reset, and with DISABLED if an episode
-        is over: then nothing is played. After a SimulationError all tables need a reset.
-        """
+        is over: then nothing is played. After a SimulationError all tables need a reset."""
         a = self.options.rules.actions.check_many(actions, self.num_envs)
         arrays = self._arrays_of(out, OUTPUTS)
         self._require_begun()
@@ -270,8 +250,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Read or call something of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call`` does.
 
-        ValueError if the name does not belong to one table, AttributeError if there is none.
-        """
+        ValueError if the name does not belong to one table, AttributeError if there is none."""
         if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
             instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
             words = "must be something public that a table has for itself"

@@ -12,8 +12,7 @@ from ..players.model_options import add_model_options, options_of_words
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 
-PORT = 8147
-"""The port unless another is named: always the same, since a browser keeps a page's scores by its address."""
+PORT = 8147  # unless another is named: always the same, since a browser keeps scores by the page's address
 MOST_FILE = 1_000_000  # largest size of a position's file [bytes]
 
 
@@ -33,12 +32,8 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--noise", choices=list(LEVELS), default="professional", help=noise)
     add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
     add("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
-    add(
-        "--cue",
-        choices=CUES,
-        default="real",
-        help="whether rails and balls are in its way (default: %(default)s)",
-    )
+    cue = "whether rails and balls are in its way (default: %(default)s)"
+    add("--cue", choices=CUES, default="real", help=cue)
     add("--flight", action="store_true", help="balls fly, and the cue can be raised to 70 degrees")
     add("--seed", type=int, help="seed of all random numbers (default: a new one each time)")
     return parser.parse_args(argv)

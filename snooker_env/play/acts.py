@@ -20,12 +20,10 @@ from .session import DECLINED, Session
 MOST_ACTS = 1000
 NEAR = 1e-3  # how far balls may lie from where they were written down [m]
 STROKE = ("speed", "aim", "side", "top", "elevation", "place", "nominate", "noise", "practice", "cue")
-DECLARED = ("concede", "claim")
 
 
 def written(session: Session) -> dict[str, Any]:
-    """The game from its last new table on, as JSON types: a result of ``Session.save`` with the first table, and
-    "acts" and "end"."""
+    """The game from its last new table on: a ``Session.save`` of the first table, "acts" and "end"."""
     acts = session.acts[: session.at]
     first = max(k for k, act in enumerate(acts) if not act.asked)
     begun = session.save() | {"state": acts[first].state}
@@ -33,8 +31,7 @@ def written(session: Session) -> dict[str, Any]:
 
 
 def opened(session: Session, saved: Any) -> None:
-    """Restore a result of ``written``, with everything that was played, or of ``Session.save``. ValueError names what is
-    invalid, and then nothing has changed."""
+    """Restore a result of ``written`` or ``Session.save``; ValueError if it is invalid, nothing has changed."""
     if not isinstance(saved, dict) or "acts" not in saved:
         session.load(saved)
         return
@@ -61,7 +58,9 @@ def _do(session: Session, act: Any) -> None:
     """Do what was asked for; ValueError names the field that is invalid."""
     if not isinstance(act, dict):
         raise refuse("act", act, "must be an object")
-    for one, do in (("choice", session.choose), ("declare", lambda what: _declare(session, what))):
+    says: Any = {"concede": session.concede, "claim": session.claim}
+    declare = lambda what: says[choice("declare", what, says)]()  # noqa: E731
+    for one, do in (("choice", session.choose), ("declare", declare)):
         if one in act:
             for name in act:
                 choice("field", name, (one,))
@@ -81,13 +80,6 @@ def _do(session: Session, act: Any) -> None:
     if named is not None:
         nominated = DECLINED if named == "none" else colour_named("nominate", named)
     session.play(stroke, nominated=nominated)
-
-
-def _declare(session: Session, what: Any) -> None:
-    if choice("declare", what, DECLARED) == "concede":
-        session.concede()
-    else:
-        session.claim()
 
 
 def _end(session: Session) -> dict[str, Any]:

@@ -1,10 +1,8 @@
 """How does an external program play? JSON lines: a state on its standard input, a stroke on its output.
 
-The program is started at the first question and answers all of them. For each stroke it gets one line, the
-object of ``GET api/state`` with a "seed" for what it draws, and answers with one line, an object as
-``POST api/stroke`` takes it, without "nominate". In phase "choice" of a frame it answers with a "choice";
-after "play" alone it gets the state once more, for its stroke. Its standard error goes to that of this
-process.
+It is started at the first question. For each stroke it gets one line, the object of ``GET api/state`` with a "seed", and
+answers with one, as ``POST api/stroke`` takes it, without "nominate". In phase "choice" of a frame it answers with a
+"choice"; after "play" alone it gets the state once more, for its stroke. Its standard error is that of this process.
 """
 
 import contextlib
@@ -84,8 +82,7 @@ class ProgramPlayer(BoundPlayer):
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """Return what the program answers in each of n positions; it is told the ``seeds``, int (n,).
 
-        AgentError if the program ends, is too slow, or its answer is no stroke.
-        """
+        AgentError if the program ends, is too slow, or its answer is no stroke."""
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at)).tolist()

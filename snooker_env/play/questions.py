@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from .._check import choice, number, refuse
-from .._types import NoiseName
 from ..advice import CueStroke, Suggestion, advise, destinations
 from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
 from ..geometry import BAULK_Y, POCKET_AIMS, POCKETS
@@ -36,11 +35,6 @@ def place_asked(field: str, value: Any) -> tuple[float, float]:
     return number(f"{field}[0]", value[0], -10, 10), number(f"{field}[1]", value[1], -10, 10)
 
 
-def ball_named(field: str, value: Any) -> int:
-    """Id of the object ball with a name ("red 3", "blue")."""
-    return NAMES.index(choice(field, value, NAMES[1:]))
-
-
 def colour_named(field: str, value: Any) -> int:
     """Id of the colour with a name."""
     return colour(choice(field, value, COLOUR_NAMES))
@@ -57,8 +51,7 @@ def pocket_named(field: str, value: Any) -> int:
 
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
-RIVALS = 2
-"""Further strokes that are judged for each suggestion after the first: many are other ways of one pot."""
+RIVALS = 2  # further strokes judged for each suggestion after the first: many are other ways of one pot
 
 
 def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
@@ -66,7 +59,8 @@ def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
     pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:
         raise refuse("aim_at", asked, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
-    ball, pocket = ball_named("aim_at.pot[0]", pair[0]), pocket_named("aim_at.pot[1]", pair[1])
+    ball = NAMES.index(choice("aim_at.pot[0]", pair[0], NAMES[1:]))
+    pocket = pocket_named("aim_at.pot[1]", pair[1])
     if not session.tables.on_table[0, ball]:
         raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
     target = POCKET_AIMS[[pocket], :2]
@@ -97,13 +91,10 @@ def paths(shot: Shot) -> dict[str, Any]:
     }
 
 
-def scatter(
-    session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int
-) -> dict[str, Any]:
-    """Where cue ball and object ball stop under execution errors, and the paths without them."""
+def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any]:
+    """Where cue ball and object ball stop with ``errors`` (noise, samples, seed), and the paths without them."""
     shot = exact(session, stroke)
-    how: Any = {"noise": noise, "samples": samples, "seed": seed, "options": {"cue": session.cue}}
-    stops = destinations(session.planned(), stroke, **how)
+    stops = destinations(session.planned(), stroke, **errors, options={"cue": session.cue})
     figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
     return paths(shot) | figures | {"cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4")}
 
@@ -119,14 +110,10 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
     return {"choice": DECIDED.get(int(decided.decision[0]), "play"), "choices": found}
 
 
-def suggestions(
-    session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int
-) -> dict[str, Any]:
-    """At most n strokes of the agent, the best of each ``_idea``, in words and data, with paths without errors; whose they
-    are, and their order."""
+def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:
+    """At most n strokes of the agent, the best of each ``_idea``, in words, data and paths; their order."""
     choice("agent", agent, seats.agents)
-    how: Any = {"noise": noise, "n": n + RIVALS * (n - 1), "samples": samples, "seed": seed}
-    how["options"] = {"cue": session.cue}
+    how: Any = {**errors, "n": n + RIVALS * (n - 1), "options": {"cue": session.cue}}
     at = session.planned()
     if not session.practice:  # alone at the table nobody wins
         at, how["options"]["miss"] = session.position, session.miss
@@ -138,23 +125,15 @@ def suggestions(
         twin = session.twin()
         if one.place is not None:
             twin.place(*one.place)
-        out.append(one.to_dict() | _named(one) | paths(exact(twin, one.stroke)))
+        names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
+        names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
+        out.append(one.to_dict() | names | paths(exact(twin, one.stroke)))
     return {"agent": agent, "order": advice.order, "suggestions": out}
 
 
 def _idea(one: Suggestion) -> tuple[Any, ...]:
-    """What two ways of one stroke share: ball and pocket of a pot; else its kind, the ball's name, red or a colour, and
-    whether the cue ball stays in baulk, in the middle or at the top."""
+    """What ways of one stroke share: ball and pocket of a pot; else kind, red or colour, third of the table."""
     if one.kind == "pot":
         return one.ball, one.pocket
     third = None if one.stops is None else int(np.digitize(one.stops[1], (BAULK_Y, -BAULK_Y)))
     return one.kind, NAMES[one.ball].split()[0] if one.ball >= 0 else None, third
-
-
-def _named(one: Suggestion) -> dict[str, Any]:
-    """Ball and pocket of a suggestion by name; None where there is none."""
-    return {
-        "ball": NAMES[one.ball] if one.ball >= 0 else None,
-        "pocket": POCKETS[one.pocket] if one.pocket >= 0 else None,
-        "first": NAMES[one.first] if one.first >= 0 else None,
-    }

@@ -1,8 +1,4 @@
-"""What is on the table, and what may be done? The game as JSON types for page and programs, and as text.
-
-The state of the game is that of its last act, and what may be done now. A stroke is sent with the tables
-before and after it, so that whoever shows it needs nothing else.
-"""
+"""What is on the table, and what may be done? The game as JSON types for page and programs, and as text."""
 
 from typing import Any
 
@@ -22,7 +18,7 @@ from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import Service
 from .session import Act, Session
-from .words import Line, asked_words, freedom, last_words, lines_of, table_text
+from .words import asked_words, freedom, last_words, lines_of, table_text
 
 
 def scene(service: Service) -> dict[str, Any]:
@@ -50,8 +46,7 @@ def scene(service: Service) -> dict[str, Any]:
 def table_after(
     act: Act, labels: tuple[str, str], win_chance: float | None, before: Act | None = None
 ) -> dict[str, Any]:
-    """The table and the scoreboard after an act; ``win_chance``: how likely seat 0 wins, None for unknown; ``before``: the
-    act before it."""
+    """The table and the scoreboard after an act; ``win_chance``: of seat 0; ``before``: the act before it."""
     state, frame = act.state, Frame.from_dict(act.state["frame"])
     present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"
@@ -86,22 +81,24 @@ def report(service: Service) -> dict[str, Any]:
     session, seats = service.session, service.seats
     frame, tables = session.frame, session.tables
     on = tables.on(0) if frame.phase == "stroke" else 0
-    hidden, lines = (_snookered(session, frame, on), _lines(session, frame, on)) if on else (False, [])
+    hidden, lines = False, []
+    if on:
+        present = tables.on_table[0].copy()
+        present[CUE] = not frame.in_hand
+        hidden = is_snookered(tables.positions[0], present, on, jaws=tables.rules.table.jaws[:, :3])[0]
+        positions = [session.planned(free_ball=free) for free in (False, True)[: 1 + frame.free_ball]]
+        lines = lines_of(positions, on, session.noise[frame.striker])
     act = session.acts[session.at - 1]
     before = session.acts[session.at - 2] if session.at > 1 else None
     state = table_after(act, service.labels, service.win_chances([act])[0], before)
+    waits = f"{seats.label(frame.striker)} {'waits: press Continue.' if service.paused else 'is thinking.'}"
+    of_session = ("begun", "practice", "game", "best_of", "frames", "match_over", "cue")
+    state |= {name: getattr(session, name) for name in of_session}
+    state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
     state |= {
-        "revision": service.revision,
-        "begun": session.begun,
         "players": list(seats.who),
         "labels": list(service.labels),
         "noise": list(session.noise),
-        "practice": session.practice,
-        "game": session.game,
-        "best_of": session.best_of,
-        "frames": session.frames,
-        "match_over": session.match_over,
-        "cue": session.cue,
         "balls_on": [NAMES[i] for i in ids_of(on)],
         "snookered": hidden,
         "miss_called": frame.miss_called,
@@ -109,36 +106,14 @@ def report(service: Service) -> dict[str, Any]:
         "nominations": [NAMES[i] for i in session.nominations()],
         "needs_snookers": frame.phase != "over" and frame.needs_snookers(frame.striker),
         "lines": [line.to_dict() for line in lines],
-        "thinking": service.thinking,
         "paused": service.paused and service.agent_to_play(),
-        "trouble": service.trouble,
         "strokes": len(session.strokes),
         "undo": session.at > 1,
         "redo": session.at < len(session.acts),
-        "words": _agents_words(service) or state["words"],
+        "words": (service.trouble or waits) if service.agent_to_play() else state["words"],
     }
     places = {NAMES.index(name): (x, y) for name, (x, y) in state["positions"].items()}
     return state | {"text": table_text(places, on, lines, _facts(session, state, places))}
-
-
-def _snookered(session: Session, frame: Frame, on: int) -> bool:
-    tables = session.tables
-    present = tables.on_table[0].copy()
-    present[CUE] = not frame.in_hand
-    return is_snookered(tables.positions[0], present, on, jaws=tables.rules.table.jaws[:, :3])[0]
-
-
-def _lines(session: Session, frame: Frame, on: int) -> list[Line]:
-    positions = [session.planned(free_ball=free) for free in ((False, True) if frame.free_ball else (False,))]
-    return lines_of(positions, on, session.noise[frame.striker])
-
-
-def _agents_words(service: Service) -> str:
-    """What is said while it is an agent's turn, else ""."""
-    if not service.agent_to_play():
-        return ""
-    who = service.seats.label(service.session.frame.striker)
-    return service.trouble or (f"{who} waits: press Continue." if service.paused else f"{who} is thinking.")
 
 
 def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[float, float]]) -> list[str]:

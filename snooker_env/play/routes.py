@@ -1,13 +1,12 @@
 """Which requests does the server answer, and how? ``docs/play/protocol.md`` describes every route.
 
-A handler takes the checked fields of a request and returns JSON types; a ValueError names an invalid field.
-"""
+A handler takes the checked fields of a request and returns JSON types; a ValueError names an invalid field."""
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from .._check import choice, integer, number, refuse, truth
 from ..advice import CueStroke
@@ -28,8 +27,7 @@ STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")  # fiel
 Handler = Callable[[Service, dict[str, Any]], Any]
 
 
-@dataclass(frozen=True)
-class Route:
+class Route(NamedTuple):
     """What answers a route, with JSON types or a ``str``, an HTML page; and the fields a request may have."""
 
     handler: Handler
@@ -96,25 +94,20 @@ def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
-    check = truth("check", fields.get("check", False))
+    check, scores = truth("check", fields.get("check", False)), fields.get("scores", [0, 0])
     try:
-        return _put(service, fields, check)
+        if not isinstance(scores, list) or len(scores) != 2:
+            raise refuse("scores", scores, "must be two integers")
+        points = tuple(integer(f"scores[{k}]", score, 0, MOST) for k, score in enumerate(scores))
+        striker = integer("striker", fields.get("striker", 0), 0, 1)
+        free = truth("free_ball", fields.get("free_ball", False))
+        position = position_of(fields.get("position"))
+        with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
+            session.set_up(position, scores=points, striker=striker, free_ball=free, check=check)
     except ValueError as error:
         if not check:
             raise
         return {"sound": False, "error": parts_of(error)}
-
-
-def _put(service: Service, fields: dict[str, Any], check: bool) -> dict[str, Any] | None:
-    scores = fields.get("scores", [0, 0])
-    if not isinstance(scores, list) or len(scores) != 2:
-        raise refuse("scores", scores, "must be two integers")
-    points = (integer("scores[0]", scores[0], 0, MOST), integer("scores[1]", scores[1], 0, MOST))
-    striker = integer("striker", fields.get("striker", 0), 0, 1)
-    free = truth("free_ball", fields.get("free_ball", False))
-    position = position_of(fields.get("position"))
-    with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
-        session.set_up(position, scores=points, striker=striker, free_ball=free, check=check)
     return {"sound": True, "error": None} if check else None
 
 
@@ -208,10 +201,7 @@ def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    revision = _revision(fields)
-    with service.reading() as session:  # at once: it does not wait for questions that take long
-        if revision not in (None, service.revision):
-            raise StaleError
+    with service.reading(_revision(fields)) as session:  # at once: it does not wait for long questions
         twin = session.twin()
     return twin.room(stroke_asked(twin, fields)).to_dict()
 

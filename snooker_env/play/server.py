@@ -3,8 +3,7 @@
 Every request is checked before anything is done: the token in its path, in constant time; ``Host``, so that
 no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
 path, length, type and form of the body. Requests are limited in head, body, time and number. Every error is
-answered by one JSON object.
-"""
+answered by one JSON object."""
 
 import hmac
 import json
@@ -20,17 +19,14 @@ from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
 from .._check import refuse
+from .._files import strict_json
 from ..simulation import SimulationError
 from ..web import WEB, table_js
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
-PARTS = (
-    "play",
-    *(f"play_{part}" for part in ("aim", "ask", "drill", "first", "parts", "room", "setup", "share")),
-)
-PARTS += ("play_sound", "play_stats", "play_tour")
-SCRIPTS = ("table.js", *(f"{part}.js" for part in PARTS))
+PARTS = ("aim", "ask", "drill", "first", "parts", "room", "setup", "share", "sound", "stats", "tour")
+SCRIPTS = ("table.js", "play.js", *(f"play_{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_HEAD = 16_384
@@ -39,8 +35,7 @@ MOST_AT_ONCE = 32  # largest number of connections; a browser keeps six
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
 _HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"
 FULL = b"%sContent-Length: %d\r\n\r\n%s" % (_HEAD, len(_FULL), _FULL)  # the answer to further connections
-IDLE, REQUEST = 20.0, 10.0
-"""How long a connection may wait for its next request, and a request for its end [s]."""
+IDLE, REQUEST = 20.0, 10.0  # how long a connection may wait for a request, and a request for its end [s]
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -56,9 +51,10 @@ HEADERS = {
 class RefusedError(Exception):
     """A request that is refused, with its status and the JSON error."""
 
-    def __init__(self, status: int, message: str, field: str | None = None, value: Any = None):
+    def __init__(self, status: int, message: str, field: Any = None, value: Any = None, **headers: str):
         super().__init__(message)
         self.status, self.body = status, {"field": field, "value": value, "message": message}
+        self.headers: dict[str, str] = headers
 
 
 class TimedReader:
@@ -75,11 +71,8 @@ class TimedReader:
 
     def readline(self, limit: int = -1) -> bytes:
         """A line of the head; RefusedError if the head is too long."""
-        while b"\n" not in self._held:
-            if len(self._held) > self._left:
-                raise RefusedError(431, f"the head of a request must be at most {MOST_HEAD} bytes")
-            if not self._fill():
-                break
+        while b"\n" not in self._held and len(self._held) <= self._left and self._fill():
+            pass
         line, mark, self._held = self._held.partition(b"\n")
         line += mark
         self._left -= len(line)
@@ -245,25 +238,20 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise self._last(400, "the body ended before its Content-Length")
         return parsed(raw)
 
-    def _last(
-        self, status: int, message: str, field: Any = None, value: Any = None, **headers: str
-    ) -> Exception:
+    def _last(self, *refused: Any, **headers: str) -> RefusedError:
         """A refusal that closes the connection, because the rest of the request may not have been read."""
         self.close_connection = True
-        refused = RefusedError(status, message, field, value)
-        refused.headers = headers  # type: ignore[attr-defined]
-        return refused
+        return RefusedError(*refused, **headers)
 
     def _file(self, name):
-        text = (
-            table_js(player=False) if name == "table.js" else (WEB / (name or "play.html")).read_text("utf-8")
-        )
+        path = WEB / (name or "play.html")
+        text = table_js(player=False) if name == "table.js" else path.read_text("utf-8")
         self._send(200, text.encode(), f"{FILES[name]}; charset=utf-8")
 
     def _refuse(self, refused: RefusedError) -> None:
         body = json.dumps({"error": refused.body}, allow_nan=False, default=str).encode()
         try:
-            self._send(refused.status, body, "application/json", getattr(refused, "headers", {}))
+            self._send(refused.status, body, "application/json", refused.headers)
         except OSError:
             self.close_connection = True
 
@@ -283,23 +271,11 @@ class PlayHandler(BaseHTTPRequestHandler):
 def parsed(raw: bytes) -> dict[str, Any]:
     """The JSON object in a body; RefusedError for others, NaN, Infinity and repeated names."""
     try:
-        text = raw.decode("utf-8") or "{}"
-        fields = json.loads(text, parse_constant=_no_number, object_pairs_hook=_once)
+        fields = strict_json(raw.decode("utf-8") or "{}")
     except (ValueError, RecursionError) as error:
         raise RefusedError(400, f"the body must be JSON in UTF-8 ({error})") from None
     if not isinstance(fields, dict):
         raise RefusedError(400, "the body must be a JSON object")
-    return fields
-
-
-def _no_number(name):
-    raise ValueError(f"{name} is no number of JSON")
-
-
-def _once(pairs):
-    fields = dict(pairs)
-    if len(fields) < len(pairs):
-        raise ValueError("a name comes twice in one object")
     return fields
 
 

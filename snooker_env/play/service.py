@@ -1,8 +1,7 @@
 """How do persons, programs and agents share one game? Behind one lock; agents think on copies of it.
 
 A number, the revision, grows with every change; a request that waits for a change names the last revision it
-has seen. An agent's stroke is dropped if the game has changed in the meantime.
-"""
+has seen. An agent's stroke is dropped if the game has changed in the meantime."""
 
 import threading
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,10 +25,8 @@ from ..tasks.noise import LEVELS
 from .session import DECLINED, Act, Session
 
 PERSON = "person"
-OPPONENT = "tactician_500"
-"""Who plays against a person unless someone is named."""
-OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")
-"""The agents that can always be chosen."""
+OPPONENT = "tactician_500"  # who plays against a person unless someone is named
+OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
 
 
 class Seats:
@@ -84,11 +81,7 @@ class Seats:
         return decided
 
 
-DECIDED = {
-    PLAY_AGAIN: "play_again",
-    REPLACE: "replace",
-    PLACE_ANYWHERE: "anywhere",
-}  # decisions after a foul other than to play
+DECIDED = {PLAY_AGAIN: "play_again", REPLACE: "replace", PLACE_ANYWHERE: "anywhere"}  # other than to play
 LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 
 
@@ -132,9 +125,11 @@ class Service:
         return ("You" if self.session.practice and not self.seats.is_agent(0) else one), other
 
     @contextmanager
-    def reading(self) -> Iterator[Session]:
-        """The game, for reading: no other thread changes it meanwhile."""
+    def reading(self, revision: int | None = None) -> Iterator[Session]:
+        """The game, for reading: no other thread changes it meanwhile; ``StaleError``: an old revision."""
         with self._changed:
+            if revision not in (None, self.revision):
+                raise StaleError
             yield self.session
 
     @contextmanager
@@ -142,13 +137,11 @@ class Service:
         self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False
     ) -> Iterator[Session]:
         """The game, for changing it. ``pause``: agents then wait; ``any_turn``: also in an agent's turn."""
-        with self._changed:
-            if revision not in (None, self.revision):
-                raise StaleError
+        with self.reading(revision) as session:
             if not any_turn and self.agent_to_play():
-                whose = self.seats.label(self.session.frame.striker)
+                whose = self.seats.label(session.frame.striker)
                 raise refuse("turn", whose, "must be a person's: an agent is to play")
-            yield self.session
+            yield session
             self.paused, self.trouble = pause, ""
             self._moved()
 
@@ -158,18 +151,15 @@ class Service:
         if not self._asking.acquire(timeout=10.0):
             raise BusyError("other questions are being answered")
         try:
-            with self._changed:
-                if revision not in (None, self.revision):
-                    raise StaleError
-                twin = self.session.twin()
+            with self.reading(revision) as session:
+                twin = session.twin()
             yield twin
         finally:
             self._asking.release()
 
     @property
     def judge(self) -> Judge | None:
-        """Who says how likely each seat wins: the ``tactician``, with the larger errors of both seats, and at least a
-        professional's; None where nobody wins, alone at the table."""
+        """Who says how likely each seat wins, with the larger errors, at least a professional's; or None."""
         if not self._judged or self.session.practice:
             return None
         level = max(("professional", *self.session.noise), key=lambda name: LEVELS[name].direction_deg())

@@ -1,10 +1,9 @@
 """What is the game on the page? One frame in memory, with a list of acts to undo and redo.
 
-``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. Each act is
-an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so a stroke that is undone
-and played again meets the same execution errors.
-"""
+Each stroke and decision is an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so a stroke
+that is undone and played again meets the same execution errors."""
 
+import re
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -32,8 +31,7 @@ from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew
 
-DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0, "anywhere": 1.0}
-"""Last component of an action for each choice after a foul."""
+DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0, "anywhere": 1.0}  # the last of an action
 DECLINED = 0  # the nomination of a player who does not use a free ball
 MOST_FRAMES = 99  # the longest match
 STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
@@ -53,8 +51,7 @@ class Act:
 
 
 class Session:
-    """A frame to play, set up, undo, save and load; ``seed``: of all random numbers; ``cue``: "real" or "free"; ``flight``:
-    balls fly, and the cue can be raised to 70 degrees."""
+    """A frame to play, set up, undo, save and load; ``flight``: balls fly, the cue is raised to 70 degrees."""
 
     noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
@@ -177,11 +174,10 @@ class Session:
         layout: str | None = None,
         seed: int = 0,
         breaker: int = 0,
-        game: RulesName | None = None,
+        game: Any = None,
         best_of: int = 1,
     ) -> None:
-        """Begin a match of so many frames, an odd number, or a single frame; earlier acts are forgotten. ``layout``
-        and ``game``: those of before unless they are given. ValueError for what cannot be."""
+        """Begin a match of an odd number of frames; ``layout`` and ``game`` stay unless they are given."""
         if integer("best_of", best_of, 1, MOST_FRAMES) % 2 == 0:
             raise refuse("best_of", best_of, "must be odd, so that one player wins")
         self._deal(self._but(layout, game), seed, breaker)
@@ -276,10 +272,9 @@ class Session:
 
     def concede(self) -> Act:
         """End the frame: the striker concedes."""
-        frame = self.frame
-        if frame.phase == "over":
-            raise refuse("phase", frame.phase, "must not be over")
-        return self._ended("concede", frame.concede(frame.striker))
+        if self.frame.phase == "over":
+            raise refuse("phase", "over", "must not be over")
+        return self._ended("concede", self.frame.concede(self.frame.striker))
 
     def claim(self) -> Act:
         """The striker, more than seven points ahead with the black alone on the table, claims the frame."""
@@ -295,11 +290,10 @@ class Session:
         frame = self.frame
         if not frame.in_hand or frame.phase != "stroke":
             raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
-        self.tables.positions[0, CUE] = place_cue(
-            self.tables.positions[0], self.tables.on_table[0], x, y, anywhere=frame.anywhere
-        )
+        places = self.tables.positions[0]
+        places[CUE] = place_cue(places, self.tables.on_table[0], x, y, anywhere=frame.anywhere)
         self.acts[self.at - 1] = replace(self.acts[self.at - 1], state=self.state)
-        px, py = self.tables.positions[0, CUE].tolist()
+        px, py = places[CUE].tolist()
         return px, py
 
     def set_up(
@@ -389,10 +383,7 @@ class Session:
             alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}
             return self.tables.checked(state | alone, self._generator, either=True)
         except ValueError as error:
-            text = str(error)
-            for prefix in ("state.frame.", "state."):
-                text = text.replace(prefix, "")
-            raise ValueError(text) from None
+            raise ValueError(re.sub(r"state\.(frame\.)?", "", str(error))) from None
 
     def _write(self, frame: Frame, strokes: int) -> None:
         write_frame(frame, strokes, self.tables.game[0], self.tables.saved, 0)

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Floats
 from ..game.balls import CUE, NAMES, SPOTS, YELLOW, ids_of, mask_of_present
 from ..game.frame import Frame
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS, POCKETS
@@ -17,8 +16,6 @@ from ..tasks.noise import LEVELS
 from .session import Act
 
 MOST = 126  # largest number of lines: from 21 balls to 6 pockets
-
-
 STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
 
 
@@ -29,17 +26,14 @@ class Line:
     ball: int
     pocket: int
     open: bool  # whether the ball can be potted straight, by the geometry of straight lines
-    blocked_by: tuple[str, ...]
-    """Names of the balls in the way of the ball to the pocket, or of the cue ball to the ball."""
-    why: str
-    """Any other reason why the line is not open: "cut too thin", "pocket too narrow from there"; else ""."""
+    blocked_by: tuple[str, ...]  # names of the balls in the way of the ball, or of the cue ball to it
+    why: str  # any other reason why it is not open: "cut too thin", "pocket too narrow from there"; else ""
     cut: float  # angle between the paths of the cue ball and of the ball
     to_ball: float
     to_pocket: float  # distances of the cue ball to the contact, and of the ball to the pocket
     aim: float  # direction of the cue ball's path, without throw and swerve
     tolerance: float  # largest error of the aim; 0 unless the line is open
-    chance: float | None
-    """Approximate probability, with the seat's noise, of keeping within the tolerance; None without noise."""
+    chance: float | None  # about how likely the seat's noise keeps within the tolerance; None without noise
 
     def to_dict(self) -> dict[str, Any]:
         """The line as JSON types."""
@@ -76,16 +70,18 @@ def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
         return []
     balls, pockets = (np.array(column) for column in zip(*ways, strict=True))
     aims = POCKET_AIMS[pockets, :2]
-    ghosts = places[balls] - 2.0 * BALL_RADIUS * _unit(aims - places[balls])
+    onward = aims - places[balls]
+    unit = onward / np.maximum(np.hypot(*onward.T), 1e-12)[:, None]
+    ghosts = places[balls] - 2.0 * BALL_RADIUS * unit
     rows = np.zeros(len(ways), np.int64)
     skip: Any = np.column_stack([np.full(len(ways), CUE), balls])
     barred = obstructions(at, rows, places[balls], aims, ignore=skip)
     barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
-    of = lambda k: (ways[k], places, ghosts[k], aims[k], barred[k])  # noqa: E731
-    return [_line(*of(k), tolerances, sigma) for k in range(len(ways))]
+    each = zip(ways, ghosts, aims, barred, strict=True)
+    return [_line(*one, places, tolerances, sigma) for one in each]
 
 
-def _line(which, places, ghost, aim, barred, tolerances, sigma):
+def _line(which, ghost, aim, barred, places, tolerances, sigma):
     ball, pocket = which
     run, way = ghost - places[CUE], aim - places[ball]
     far, on = hypot(*run), hypot(*way)
@@ -98,10 +94,6 @@ def _line(which, places, ghost, aim, barred, tolerances, sigma):
     chance = erf(tolerance / (sigma * sqrt(2.0))) if sigma and tolerance else None
     aim = atan2(run[1], run[0])
     return Line(ball, pocket, tolerance > 0.0, blocked, why, cut, far, on, aim, tolerance, chance)
-
-
-def _unit(v: Floats) -> Floats:
-    return v / np.maximum(np.hypot(*v.T), 1e-12)[:, None]
 
 
 _ALONG = (
@@ -145,10 +137,9 @@ def last_words(act: Act, labels: tuple[str, str], before: Act | None = None) -> 
     if act.played is not None:
         nominated = f" ({act.detail} nominated)" if act.detail else ""
         said = f"{who}{nominated}: {sentence(act.played, labels)}"
-        room = (
-            act.room.words if act.room is not None and (act.room.moved or act.room.elevation > STEEP) else ""
-        )
-        return f"{said} {room[:1].upper()}{room[1:]}." if room else said
+        if act.room is None or not (act.room.moved or act.room.elevation > STEEP) or not act.room.words:
+            return said
+        return f"{said} {act.room.words[:1].upper()}{act.room.words[1:]}."
     return {
         "concede": f"{who} conceded the frame.",
         "claim": f"{who} claimed the frame.",

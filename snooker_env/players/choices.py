@@ -35,9 +35,8 @@ class ChoicePlayer(BoundPlayer):
     _planner: Any = None
 
     def _bind(self, options: Options) -> None:
-        same: Any = {
-            name: getattr(options, name) for name in ("physics", "table", "fidelity", "conditions", "cue")
-        }
+        names = ("physics", "table", "fidelity", "conditions", "cue")
+        same: Any = {name: getattr(options, name) for name in names}
         self._planner = Planner(Options(action="discrete", **same), threads=1)
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
@@ -73,12 +72,9 @@ class ChoicePlayer(BoundPlayer):
         visits, places = placed(at, keys)
         scores = self.scores(visits, keys)
         if np.shape(scores) != (len(at), SIZE):
-            what, wanted = f"array of shape {np.shape(scores)}", f"must have shape ({len(at)}, {SIZE})"
-            raise refuse_what(
-                f"{type(self).__qualname__}.scores",
-                what,
-                f"{wanted}: a score for each choice of each position",
-            )
+            allowed = f"must have shape ({len(at)}, {SIZE}): a score for each choice of each position"
+            what = f"array of shape {np.shape(scores)}"
+            raise refuse_what(f"{type(self).__qualname__}.scores", what, allowed)
         return visits, places, scores
 
 
@@ -106,10 +102,7 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; else the geometric player's.
-
-    All else is as by the kernels of ``tasks.ghost_ball``; the opponent of that name has these alone.
-    """
+    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; all else as by ``tasks.ghost_ball``."""
 
     name, training_shots = "ghost_ball", 0
 
@@ -149,5 +142,4 @@ class GhostBall(ChoicePlayer):
         return Strokes(values, place, nominate, decision), start
 
 
-_PLAIN = choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))
-"""The choice of the widest pot at 2.3 m/s without spin."""
+_PLAIN = choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))  # the widest pot, no spin

@@ -1,7 +1,7 @@
 """What does a player do in a frame who can say what strokes and positions are worth? All decisions by one worth: the
 stroke, what to do after a foul, where the cue ball in hand goes, who begins at a re-spotted black."""
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -9,91 +9,79 @@ from ..game import frame_columns as columns
 from ..planning import Positions
 from ..planning.frame_search import Tried
 from ..planning.positions import seeds_of
-from ..planning.worth import Chance, Worth, best_places, breaks_off, chosen, decide, lead_of, left_of
+from ..planning.worth import best_places, breaks_off, chosen, decide, lead_of, left_of
 from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
-from ..tasks.options import Options, Rules
-from .player import Player, Ranked, Strokes, placed
+from .player import BoundPlayer, Ranked, Strokes, placed
 from .search import RANKED
 
-LOST = 0.01
-"""The chance to win below which it concedes a frame in which it needs snookers, where it may."""
+LOST = 0.01  # the chance to win below which it concedes a frame in which it needs snookers, where it may
 _IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
 
 
-class FrameSearcher(Protocol):
-    """What ranks the strokes of frames: ``FrameSearch``, ``FrameStrokes``."""
-
-    rules: Rules
-    worth: Worth
-    chance: Chance | None
-
-    def rank(self, positions: Any, seeds: Any) -> list[Tried]:
-        """The strokes of each position, best first."""
-        ...
-
-
 class Decided(NamedTuple):
-    """What a player does in n positions.
-
-    ``strokes``: n ``Strokes``; ``tried``: of each position what its search tried, None where it plays no stroke or found
-    none; ``start``: the positions that the strokes are played from, after decisions, with placed cue balls."""
+    """What a player does in n positions."""
 
     strokes: Strokes
-    tried: list[Tried | None]
-    start: Positions
+    tried: list[Tried | None]  # what its search tried; None where it plays no stroke or found none
+    start: Positions  # what the strokes are played from, after decisions, with placed cue balls
 
 
-def decided(search: FrameSearcher, plain: Player, options: Options, at: Positions, seeds: Any) -> Decided:
-    """What who follows ``search`` does in n positions of frames; where it finds no stroke, that of ``plain``."""
-    worth, seeds = search.worth, seeds_of(seeds, len(at))
-    n, at = len(at), at.known_to(search.rules).copy()
-    values, places = np.tile(_IDLE, (n, 1)), np.full((n, 2), np.nan)
-    decisions, declare = np.full(n, columns.PLAY), np.full(n, SAYS_NOTHING)
-    plays, code = np.ones(n, np.bool_), search.rules.rule_set.code
-    rows = np.flatnonzero(at.lot)
-    if len(rows):
-        at.game[rows, columns.PHASE] = columns.STROKE
-        other = rows[worth(at[rows]) < 0.0] if "lot" in options.says else rows[:0]
-        declare[other], plays[other] = OTHER_BEGINS, False
-    rows = np.flatnonzero(at.choice)
-    if len(rows):
-        decisions[rows] = decide(worth, at[rows], code)[0]
-        for what in (columns.PLAY, columns.PLACE_ANYWHERE):
-            some = rows[decisions[rows] == what]
-            at.game[some] = chosen(at[some], what).game
-        plays[rows] = np.isin(decisions[rows], (columns.PLAY, columns.PLACE_ANYWHERE))
-    hand, usual = plays & at.in_hand, breaks_off(at) | at.anywhere
-    for rows in np.flatnonzero(hand & usual), np.flatnonzero(hand & ~usual):
-        if len(rows):  # at the break-off, and where it may stand anywhere, as other players do
-            some = placed(at[rows], seeds[rows]) if usual[rows[0]] else best_places(worth, at[rows])
-            at.positions[rows] = some[0].positions
-            places[rows] = at.positions[rows, 0]
-    tried: list[Tried | None] = [None] * n
-    rows = np.flatnonzero(plays)
-    for k, one in zip(rows.tolist(), search.rank(at[rows], seeds[rows]), strict=True):
-        if len(one.strokes):
-            tried[k], values[k] = one, one.strokes[0]
-    rows = rows[[tried[k] is None for k in rows.tolist()]]
-    if len(rows):  # nothing was found: any stroke at a ball on
-        values[rows] = plain.play(at[rows].as_visits(), seeds[rows]).values
-    if "concede" in options.says and search.chance is not None:
-        some = np.flatnonzero([one is not None and one.chances[0] < LOST for one in tried])
-        behind = lead_of(at[some]) < -left_of(at[some])  # it needs snookers
-        declare[some[behind]] = CONCEDES
-    return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)
+class FramePlayer(BoundPlayer):
+    """Plays frames by what its ``search`` says; where that finds no stroke, that of ``_plain``."""
 
+    search: Any = None  # a ``FrameSearch`` or ``FrameStrokes`` where it is bound
+    _plain: Any = None
 
-def ranked(search: FrameSearcher, made: Decided) -> list[Ranked]:
-    """The strokes that met noise samples, all where none did, at most ``RANKED``, best first; their scores are chances
-    to win, or points if the search knows no law for these."""
-    strokes, tried, _ = made
-    considered = []
-    for k, one in enumerate(tried):
-        if one is None:
-            considered.append(Ranked(strokes[k : k + 1], None))
-            continue
-        m = min(RANKED, int((one.samples > 0).sum()) or len(one.samples))
-        same = [np.repeat(part[k : k + 1], m, 0) for part in strokes.parts[1:]]
-        scores = one.points if search.chance is None else one.chances
-        considered.append(Ranked(Strokes(one.strokes[:m], *same), scores[:m]))
-    return considered
+    def decided(self, at: Positions, seeds: Any) -> Decided:
+        """What it does in n positions of frames, what it tried in those in which it strikes, and from where."""
+        options, search, seeds = self.options, self.search, seeds_of(seeds, len(at))
+        worth = search.worth
+        n, at = len(at), at.known_to(search.rules).copy()
+        values, places = np.tile(_IDLE, (n, 1)), np.full((n, 2), np.nan)
+        decisions, declare = np.full(n, columns.PLAY), np.full(n, SAYS_NOTHING)
+        plays, code = np.ones(n, np.bool_), search.rules.rule_set.code
+        rows = np.flatnonzero(at.lot)
+        if len(rows):
+            at.game[rows, columns.PHASE] = columns.STROKE
+            other = rows[worth(at[rows]) < 0.0] if "lot" in options.says else rows[:0]
+            declare[other], plays[other] = OTHER_BEGINS, False
+        rows = np.flatnonzero(at.choice)
+        if len(rows):
+            decisions[rows] = decide(worth, at[rows], code)[0]
+            for what in (columns.PLAY, columns.PLACE_ANYWHERE):
+                some = rows[decisions[rows] == what]
+                at.game[some] = chosen(at[some], what).game
+            plays[rows] = np.isin(decisions[rows], (columns.PLAY, columns.PLACE_ANYWHERE))
+        hand, usual = plays & at.in_hand, breaks_off(at) | at.anywhere
+        for rows in np.flatnonzero(hand & usual), np.flatnonzero(hand & ~usual):
+            if len(rows):  # at the break-off, and where it may stand anywhere, as other players do
+                some = placed(at[rows], seeds[rows]) if usual[rows[0]] else best_places(worth, at[rows])
+                at.positions[rows] = some[0].positions
+                places[rows] = at.positions[rows, 0]
+        tried: list[Tried | None] = [None] * n
+        rows = np.flatnonzero(plays)
+        for k, one in zip(rows.tolist(), search.rank(at[rows], seeds[rows]), strict=True):
+            if len(one.strokes):
+                tried[k], values[k] = one, one.strokes[0]
+        rows = rows[[tried[k] is None for k in rows.tolist()]]
+        if len(rows):  # nothing was found: any stroke at a ball on
+            values[rows] = self._plain.play(at[rows].as_visits(), seeds[rows]).values
+        if "concede" in options.says and search.chance is not None:
+            some = np.flatnonzero([one is not None and one.chances[0] < LOST for one in tried])
+            behind = lead_of(at[some]) < -left_of(at[some])  # it needs snookers
+            declare[some[behind]] = CONCEDES
+        return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)
+
+    def _considered(self, at: Positions, seeds: Any) -> list[Ranked]:
+        """The strokes that met noise samples, else all, at most ``RANKED``, best first, with chances or points."""
+        search, (strokes, tried, _) = self.search, self.decided(at, seeds)
+        considered = []
+        for k, one in enumerate(tried):
+            if one is None:
+                considered.append(Ranked(strokes[k : k + 1], None))
+                continue
+            m = min(RANKED, int((one.samples > 0).sum()) or len(one.samples))
+            same = [np.repeat(part[k : k + 1], m, 0) for part in strokes.parts[1:]]
+            scores = one.points if search.chance is None else one.chances
+            considered.append(Ranked(Strokes(one.strokes[:m], *same), scores[:m]))
+        return considered

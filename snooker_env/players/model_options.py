@@ -11,8 +11,7 @@ from .._notices import say
 from ..tasks.options import Options
 from ..tasks.saved_models import by_train, entries
 
-KEYS = (*Options.group("action", "visit"), "decision")
-"""Options that a model's file does not hold; what it observes and what kind of actions it has, it says itself."""
+KEYS = (*Options.group("action", "visit"), "decision")  # what a model's file does not say
 LEFT_OUT = "must be left out: it is for models of Stable-Baselines3"
 
 
@@ -70,5 +69,4 @@ def say_assumed(path: str | Path, options: Mapping[str, Any]) -> None:
         say(f"{path}: aim=absolute is assumed, as in Snooker-v0; {told}")
 
 
-_SAID: list[str] = []
-"""The model of which that was said."""
+_SAID: list[str] = []  # the model of which that was said

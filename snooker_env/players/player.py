@@ -1,8 +1,7 @@
 """What is a player? A function of positions and a seed, bound once (``at``), then asked (``play``).
 
 It keeps nothing between two calls: the same position and seed give the same stroke, whether asked for one
-table or a thousand.
-"""
+table or a thousand."""
 
 import copy
 from collections.abc import Mapping, Sequence
@@ -26,16 +25,14 @@ from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_N
 from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
 
-RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
-"""What ``Player.at`` takes: an environment, an ``Options``, or a dict of its fields."""
-
-
+RulesLike: TypeAlias = (
+    Environment | Options | Mapping[str, Any]
+)  # the latter: a dict of fields of ``Options``
 CODES: dict[str, tuple[int, ...]] = {
     "nominate": (AUTO, 0, *range(YELLOW, YELLOW + COLOURS)),
     "decision": (PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE),
     "declare": (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS),
-}
-"""The codes of what is said with a stroke."""
+}  # the codes of what is said with a stroke
 
 
 @dataclass(frozen=True)
@@ -155,8 +152,7 @@ class Strokes:
         ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n
         positions, on which the meaning of a place and a nomination depends. ValueError if the environment
         reads other actions, or a raised cue, a decision or a declaration that they do not hold; a place and a
-        nomination that they do not hold are left out.
-        """
+        nomination that they do not hold are left out."""
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
             what = f"action={options.action!r}, aim={options.aim!r}"
@@ -177,11 +173,8 @@ class Strokes:
                 raise refuse(name, part.max().item(), "must be left out: the actions do not hold it")
         if box.elevation:
             if (steep := self.elevation.max(initial=0.0)) > box.steepest + 1e-9:
-                raise refuse(
-                    "elevation",
-                    float(steep),
-                    f"must be at most {box.steepest:.3g} rad, as the option elevation says",
-                )
+                allowed = f"must be at most {box.steepest:.3g} rad, as the option elevation says"
+                raise refuse("elevation", float(steep), allowed)
             parts.append(2.0 * self.elevation / box.steepest - 1.0)
         if box.placement:
             parts += self._placed(at)
@@ -201,10 +194,7 @@ class Strokes:
         across = np.clip(x / D_RADIUS, -1.0, 1.0)
         depth = D_RADIUS * np.sqrt(1.0 - across * across)
         back = np.clip((BAULK_Y - y) / np.maximum(depth, 1e-9), 0.0, 1.0)
-        return [
-            np.where(at.anywhere, x / HALF_WIDTH, across),
-            np.where(at.anywhere, y / HALF_LENGTH, 2.0 * back - 1.0),
-        ]
+        return list(np.where(at.anywhere, (x / HALF_WIDTH, y / HALF_LENGTH), (across, 2.0 * back - 1.0)))
 
     def _nominated(self, at: Positions) -> Floats:
         """The component of the nomination: sixths of the range after a red, sevenths with a free ball."""
@@ -251,15 +241,13 @@ class Player(Protocol):
     def at(self, rules: RulesLike) -> "Player":
         """Return a new player bound to physics, table, fidelity, noise and, for frames, the game.
 
-        Strokes do not depend on how actions are read. ValueError if the player cannot play under the options.
-        """
+        Strokes do not depend on how actions are read. ValueError if the player cannot play under the options."""
         ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """Return what it does in n positions, of visits or of frames as the striker sees them.
 
-        ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once.
-        """
+        ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once."""
         ...
 
 
@@ -274,8 +262,7 @@ class BoundPlayer:
     """
 
     name: str = ""
-    training_shots: int | None = None
-    """All simulated shots of its training; None: not known."""
+    training_shots: int | None = None  # all simulated shots of its training; None: not known
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:
@@ -344,15 +331,11 @@ def decision_seeds(seed: int, tables: Ints, decision: int | Ints) -> Ints:
     """
     state = np.uint64(seed & 0xFFFFFFFFFFFFFFFF) + np.zeros(len(tables), np.uint64)
     for part in (np.asarray(tables), np.broadcast_to(np.asarray(decision), len(tables))):
-        state = _mixed(state + _ODD * (part.astype(np.uint64) + np.uint64(1)))
+        x = state + _ODD * (part.astype(np.uint64) + np.uint64(1))  # splitmix64 (Steele, Lea & Flood 2014)
+        x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        state = x ^ (x >> np.uint64(31))
     return (state >> np.uint64(32)).astype(np.int64)
-
-
-def _mixed(x: Any) -> Any:
-    """splitmix64 of uint64 numbers (Steele, Lea & Flood 2014)."""
-    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    return x ^ (x >> np.uint64(31))
 
 
 def decided(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats:

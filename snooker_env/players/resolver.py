@@ -17,26 +17,14 @@ from .search import BUDGET, LEAST, MOST, SearchPlayer
 from .stroke_value import StrokeValuePlayer
 from .tactician import Tactician
 
-GROUP = "snooker_env.players"
-"""Entry points for players of other packages: NAME = MODULE:MAKER, called without arguments."""
-READERS = "snooker_env.models"
-"""Entry points that read models: MODULE:READER, called with a path; None if the file is not theirs."""
-BUILT_IN = (
-    "random",
-    "ghost_ball",
-    "best_pot",
-    "search",
-    "planner",
-    "tactician",
-    "stroke_value",
-)  # the players in the package
+GROUP = "snooker_env.players"  # entry points for players: NAME = MODULE:MAKER, called without arguments
+READERS = "snooker_env.models"  # entry points that read models, called with a path; None if it is not theirs
+BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician", "stroke_value")
 RENAMED = {"lookahead": "search"}  # names of players of version 0.3 that are still understood
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
-PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
-"""How names of programs begin, and their player, which is loaded as an entry point is."""
-_SEARCHING = re.compile(
-    r"(best_pot|search|lookahead|tactician|stroke_value|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?"
-)
+PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"  # loaded as an entry point
+_KINDS = "best_pot|search|lookahead|tactician|stroke_value|planner(?:_value|_policy)?"
+_SEARCHING = re.compile(rf"({_KINDS})(?:_(\d+))?(?:@(.+))?")
 
 
 def players() -> list[str]:
@@ -224,9 +212,8 @@ def _strokes(name: str, path: Path) -> Any:
     try:
         return learned_strokes(path)
     except (OSError, KeyError, ValueError):
-        raise refuse(
-            "player", name, "must name a file strokes.npz of train.py --agent stroke_value"
-        ) from None
+        allowed = "must name a file strokes.npz of train.py --agent stroke_value"
+        raise refuse("player", name, allowed) from None
 
 
 def _learned(model: str) -> Any:

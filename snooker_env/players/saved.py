@@ -15,8 +15,6 @@ from ..tasks.saved_models import SavedModel, by_train, entries, one_thread, outl
 from .model_options import say_assumed
 from .seen import SeenPlayer
 
-_VIEW = "must be a model trained on the observation of a visit or a frame, and nothing else"
-
 
 @dataclass(frozen=True)
 class FittingModel:
@@ -38,21 +36,17 @@ class FittingModel:
                 choices = getattr(model.actions, "n", 0)
                 if outline(space(kind, frame=frame, replaced=replaced, choices=choices)) == saved.observation:
                     if outline(model.actions) != saved.action:
-                        raise model.other_actions
+                        told = "give the options of its training, for example placement=True"
+                        raise saved.refused(f"must be a model whose actions are {model.actions}: {told}")
                     return model
-        raise saved.refused(_VIEW)
+        view = "must be a model trained on the observation of a visit or a frame, and nothing else"
+        raise saved.refused(view)
 
     @property
     def actions(self) -> Any:
         """The space of its actions."""
         flat: Any = self.options | {"observation": "flat"}
         return Options(**flat).rules.actions.space
-
-    @property
-    def other_actions(self) -> ValueError:
-        """The error for a model with another action space; not raised."""
-        told = "give the options of its training, for example placement=True"
-        return self.saved.refused(f"must be a model whose actions are {self.actions}: {told}")
 
     def network(self, trust: bool) -> Any:
         """Load its policy: the code in its pickles runs. ValueError without ``trust``."""
@@ -91,17 +85,14 @@ class SavedNetwork:
 
 
 def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = "player") -> SeenPlayer:
-    """The player of a model's ``.zip``, with ``options`` of ``model_options``; ValueError for other files and for
-    those of ``train.py``."""
+    """The player of a model's ``.zip``, with ``options``; ValueError for those of ``train.py``."""
     try:
         ours = path.is_dir() or by_train(entries(path))
     except Exception as error:
         raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
     if ours:
-        words = (
-            "must be read in a clone of the repository, without options: it is a model or a run of train.py"
-        )
-        raise refuse(field, str(path), words)
+        words = "must be read in a clone of the repository, without options"
+        raise refuse(field, str(path), f"{words}: it is a model or a run of train.py")
     model = FittingModel.of(path, options, field)
     made = SeenPlayer(SavedNetwork(model, trust), name=str(path))
     say_assumed(path, model.options)

@@ -3,8 +3,7 @@
 * ``search`` judges positions by the rule of thumb and looks at strokes spread evenly over the pots.
 * ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It takes
   the weights of the level of execution errors that it plays under.
-* ``best_pot`` plays the likeliest pot without regard to what follows.
-"""
+* ``best_pot`` plays the likeliest pot without regard to what follows."""
 
 from typing import Any
 
@@ -19,9 +18,7 @@ from .player import BoundPlayer, Ranked, Strokes, placed
 from .weights import Learned, learned_at, level_for
 
 BUDGET = 120  # simulated shots of a decision where the name does not say how many
-KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")
-"""``planner_value`` and ``planner_policy`` have one of the planner's two halves: what is each worth?"""
-
+KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")  # the last: half a planner each
 LEAST, MOST = 8, 10**7  # the fewest and the most simulated shots of a decision
 RANKED = 40  # most strokes of a ranking
 
@@ -46,14 +43,12 @@ class SearchPlayer(BoundPlayer):
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
-        at = Positions.of(positions)
-        ranked, places = self._ranked(at, seeds)
+        ranked, places = self._ranked(positions, seeds)
         return Strokes(ranked.strokes[:, 0], places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their scores [points]."""
-        at = Positions.of(positions)
-        ranked, places = self._ranked(at, seeds)
+        ranked, places = self._ranked(positions, seeds)
         met = (ranked.samples > 0).sum(axis=1)
         most = np.minimum(np.where(met > 0, met, ranked.samples.shape[1]), RANKED)
         return [
@@ -61,8 +56,8 @@ class SearchPlayer(BoundPlayer):
             for k, m in enumerate(most.tolist())
         ]
 
-    def _ranked(self, at: Positions, seeds: Any) -> tuple[Any, np.ndarray]:
+    def _ranked(self, positions: Any, seeds: Any) -> tuple[Any, np.ndarray]:
         """The ranking of the search, and the places of cue balls in hand; NaN elsewhere."""
         _ = self.options  # it must be bound
-        visits, places = placed(at, seeds)
+        visits, places = placed(Positions.of(positions), seeds)
         return self.search.rank(visits, seeds), places

@@ -7,18 +7,8 @@ import numpy as np
 
 from .._check import choice, refuse_what
 from .._types import Bools, Floats, Ints, Observation, Singles
+from ..game import frame_columns as columns
 from ..game.balls import mask_of_present
-from ..game.frame_columns import (
-    ANYWHERE,
-    COLUMNS,
-    IN_HAND,
-    ON_TABLE,
-    PLACE_ANYWHERE,
-    RACK,
-    SCORE_0,
-    VISIT_COLUMNS,
-    WINNER,
-)
 from ..physics.conditions import nominal, normalised
 from ..planning import Positions
 from ..planning.positions import seeds_of
@@ -32,8 +22,7 @@ from ..tasks.options import Options, Rules
 from ..tasks.visit import Visits
 from .player import BoundPlayer, Strokes, placed
 
-OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")
-"""How a network sees and acts; with a miss rule it sees the layout that "replace" restores."""
+OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")  # with "miss" it sees more
 
 
 @runtime_checkable
@@ -57,8 +46,7 @@ class Seen(Protocol):
         """Return n actions, for n observations, of the kinds that ``options`` say.
 
         ``masks``: bool (n, choices) with ``action="discrete"``, else None. ``seeds``, int64 (n,): equal rows
-        and seeds must give equal actions, however many are asked for.
-        """
+        and seeds must give equal actions, however many are asked for."""
         ...
 
 
@@ -119,20 +107,14 @@ class SeenPlayer(BoundPlayer):
         keys = seeds_of(seeds, len(at))
         shown, places = self._shown(at, keys)
         actions = self._actions(shown, keys)
-        rows = np.arange(len(at))
-        if not self.frames:
-            values, start = decoded(self._rules, shown, rows, actions)
-            return Strokes(values, np.where(self._puts(shown), start.positions[:, 0], places))
-        nominate, decision, declare = sayings(self._rules, actions, shown.game)
-        shown = shown.copy()
-        shown.game[decision == PLACE_ANYWHERE, IN_HAND] = shown.game[decision == PLACE_ANYWHERE, ANYWHERE] = 1
-        values, start = decoded(self._rules, shown, rows, actions, nominate)
-        places = np.where(self._puts(shown), start.positions[:, 0], places)
-        return Strokes(values, places, nominate, decision, declare)
-
-    def _puts(self, at: Positions) -> Bools:
-        """Where its action places the cue ball: bool (n, 1)."""
-        return (at.in_hand & bool(self._rules.actions.placement))[:, None]
+        said: Any = ()
+        if self.frames:
+            said = sayings(self._rules, actions, shown.game)
+            shown = shown.copy()
+            shown.game[np.ix_(said[1] == columns.PLACE_ANYWHERE, [columns.IN_HAND, columns.ANYWHERE])] = 1
+        values, start = decoded(self._rules, shown, np.arange(len(at)), actions, *said[:1])
+        puts = (shown.in_hand & bool(self._rules.actions.placement))[:, None]
+        return Strokes(values, np.where(puts, start.positions[:, 0], places), *said)
 
     def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, Floats]:
         """The positions as it sees them, and where cue balls in hand were placed for it (n, 2), else NaN."""
@@ -182,7 +164,9 @@ def conditions_seen(at: Positions, rules: Rules) -> Singles:
 
 def begun(at: Positions) -> Positions:
     """Positions of visits as those of frames: the striker's points alone have been scored."""
-    game = np.zeros((len(at), COLUMNS), np.int64)
-    game[:, :VISIT_COLUMNS], game[:, SCORE_0], game[:, WINNER] = at.game, at.points, -1
-    game[:, ON_TABLE] = game[:, RACK] = [mask_of_present(on_table) & ~1 for on_table in at.on_table]
+    game = np.zeros((len(at), columns.COLUMNS), np.int64)
+    game[:, : columns.VISIT_COLUMNS], game[:, columns.WINNER] = at.game, -1
+    game[:, columns.SCORE_0] = at.points
+    masks = np.array([mask_of_present(on_table) & ~1 for on_table in at.on_table], np.int64)
+    game[:, [columns.ON_TABLE, columns.RACK]] = masks[:, None]
     return Positions(at.positions, at.on_table, game, None, at.conditions)

@@ -1,7 +1,7 @@
 """How does a player play that predicts where balls come to rest, without a shot? The stroke that its networks say is worth
 most, in visits a pot; where none is on, that of ``ghost_ball``. In frames it plays safeties, too, and decides by their worth."""
 
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -15,19 +15,18 @@ from ..planning.positions import seeds_of
 from ..planning.strokes import COLUMNS, Dynamics
 from ..tasks.options import Options
 from .choices import GhostBall
-from .frame_decisions import Decided, FrameSearcher, decided, ranked
-from .player import BoundPlayer, Ranked, Strokes, placed
+from .frame_decisions import FramePlayer
+from .player import Ranked, Strokes, placed
 from .weights import StrokeLayers, learned_at, learned_strokes, learned_worth, level_for
 
 
-class StrokeValuePlayer(BoundPlayer):
-    """The best of the strokes of a ``StrokeValue``, in frames of a ``FrameStrokes``; ``learned``: the layers of their
-    networks, by default the package's."""
+class StrokeValuePlayer(FramePlayer):
+    """The best stroke of a ``StrokeValue``, in frames of a ``FrameStrokes``, with the layers ``learned``."""
 
     name = "stroke_value"
 
     def __init__(self, learned: StrokeLayers | None = None):
-        self._given, self.values, self.search = learned, None, None
+        self._given, self.values = learned, None
 
     def _bind(self, options: Options) -> None:
         rules, level = options.rules, level_for(options.rules.noise)
@@ -57,7 +56,7 @@ class StrokeValuePlayer(BoundPlayer):
         """Its strokes, best first, with what they are worth [points]."""
         at = Positions.of(positions)
         if at.of_frames:
-            return ranked(cast(FrameSearcher, self.search), self.decided(at, seeds))
+            return self._considered(at, seeds)
         at, places, found, scores = self._scored(at, seeds)
         made: list[Ranked] = self._plain.rank(at, seeds)
         for j, k in enumerate(found.rows.tolist()):
@@ -65,11 +64,6 @@ class StrokeValuePlayer(BoundPlayer):
             where = np.repeat(places[k : k + 1], len(order), axis=0)
             made[k] = Ranked(Strokes(found.strokes[j, order], where), scores[j, order].astype(np.float64))
         return made
-
-    def decided(self, at: Positions, seeds: Any) -> Decided:
-        """What it does in positions of frames, what it compared in those in which it strikes, and from where."""
-        assert self.search is not None, self.options  # it must be bound
-        return decided(self.search, self._plain, self.options, at, seeds)
 
     def _scored(self, at: Positions, seeds: Any) -> tuple[Positions, Floats, Candidates, Any]:
         """Positions of visits, the places of cue balls in hand, the strokes that are looked at, and their values."""

@@ -1,7 +1,7 @@
 """How does the planner of the whole game play? One search for pots, safeties and escapes, one worth for both
 players, and all decisions of a frame by that worth (``frame_decisions``)."""
 
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -17,23 +17,21 @@ from ..planning.positions import PositionsLike
 from ..planning.worth import decide, lead_of, left_of
 from ..tasks.options import Options
 from .choices import GhostBall
-from .frame_decisions import Decided, FrameSearcher, decided, ranked
-from .player import BoundPlayer, Ranked, Strokes
+from .frame_decisions import FramePlayer
+from .player import Ranked, Strokes
 from .search import MOST, SearchPlayer
 from .weights import learned_at, learned_worth, level_for
 
 
-class Tactician(BoundPlayer):
-    """The best stroke of a ``FrameSearch``, in visits of the planner; ``learned``: the layers of a ``LearnedWorth``
-    and a ``Chance``, each may be None; by default the package's."""
+class Tactician(FramePlayer):
+    """The best stroke of a ``FrameSearch``, in visits of the planner; ``learned``: layers and a ``Chance``."""
 
     kind = "tactician"
 
     def __init__(self, budget: int = AVERAGE, learned: Any = None):
         self.name: str = self.kind if budget == AVERAGE else f"{self.kind}_{budget}"
         self.budget: int = integer("budget", budget, LEAST, MOST)
-        self._given = learned
-        self._visits, self.search = SearchPlayer("planner", budget), None
+        self._given, self._visits = learned, SearchPlayer("planner", budget)
 
     def _bind(self, options: Options) -> None:
         self._visits, self._plain = self._visits.at(options), GhostBall().at(options)
@@ -52,39 +50,19 @@ class Tactician(BoundPlayer):
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their chances to win; in visits their points."""
         at = Positions.of(positions)
-        if not at.of_frames:
-            return self._visits.rank(at, seeds)
-        return ranked(cast(FrameSearcher, self.search), self.decided(at, seeds))
+        return self._considered(at, seeds) if at.of_frames else self._visits.rank(at, seeds)
 
     def chance_to_win(self, positions: PositionsLike) -> Floats:
-        """Return how likely the striker of each position wins the frame, if both play on as the ``tactician`` does.
+        """Return how likely the strikers of n positions of frames win, if both play on as the ``tactician`` does.
 
-        The worth of the position is added to the lead, and a law (``planning.worth.Chance``) says what that lead at
-        the end is worth while so many points are still on the table. Nothing is simulated: a millisecond for one
-        position.
-
-        Parameters
-        ----------
-        positions : PositionsLike
-            n positions of frames, as their strikers see them. A cue ball in hand is not placed: the worth was
-            learned of such positions, too. After a foul, and where the striker has won the lot, the best decision
-            is taken.
-
-        Returns
-        -------
-        numpy.ndarray
-            float64 (n,), in [0, 1]. Of a frame that is over 0 or 1.
-
-        Raises
-        ------
-        ValueError
-            If the player is not bound, the positions are of visits, which nobody wins, or the player was made
-            without a law of the chance.
-        """
+        Float64 (n,), in [0, 1]; 0 or 1 of a frame that is over. The worth of the position is added to the lead, and a
+        law (``planning.worth.Chance``) says what that is worth while so many points are on the table. A cue ball in hand
+        is not placed; after a foul or a lot that was won the best decision is taken. ValueError if the player is not
+        bound or has no law, or positions are of visits."""
         rules, at, search = self.options.rules, Positions.of(positions), self.search
         if not at.of_frames:
             raise refuse_what("positions", "those of visits", "must be of frames: nobody wins a visit")
-        if search is None or search.chance is None:
+        if search.chance is None:
             raise refuse("player", self.name, "must hold a law of the chance to win")
         at, worth = at.known_to(rules), search.worth
         gains, over = np.zeros(len(at)), at.game[:, columns.PHASE] == columns.FINISHED
@@ -100,11 +78,5 @@ class Tactician(BoundPlayer):
             black.game[:, columns.PHASE] = columns.STROKE
             gains[rows] = np.abs(worth(black))  # it begins, or the other does
         won = at.game[:, columns.WINNER] == 0
-        return np.where(
-            over, won, search.chance(lead_of(at) + gains, left_of(at), lead_of(at), search.spread)
-        )
-
-    def decided(self, at: Positions, seeds: Any) -> Decided:
-        """What it does in positions of frames, what it tried in those in which it strikes, and from where."""
-        assert self.search is not None, self.options  # it must be bound
-        return decided(self.search, self._plain, self.options, at, seeds)
+        chances = search.chance(lead_of(at) + gains, left_of(at), lead_of(at), search.spread)
+        return np.where(over, won, chances)

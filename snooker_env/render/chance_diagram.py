@@ -54,15 +54,12 @@ def win_chance(
     values = array("chances", chances, (-1,))
     if not len(values):
         raise refuse("chances", [], "must hold at least one")
-    if ((values < 0.0) | (values > 1.0)).any():
-        k = int(np.argmax((values < 0.0) | (values > 1.0)))
+    for k in np.flatnonzero((values < 0.0) | (values > 1.0))[:1].tolist():
         raise refuse(f"chances[{k}]", float(values[k]), "must be in [0, 1]")
     if isinstance(players, str) or len(players) != 2:
         raise refuse_what("players", repr(players), "must be two names")
     plt: Any = pyplot()
-    drawn: Any = ax
-    if drawn is None:
-        drawn = plt.figure(figsize=(WIDTH, HEIGHT), layout="constrained").add_subplot()
+    drawn: Any = ax or plt.figure(figsize=(WIDTH, HEIGHT), layout="constrained").add_subplot()
     edges = np.arange(len(values) + 1) - 0.5
     parts: Any = (np.zeros(len(values)), values, np.ones(len(values)))
     for k, (name, colour) in enumerate(zip(players, ("first", "other"), strict=True)):

@@ -7,12 +7,11 @@ import numpy as np
 
 from .._check import array, number, refuse, refuse_what
 from .._types import Floats, Vectors
-from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
 from .outline import extent
-from .shot_diagram import View, region_of
-from .sketch import Sketch, is_closed, rgb
+from .shot_diagram import View, places_of, region_of
+from .sketch import Sketch, halo, is_closed, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,12 +27,10 @@ def bandwidth_of(points: Floats) -> float:
     return float(np.clip(spread * len(points) ** (-1 / 6), 0.01, 0.15))
 
 
-def density_of(
-    points: Floats, low: Floats, high: Floats, bandwidth: float, cell: float = CELL
-) -> tuple[Floats, Floats]:
-    """A density estimate (nx, ny) [1/m^2] with Gaussian kernels in the rectangle ``low`` to ``high``, and the size of its
-    cells [m], about ``cell``. Tails beyond the corners are folded back: the sum is the share of points inside."""
-    n = np.maximum(1, np.round((high - low) / cell).astype(int))
+def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float) -> tuple[Floats, Floats]:
+    """A density (nx, ny) [1/m^2] with Gaussian kernels from corner ``low`` to ``high``, and its cells' size [m]."""
+    # tails beyond the corners are folded back: the sum is the share of points inside
+    n = np.maximum(1, np.round((high - low) / CELL).astype(int))
     size = (high - low) / n
     counts, _, _ = np.histogram2d(*points.T, bins=n.tolist(), range=[(low[0], high[0]), (low[1], high[1])])
     values = counts / (len(points) * size.prod())
@@ -101,13 +98,7 @@ def density(
     >>> [text.get_text() for text in ax.texts]
     ['50 %', '90 %']
     """
-    raw: Any
-    try:
-        raw = np.array(points, np.float64)
-    except (TypeError, ValueError):
-        raw = np.empty(0)
-    if raw.ndim != 2 or raw.shape[1] != 2:
-        raise refuse_what("points", f"array of shape {raw.shape}", "must be real numbers of shape (m, 2)")
+    raw = array("points", points, (-1, 2), None)
     on_table = ~np.isnan(raw).all(axis=1)
     sound = array("points", raw[on_table], (-1, 2))
     if not len(sound):
@@ -119,7 +110,10 @@ def density(
     table = Table.of(table)
     sketch = Sketch(table, table.ball_radius or BALL_RADIUS, region_of(view, sound, table), ax)
     sketch.title(title)
-    _draw_balls(sketch, position)
+    if position is not None:
+        r, here = places_of(position)
+        for ball in np.flatnonzero(here).tolist():
+            sketch.ball(ball, r[ball])
     _draw_cloud(sketch, sound, wide, lines, colour)
     sketch.mark(sound.mean(axis=0), "+", "text", 9.0, 8.0, mew=2.0, mec=rgb("text"), gid="mean")
     if not on_table.all():
@@ -127,24 +121,9 @@ def density(
     return sketch.ax
 
 
-def _draw_balls(sketch, position):
-    if position is None:
-        return
-    if hasattr(position, "arrays"):
-        r, here, _ = position.arrays()
-    else:
-        r = array("position", position, (-1, 2))
-        here = np.ones(len(r), bool)
-        if len(r) > N_BALLS:
-            raise refuse_what("position", f"{len(r)} places", f"must be at most {N_BALLS}")
-    for ball in np.flatnonzero(here).tolist():
-        sketch.ball(ball, r[ball])
-
-
 def _draw_cloud(sketch, points, bandwidth, shares, colour):
     """The map, more opaque where it is denser, and a line around each share."""
     from matplotlib.image import AxesImage
-    from matplotlib.patheffects import withStroke
 
     bounds = extent(sketch.table)
     reach = 4.5 * bandwidth + 0.02
@@ -167,19 +146,16 @@ def _draw_cloud(sketch, points, bandwidth, shares, colour):
             style = {"colors": [rgb("text")], "linewidths": 1.3 if share <= 0.5 else 0.9, "zorder": 3.6}
             lines = sketch.ax.contour(ys, xs, values, levels=[level], **style)
             lines.set_gid(f"share-{share:g}")
-            lines.set_path_effects([withStroke(linewidth=2.6, foreground=rgb("path_edge", 0.6))])
+            lines.set_path_effects(halo(2.6, 0.6))
             _label(sketch, lines, share, outer=share == max(shares))
 
 
 def _label(sketch, lines, share, *, outer):
     """The share of a line, written at its rightmost point; for a line inside another, at its leftmost."""
-    from matplotlib.patheffects import withStroke
-
     ring = max(lines.get_paths()[0].to_polygons(closed_only=False), key=len, default=None)
     if ring is not None and len(ring):
         y, x = ring[np.argmax(ring[:, 0]) if outer else np.argmin(ring[:, 0])]
-        stroke = [withStroke(linewidth=2.0, foreground=rgb("path_edge", 0.8))]
         away, side = (0.4, "left") if outer else (-0.4, "right")
         y += away * sketch.font / sketch.points_per_metre
-        style = {"zorder": 8.5, "gid": "share", "path_effects": stroke, "ha": side}
+        style = {"zorder": 8.5, "gid": "share", "path_effects": halo(2.0, 0.8), "ha": side}
         sketch.text(y, x, f"{100 * share:g} %", size=0.9, **style)

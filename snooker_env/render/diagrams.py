@@ -1,10 +1,7 @@
-"""Which diagrams are there? One shot, shots side by side, a fan over top and side, where a ball stops, and how
-likely each player of a frame was to win.
+"""Which diagrams are there? One shot, shots side by side, a fan over top and side, where a ball stops, chances to win.
 
-``plot``, ``compare``, ``fan`` and ``density`` draw with matplotlib on the axes that they are given, or on a
-new figure, and return the axes: baulk left and black right, y [m] to the right and x [m] down.
-``win_chance`` does so over the strokes of a frame, without a table.
-"""
+They draw with matplotlib on the axes that they are given, or on a new figure, and return the axes; tables with baulk left
+and black right, y [m] to the right and x [m] down."""
 
 from .chance_diagram import win_chance
 from .density_diagram import bandwidth_of as bandwidth_of

@@ -13,15 +13,14 @@ from ..physics.engine import EventKind
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from ..simulation import Shot, simulate, simulate_batch
-from .shot_diagram import SLIDES, View, region_of
+from .shot_diagram import SLIDES, View, places_of, region_of
 from .shot_paths import contacts, cue_ball, paths
 from .sketch import CAPTIONS, Sketch, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-TOPS, SIDES = (-0.4, -0.2, 0.0, 0.2, 0.4), (-0.25, 0.0, 0.25)
-"""Default tip offsets of a fan, over R."""
+TOPS, SIDES = (-0.4, -0.2, 0.0, 0.2, 0.4), (-0.25, 0.0, 0.25)  # default tip offsets over R
 SHADES = ((58, 132, 240), (150, 205, 255), (255, 255, 255), (255, 190, 120), (240, 84, 46))
 """Colours of the tops from lowest to highest: screw is blue, follow is red."""
 _MARKS = ("<", "o", ">")  # of side: left, none, right
@@ -36,19 +35,6 @@ class Strokes(NamedTuple):
     sides: Sequence[float]
     elevation: float = 0.0
     aim: float | None = None
-
-
-class _Options(NamedTuple):
-    """The options of ``fan``."""
-
-    elevation: float = 0.0
-    aim: float | None = None
-    table: TableLike = "match"
-    physics: PhysicsLike = None
-    on_table: Flags | None = None
-    view: View = "shot"
-    labels: bool = False
-    title: str = ""
 
 
 class Option(NamedTuple):
@@ -69,7 +55,14 @@ def fan(
     speed: float = 2.0,
     tops: Sequence[float] = TOPS,
     sides: Sequence[float] = SIDES,
-    **options: Any,
+    elevation: float = 0.0,
+    aim: float | None = None,
+    table: TableLike = "match",
+    physics: PhysicsLike = None,
+    on_table: Flags | None = None,
+    view: View = "shot",
+    labels: bool = False,
+    title: str = "",
 ) -> "Axes":
     """Draw the cue ball's paths of one pot, played with every pair of a top and a side.
 
@@ -90,10 +83,12 @@ def fan(
         Speed that the cue gives [m/s].
     tops, sides : sequence of float
         Tip offsets over R, up and to the right; ValueError if one of the strokes cannot pot the ball.
-    **options
-        ``elevation``: of the cue [rad]. ``aim``: direction of every stroke [rad]; then no ball needs to be
-        potted. ``table``, ``physics``: as in ``snooker_env.simulate``. ``on_table``: bool (n,), False for
-        balls of an array to leave out. ``view`` ("shot" by default), ``labels``, ``title``: as in ``plot``.
+    elevation, aim : float
+        Of the cue [rad]; direction of every stroke [rad], if it is given: then no ball needs to be potted.
+    table, physics, on_table
+        As in ``snooker_env.simulate``; ``on_table``, bool (n,): False for balls of an array to leave out.
+    view, labels, title
+        As in ``plot``.
 
     Returns
     -------
@@ -107,7 +102,6 @@ def fan(
     >>> len([line for line in ax.get_lines() if line.get_gid() == "fan"])
     2
     """
-    elevation, aim, table, physics, on_table, view, labels, title = _Options(**options)
     table, physics = Table.of(table), Physics.of(physics)
     r, here = _places(position, on_table)
     drawn = fan_options(r, here, ball, pocket, Strokes(speed, tops, sides, elevation, aim), table, physics)
@@ -147,44 +141,35 @@ def fan_options(
         ball = _object(ball, here)
         pocket, line = _line(r, ball, pocket, table, physics.R)
         aims = line + _SHIFTS
-    drawn = []
+    drawn, b = [], len(aims)
     for top in tops:
         for side in sides:
             struck = [strike(speed, one, side, top, elevation, physics) for one in aims]
+            v, w = np.zeros((b, len(r), 2)), np.zeros((b, len(r), 3))
+            v[:, CUE], w[:, CUE] = [one[:2] for one, _ in struck], [spin for _, spin in struck]
             k = 0
             if aim is None:
-                batch = _batch(r, here, struck, table, physics)
+                tiled = np.tile(r, (b, 1, 1)), v, w
+                batch = simulate_batch(*tiled, table, physics, on_table=np.tile(here, (b, 1)))
                 good = np.flatnonzero(batch.potted[:, ball] == pocket)
                 if not len(good):
                     near = f"no aim within {np.degrees(_SHIFTS[-1]):.0f} degrees of the ghost ball does"
                     allowed = f"must pot ball {ball} into pocket {pocket}, and {near}"
                     raise refuse("(top, side, speed)", (top, side, speed), allowed)
                 k = int(good[len(good) // 2])
-            v, w = np.zeros((len(r), 2)), np.zeros((len(r), 3))
-            v[CUE], w[CUE] = struck[k][0][:2], struck[k][1]
-            drawn.append(Option(top, side, float(aims[k]), simulate(r, v, w, table, physics, on_table=here)))
+            shot = simulate(r, v[k], w[k], table, physics, on_table=here)
+            drawn.append(Option(top, side, float(aims[k]), shot))
     return drawn
-
-
-def _batch(r, here, struck, table, physics):
-    b = len(struck)
-    v, w = np.zeros((b, len(r), 2)), np.zeros((b, len(r), 3))
-    v[:, CUE], w[:, CUE] = [one[:2] for one, _ in struck], [spin for _, spin in struck]
-    tiled = np.tile(r, (b, 1, 1)), v, w
-    return simulate_batch(*tiled, table, physics, on_table=np.tile(here, (b, 1)))
 
 
 def _places(position, on_table):
     """Positions (n, 2) and flags (n,) of a Position or of an array."""
-    if hasattr(position, "arrays"):
-        if on_table is not None:
-            raise refuse_what("on_table", "given", "must be left out with a Position, which has its own")
-        return position.arrays()[:2]
-    r = array("position", position, (-1, 2))
-    if not 2 <= len(r) <= N_BALLS:
-        raise refuse_what("position", f"{len(r)} places", f"must be 2 to {N_BALLS}, the cue ball first")
-    here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
-    if here.shape != (len(r),) or here.dtype != np.bool_ or not here[CUE]:
+    own = hasattr(position, "arrays")
+    if own and on_table is not None:
+        raise refuse_what("on_table", "given", "must be left out with a Position, which has its own")
+    r, here = places_of(position, 2)
+    here = here if on_table is None else np.array(on_table)
+    if not own and (here.shape != (len(r),) or here.dtype != np.bool_ or not here[CUE]):
         raise refuse("on_table", on_table, f"must be bool of shape ({len(r)},), True for the cue ball")
     return r, here
 

@@ -26,6 +26,8 @@ D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)],
 SPOT_MARKS = COLOUR_SPOTS
 """Snooker's spots: float64 (6, 2) [m], read-only; ``snooker_env.geometry.COLOUR_SPOTS``."""
 
+_SNOOKER = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
+
 for _constant in (BAULK_LINE, D_ARC):
     _constant.setflags(write=False)
 
@@ -42,14 +44,12 @@ class Outline:
 
 def extent(table: Table) -> Floats:
     """What a picture shows between the rails: a table's bounds, else snooker's bed, (2, 2) [m]."""
-    snooker = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
-    return np.where(np.isfinite(table.bounds), table.bounds, snooker)
+    return np.where(np.isfinite(table.bounds), table.bounds, _SNOOKER)
 
 
 def is_marked(table: Table) -> bool:
     """Whether snooker's lines and spots are drawn: on a snooker bed, and on unbounded cloth."""
-    snooker = [(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)]
-    return np.allclose(extent(table), snooker, rtol=0.0, atol=1e-9)
+    return np.allclose(extent(table), _SNOOKER, rtol=0.0, atol=1e-9)
 
 
 @lru_cache(maxsize=16)
@@ -78,8 +78,7 @@ def outline(table: Table) -> Outline:
     >>> len(parts.cushions), parts.falls.shape, parts.throats.shape
     (6, (6, 3), (6, 5))
     """
-    cushions, noses = [], []
-    ends = []
+    cushions, noses, ends = [], [], []
     for axis, side, level, *low_high in table.noses:
         ends += [(_point(axis, side * level, end), _point(axis, side, 0.0)) for end in low_high]
     for axis, side, level, low, high in table.noses:

@@ -39,10 +39,8 @@ COLOURS: Bytes = np.array(
     dtype=np.uint8,
 )
 """Colours of the balls by id: uint8 (22, 3), red, green, blue; read-only."""
-PALE: Bytes = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
-"""Lighter colours, for paths on the cloth: uint8 (22, 3), read-only."""
-LETTERS = "W" + "r" * 15 + "YGNBPK"
-"""Letters by ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
+PALE: Bytes = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)  # the same lighter, for paths
+LETTERS = "W" + "r" * 15 + "YGNBPK"  # by ball id: W the cue ball, r a red; N is brown and K black, B is blue
 
 for _constant in (COLOURS, PALE):
     _constant.setflags(write=False)

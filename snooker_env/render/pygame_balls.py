@@ -43,9 +43,10 @@ def _font(file, size):
     return pygame_().font.Font(str(FONTS / file), size)
 
 
-def surface_of(rgba: Any) -> Any:
-    """A surface with transparency from an array (h, w, 4) of floats from 0 to 255."""
-    image = np.ascontiguousarray(np.clip(np.rint(rgba), 0, 255).astype(np.uint8))
+def surface_of(colour: Any, alpha: Any) -> Any:
+    """A surface with transparency: its colours (3,) or (h, w, 3), from 0 to 255, and their opacities (h, w)."""
+    image = np.empty((*alpha.shape, 4), np.uint8)
+    image[..., :3], image[..., 3] = (np.clip(np.rint(part), 0, 255) for part in (colour, 255 * alpha))
     return pygame_().image.frombuffer(image, image.shape[1::-1], "RGBA")
 
 
@@ -103,15 +104,13 @@ def _piece(numbers, start, end, colour, width):
         far = (x - ax - part * dx) ** 2 + (y - ay - part * dy) ** 2
         whose[far < nearest] = k
         np.minimum(nearest, far, out=nearest)
-    image = np.empty((*x.shape, 4))
-    image[..., :3] = colour
-    image[..., 3] = 255 * np.clip(width / 2 + 0.5 - np.sqrt(nearest), 0, 1)
+    alpha = np.clip(width / 2 + 0.5 - np.sqrt(nearest), 0, 1)
     for cut, segment, side in ((start, 0, -1), (end, len(points) - 2, 1)):
         if cut is not None:
             px, py, dx, dy = cut
             beyond = side * ((x - px) * dx + (y - py) * dy)
-            image[..., 3][(whose == segment) & (beyond >= 0 if side > 0 else beyond > 0)] = 0
-    return surface_of(image), (int(low[0]), int(low[1]))
+            alpha[(whose == segment) & (beyond >= 0 if side > 0 else beyond > 0)] = 0
+    return surface_of(colour, alpha), (int(low[0]), int(low[1]))
 
 
 PANEL = 0.55  # length of a lamp [m]
@@ -128,8 +127,8 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
     over = lamps(scene.table)
     images = []
     for ball, places in scene.ghosts.items():
-        for place in view(places):
-            images.append(_at(place, _body, tuple(COLOURS[ball].tolist()), round(radius, 2), _FADED))
+        faded = tuple(COLOURS[ball].tolist()), round(radius, 2), _FADED
+        images += [_at(place, _body, *faded) for place in view(places)]
     where = view(scene.positions)
     images += _shadows(scene.positions, scene.heights / scene.ball_radius, over, where, radius)
     for k in np.argsort(scene.heights, kind="stable").tolist():
@@ -174,10 +173,8 @@ def _body(colour, radius, strength, fx, fy):
     """A ball without reflections."""
     x, y = _grid(int(np.ceil(radius)) + 1, fx, fy)
     d = np.hypot(x, y)
-    image = np.empty((*d.shape, 4))
-    image[..., :3] = _shaded(colour, np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1)))
-    image[..., 3] = 255 * strength * np.clip(radius + 0.5 - d, 0, 1)
-    return surface_of(image)
+    shaded = _shaded(colour, np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1)))
+    return surface_of(shaded, strength * np.clip(radius + 0.5 - d, 0, 1))
 
 
 def _spotted(place, colour, radius, turn):
@@ -191,10 +188,8 @@ def _spotted(place, colour, radius, turn):
     seen = np.max(np.stack([y / radius, x / radius, nz], axis=-1) @ towards, axis=-1)
     spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
     ink = np.array(COLOURS[1] if min(colour) > 120 else (250, 250, 245), dtype=np.float64)
-    image = np.empty((*d.shape, 4))
-    image[..., :3] = _shaded(colour, nz) * (1 - spot) + _shaded(ink, nz) * spot
-    image[..., 3] = 255 * np.clip(radius + 0.5 - d, 0, 1)
-    made = surface_of(image)
+    shaded = _shaded(colour, nz) * (1 - spot) + _shaded(ink, nz) * spot
+    made = surface_of(shaded, np.clip(radius + 0.5 - d, 0, 1))
     return made, (left - made.get_width() // 2, top - made.get_height() // 2)
 
 
@@ -206,7 +201,6 @@ def _rays(positions, over):
 
 def _mirrored(positions, over, where, radius):
     """Reflections: each lamp's where the normal is half-way between the lamp and the eye, straight above."""
-    images = []
     ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
     across, far = _rays(positions, ends.reshape(-1, 2))
     up = LAMP_HEIGHT / far + 1
@@ -215,10 +209,9 @@ def _mirrored(positions, over, where, radius):
     lean = lean.reshape(len(where), len(over), 3, 2)  # of each lamp its first end, middle and last end
     centre = where[:, None] + radius * lean[:, :, 1, ::-1]
     length = np.abs(lean[:, :, 2, 1] - lean[:, :, 0, 1]) * radius / 2
-    for places, lengths in zip(centre, length, strict=True):
-        for place, half in zip(places, lengths.tolist(), strict=True):
-            images.append(_at(place, _lamp, round(4 * max(half, 0.07 * radius)), round(radius, 1)))
-    return images
+    halves = [round(4 * max(half, 0.07 * radius)) for half in length.ravel().tolist()]
+    each = zip(centre.reshape(-1, 2), halves, strict=True)
+    return [_at(place, _lamp, half, round(radius, 1)) for place, half in each]
 
 
 @lru_cache(maxsize=2048)
@@ -227,17 +220,13 @@ def _lamp(half, radius, fx, fy):
     along, across = half / 4, max(0.075 * radius, 0.4)
     x, y = _grid(int(np.ceil(along + 0.22 * radius)) + 1, fx, fy)
     d = np.hypot(np.maximum(np.abs(x) - along + across, 0), y)
-    image = np.empty((*d.shape, 4))
-    image[..., :3] = PALETTE["lamp"]
     small = min(1.0, 0.25 + radius / 12)  # fainter in a small ball, which it would hide
     bright, glow = 0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2))
-    image[..., 3] = 255 * small * np.maximum(bright, glow)
-    return surface_of(image)
+    return surface_of(PALETTE["lamp"], small * np.maximum(bright, glow))
 
 
 def _shadows(positions, heights, over, where, radius):
-    """A soft shadow from each lamp, fainter for a lower light, and the dark place where the ball touches, which is
-    fainter under a ball that flies; ``heights`` in radii."""
+    """A soft shadow from each lamp, and one where the ball touches; ``heights`` in radii."""
     images = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3
@@ -256,10 +245,7 @@ def _shadows(positions, heights, over, where, radius):
 def _shadow(radius, alpha, soft, fx, fy):
     x, y = _grid(int(np.ceil(radius * (1 + soft))) + 1, fx, fy)
     t = np.clip((np.hypot(x, y) / radius - (1 - soft)) / (2 * soft), 0, 1)
-    image = np.empty((*t.shape, 4))
-    image[..., :3] = PALETTE["shadow"]
-    image[..., 3] = 255 * alpha / 24 * (1 - t * t * (3 - 2 * t))
-    return surface_of(image)
+    return surface_of(PALETTE["shadow"], alpha / 24 * (1 - t * t * (3 - 2 * t)))
 
 
 @lru_cache(maxsize=64)

@@ -190,8 +190,7 @@ def _column(page, label, value, end, balls=(), size=36, widest=""):
 def draw(scene: Scene, view: View) -> Bytes:
     """The picture of a scene in a view of its table: uint8 (height, width, 3), a new array."""
     pixels = table_picture(scene.table, view).copy()
-    # draws into ``pixels``
-    surface: Any = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")
+    surface: Any = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")  # draws into it
     surface.set_clip((0, 0, view.width, view.height - view.bar))
     width, aim = line_width(view.scale), PALETTE["aim"]
     lines = [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()]

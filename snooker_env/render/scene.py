@@ -16,8 +16,7 @@ from ..simulation import Shot
 from .outline import outline as outline
 from .outline import scene_data as scene_data
 
-TURN_STEP = 1 / 240
-"""Time between stored rotations [s]: at 100 rad/s the ball turns by a quarter of a right angle in it."""
+TURN_STEP = 1 / 240  # time between stored rotations [s]: at 100 rad/s a quarter of a right angle
 
 
 class Turning:
@@ -123,19 +122,16 @@ def scene(
     return Scene(table, ids, r[ids, :2], np.maximum(heights[ids], 0.0), radius, *drawn, text, bar, lettered)
 
 
-def ball_paths(
-    shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = None, step: float = 0.02
-) -> dict[int, Floats]:
-    """Paths {ball: (m, 2)} [m] of the balls that move, until a time [s]; impacts are points of them."""
-    until = shot.duration if until is None else min(number("until", until, 0.0), shot.duration)
-    return {ball: points for ball, (points, _) in _timed_paths(shot, balls, until, step).items()}
+def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), step: float = 0.02) -> dict[int, Floats]:
+    """Paths {ball: (m, 2)} [m] of the balls that move; impacts are points of them."""
+    return {ball: points for ball, (points, _) in _timed_paths(shot, balls, step).items()}
 
 
-def _timed_paths(shot, balls, until, step=0.02):
+def _timed_paths(shot, balls, step=0.02):
     """Paths {ball: (points (m, 2) [m], their times (m,) [s])}."""
-    times = np.append(np.arange(0.0, until, number("step", step, 0.0, open_low=True)), until)
+    times = np.append(np.arange(0.0, shot.duration, step), shot.duration)
     impacts = shot.events["time"][shot.events["kind"] <= EventKind.POT]
-    times = np.union1d(times, impacts[impacts < until])
+    times = np.union1d(times, impacts[impacts < shot.duration])
     r = shot.at(times)[0][..., :2]
     paths = {}
     for ball in balls:
@@ -178,7 +174,7 @@ class Film:
         self.duration: float = shot.duration
         self._table, self._shot = Table.of(table), shot
         self._overlays: dict[str, Any] = {"ball_radius": shot.physics.R, **overlays}
-        self._paths = _timed_paths(shot, trail, shot.duration)
+        self._paths = _timed_paths(shot, trail)
         self._turning = {int(ball): Turning(shot, ball) for ball in spots}
         self._contacts = {int(ball): _timed_contacts(shot, ball) for ball in faded}
         drops = shot.events[np.isin(shot.events["kind"], (EventKind.POT, EventKind.OFF))]

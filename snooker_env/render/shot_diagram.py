@@ -12,17 +12,7 @@ from ..physics.engine import EventKind
 from ..physics.table import Table
 from ..simulation import Shot
 from .palette import PALE
-from .shot_paths import (
-    Piece,
-    Tip,
-    arrow_places,
-    contacts,
-    cue_ball,
-    cut_angle,
-    paths,
-    tip_of,
-    velocity_before,
-)
+from .shot_paths import Piece, Tip, arrow_places, contacts, cue_ball, paths, tip_of
 from .sketch import CAPTIONS, PATH_WIDTH, WIDTH, Region, Sketch, flipped, is_closed, pyplot, rgb
 
 if TYPE_CHECKING:
@@ -33,16 +23,14 @@ View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
 
 SLIDES = (255, 168, 36)  # colour of the stripes of a path on which the ball slides
 DASHES = (0, (2.0, 1.6))  # lengths of these stripes, in widths of the path
-MOST_PATHS = 7
-"""If more balls move, only paths of the cue ball, its first object ball and potted balls are wide."""
+MOST_PATHS = 7  # if more balls move, only those of cue ball, first object ball and potted balls are wide
 
 _SIGNS: dict[EventKind, tuple[Any, Any, float, str]] = {
     EventKind.BALL_BALL: ("o", "text", 4.5, "ball"),
     EventKind.CUSHION: ("D", SLIDES, 4.5, "cushion"),
     EventKind.JAW: ("^", SLIDES, 5.5, "jaw"),
     EventKind.POT: ("X", "text", 7.0, "pocket"),
-}
-"""Marker, colour, size and name of each kind of impact."""
+}  # marker, colour, size and name of each kind of impact
 
 
 def plot(
@@ -120,7 +108,7 @@ def plot(
     main = principals(shot, moved, first) if balls is None else chosen
     for ball in sorted(chosen & set(moved), reverse=True):  # the cue ball last, on top
         if ball in main:
-            draw_path(sketch, moved[ball], ball)
+            _draw_path(sketch, moved[ball], ball)
             _draw_impacts(sketch, shot, ball, start)
         else:
             thin = np.concatenate([piece.points for piece in moved[ball]])
@@ -148,6 +136,17 @@ def region_of(view: Any, points: Floats, table: Table) -> Region:
     return Region(low_x, high_x, low_y, high_y)
 
 
+def places_of(position: Any, least: int = 0) -> tuple[Floats, Any]:
+    """Places (n, 2) [m] and flags (n,) of a ``Position`` or of an array of ``least`` to ``N_BALLS``."""
+    if hasattr(position, "arrays"):
+        return position.arrays()[:2]
+    r = array("position", position, (-1, 2))
+    if not least <= len(r) <= N_BALLS:
+        allowed = f"{least} to {N_BALLS}, the cue ball first" if least else f"at most {N_BALLS}"
+        raise refuse_what("position", f"{len(r)} places", f"must be {allowed}")
+    return r, np.ones(len(r), bool)
+
+
 def area(shot: Shot) -> Floats:
     """Points of the important paths of a shot: (m, 2) [m]."""
     moved = paths(shot)
@@ -164,9 +163,8 @@ def principals(shot: Shot, moved: Mapping[int, Any], first: int | None) -> set[i
     return {first, *met[:1], *np.flatnonzero(shot.potted >= 0).tolist()} & set(moved)
 
 
-def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = None) -> None:
+def _draw_path(sketch: Sketch, path: Sequence[Piece], ball: int) -> None:
     """A ball's path in its colour: striped while it slides, plain while it rolls, dotted while it falls or flies."""
-    colour = PALE[ball] if colour is None else colour
     for piece in path:
         style: dict[str, Any] = {"gid": f"{piece.kind}-{ball}"}
         if piece.kind == "slide":
@@ -174,11 +172,11 @@ def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = No
             style |= {"dash_capstyle": "butt", "solid_capstyle": "butt"}
         elif piece.kind in ("fall", "fly"):
             style |= {"ls": ":"}
-        sketch.line(piece.points, colour, level=5.0 + 0.3 * (ball == 0), **style)
+        sketch.line(piece.points, PALE[ball], level=5.0 + 0.3 * (ball == 0), **style)
     points = np.concatenate([piece.points for piece in path])
     points = points[np.append(True, np.hypot(*np.diff(points, axis=0).T) > 0)]
     for place, direction in arrow_places(points, 0.085 * sketch.region.width):
-        sketch.arrow(place, direction, colour)
+        sketch.arrow(place, direction, PALE[ball])
 
 
 def _draw_impacts(sketch, shot, ball, start):
@@ -198,16 +196,16 @@ def _write_speeds(sketch, shot, first, start):
         if k < 6 and contact.kind != EventKind.POT and contact.speed > 0.02:
             words = f"{contact.speed:.2f} m/s"
             if contact.kind == EventKind.BALL_BALL:
-                words += f", cut {np.degrees(cut_angle(shot, contact)):.0f}°"
-                _draw_cut(sketch, shot, contact)
+                words += f", cut {np.degrees(contact.cut):.0f}°"
+                _draw_cut(sketch, contact)
             sketch.label(contact.place, words)
 
 
-def _draw_cut(sketch, shot, contact):
+def _draw_cut(sketch, contact):
     """The cut, if balls are large enough: the old direction, the line of centres, and an arc between them."""
     if sketch.R * sketch.points_per_metre < 5.0:
         return
-    v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
+    v, line = contact.velocity, contact.place - contact.centre
     angles = np.arctan2(line[1], line[0]), np.arctan2(v[1], v[0])
     turn = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
     rays = angles[0] + turn * np.linspace(0.0, 1.0, 17)
@@ -256,16 +254,14 @@ def tip_words(tip: Tip) -> str:
 
 def draw_tip(sketch: Sketch, tip: Tip | None, middle: Place, radius: float, limit: float) -> None:
     """Where the tip struck the cue ball; ``middle``: (y, x) [m]; ``limit``: offset of a miscue over R."""
-    from matplotlib.patches import Circle
-
-    (y, x), add = middle, sketch.ax.add_patch
-    add(Circle((y, x), radius, fc=rgb((252, 248, 234)), ec=rgb("bar_edge"), lw=0.8, zorder=9.3, gid="inset"))
-    add(Circle((y, x), limit * radius, fc="none", ec=rgb("text_quiet"), lw=0.7, ls=(0, (3, 2)), zorder=9.35))
+    (y, x), disc = middle, sketch.disc
+    disc((y, x), radius, fc=rgb((252, 248, 234)), ec=rgb("bar_edge"), lw=0.8, zorder=9.3, gid="inset")
+    disc((y, x), limit * radius, fc="none", ec=rgb("text_quiet"), lw=0.7, ls=(0, (3, 2)), zorder=9.35)
     for line in ([(y - radius, y + radius), (x, x)], [(y, y), (x - radius, x + radius)]):
         sketch.ax.plot(*line, color=rgb("text_quiet", 0.6), lw=0.6, zorder=9.35)
     if tip is not None:
         place = (y + tip.side * radius, x - tip.top * radius)
-        add(Circle(place, 0.13 * radius, fc=rgb("bar_accent"), ec="none", zorder=9.4, gid="tip"))
+        disc(place, 0.13 * radius, fc=rgb("bar_accent"), ec="none", zorder=9.4, gid="tip")
 
 
 def _write_strip(sketch, shot, first, tip, known, *, short):
@@ -301,24 +297,19 @@ def summary(shot: Shot, first: int | None) -> list[str]:
     if met is not None:
         back = (met.time, met.ball)  # the same meeting from the side of the other ball
         other = next(one for one in contacts(shot, met.other) if (one.time, one.other) == back)
-        cut = np.degrees(cut_angle(shot, met))
-        lines.append(f"{name(met.other)}: cut {cut:.0f}°, leaves with {other.after:.2f} m/s")
+        words = f"cut {np.degrees(met.cut):.0f}°, leaves with {other.after:.2f} m/s"
+        lines.append(f"{_name(met.other)}: {words}")
         lines.append(f"cue ball: {met.speed:.2f} m/s before, {met.after:.2f} after")
     down = np.flatnonzero(shot.potted >= 0).tolist()
-    pots = "; ".join(f"{name(ball)} into {pocket(shot, int(shot.potted[ball]))}" for ball in down[:2])
+    names = shot.table.pockets if shot.table else ()
+    into = {ball: names[k] if names else f"pocket {k}" for ball, k in enumerate(shot.potted.tolist())}
+    pots = "; ".join(f"{_name(ball)} into {into[ball]}" for ball in down[:2])
     end = pots + (" ..." if len(down) > 2 else "") if pots else f"at rest after {shot.duration:.1f} s"
     return [*lines, end]
 
 
-def name(ball: int) -> str:
-    """The name of a ball."""
-    return "cue ball" if ball == 0 else NAMES[ball].replace("_", " ")
-
-
-def pocket(shot: Shot, k: int) -> str:
-    """The name of a pocket."""
-    names = () if shot.table is None else shot.table.pockets
-    return names[k] if names else f"pocket {k}"
+def _name(ball):
+    return "cue ball" if ball == 0 else NAMES[ball]
 
 
 def _write_legend(sketch, shot, row):

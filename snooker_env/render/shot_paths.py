@@ -36,15 +36,22 @@ class Meeting(NamedTuple):
     other: int  # index of the ball, nose, jaw or pocket, as in the log of events
     place: Floats  # (2,) the point of contact [m]; for a pocket the centre of its fall
     centre: Floats  # (2,) centre of the ball [m]
-    speed: float  # of the ball just before [m/s]
+    velocity: Floats  # (2,) of the ball just before [m/s]
+    speed: float  # the same without its direction
     after: float  # of the ball just after [m/s]
+
+    @property
+    def cut(self) -> float:
+        """Angle [rad] between the direction before and the line of centres; 0 is full."""
+        v, line = self.velocity, self.place - self.centre
+        return float(np.arctan2(abs(v[0] * line[1] - v[1] * line[0]), v @ line))
 
 
 def pieces(shot: Shot, ball: int) -> list[Piece]:
     """The path of a ball, empty if it never moves; like pieces without an impact between are joined."""
     rows = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
     ends = np.append(rows[1:, T0], shot.duration)
-    events = shot.events[_is_impact(shot)]
+    events = shot.events[shot.events["kind"] <= EventKind.POT]
     impacts = set(events["time"][(events["i"] == ball) | (events["j"] == ball)].tolist())
     phases: list[tuple[Kind, list[float]]] = []
     for row, end in zip(rows, ends, strict=True):
@@ -67,16 +74,11 @@ def pieces(shot: Shot, ball: int) -> list[Piece]:
 def _steps(row, duration):
     """How many chords replace a segment: a parabola is at most a dt^2 / 8 away from one."""
     (vx, vy), (ax, ay) = row[[VX, VY]], row[[AX, AY]]
-    drags = row[SEGMENT_STATE] == BEND and abs(vx * ay - vy * ax) <= 1e-12 * np.hypot(vx, vy) * np.hypot(
-        ax, ay
-    )
+    speed, pull = np.hypot(vx, vy), np.hypot(ax, ay)
+    drags = row[SEGMENT_STATE] == BEND and abs(vx * ay - vy * ax) <= 1e-12 * speed * pull
     if drags or row[SEGMENT_STATE] in (ROLL, FALLING, AIR):  # straight, without a turning point
         return 1
-    return int(np.clip(np.ceil(duration * np.sqrt(np.hypot(row[AX], row[AY]) / (8 * STRAY))), 1, 256))
-
-
-def _is_impact(shot):
-    return shot.events["kind"] <= int(EventKind.POT)
+    return int(np.clip(np.ceil(duration * np.sqrt(pull / (8 * STRAY))), 1, 256))
 
 
 def paths(shot: Shot) -> dict[int, list[Piece]]:
@@ -105,7 +107,7 @@ def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
 def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
     """A ball's meetings in order of time; it is ``Meeting.ball`` even where the other struck it."""
     R = shot.physics.R
-    for time, number, i, j, *_ in shot.events[_is_impact(shot)].tolist():
+    for time, number, i, j, *_ in shot.events[shot.events["kind"] <= EventKind.POT].tolist():
         kind = EventKind(number)
         if ball != i and not (kind == EventKind.BALL_BALL and ball == j):
             continue
@@ -123,14 +125,9 @@ def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
             place = centre + R * towards / np.hypot(*towards)
         elif shot.table is not None and kind == EventKind.POT:
             place = shot.table.falls[other, [FALL_X, FALL_Y]]
-        before, after = (float(np.hypot(*u)) for u in (velocity_before(shot, ball, time), v[ball]))
-        yield Meeting(time, kind, ball, other, place, centre, before, after)
-
-
-def cut_angle(shot: Shot, contact: Meeting) -> float:
-    """Cut angle [rad] between the direction before a contact and the line of centres; 0 is full."""
-    v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
-    return float(np.arctan2(abs(v[0] * line[1] - v[1] * line[0]), v @ line))
+        before = velocity_before(shot, ball, time)
+        speed, after = (float(np.hypot(*u)) for u in (before, v[ball]))
+        yield Meeting(time, kind, ball, other, place, centre, before, speed, after)
 
 
 class Tip(NamedTuple):
@@ -143,32 +140,25 @@ class Tip(NamedTuple):
 
 
 def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
-    """The strike that gives this velocity and spin: ``physics.cue.struck`` solved. Level, if no side or no slip
-    is left to tell how far the cue was raised."""
+    """The strike for a velocity and spin: ``physics.cue.struck`` solved; level, if no side or slip is left."""
     v, w = np.asarray(velocity, np.float64), np.asarray(spin, np.float64)
     slip = v + physics.R * np.array([-w[1], w[0]])
     size = float(np.hypot(*slip))
     if size > 1e-9 and w[2]:
-        u = (
-            slip / size
-        )  # as before the friction j = mu_s V sin(elevation), whose spin about the path is linear in j
+        # as before the friction j = mu_s V sin(elevation), whose spin about the path is linear in j
+        u = slip / size
         turned = float(w[:2] @ u) + 2.5 / physics.R * float(u[1] * v[0] - u[0] * v[1])
         j = physics.mu_s * float(w[:2] @ v) / (float(w[2]) - physics.mu_s * turned)
         if j > 0.0:
             v, w = v + j * u, w + 2.5 * j / physics.R * np.array([u[1], -u[0], 0.0])
-    return _level_tip(v, w, physics)
-
-
-def _level_tip(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
-    """The strike that gives this velocity and spin before the cloth rubs."""
-    v = float(np.hypot(*velocity))
-    c, s = velocity / v
-    about_path, about_up = float(spin[0] * c + spin[1] * s), float(spin[2])
+    speed = float(np.hypot(*v))
+    c, s = v / speed
+    about_path, about_up = float(w[0] * c + w[1] * s), float(w[2])
     elevation = float(np.arctan2(about_path * np.sign(about_up), abs(about_up))) if about_up else 0.0
     elevation = elevation if elevation > 1e-9 else 0.0  # no cue has a negative one
     level = float(np.cos(elevation))
-    q = 2.5 * v / level / physics.R
-    return Tip(about_up / level / q, float(spin[1] * c - spin[0] * s) / q, v / level, elevation)
+    q = 2.5 * speed / level / physics.R
+    return Tip(about_up / level / q, float(w[1] * c - w[0] * s) / q, speed / level, elevation)
 
 
 def arrow_places(points: Floats, spacing: float) -> list[tuple[Floats, Floats]]:

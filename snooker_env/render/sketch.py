@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 WIDTH = 8.3  # width of a new figure [inches]: 830 pixels, the width of a README
-PATH_WIDTH, OUTLINE = 2.16, 1.6
-"""Width of a path [points], 3 pixels at 100 dpi, and by how much its dark outline is wider [points]."""
+PATH_WIDTH, OUTLINE = 2.16, 1.6  # of a path [points], 3 pixels at 100 dpi; by how much its outline is wider
 TABLE = "snooker-table"  # the gid of the parts that a sketch draws once on its axes
 CAPTIONS = {"full": 0.118, "short": 0.2, "none": 0.0}
 """Height of the strip of text over the picture's width: for wide axes, axes of half the width, and none."""
@@ -31,6 +30,13 @@ def pyplot() -> Any:
     except ImportError as error:
         raise missing("diagrams need matplotlib", "plot") from error
     return plt
+
+
+def halo(width: float, alpha: float) -> list[Any]:
+    """The ``path_effects`` of words and lines with a dark outline, ``width`` [points] wide."""
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=width, foreground=rgb("path_edge", alpha))]
 
 
 class Region(NamedTuple):
@@ -59,13 +65,11 @@ class Region(NamedTuple):
         return cls(low_x - rim, high_x + rim, low_y - rim, high_y + rim)
 
     @classmethod
-    def around(
-        cls, points: Floats, table: Table, margin: float = 0.18, ratio: tuple[float, float] = (1.35, 2.1)
-    ) -> "Region":
-        """Around points (m, 2) [m]: at least 1 m wide, width / height in ``ratio``, inside ``of_table``."""
-        low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
-        width = max(high[1] - low[1], 1.0, ratio[0] * (high[0] - low[0]))
-        size = np.array([max(high[0] - low[0], width / ratio[1]), width])
+    def around(cls, points: Floats, table: Table) -> "Region":
+        """Around points (m, 2) [m]: at least 1 m wide, width / height in 1.35 to 2.1, inside ``of_table``."""
+        low, high = points.min(axis=0) - 0.18, points.max(axis=0) + 0.18
+        width = max(high[1] - low[1], 1.0, 1.35 * (high[0] - low[0]))
+        size = np.array([max(high[0] - low[0], width / 2.1), width])
         start = (low + high) / 2 - size / 2
         if is_closed(table):
             least, most = np.array(cls.of_table(table)).reshape(2, 2).T
@@ -93,17 +97,8 @@ def flipped(points: Any) -> Floats:
 class Sketch:
     """Axes with a table on them; ``ax`` None makes a new figure, one with a sketch stays as it is."""
 
-    def __init__(
-        self,
-        table: Table,
-        R: float,
-        region: Region | None = None,
-        ax: "Axes | None" = None,
-        *,
-        strip: float = 0.0,
-    ):
+    def __init__(self, table: Table, R: float, region: Region, ax: "Axes | None" = None, *, strip: float = 0):
         plt = pyplot()
-        region = Region.of_table(table) if region is None else region
         self.table: Table = table
         self.R: float = R
         depth = strip * region.width
@@ -116,7 +111,9 @@ class Sketch:
         if self.fresh:
             self.region: Region = region
             self.depth: float = depth
-            self._set_up()
+            axes.set(xlim=region[2:], ylim=(region.high_x + depth, region.low_x), aspect="equal")
+            axes.set(xticks=[], yticks=[], facecolor=rgb("floor"))
+            axes.spines[:].set_visible(False)
             self._draw_table()
         else:
             (low_y, high_y), (bottom, low_x) = axes.get_xlim(), axes.get_ylim()
@@ -127,12 +124,6 @@ class Sketch:
         self.font: float = float(np.clip(9.0 * self.points_per_metre * w.width / (72 * WIDTH), 7.5, 11.0))
         self._taken: list[tuple[float, float, float, float]] = []
         self._busy: list[Floats] = []
-
-    def _set_up(self):
-        w, ax = self.region, self.ax
-        ax.set(xlim=(w.low_y, w.high_y), ylim=(w.high_x + self.depth, w.low_x), aspect="equal")
-        ax.set(xticks=[], yticks=[], facecolor=rgb("floor"))
-        ax.spines[:].set_visible(False)
 
     # the table
 
@@ -199,19 +190,23 @@ class Sketch:
 
     # things on the table
 
-    def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
-        """A ball at rest, with a highlight; ``label``: with its letter."""
+    def disc(self, middle: Any, radius: float, **style: Any) -> None:
+        """A disc; ``middle``: (y, x) [m]."""
         from matplotlib.patches import Circle
 
-        (y, x), R, colour = flipped(place), self.R, COLOURS[ball % N_BALLS]
-        add, style = self.ax.add_patch, {"lw": 0.4, "zorder": 7.0, "gid": f"ball-{ball}"}
-        add(Circle((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9))
-        add(Circle((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), **style))
+        self.ax.add_patch(Circle(middle, radius, **style))
+
+    def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
+        """A ball at rest, with a highlight; ``label``: with its letter."""
+        (y, x), R, colour, disc = flipped(place), self.R, COLOURS[ball % N_BALLS], self.disc
+        style = {"lw": 0.4, "zorder": 7.0, "gid": f"ball-{ball}"}
+        disc((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9)
+        disc((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), **style)
         for k in range(1, 13):
             away = 0.029 * k * R
             style = {"fc": (1, 1, 1, 0.022), "ec": "none", "zorder": 7.0 + 0.005 * k}
-            add(Circle((y - away, x - away), R * (1 - 0.065 * k), **style))
-        add(Circle((y - 0.36 * R, x - 0.40 * R), 0.17 * R, fc=rgb("lamp", 0.85), ec="none", zorder=7.1))
+            disc((y - away, x - away), R * (1 - 0.065 * k), **style)
+        disc((y - 0.36 * R, x - 0.40 * R), 0.17 * R, fc=rgb("lamp", 0.85), ec="none", zorder=7.1)
         self.keep_clear(np.asarray(place)[None], 2 * R)
         if label:
             dark = colour @ [0.30, 0.59, 0.11] < 130
@@ -223,12 +218,10 @@ class Sketch:
         self, ball: int, place: Vector, alpha: float = 0.4, *, radius: float | None = None, level: float = 6.0
     ) -> None:
         """A faded ball with a rim, for a moment of the shot or its end; ``radius``: another size [m]."""
-        from matplotlib.patches import Circle
-
-        (y, x), colour = flipped(place), COLOURS[ball % N_BALLS]
         rim = rgb(PALE[ball % N_BALLS], min(1.0, alpha + 0.45))
         size, gid = (self.R, f"ghost-{ball}") if radius is None else (radius, "sign")
-        self.ax.add_patch(Circle((y, x), size, fc=rgb(colour, alpha), ec=rim, lw=0.9, zorder=level, gid=gid))
+        style = {"fc": rgb(COLOURS[ball % N_BALLS], alpha), "ec": rim, "lw": 0.9, "zorder": level, "gid": gid}
+        self.disc(flipped(place), size, **style)
         self.keep_clear(np.asarray(place)[None], 2 * size)
 
     def line(
@@ -241,15 +234,13 @@ class Sketch:
             self.ax.plot(*flipped(points).T, **{"solid_capstyle": "round", **each})
         self.keep_clear(points, 0.0)
 
-    def arrow(
-        self, place: Floats, direction: Floats, colour: Any, size: float = 10.0, level: float = 5.6
-    ) -> None:
-        """An arrowhead at a place, ``size`` long [points], pointing along a unit vector."""
+    def arrow(self, place: Floats, direction: Floats, colour: Any) -> None:
+        """An arrowhead at a place, pointing along a unit vector."""
         from matplotlib.patches import Polygon
 
-        head = np.array([(0.5, 0.0), (-0.35, 0.32), (-0.17, 0.0), (-0.35, -0.32)]) * size
+        head = np.array([(5.0, 0.0), (-3.5, 3.2), (-1.7, 0.0), (-3.5, -3.2)])  # [points]
         turned = head / self.points_per_metre @ np.array([direction, [-direction[1], direction[0]]])
-        style = {"fc": rgb(colour), "ec": rgb("path_edge"), "lw": 0.8, "zorder": level, "gid": "arrow"}
+        style = {"fc": rgb(colour), "ec": rgb("path_edge"), "lw": 0.8, "zorder": 5.6, "gid": "arrow"}
         self.ax.add_patch(Polygon(flipped(place + turned), **style))
 
     def mark(
@@ -269,12 +260,10 @@ class Sketch:
             points = np.concatenate([np.linspace(a, b, n) for a, b, n in lines])
         self._busy.append(np.column_stack([points, np.full(len(points), size)]))
 
-    def text(
-        self, y: float, x: float, words: str, colour: Any = "text", size: float = 1.0, **more: Any
-    ) -> None:
+    def text(self, y: float, x: float, words: str, colour: Any = "text", size: float = 1, **how: Any) -> None:
         """Text at a place of the picture; ``size`` in units of the usual font."""
         style = {"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"}
-        self.ax.text(y, x, words, **style | more)
+        self.ax.text(y, x, words, **style | how)
 
     def rows(self, n: int) -> list[float]:
         """The x of n lines of text in the strip under the picture [m]."""
@@ -282,22 +271,17 @@ class Sketch:
 
     def title(self, words: str) -> None:
         """Write a title at the top left."""
-        from matplotlib.patheffects import withStroke
-
         if words:
             w, line = self.region, 1.5 * self.font / self.points_per_metre
             within = w.low_x < extent(self.table)[0, 0] - CUSHION  # on the rail, else on the cloth
             # right of the pocket
             y = w.low_y + (0.055 * w.width if w.low_y < extent(self.table)[1, 0] - CUSHION else 0.5 * line)
             x = w.low_x + (0.072 if within else 0.7 * line)
-            stroke = [withStroke(linewidth=2.2, foreground=rgb("path_edge", 0.85))]
-            self.text(y, x, words, weight="bold", size=1.1, gid="title", path_effects=stroke)
+            self.text(y, x, words, weight="bold", size=1.1, gid="title", path_effects=halo(2.2, 0.85))
             self._taken.append((w.low_y, w.low_y + 0.66 * line * len(words), w.low_x, w.low_x + 1.3 * line))
 
-    def label(self, place: Vector, words: str, colour: Any = "text") -> bool:
+    def label(self, place: Vector, words: str) -> bool:
         """Write text near a place where it covers least, with a line to it; False if there is no room."""
-        from matplotlib.patheffects import withStroke
-
         high = 1.25 * self.font / self.points_per_metre
         wide = (0.66 * len(words) + 0.6) * self.font / self.points_per_metre
         y, x = flipped(place)
@@ -318,9 +302,8 @@ class Sketch:
         near = np.clip(y, box[0], box[1]), np.clip(x, box[2], box[3])
         if np.hypot(near[0] - y, near[1] - x) > 0.7 * high:
             self.ax.plot([y, near[0]], [x, near[1]], color=rgb("text", 0.7), lw=0.7, zorder=8.4, gid="leader")
-        stroke = [withStroke(linewidth=2.4, foreground=rgb("path_edge", 0.9))]
-        style = {"zorder": 8.6, "ha": "center", "weight": "bold", "path_effects": stroke, "gid": "label"}
-        self.text(cy, cx, words, colour, **style)
+        style = {"zorder": 8.6, "ha": "center", "weight": "bold", "gid": "label"}
+        self.text(cy, cx, words, path_effects=halo(2.4, 0.9), **style)
         return True
 
     def _cost(self, box, busy):

@@ -113,10 +113,8 @@ class _Canvas:
 
     def box(self, x, y, extra, radius=0.0):
         """Distance to the bed, enlarged by ``extra``, with round corners."""
-        across, along = (
-            np.abs(axis - m) - (h + extra - radius)
-            for axis, m, h in zip((x, y), self.middle, self.half, strict=True)
-        )
+        each = zip((x, y), self.middle, self.half, strict=True)
+        across, along = (np.abs(axis - m) - (h + extra - radius) for axis, m, h in each)
         outside = np.hypot(np.maximum(across, 0), np.maximum(along, 0))
         return outside + np.minimum(np.maximum(across, along), 0) - radius
 
@@ -256,12 +254,8 @@ def _wood(canvas, table, parts):
     )
     ends = np.abs(y - canvas.middle[1]) - canvas.half[1] > np.abs(x - canvas.middle[0]) - canvas.half[0]
     deep = -edge  # from the outer edge [m]
-    shade = (
-        0.40
-        + 0.64 * _smooth(deep / 0.012)
-        + 0.34 * np.exp(-(((deep - 0.020) / 0.009) ** 2))
-        - 0.06 * _smooth((deep - 0.03) / 0.05)
-    )
+    shade = 0.40 + 0.64 * _smooth(deep / 0.012) + 0.34 * np.exp(-(((deep - 0.020) / 0.009) ** 2))
+    shade -= 0.06 * _smooth((deep - 0.03) / 0.05)
     shade += 0.24 * np.exp(-(((inner - 0.012) / 0.003) ** 2)) - 0.45 * _smooth(1 - inner / 0.007)
     lamps_y = lamps(table)[:, 1].tolist()
     gloss = sum(np.exp(-(((y - lamp) / 0.34) ** 2)) for lamp in lamps_y)
@@ -286,10 +280,8 @@ def _leather(canvas, image, x, y, throat):
     length = np.hypot(x0 - x1, y0 - y1)
     ux, uy = (x0 - x1) / length, (y0 - y1) / length  # towards the table
     out = np.linspace(-0.05, length, 200)
-    aside = half + _RIM
-    outer = [
-        canvas.box(x1 + ux * out + s * uy * aside, y1 + uy * out - s * ux * aside, CUSHION) for s in (-1, 1)
-    ]
+    wx, wy = uy * (half + _RIM), ux * (half + _RIM)  # aside
+    outer = [canvas.box(x1 + ux * out + s * wx, y1 + uy * out - s * wy, CUSHION) for s in (-1, 1)]
     over = np.flatnonzero(np.maximum(*outer) < -0.007)
     end = float(out[over[0]]) if len(over) else length
     hole = _capsule(x, y, throat)

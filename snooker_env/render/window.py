@@ -1,15 +1,4 @@
-"""How is a table shown on the screen? In a window that shows what it waits for, and that reads the keyboard.
-
-| key | effect |
-|---|---|
-| space | pause and go on |
-| right arrow | next picture, while paused |
-| enter | to the end of the shot |
-| up, down arrow | faster, slower: 0.25 to 8 times |
-| L | letters on the balls |
-| P | paths |
-| escape, close button | close the window |
-"""
+"""How is a table shown on the screen? In a window that shows what it waits for and its ``KEYS``, which it reads."""
 
 import dataclasses
 import os
@@ -23,8 +12,7 @@ from .pygame_view import draw
 from .scene import Film, Scene
 from .table_picture import SIZE, Size, View, checked_size
 
-SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
-"""Speeds that the user can choose, in multiples of the caller's."""
+SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)  # that the user can choose, in multiples of the caller's
 KEYS = "space: pause    right: step    enter: skip    up/down: speed    L: letters    P: paths    esc: close"
 WAITING = "waiting for the next stroke"
 _HINT = 0.026  # part of the window's height for the line with its status
@@ -58,7 +46,8 @@ class Window:
         self._size = None if size is None else checked_size(size)
         self._screen: Any = None
         self._shut = False
-        self._speed, self._paused, self._letters, self._paths = SPEEDS.index(1.0), False, False, True
+        self.speed, self.paused = 1.0, False  # as the user has chosen; in multiples of that of ``play``
+        self._letters, self._paths = False, True
         self._steps, self._skip, self._hint = 0, False, 0
         self.status: str = ""  # the status in the window's last line
 
@@ -66,16 +55,6 @@ class Window:
     def is_open(self) -> bool:
         """False before the first ``draw`` and after the window was closed."""
         return self._screen is not None
-
-    @property
-    def speed(self) -> float:
-        """The speed that the user has chosen, in multiples of that of ``play``."""
-        return SPEEDS[self._speed]
-
-    @property
-    def paused(self) -> bool:
-        """Whether the user has stopped the film."""
-        return self._paused
 
     def draw(self, scene: Scene, status: str = WAITING) -> bool:
         """Show a scene and what the window waits for; False, nothing shown, if the user has closed it."""
@@ -94,22 +73,22 @@ class Window:
         fps, clock = number("fps", fps, 0.0, open_low=True), pygame_().time.Clock()
         step = number("speed", speed, 0.0, open_low=True) / fps
         self._skip, time = False, 0.0
-        while self.draw(film.at(time), "paused" if self._paused else f"playing {self.speed:g}x"):
-            stands = self._paused and not self._steps and not self._skip
+        while self.draw(film.at(time), "paused" if self.paused else f"playing {self.speed:g}x"):
+            stands = self.paused and not self._steps and not self._skip
             if time >= film.duration and not stands:
                 return True
             if self._skip:
                 time = film.duration
             elif not stands:
                 self._steps = max(0, self._steps - 1)
-                time += step * (min(self.speed, 1.0) if self._paused else self.speed)
+                time += step * (min(self.speed, 1.0) if self.paused else self.speed)
             time = min(time, film.duration)
             clock.tick(fps)
         return False
 
     def close(self) -> None:
         """Close the window if it is open. A later ``draw`` opens it again."""
-        self._shut = self._paused = False
+        self._shut = self.paused = False
         if self._screen is not None:
             self._screen = None
             pygame_().display.quit()
@@ -150,13 +129,14 @@ class Window:
 
     def _press(self, pygame, key):
         if key == pygame.K_SPACE:
-            self._paused, self._steps = not self._paused, 0
-        elif key == pygame.K_RIGHT and self._paused:
+            self.paused, self._steps = not self.paused, 0
+        elif key == pygame.K_RIGHT and self.paused:
             self._steps += 1
         elif key in (pygame.K_RETURN, pygame.K_KP_ENTER):
             self._skip = True
         elif key in (pygame.K_UP, pygame.K_DOWN):
-            self._speed = min(max(self._speed + (1 if key == pygame.K_UP else -1), 0), len(SPEEDS) - 1)
+            k = SPEEDS.index(self.speed) + (1 if key == pygame.K_UP else -1)
+            self.speed = SPEEDS[min(max(k, 0), len(SPEEDS) - 1)]
         elif key == pygame.K_l:
             self._letters = not self._letters
         elif key == pygame.K_p:

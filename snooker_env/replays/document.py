@@ -23,6 +23,7 @@ from .encode import encoded_stroke
 
 FORMAT, VERSION = "snooker-replay", 1
 SUFFIXES = (".html", ".json", ".mp4", ".gif")
+_PARTS = ("noses", "jaws", "falls")  # of a table
 
 
 class Replay:
@@ -77,7 +78,9 @@ class Replay:
             raise refuse("strokes", [], "must hold at least one stroke")
         self.title: str = checked_text("title", title)
         names = checked_players(players)
-        usual = self._usual_players()
+        judged = next((stroke for stroke in self.strokes if isinstance(stroke, Played)), None)
+        frame = judged is not None and len(judged.scores) == 2
+        usual = ("Player 1", "Player 2") if frame else ("Player",) * (judged is not None)
         if names and len(names) != len(usual):
             allowed = "must be two names for a frame, one for a visit, none for bare shots"
             raise refuse_what("players", f"{len(names)} names", allowed)
@@ -93,19 +96,14 @@ class Replay:
         else:
             self.table = tables[0] if tables else Table.preset("match")
             for k, other in enumerate(tables):
-                if not _same(other, self.table):
+                parts = ((getattr(one, name) for one in (other, self.table)) for name in _PARTS)
+                if other is not self.table and not all(np.array_equal(*pair) for pair in parts):
                     allowed = "must be on the table of the first, or pass table=..."
                     raise refuse_what(f"strokes[{k}]", "a shot on another table", allowed)
         self.win_chance: tuple[float, ...] | None = None
         if (asked := checked_judge(judge)) is not None:
             self.win_chance = tuple(win_chances(asked, standings_of(self.strokes)))
         self._data: dict[str, Any] | None = None
-
-    def _usual_players(self) -> tuple[str, ...]:
-        judged = next((stroke for stroke in self.strokes if isinstance(stroke, Played)), None)
-        if judged is None:
-            return ()
-        return ("Player 1", "Player 2") if len(judged.scores) == 2 else ("Player",)
 
     @property
     def shots(self) -> list[Shot]:
@@ -121,8 +119,7 @@ class Replay:
     def to_dict(self) -> dict[str, Any]:
         """The replay as JSON types, see docs/play/replay.md; treat what is inside as read-only.
 
-        ValueError if a shot has no path, or more than 22 balls.
-        """
+        ValueError if a shot has no path, or more than 22 balls."""
         if self._data is None:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
             physics = self.shots[0].physics
@@ -153,20 +150,17 @@ class Replay:
         """The pictures of the film, each uint8 (height, width, 3): treat them as read-only.
 
         ``fps`` and ``speed`` (over that of the strokes) in (0, 1000], else ValueError; ``size``: width and
-        height [pixels]. Without pygame ImportError.
-        """
+        height [pixels]. Without pygame ImportError."""
         from .film import frames, shown
 
-        films = shown(self.strokes, self.table, self.players, self.title, self.win_chance)
-        return frames(films, fps, speed, size)
+        return frames(shown(self), fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
 
         ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
         ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF: 15, 640 x 360).
-        ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra.
-        """
+        ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra."""
         target = Path(path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)
         if suffix in (".mp4", ".gif"):
@@ -194,17 +188,6 @@ def checked_players(players: Any) -> tuple[str, ...]:
     if len(names) > 2:
         raise refuse("players", players, "must be at most two names")
     return tuple(checked_text("players", name) for name in names)
-
-
-def _same(a: Table, b: Table) -> bool:
-    parts = ("noses", "jaws", "falls")
-    return a is b or all(np.array_equal(getattr(a, name), getattr(b, name)) for name in parts)
-
-
-_ALLOWED = (
-    "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay, or an environment "
-    "that keeps its history"
-)
 
 
 def replay(
@@ -261,23 +244,20 @@ def replay(
     return made
 
 
-def _still(position: Position, table: TableLike) -> Shot:
-    """The shot in which nothing moves."""
-    places, on_table, _ = position.arrays()
-    nothing, table = np.zeros((len(places), 3)), Table.of("match" if table is None else table)
-    return simulate(places, nothing[:, :2], nothing, table, on_table=on_table)
-
-
 def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
     if isinstance(source, Shot | Played):
         return [source]
     if isinstance(source, list | tuple):
         return list(source)
-    if isinstance(source, Position):
-        return [_still(source, table)]
+    if isinstance(source, Position):  # the shot in which nothing moves
+        places, on_table, _ = source.arrays()
+        nothing, table = np.zeros((len(places), 3)), Table.of("match" if table is None else table)
+        return [simulate(places, nothing[:, :2], nothing, table, on_table=on_table)]
     env = getattr(source, "unwrapped", source)
     if not hasattr(env, "history"):
-        raise refuse_what("source", f"a {type(source).__name__}", _ALLOWED)
+        allowed = "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay"
+        allowed += ", or an environment that keeps its history"
+        raise refuse_what("source", f"a {type(source).__name__}", allowed)
     if not env.keep_history:
         words = "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in "
         raise refuse_what("source", "an environment that keeps no history", f"{words}sn.RecordReplay")

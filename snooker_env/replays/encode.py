@@ -1,8 +1,7 @@
 """How is a stroke encoded for a browser? As the closed forms of its phases of motion (docs/play/replay.md).
 
 The numbers of a path are binary in base64. Positions, velocities and accelerations have 64 bits, so that the
-browser computes the same positions as ``Shot.at``; spins, which are only displayed, 32.
-"""
+browser computes the same positions as ``Shot.at``; spins, which are only displayed, 32."""
 
 import base64
 from typing import Any
@@ -68,6 +67,13 @@ def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, A
         none = {"points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0}
         return encoded_shot(item) | empty | none
     same = {name: getattr(item, name) for name in ("cue", "player", "points", "penalty")}
+    here, after = (
+        item.on_table,
+        None,
+    )  # the table before the next stroke, if it is not that of the balls at rest
+    rest = item.shot.positions[here], item.shot.on_table
+    if not all(map(np.array_equal, (item.positions[here], here), rest)):
+        after = {"places": packed(item.positions, "f8"), "on_table": np.flatnonzero(here).tolist()}
     return encoded_shot(item.shot) | {
         **same,
         "ball_on": "free ball" if item.free_ball else on_words(item.ball_on),
@@ -75,14 +81,5 @@ def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, A
         "words": sentence(item, players),
         "score": list(item.scores),
         "break": item.break_points,
-        "after": _after(item),
+        "after": after,
     }
-
-
-def _after(item: Played) -> dict[str, Any] | None:
-    """The table before the next stroke, if it differs from the balls at rest."""
-    on_table = item.on_table
-    same = np.array_equal(item.positions[on_table], item.shot.positions[on_table])
-    if same and np.array_equal(on_table, item.shot.on_table):
-        return None
-    return {"places": packed(item.positions, "f8"), "on_table": np.flatnonzero(on_table).tolist()}

@@ -57,19 +57,13 @@ USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif":
 """Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
 
-def shown(
-    strokes: Iterable[Shot | Played],
-    table: Table,
-    players: tuple[str, ...],
-    title: str,
-    chances: tuple[float, ...] | None = None,
-) -> Iterator[tuple[Film, Scene]]:
-    """For each stroke its film, and the table after it with the referee's words; ``chances``: as for ``bars``."""
-    strokes = list(strokes)
-    shown_bars = iter(bars([stroke for stroke in strokes if isinstance(stroke, Played)], players, chances))
-    for stroke in strokes:
-        during, after = next(shown_bars) if isinstance(stroke, Played) else (None, None)
-        yield filmed(table, stroke, during, after, "" if during else title)
+def shown(replay: Any) -> Iterator[tuple[Film, Scene]]:
+    """For each stroke of a ``Replay`` its film, and the table after it with the referee's words."""
+    judged = [stroke for stroke in replay.strokes if isinstance(stroke, Played)]
+    its = iter(bars(judged, replay.players, replay.win_chance))
+    for stroke in replay.strokes:
+        during, after = next(its) if isinstance(stroke, Played) else (None, None)
+        yield filmed(replay.table, stroke, during, after, "" if during else replay.title)
 
 
 def filmed(

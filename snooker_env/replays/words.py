@@ -64,8 +64,7 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
             words += f", break of {played.break_before + played.points}"
     else:
         words = "No ball potted"
-    if played.winner is not None and len(players) > played.winner:
-        winner = played.winner
+    if (winner := played.winner) is not None and len(players) > winner:
         words += f". Frame to {players[winner]}, {played.scores[winner]}-{played.scores[1 - winner]}"
     elif played.over and played.next_on == BallOn.NOTHING and not played.fouls:
         words += ". Table cleared"
@@ -75,8 +74,7 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
 def bars(
     strokes: Iterable[Played], players: Sequence[str], chances: Sequence[float] | None = None
 ) -> list[tuple[ScoreBar, ScoreBar]]:
-    """The bars during and after each of n strokes of one episode, in order; ``players``: their names; ``chances``:
-    ``Replay.win_chance``, n + 1."""
+    """The bars during and after each of n strokes of one episode; ``chances``: ``Replay.win_chance``, n + 1."""
     made, names = [], tuple(players)
     potted: list[int] | None = []  # in this break; None: it began before the first recorded stroke
     run = 0
@@ -110,10 +108,7 @@ def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar 
 
 def _bar(on_table, ball_on, free_ball, players, scores, striker, break_points, potted, words=""):
     """A bar; without players none of their scores."""
-    mask, who = (
-        mask_of_present(on_table) & ~1,
-        (tuple(players), scores, striker) if players else ((), (), None),
-    )
-    left = points_available(mask, ball_on, free_ball) if ball_on >= 0 else 0
+    who = (tuple(players), scores, striker) if players else ((), (), None)
+    left = points_available(mask_of_present(on_table) & ~1, ball_on, free_ball) if ball_on >= 0 else 0
     on, reds = "free ball" if free_ball else on_words(ball_on), int(on_table[1 : N_REDS + 1].sum())
     return ScoreBar(*who, break_points, tuple(potted or ()), reds, left, on, words)

@@ -110,7 +110,7 @@ def test_arrowheads_lie_on_the_path_and_point_along_it(screw):
 def test_speeds_cut_and_tip_are_written(screw):
     ax = screw.plot()
     met = next(c for c in shot_paths.contacts(screw, 0) if c.kind == sn.EventKind.BALL_BALL)
-    cut = f"cut {np.degrees(shot_paths.cut_angle(screw, met)):.0f}°"
+    cut = f"cut {np.degrees(met.cut):.0f}°"
     assert "2.20 m/s" in words(ax) and f"{met.speed:.2f} m/s, {cut}" in words(ax)
     assert "screw 0.35 R, right side 0.20 R" in words(ax) and "red 1 into top right" in words(ax)
     inset, tip = circles(ax, "inset")[0], circles(ax, "tip")[0]
@@ -284,7 +284,7 @@ def test_points_that_are_none_are_left_out_and_reported():
     width = np.sqrt(points[25:].var(axis=0).mean()) * 75 ** (-1 / 6)
     assert bandwidth_of(points[25:]) == pytest.approx(width)
     refused(lambda: density(points[:25]), "points", "25 rows", "must hold at least one")
-    refused(lambda: density(points[0]), "points", "array of shape (2,)", "must be real numbers of shape")
+    refused(lambda: density(points[0]), "points", "array of shape (2,)", "must have shape (n, 2)")
     refused(lambda: density(points, shares=[1.0]), "shares", "[1.0]", "must each be below 1")
     assert len(density(points, position=[(0.0, 0.0), (0.3, 0.3)], view="shot").patches) > 20
 

@@ -89,7 +89,7 @@ def test_the_cut_is_that_of_the_geometry():
         spins = [(-1.0 / R, 0.0, 0.0), (0.0, 0.0, 0.0)]
         shot = sn.simulate([(0.0, 0.0), (aside, 0.5)], [(0.0, 1.0), (0.0, 0.0)], spins)
         met = next(shot_paths.contacts(shot, 0))
-        assert shot_paths.cut_angle(shot, met) == pytest.approx(np.arcsin(aside / (2 * R)), abs=1e-9)
+        assert met.cut == pytest.approx(np.arcsin(aside / (2 * R)), abs=1e-9)
 
 
 @pytest.mark.parametrize("elevation", [0.0, 0.3, 1.0])

@@ -2,8 +2,7 @@
 
 ``python -m agents.export`` writes them from the models that ``train.py`` made. A file holds the NumPy arrays
 ``policy/LAYER/weight`` and ``policy/LAYER/bias`` of a ``StrokePolicy``, and ``value/LAYER/weight`` (members,
-out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading them runs no code.
-"""
+out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading them runs no code."""
 
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -19,10 +18,8 @@ from ...planning.worth import Chance
 from ...tasks.noise import LEVELS, Noise
 
 FOLDER = Path(__file__).parent
-WORTH = "worth.npz"
-"""The file of the ``tactician``'s worth of positions of frames (``python -m agents.learn_worth``)."""
-STROKES = "strokes.npz"
-"""The file of the networks of ``stroke_value`` (``python train.py --agent stroke_value``)."""
+WORTH = "worth.npz"  # of the ``tactician``: what positions of frames are worth (python -m agents.learn_worth)
+STROKES = "strokes.npz"  # the networks of ``stroke_value`` (python train.py --agent stroke_value)
 LAYERS_EACH = 3  # of each network but the policy
 
 
