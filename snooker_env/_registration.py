@@ -8,18 +8,16 @@ VECTOR_ENTRY_POINT = "snooker_env.envs.vector:SnookerVectorEnv"
 
 _TASKS = "snooker_env.benchmark.environments"
 _NAMES = ("Break", "BreakClub", "PotHard", "Escape", "Safety", "Frame")
-FORMS: dict[str, dict[str, Any]] = {
+FORMS: dict[str, dict[str, Any]] = {  # of Break, for scripts that take an id alone
     "SnookerBreakDiscrete-v0": {"action": "discrete"},
     "SnookerBreakMasked-v0": {"action": "discrete", "observation": "masked"},
     "SnookerBreakTarget-v0": {"aim": "target"},
 }
-"""Forms of ``SnookerBreak-v0`` for scripts that take an id alone: how an agent acts, and sees masks."""
-ENTRY_POINTS = {
+ENTRY_POINTS = {  # of each id the environment of one table, and that of many
     ID: (ENTRY_POINT, VECTOR_ENTRY_POINT),
     **{f"Snooker{name}-v0": (f"{_TASKS}:{name}Env", f"{_TASKS}:{name}VectorEnv") for name in _NAMES},
     **dict.fromkeys(FORMS, (f"{_TASKS}:BreakEnv", f"{_TASKS}:BreakVectorEnv")),
 }
-"""Of each id the environment of one table, and that of many."""
 
 
 def register(registration: Any) -> None:

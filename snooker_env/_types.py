@@ -54,4 +54,3 @@ class Environment(Protocol):
     @property
     def unwrapped(self) -> Any:
         """The environment below all wrappers."""
-        ...

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ._check import choice, integer, number, refuse
+from ._check import integer, number, refuse
 from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
 from .planning import Positions
@@ -23,6 +23,7 @@ from .players import FRAMES, VISITS, Player, decision_seeds, player
 from .players.model_options import add_model_options, of_others, options_of_words
 from .players.resolver import named
 from .replays import Replay, replay
+from .replays.film import encoder_file
 
 NAME = "snooker_env.watch"
 FILMS = (".mp4", ".gif")
@@ -58,17 +59,21 @@ def parser() -> argparse.ArgumentParser:
     """The command line."""
     p = argparse.ArgumentParser(prog=f"python -m {NAME}", description=str(__doc__).split("\n\n")[0])
     add = p.add_argument
-    what = "a name of snooker_env.players(), a model's .zip or MODULE:CLASS"
-    add("--agent", help=f"{what} [{USUAL}; with --frame {TACTICIAN}]")
+    add("--agent", help=f"a player, a model's .zip or MODULE:CLASS [{USUAL}; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
     add("--opponent", help="its player [the agent itself]")
     add("--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser")
-    add("--layout", default="held_out", help="of the tables, as for Snooker-v0")
-    add("--noise", default="professional", help="execution noise")
-    add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
-    what = "show the first visit with so many points, or the longest"
-    add("--at-least", type=int, default=0, metavar="POINTS", help=what)
-    add("--tries", type=int, default=200, help="most visits played to find it")
+    add("--layout", default="held_out", help="of the tables [%(default)s: those of judging]")
+    add("--noise", default="professional", help="execution noise [%(default)s]")
+    add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table [%(default)s]")
+    add(
+        "--at-least",
+        type=int,
+        default=0,
+        metavar="POINTS",
+        help="show the first visit with so many, or the longest",
+    )
+    add("--tries", type=int, default=200, help="most visits played to find it [%(default)s]")
     add("--speed", type=float, default=1.0, help="of a film, over that of the play")
     add("--size", help="of a film, WIDTHxHEIGHT, both even")
     add("--fps", type=float, help="pictures a second of a film")
@@ -79,7 +84,10 @@ def parser() -> argparse.ArgumentParser:
 def _checked(args: argparse.Namespace) -> dict[str, Any]:
     """The options of the film that is wanted, {} for a page; ValueError for arguments that do not agree."""
     suffix = args.out.suffix.lower() if args.out else ".html"
-    choice("out", suffix, SUFFIXES)
+    if suffix not in SUFFIXES:
+        raise refuse("out", str(args.out), f"must end in {', '.join(SUFFIXES)}")
+    if suffix in FILMS:
+        encoder_file()  # what is missing is said before anything is played
     film: dict[str, Any] = {}
     for name, usual, most in (("speed", 1.0, 100.0), ("fps", None, 240.0)):
         if (value := getattr(args, name)) != usual:
@@ -122,8 +130,7 @@ def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
         opposite = players[other] if of_others(other) else other
         options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": opposite, "trust": args.trust}
         env = episode(who, args.seed, **options)
-        both = [f"{label} A", f"{label} B"] if other == name else [label, other]
-        return env, args.seed, both
+        return env, args.seed, [f"{label} A", f"{label} B"] if other == name else [label, other]
     longest, its = None, args.seed
     for seed in range(args.seed, args.seed + args.tries):
         env = episode(who, seed, layout=args.layout, noise=args.noise, cue="real")
@@ -149,7 +156,7 @@ def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
     judge: Any = player(TACTICIAN).at(env) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
     print(*described(played), sep="\n")
-    print(f"{made} in {len(played)} strokes ({where})")
+    print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")
     if env.points < args.at_least:
         print(f"No visit of {args.at_least} points in {args.tries} tries: this one is the longest.")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
@@ -167,15 +174,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         watched(args, _checked(args))
     except ValueError as error:
         p.error(str(error))
-    except ImportError as error:
-        print(f"{NAME}: {error}", file=sys.stderr)
-        return 1
     except BrokenPipeError:  # nobody reads on: ... | head
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
-    except OSError as error:
-        what = error.filename or "the output"
-        print(f"{NAME}: {what} cannot be written: {error.strerror}", file=sys.stderr)
+    except (ImportError, OSError) as error:
+        disk = isinstance(error, OSError)
+        why = f"{error.filename or 'the output'} cannot be written: {error.strerror}" if disk else error
+        print(f"{NAME}: {why}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print(f"{NAME}: interrupted", file=sys.stderr)

@@ -117,12 +117,14 @@ class Coaching:
             made = f"pots: {self.made} of {self.called} made; {such}, the target {self.likely.value:.0f}"
             lines.append(made)
         for name, one in self.costs.items():
-            words = f"{one.value:.2f} [{one.low:.2f}, {one.high:.2f}] points a visit, {one.strokes} strokes"
-            lines.append(f"{name} costs {words}")
+            what, sign = ("gains", -1.0) if one.value < 0.0 else ("costs", 1.0)
+            low, high = sorted((sign * one.low, sign * one.high))
+            words = f"{abs(one.value):.2f} [{low:.2f}, {high:.2f}] points a visit, {one.strokes} strokes"
+            lines.append(f"{name} {what} {words}")
         if self.most is not None:
-            share = f"{100 * self.sure:.0f} % of the resampled strokes"
-            lines.append(f"{self.most} costs most: so it is in {share}")
-        lines += [f"practise {one.layout}: {one.reason}" for one in self.drills]
+            lines.append(f"{self.most} costs most: so it is in {100 * self.sure:.0f} % of the resamples")
+        drills = [f"practise {one.layout}: {one.reason}" for one in self.drills]
+        lines += drills or ["nothing to practise: no part costs points beside the target"]
         return "\n".join(lines)
 
 

@@ -1,13 +1,13 @@
 """``python -m snooker_env.play``: a server on this machine's own address, and the browser on its page."""
 
 import argparse
-import json
 import sys
 import webbrowser
 from pathlib import Path
 from typing import Any
 
-from .._check import refuse_what
+from .._check import integer, refuse_what
+from .._files import read_json
 from ..players.model_options import add_model_options, options_of_words
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
@@ -86,6 +86,8 @@ def _server(service: Any, port: int | None) -> Any:
     """The server on a port; by default on ``PORT``, where a browser finds again what it has kept, unless it is taken."""
     from .server import PlayServer
 
+    if port is not None:
+        integer("port", port, 0, 65535)
     try:
         return PlayServer(service, PORT if port is None else port)
     except ValueError:
@@ -97,12 +99,8 @@ def _server(service: Any, port: int | None) -> Any:
 def _read(path: Path) -> dict[str, Any]:
     """The JSON object in a file."""
     if path.stat().st_size > MOST_FILE:
-        what = f"a file of {path.stat().st_size} bytes"
-        raise refuse_what("position", what, f"must be at most {MOST_FILE}")
-    try:
-        read = json.loads(path.read_text("utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise refuse_what("position", str(path), f"must be a file of JSON ({error})") from None
+        raise refuse_what("position", str(path), f"must have at most {MOST_FILE} bytes")
+    read = read_json(path)
     if not isinstance(read, dict):
         raise refuse_what("position", str(path), "must hold a JSON object")
     return read

@@ -242,13 +242,11 @@ class Player(Protocol):
         """Return a new player bound to physics, table, fidelity, noise and, for frames, the game.
 
         Strokes do not depend on how actions are read. ValueError if the player cannot play under the options."""
-        ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """Return what it does in n positions, of visits or of frames as the striker sees them.
 
         ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once."""
-        ...
 
 
 class BoundPlayer:

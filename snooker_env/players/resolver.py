@@ -212,8 +212,7 @@ def _strokes(name: str, path: Path) -> Any:
     try:
         return learned_strokes(path)
     except (OSError, KeyError, ValueError):
-        allowed = "must name a file strokes.npz of train.py --agent stroke_value"
-        raise refuse("player", name, allowed) from None
+        raise refuse("player", name, "must name a strokes.npz of train.py --agent stroke_value") from None
 
 
 def _learned(model: str) -> Any:

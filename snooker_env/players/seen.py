@@ -47,7 +47,6 @@ class Seen(Protocol):
 
         ``masks``: bool (n, choices) with ``action="discrete"``, else None. ``seeds``, int64 (n,): equal rows
         and seeds must give equal actions, however many are asked for."""
-        ...
 
 
 class SeenPlayer(BoundPlayer):

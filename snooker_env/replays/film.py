@@ -145,14 +145,19 @@ def _swatches(picture: Bytes) -> Bytes:
     return ((shades << 2) | 2).astype(np.uint8).reshape(256, 256, 3)
 
 
-def _pipe(pictures, kind, size, fps, wanted, path):
-    """Send pictures through ffmpeg into a file."""
+def encoder_file() -> str:
+    """Where ffmpeg is; an ImportError names what brings it."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError as error:
         raise missing("films need ffmpeg", "render") from error
+    return get_ffmpeg_exe()
+
+
+def _pipe(pictures, kind, size, fps, wanted, path):
+    """Send pictures through ffmpeg into a file."""
     raw = ["-f", "rawvideo", "-pix_fmt", kind, "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
-    command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *raw, *wanted, str(path)]
+    command = [encoder_file(), "-y", "-loglevel", "error", *raw, *wanted, str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
         assert encoder.stdin is not None and encoder.stderr is not None
         try:
@@ -165,5 +170,4 @@ def _pipe(pictures, kind, size, fps, wanted, path):
             encoder.kill()
             raise
     if encoder.returncode:
-        why = complaint or f"ffmpeg ended with {encoder.returncode}"
-        raise OSError(f"the film could not be written: {why}")
+        raise OSError(f"the film could not be written: {complaint or encoder.returncode}")

@@ -281,8 +281,8 @@ def test_the_first_agent_or_the_tactician_sits_opposite(agents, other):
         (["--layout", "x"], "layout = 'x'"),
         (["--agent", "nobody"], "player = 'nobody'"),
         (["--options", "aim=target"], "options = {'aim': 'target'}: must be left out"),
-        (["--position", str(ROOT / "pyproject.toml")], "must be a file of JSON"),
-        (["--port", "99999"], "port"),
+        (["--position", str(ROOT / "pyproject.toml")], "pyproject.toml: must be JSON ("),
+        (["--port", "99999"], "port = 99999: must be an integer in [0, 65535]"),
         (["--seed", "-1"], "seed = -1"),
     ],
 )
