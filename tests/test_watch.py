@@ -1,6 +1,7 @@
 """Does ``python -m snooker_env.watch`` show the visit that the protocol plays, as a page, as data and as films?"""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -36,6 +37,16 @@ def test_without_a_file_the_browser_is_opened(monkeypatch, capsys):
     monkeypatch.setattr(watch.webbrowser, "open", opened.append)
     watch.main(SHORT)
     assert len(opened) == 1 and opened[0].startswith("file://") and opened[0].endswith("replay.html")
+
+
+def test_what_a_film_needs_is_said_before_anything_is_played(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    monkeypatch.setattr(watch, "episode", None)
+    assert watch.main([*SHORT, "--out", str(tmp_path / "visit.mp4")]) == 1
+    out, err = capsys.readouterr()
+    assert (
+        out == "" and err.startswith("snooker_env.watch: films need ffmpeg; install it") and "render" in err
+    )
 
 
 @pytest.mark.parametrize("suffix", [".mp4", ".gif"])
@@ -94,7 +105,7 @@ def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
         ("--frame --at-least 5", "with --frame"),
         ("--frame --opponent nobody", "opponent"),
         ("--agent nobody", "player = 'nobody'"),
-        ("--out a.exe", "must be one of '.html'"),
+        ("--out a.exe", "must end in .html, .json, .mp4, .gif"),
         ("--out a.html --speed 2", "a film"),
         ("--out a.mp4 --size big", "WIDTHxHEIGHT"),
         ("--out a.mp4 --size 321x180", "even"),

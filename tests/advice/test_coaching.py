@@ -1,6 +1,7 @@
 """Does the coach find the errors of players whose errors are known, and what costs them most?"""
 
 import json
+from dataclasses import replace
 from math import atan2
 
 import numpy as np
@@ -19,6 +20,7 @@ from snooker_env.advice import (
 from snooker_env.advice import errors as estimating
 from snooker_env.advice.__main__ import main
 from snooker_env.advice.costs import lost, values
+from snooker_env.advice.errors import Estimate
 from snooker_env.advice.practice import practice_of
 from snooker_env.advice.recorded import _from_replay
 from snooker_env.planning import Planner, pot_aim, pots
@@ -197,6 +199,12 @@ def test_the_drill_is_that_of_the_largest_cost():
     assert found.costs["potting"].low > 0.0 and found.sure > 0.5
     assert found.drills[0].layout in {"pots:easy", "pots:medium", "pots:hard"}
     assert json.loads(json.dumps(found.to_dict(), allow_nan=False))["most"] == "potting"
+    better = {"potting": Estimate(value=-2.0, low=-3.0, high=1.0, strokes=5)}
+    said = str(replace(found, costs=better, most=None, drills=())).splitlines()
+    assert said[-2:] == [
+        "potting gains 2.00 [-1.00, 3.00] points a visit, 5 strokes",
+        "nothing to practise: no part costs points beside the target",
+    ]
     same = coach([missed] * 9 + [made])
     assert same == found
 
