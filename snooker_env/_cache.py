@@ -7,8 +7,7 @@
   of others (agents, benchmarks) have a folder in it, named by a hash of their whole package. Equal copies
   share machine code.
 * Files end with a checksum: damaged machine code would crash the process.
-* Whatever goes wrong, the kernel is compiled again, and the process warns once.
-"""
+* Whatever goes wrong, the kernel is compiled again, and the process warns once."""
 
 import hashlib
 import io

@@ -1,7 +1,6 @@
 """What costs a player most, and what should be practised? ``coach``: errors, pots made and expected, costs, drills.
 
-Costs are those of ``costs``, with the 95 % interval of a bootstrap over strokes (docs/play/coach.md).
-"""
+Costs are those of ``costs``, with the 95 % interval of a bootstrap over strokes (docs/play/coach.md)."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass

@@ -25,9 +25,7 @@ from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_N
 from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
 
-RulesLike: TypeAlias = (
-    Environment | Options | Mapping[str, Any]
-)  # the latter: a dict of fields of ``Options``
+RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]  # a dict: fields of ``Options``
 CODES: dict[str, tuple[int, ...]] = {
     "nominate": (AUTO, 0, *range(YELLOW, YELLOW + COLOURS)),
     "decision": (PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE),
@@ -242,11 +240,13 @@ class Player(Protocol):
         """Return a new player bound to physics, table, fidelity, noise and, for frames, the game.
 
         Strokes do not depend on how actions are read. ValueError if the player cannot play under the options."""
+        ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """Return what it does in n positions, of visits or of frames as the striker sees them.
 
         ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once."""
+        ...
 
 
 class BoundPlayer:

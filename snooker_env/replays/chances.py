@@ -24,6 +24,7 @@ class Judge(Protocol):
 
     def chance_to_win(self, positions: Positions) -> Floats:
         """The chances (n,) of n positions of frames as their strikers see them."""
+        ...
 
 
 class Standing(NamedTuple):
