@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")  # temporary files; one that was killed leaves one
+UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")  # temporary files: a killed process leaves one
 
 
 def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], object]) -> None:

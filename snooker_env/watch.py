@@ -178,7 +178,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except (ImportError, OSError) as error:
-        disk = isinstance(error, OSError)
+        disk = isinstance(error, OSError) and error.strerror
         why = f"{error.filename or 'the output'} cannot be written: {error.strerror}" if disk else error
         print(f"{NAME}: {why}", file=sys.stderr)
         return 1

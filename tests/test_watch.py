@@ -39,13 +39,16 @@ def test_without_a_file_the_browser_is_opened(monkeypatch, capsys):
     assert len(opened) == 1 and opened[0].startswith("file://") and opened[0].endswith("replay.html")
 
 
-def test_what_a_film_needs_is_said_before_anything_is_played(tmp_path, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+@pytest.mark.parametrize("module", ["imageio_ffmpeg", "pygame"])
+def test_what_a_film_needs_is_said_before_anything_is_played(tmp_path, monkeypatch, capsys, module):
+    monkeypatch.setitem(sys.modules, module, None)
     monkeypatch.setattr(watch, "episode", None)
     assert watch.main([*SHORT, "--out", str(tmp_path / "visit.mp4")]) == 1
     out, err = capsys.readouterr()
     assert (
-        out == "" and err.startswith("snooker_env.watch: films need ffmpeg; install it") and "render" in err
+        out == ""
+        and err.startswith("snooker_env.watch: films need pygame-ce and ffmpeg; install it")
+        and "render" in err
     )
 
 

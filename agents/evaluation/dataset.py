@@ -175,6 +175,7 @@ def differing(folder, many):
 
     data = minari.MinariDataset(folder / "data")
     env = data.recover_environment()
+    many = min(many, int(data.total_episodes))
     numbers = np.unique(np.linspace(0, data.total_episodes - 1, many).round().astype(int)).tolist()
     seeds = [one["seed"] for one in data.storage.get_episode_metadata(numbers)]
     wrong = []
@@ -182,7 +183,13 @@ def differing(folder, many):
         seen, _ = env.reset(seed=int(seed))
         observations, infos, rest = [seen], {name: [0] for name in INFOS}, []
         for action in episode.actions:
-            seen, *ended, info = env.step(action)
+            try:
+                seen, *ended, info = env.step(action)
+            except (
+                gymnasium.error.ResetNeeded,
+                ValueError,
+            ):  # it has ended, or cannot be played: too few rows
+                break
             observations.append(seen)
             rest.append(ended)
             for name in INFOS:
@@ -332,6 +339,6 @@ def main(argv=None):
         wrong, many = differing(folder, args.check)
         print(f"{many - len(wrong)} of {many} episodes are played again bit for bit")
         if wrong:
-            print(f"others, by their numbers: {', '.join(map(str, wrong))}", file=sys.stderr)
+            print(f"not played again alike: episodes {', '.join(map(str, wrong))}", file=sys.stderr)
             return 1
     return 0

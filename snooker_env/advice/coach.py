@@ -123,7 +123,8 @@ class Coaching:
         if self.most is not None:
             lines.append(f"{self.most} costs most: so it is in {100 * self.sure:.0f} % of the resamples")
         drills = [f"practise {one.layout}: {one.reason}" for one in self.drills]
-        lines += drills or ["nothing to practise: no part costs points beside the target"]
+        none = "nothing to practise: no part costs points beside the target"
+        lines += drills or [none] * bool(self.costs)
         return "\n".join(lines)
 
 

@@ -14,11 +14,8 @@ from .practice import JUDGING, Practice, keys, one_position
 from .recorded import Recorded
 
 PARTS = ("potting", "position", "safety")
-LOOKS, BEST, SAMPLES = (
-    24,
-    4,
-    24,
-)  # strokes tried at a called pot, the best of them, how often these are played
+# Strokes tried at a called pot, the best of them, how often these are played
+LOOKS, BEST, SAMPLES = 24, 4, 24
 SLOW, FAST, TIP = 0.8, 4.5, 0.35  # of these strokes: cue speeds [m/s], the largest height of the tip over R
 
 

@@ -27,9 +27,8 @@ from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from .strokes import CueStroke
 
 FORMAT, VERSION = "snooker-strokes", 1
-CALLED = radians(
-    2.0
-)  # how far a stroke may be from the pot that it is guessed for: 4 sigma of a club player's hard one
+# How far a stroke may be from the pot that it is guessed for: 4 sigma of a club player's hard one
+CALLED = radians(2.0)
 CUE_PARTS = ("speed", "side", "top", "aim", "elevation")
 MOST_PENALTY, MOST_POINTS = 7, 16
 _AIMS = POCKET_AIMS[:, [AIM_X, AIM_Y]]

@@ -139,8 +139,8 @@ class Suggestion(CueStroke):
         Id of the ball that it pots without errors or, if none, strikes first or plays away from, and its pocket, an
         index into ``snooker_env.POCKETS``; id of the ball that it strikes first. -1 if none.
     chance : float
-        Of a pot: the share of the samples in which that ball went into that pocket without a foul, else that without a
-        foul.
+        Of a pot: the share of the samples in which that ball went into that pocket without a foul; of another stroke, the
+        share without a foul.
     chance_interval : (float, float)
         Wilson's 95 % interval of the chance; without noise, the chance itself twice.
     points, points_interval : float, (float, float)
@@ -153,9 +153,9 @@ class Suggestion(CueStroke):
     spread : float or None
         Root of the mean square distance from that point [m].
     win, win_interval, against, replies, leaves, snookers : float, (float, float), float, float, float, float or None
-        Of a frame, see docs/play/advice.md: the chance to win it and the 95 % interval by the sampling error; of the first
+        Of a frame, else None, see docs/play/advice.md: the chance to win it and the 95 % interval by the sampling error; of the first
         stroke the chance to win of the best one of the other sort; where the opponent comes to the table, the share of its
-        next visits in which it pots, their mean points, and how often it is snookered.
+        next visits in which it pots, their mean points, and how often it is snookered (None if it never comes).
     words : str
         All this in one line of text.
 

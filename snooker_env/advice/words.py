@@ -77,7 +77,7 @@ def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics, wa
 
 
 def lie_words(x: float, y: float, ball: int, apart: float) -> str:
-    """Where a cue ball lies: behind a ``ball`` (or -1) ``apart`` [m] away, in baulk, at an end; "" elsewhere."""
+    """Where a cue ball lies: behind a ``ball`` (-1: none) ``apart`` [m] away, in baulk, at an end; "" elsewhere."""
     if ball >= 0:
         return f"{'tight ' if apart - 2.0 * BALL_RADIUS <= TIGHT else ''}behind the {ball_name(ball)}"
     if HALF_LENGTH - BALL_RADIUS - abs(y) <= AT_CUSHION:

@@ -208,7 +208,7 @@ def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int |
 def afresh(
     record: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None
 ) -> tuple[float, float, list[str]]:
-    """Have its agent play on unknown seeds: the mean score, the error of its difference to the file, faults."""
+    """Have its agent play on unknown seeds: the mean score, the standard error of its difference to the file, faults."""
     if record["figures"] is None:
         raise refuse("incomplete", record["incomplete"], "must be null to compare means")
     played = _by(agent, record, range(seed, seed + episodes), threads)

@@ -7,7 +7,7 @@ from ..envs.snooker import SnookerEnv
 from ..envs.vector import SnookerVectorEnv
 from .tasks import FREE, TASKS
 
-KEYWORDS = ("max_episode_steps", "render_mode", "autoreset_mode", "threads", "render_size")  # no options
+KEYWORDS = ("max_episode_steps", "render_mode", "autoreset_mode", "threads", "render_size")  # not of the game
 
 
 class TaskEnv(SnookerEnv):

@@ -52,7 +52,7 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
 }  # dotted name: type, whether it may be null, meaning
 _PLAYED = "schema", "protocol", "task", "columns", "rows", "figures", "strokes"
 _PROVED = (*_PLAYED, "agent.class", "agent.budget", "software.snooker_env")
-UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED))  # class and budget follow from them
+UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED))  # what no replay proves
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")
 MOST_WHOLE = 2**53  # whole numbers up to here are exact in every reader of JSON

@@ -100,7 +100,10 @@ def _read(path: Path) -> dict[str, Any]:
     """The JSON object in a file."""
     if path.stat().st_size > MOST_FILE:
         raise refuse_what("position", str(path), f"must have at most {MOST_FILE} bytes")
-    read = read_json(path)
+    try:
+        read = read_json(path)
+    except ValueError as error:
+        raise ValueError(f"position = {error}") from None
     if not isinstance(read, dict):
         raise refuse_what("position", str(path), "must hold a JSON object")
     return read

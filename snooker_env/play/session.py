@@ -31,7 +31,7 @@ from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew
 
-DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0, "anywhere": 1.0}  # the last of an action
+DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0, "anywhere": 1.0}  # last component of an action
 DECLINED = 0  # the nomination of a player who does not use a free ball
 MOST_FRAMES = 99  # the longest match
 STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
@@ -51,7 +51,7 @@ class Act:
 
 
 class Session:
-    """A frame to play, set up, undo, save and load; ``flight``: balls fly, the cue is raised to 70 degrees."""
+    """A frame to play, set up, undo, save and load; ``flight``: balls fly, and the cue can be raised to 70 degrees."""
 
     noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie

@@ -18,7 +18,7 @@ from .player import BoundPlayer, Ranked, Strokes, placed
 from .weights import Learned, learned_at, level_for
 
 BUDGET = 120  # simulated shots of a decision where the name does not say how many
-KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")  # the last: half a planner each
+KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")  # the last two: half a planner
 LEAST, MOST = 8, 10**7  # the fewest and the most simulated shots of a decision
 RANKED = 40  # most strokes of a ranking
 

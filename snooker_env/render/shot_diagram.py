@@ -302,8 +302,8 @@ def summary(shot: Shot, first: int | None) -> list[str]:
         lines.append(f"cue ball: {met.speed:.2f} m/s before, {met.after:.2f} after")
     down = np.flatnonzero(shot.potted >= 0).tolist()
     names = shot.table.pockets if shot.table else ()
-    into = {ball: names[k] if names else f"pocket {k}" for ball, k in enumerate(shot.potted.tolist())}
-    pots = "; ".join(f"{_name(ball)} into {into[ball]}" for ball in down[:2])
+    into = [names[k] if names else f"pocket {k}" for k in shot.potted[down[:2]].tolist()]
+    pots = "; ".join(f"{_name(ball)} into {pocket}" for ball, pocket in zip(down, into, strict=False))
     end = pots + (" ..." if len(down) > 2 else "") if pots else f"at rest after {shot.duration:.1f} s"
     return [*lines, end]
 

@@ -1,4 +1,4 @@
-"""How is a table shown on the screen? In a window that shows what it waits for and its ``KEYS``, which it reads."""
+"""How is a table shown on the screen? In a window that shows what it waits for, and reads its ``KEYS``."""
 
 import dataclasses
 import os

@@ -67,10 +67,7 @@ def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, A
         none = {"points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0}
         return encoded_shot(item) | empty | none
     same = {name: getattr(item, name) for name in ("cue", "player", "points", "penalty")}
-    here, after = (
-        item.on_table,
-        None,
-    )  # the table before the next stroke, if it is not that of the balls at rest
+    here, after = item.on_table, None  # the table before the next stroke, where it is another than at rest
     rest = item.shot.positions[here], item.shot.on_table
     if not all(map(np.array_equal, (item.positions[here], here), rest)):
         after = {"places": packed(item.positions, "f8"), "on_table": np.flatnonzero(here).tolist()}

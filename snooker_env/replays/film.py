@@ -148,9 +148,10 @@ def _swatches(picture: Bytes) -> Bytes:
 def encoder_file() -> str:
     """Where ffmpeg is; an ImportError names what brings it."""
     try:
+        import pygame  # noqa: F401
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError as error:
-        raise missing("films need ffmpeg", "render") from error
+        raise missing("films need pygame-ce and ffmpeg", "render") from error
     return get_ffmpeg_exe()
 
 
@@ -170,4 +171,4 @@ def _pipe(pictures, kind, size, fps, wanted, path):
             encoder.kill()
             raise
     if encoder.returncode:
-        raise OSError(f"the film could not be written: {complaint or encoder.returncode}")
+        raise OSError(f"the film could not be written: {complaint or f'code {encoder.returncode}'}")

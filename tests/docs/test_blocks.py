@@ -11,10 +11,10 @@ from tests.docs.pages import NAMES, PAGES, ROOT, blocks
 
 RUNNER = """if True:
     import json, os, sys, traceback, warnings
+    warnings.simplefilter("error")
     import gymnasium, numba, snooker_env
 
     def run(page, code):
-        warnings.simplefilter("error")
         for number, block in enumerate(code):
             print(page, "block", number, flush=True)
             exec(compile(block, f"{page}, block {number}", "exec"), {"__name__": "__main__"})
@@ -28,7 +28,7 @@ RUNNER = """if True:
             try:
                 run(page, code)
             except BaseException:
-                traceback.print_exc()
+                traceback.print_exc(limit=-2)  # so that each of a few pages is shown
                 os._exit(1)
             sys.stdout.flush()
             os._exit(0)

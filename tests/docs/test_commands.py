@@ -50,7 +50,17 @@ SHORT = {
 
 SLOW = {
     f"benchmarks.{name}"
-    for name in ["learner", "pockets", "rack", "scene", "speed", "stability", "tradeoff", "value_inputs", "vector"]
+    for name in [
+        "learner",
+        "pockets",
+        "rack",
+        "scene",
+        "speed",
+        "stability",
+        "tradeoff",
+        "value_inputs",
+        "vector",
+    ]
 }
 """Those of ``SHORT`` that compile or train much."""
 

@@ -57,7 +57,8 @@ def test_it_makes_more_than_players_that_see_no_position():
     assert points["stroke_value"] > 3.0 * points["ghost_ball"]
 
 
-def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, capsys):
+@pytest.mark.parametrize("frame_rounds", [1, pytest.param(2, marks=pytest.mark.slow)])
+def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, capsys, frame_rounds):
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     short = [
         "--agent",
@@ -65,7 +66,7 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
         "--set",
         "rounds=2",
         "tables=16",
-        "frame_rounds=1",
+        f"frame_rounds={frame_rounds}",
         "frames=10",
         "--eval-visits",
         "20",
@@ -78,17 +79,20 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
     assert set(results["evaluation"]) == {"trained", "ghost_ball", "random"}
     # the strokes that were tried, those that were played, and decisions of the planner, of best_pot and of tactician_60
     assert results["steps"] < results["simulated_shots"] <= 3 * results["steps"]
-    assert [len(results["curve"][of]) for of in ("visits", "frames")] == [2, 1]
+    assert [len(results["curve"][of]) for of in ("visits", "frames")] == [2, frame_rounds]
     assert (
         f"without those of the planner and the tactician that it learned from: {results['simulated_shots']:,}."
         in said
     )
-    settings = ["rounds=2", "tables=16", "frame_rounds=1", "frames=10"]
+    settings = ["rounds=2", "tables=16", f"frame_rounds={frame_rounds}", "frames=10"]
     repeated = ["--agent", "stroke_value", "--seed", "3", "--set", *settings]
     assert shlex.split(results["command"]) == ["python", "train.py", *repeated]
     shutil.copytree(whole, parts)
     for name in ("results.json", "strokes.npz", "frames-0-weights.npz"):
-        (parts / name).unlink()  # as if it had been interrupted between the round of frames and its fit
+        (parts / name).unlink()  # as if it had been interrupted between the first round of frames and its fit
+    for k in range(1, frame_rounds):
+        (parts / f"frames-{k}.npz").unlink()
+        (parts / f"frames-{k}-weights.npz").unlink()
     (parts / "visits-1-weights.npz").unlink()
     assert train.main(["--resume", "--out", str(parts), "--eval-visits", "20", "--no-progress"]) == 0
     assert (whole / "strokes.npz").read_bytes() == (parts / "strokes.npz").read_bytes()

@@ -125,6 +125,7 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
         ("rewards", "SnookerBreak-v0"),
         ("observations", "SnookerSafety-v0"),
         ("infos/points", "SnookerBreak-v0"),
+        ("actions", "SnookerBreak-v0"),
     ],
 )
 def test_a_changed_number_is_found_when_episodes_are_played_again(tmp_path, capsys, monkeypatch, of, task):
