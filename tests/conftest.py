@@ -15,6 +15,16 @@ settings.load_profile("same_cases")
 os.environ.setdefault("SNOOKER_ENV_QUIET", "1")
 
 
+def pytest_sessionstart(session):
+    """Of two workers the first compiles the stroke of an environment while the other compiles that of a shot."""
+    if os.environ.get("PYTEST_XDIST_WORKER") == "gw0":
+        from snooker_env import SnookerEnv
+
+        env = SnookerEnv(layout="random:1")
+        env.reset(seed=0)
+        env.step([0.0, 0.0, 0.0, 0.0])
+
+
 @pytest.fixture
 def screen(monkeypatch):
     """A display that is none; shots are drawn without waiting for the clock."""

@@ -60,4 +60,4 @@ def test_the_python_of_a_command_line_runs():
     page = (ROOT / "docs/environment/specification.md").read_text(encoding="utf-8")
     code = page.partition('python -c "')[2].partition('"')[0]
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True, text=True)
-    assert "Action space" in done.stdout
+    assert "Box(-1, 1, (4,), float32)" in done.stdout

@@ -181,7 +181,7 @@ def test_each_table_plays_as_a_match_alone(kind, threads):
     observations, infos = tables.reset(seed=5)
     [one.reset(seed=5 + k) for k, one in enumerate(alone)]
     ended, strokes = np.zeros(N, bool), 0
-    for _ in range(80):
+    for _ in range(160):
         for k, one in enumerate(alone):
             name = one.agent_selection
             assert infos["striker"][k] == tables.strikers[k] == one.possible_agents.index(name)

@@ -295,5 +295,5 @@ def test_nothing_is_asked_of_no_position():
 
 @pytest.mark.parametrize("name", ["stroke_value@missing.npz", "stroke_value@README.md", "stroke_value_500"])
 def test_a_network_that_is_not_there_is_refused(name):
-    with pytest.raises(ValueError, match=rf"player = '{name}': must (name a file|not name a number)"):
+    with pytest.raises(ValueError, match=rf"player = '{name}': must (name a strokes.npz|not name a number)"):
         sn.player(name)

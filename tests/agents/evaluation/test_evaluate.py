@@ -168,7 +168,7 @@ def test_a_path_with_a_colon_is_a_path(models, tmp_path):
     (tmp_path / "10:00").symlink_to(models)
     assert len(protocol.Entrant.of(f"x={tmp_path}/10:00/m-?").runs) == 2
     for path in (r"C:\runs\m-0\model.zip", "a/b:c", "10:00"):
-        with pytest.raises(ValueError, match="or name existing models"):
+        with pytest.raises(ValueError, match=r"or name existing models|must be a model file: it is missing"):
             protocol.Entrant.of(f"x={path}")
 
 

@@ -195,11 +195,15 @@ def test_the_chance_to_win_is_learned_from_frames_between_equals(monkeypatch):
     assert turned_round[1]["chance_error"] != kept[1]["chance_error"]
 
 
+SHORT = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 40}
+LINE = ["--rounds", "2", "--frames", "16", "--budget", "30", "--out"]
+
+
+@pytest.mark.slow
 def test_an_interrupted_training_goes_on_to_the_same_weights(tmp_path, monkeypatch):
-    short = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 40}
-    monkeypatch.setattr(learn_worth, "FRAME", short)
+    monkeypatch.setattr(learn_worth, "FRAME", SHORT)
     monkeypatch.setattr(learn_worth, "PASSES", 2)
-    line = ["--rounds", "2", "--frames", "16", "--budget", "30", "--out"]
+    line = LINE
     assert main([*line, str(tmp_path / "whole")]) == 0
     shutil.copytree(tmp_path / "whole", tmp_path / "parts")
     for name in ("worth-0.npz", "round-1.npz", "worth-1.npz", "worth.npz"):
@@ -215,11 +219,20 @@ def test_an_interrupted_training_goes_on_to_the_same_weights(tmp_path, monkeypat
         assert not np.array_equal(one["worth/0/weight"], other["worth/0/weight"])
     with np.load(tmp_path / "whole" / "worth.npz") as arrays:
         assert np.isfinite(arrays["chance"]).all()
-    monkeypatch.setattr(learn_worth, "FRAME", short | {"max_strokes": 3})
+    with pytest.raises(SystemExit):
+        main([*line[:4], "--budget", "40", "--out", str(tmp_path / "whole")])
+
+
+def test_one_round_is_learned_and_what_cannot_be_is_refused(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(learn_worth, "FRAME", SHORT)
+    monkeypatch.setattr(learn_worth, "PASSES", 2)
+    assert main(["--rounds", "1", *LINE[2:], str(tmp_path / "one")]) == 0
+    assert "round 0: positions" in capsys.readouterr().out
+    with np.load(tmp_path / "one" / "worth.npz") as arrays:
+        assert all(np.isfinite(arrays[name]).all() for name in arrays.files)
+    monkeypatch.setattr(learn_worth, "FRAME", SHORT | {"max_strokes": 3})
     with pytest.raises(SystemExit):  # no frame ends: nothing says who wins
-        main([*line, str(tmp_path / "none")])
+        main([*LINE, str(tmp_path / "none")])
     for wrong in (["--rounds", "0"], ["--frames", "20"], ["--budget", "5"]):
         with pytest.raises(SystemExit):
             main([*wrong, "--out", str(tmp_path)])
-    with pytest.raises(SystemExit):
-        main([*line[:4], "--budget", "40", "--out", str(tmp_path / "whole")])
