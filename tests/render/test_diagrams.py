@@ -331,3 +331,15 @@ def test_without_matplotlib_the_line_that_installs_it_is_said(screw, monkeypatch
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     with pytest.raises(ImportError, match=r'diagrams need matplotlib; .* pip install -e "\.\[plot\]"'):
         screw.plot()
+
+
+def test_a_ball_that_left_the_table_is_in_no_pocket():
+    """A table with one pocket: the number of a ball off the table is that of no other."""
+    match = sn.Table.preset("match")
+    table = sn.Table("one hole", match.noses, match.jaws, match.falls[:1], pockets=("hole",))
+    physics = sn.Physics.preset("match", flight=True)
+    v, w = sn.strike(5.0, np.pi / 2, 0.0, 0.3, 0.6, physics)
+    still = (0.0, 0.0, 0.0)
+    shot = sn.simulate([(0.0, 1.2), (0.0, 1.35)], [v, still], [w, still], table, physics=physics)
+    assert shot.potted.tolist() == [-2, -1]
+    assert "hole" not in " ".join(text.get_text() for text in plot(shot).texts)

@@ -72,6 +72,7 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
     assert not ray.is_initialized()
 
 
+@pytest.mark.slow
 def test_a_signal_saves_and_the_run_goes_on(tmp_path):
     out = tmp_path / "run"
     command = [sys.executable, "-u", "-m", "agents.train_rllib", "--steps", "1000000", "--out", str(out)]
