@@ -178,8 +178,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except (ImportError, OSError) as error:
-        disk = isinstance(error, OSError) and error.strerror
-        why = f"{error.filename or 'the output'} cannot be written: {error.strerror}" if disk else error
+        why = str(error)
+        if isinstance(error, OSError) and error.strerror:
+            why = f"{error.filename or 'the output'} cannot be written: {error.strerror}"
         print(f"{NAME}: {why}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
