@@ -68,8 +68,7 @@ def _check_own(folder: Path, *, home: bool = False) -> None:
     """UnsafeFolderError unless only this user (and root) can change what is in ``folder`` and its target.
 
     In ``home``, which the user chose, its group may write (often the user alone), and others with a sticky
-    bit (/tmp).
-    """
+    bit (/tmp)."""
     if not hasattr(os, "geteuid"):  # Windows: no such numbers, and a user's folders are closed to others
         return
     for status in (os.lstat(folder), os.stat(folder)):

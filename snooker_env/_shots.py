@@ -5,8 +5,7 @@ simulated again because its log was too short. Single impacts are not counted.""
 
 import threading
 
-_LOCK = threading.Lock()
-_SHOTS = 0
+_LOCK, _SHOTS = threading.Lock(), 0
 
 
 def count(shots: int) -> None:

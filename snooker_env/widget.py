@@ -9,7 +9,6 @@ from .replays import replay
 from .web import WEB, table_js
 
 __all__ = ["replay_widget"]
-
 SPINS = ("off", "cue", "all")  # the balls whose rotation is shown
 
 

@@ -123,8 +123,7 @@ class Coaching:
         if self.most is not None:
             lines.append(f"{self.most} costs most: so it is in {100 * self.sure:.0f} % of the resamples")
         drills = [f"practise {one.layout}: {one.reason}" for one in self.drills]
-        none = "nothing to practise: no part costs points beside the target"
-        lines += drills or [none] * bool(self.costs)
+        lines += drills or ["nothing to practise: no part costs points beside the target"] * bool(self.costs)
         return "\n".join(lines)
 
 

@@ -57,8 +57,15 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
 
     metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012
     metadata |= {"name": "snooker_match_v0", "is_parallelizable": False}
-
     tables: Frames
+    possible_agents: list[str]
+    agents: list[str]
+    observation_spaces: dict[str, Any]
+    action_spaces: dict[str, Any]
+    rewards: dict[str, float]
+    terminations: dict[str, bool]
+    truncations: dict[str, bool]
+    infos: dict[str, dict[str, Any]]
 
     def __init__(
         self,

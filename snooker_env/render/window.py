@@ -45,9 +45,9 @@ class Window:
     def __init__(self, *, size: Size | None = None):
         self._size = None if size is None else checked_size(size)
         self._screen: Any = None
-        self._shut = False
-        self.speed, self.paused = 1.0, False  # as the user has chosen; in multiples of that of ``play``
-        self._letters, self._paths = False, True
+        self.speed: float = 1.0  # as the user has chosen; in multiples of that of ``play``
+        self.paused: bool = False
+        self._shut, self._letters, self._paths = False, False, True
         self._steps, self._skip, self._hint = 0, False, 0
         self.status: str = ""  # the status in the window's last line
 
