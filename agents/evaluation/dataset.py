@@ -185,11 +185,8 @@ def differing(folder, many):
         for action in episode.actions:
             try:
                 seen, *ended, info = env.step(action)
-            except (
-                gymnasium.error.ResetNeeded,
-                ValueError,
-            ):  # it has ended, or cannot be played: too few rows
-                break
+            except (gymnasium.error.ResetNeeded, ValueError):
+                break  # it has ended, or the action cannot be played: too few rows
             observations.append(seen)
             rest.append(ended)
             for name in INFOS:

@@ -203,12 +203,11 @@ LINE = ["--rounds", "2", "--frames", "16", "--budget", "30", "--out"]
 def test_an_interrupted_training_goes_on_to_the_same_weights(tmp_path, monkeypatch):
     monkeypatch.setattr(learn_worth, "FRAME", SHORT)
     monkeypatch.setattr(learn_worth, "PASSES", 2)
-    line = LINE
-    assert main([*line, str(tmp_path / "whole")]) == 0
+    assert main([*LINE, str(tmp_path / "whole")]) == 0
     shutil.copytree(tmp_path / "whole", tmp_path / "parts")
     for name in ("worth-0.npz", "round-1.npz", "worth-1.npz", "worth.npz"):
         (tmp_path / "parts" / name).unlink()  # cut off between the first round and its fit
-    assert main([*line, str(tmp_path / "parts")]) == 0
+    assert main([*LINE, str(tmp_path / "parts")]) == 0
     for name in ("worth.npz", "round-1.npz"):
         with np.load(tmp_path / "whole" / name) as one, np.load(tmp_path / "parts" / name) as other:
             assert all(np.array_equal(one[key], other[key]) for key in one.files)
@@ -220,7 +219,7 @@ def test_an_interrupted_training_goes_on_to_the_same_weights(tmp_path, monkeypat
     with np.load(tmp_path / "whole" / "worth.npz") as arrays:
         assert np.isfinite(arrays["chance"]).all()
     with pytest.raises(SystemExit):
-        main([*line[:4], "--budget", "40", "--out", str(tmp_path / "whole")])
+        main([*LINE[:4], "--budget", "40", "--out", str(tmp_path / "whole")])
 
 
 def test_one_round_is_learned_and_what_cannot_be_is_refused(tmp_path, monkeypatch, capsys):
