@@ -1,15 +1,10 @@
-"""How do docstrings with Markdown sections and tables, as Gymnasium has them, come into a page? They become
-reStructuredText.
-
-``## Title`` is a heading that is in no table of contents, rows ``| a | b |`` are a table. All else is
-reStructuredText already.
-"""
+"""How do docstrings with Markdown tables come into a page? Rows ``| a | b |`` become a table of reStructuredText, which all
+else is already."""
 
 import re
 
 SEPARATOR = re.compile(r"^\s*\|[\s:|-]+\|\s*$")
 ROW = re.compile(r"^\s*\|.*\|\s*$")
-HEADING = re.compile(r"^(\s*)#{2,4} (.*)$")
 SINGLE = re.compile(r"(?<![`:\w])`([^`\n]+)`(?!`|_)")
 
 
@@ -37,7 +32,7 @@ def table(rows):
 
 
 def converted(lines):
-    """The lines of a docstring, its Markdown headings and tables as reStructuredText."""
+    """The lines of a docstring, its Markdown tables as reStructuredText."""
     out, rows = [], []
     for line in [*lines, ""]:
         if ROW.match(line):
@@ -46,11 +41,7 @@ def converted(lines):
         if rows:
             out += table(rows)
             rows = []
-        found = HEADING.match(line)
-        if found:
-            out += ["", f"{found[1]}.. rubric:: {found[2]}", ""]
-        else:
-            out.append(SINGLE.sub(r"``\1``", line))
+        out.append(SINGLE.sub(r"``\1``", line))
     return out[:-1]
 
 
