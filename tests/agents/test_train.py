@@ -147,7 +147,7 @@ def test_kill_9_leaves_a_run_that_resume_finishes(finished, tmp_path):
     process = launch(out, "--checkpoint-every", "1")
     try:
         while process.poll() is None and not pickle.loads((out / "checkpoint.pkl").read_bytes())["curve"]:
-            pass
+            time.sleep(0.05)
     finally:
         process.kill()
         process.communicate()
@@ -158,6 +158,7 @@ def test_kill_9_leaves_a_run_that_resume_finishes(finished, tmp_path):
     assert results(out)["curve"] == results(finished / "ppo_mask")["curve"]
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_it_in_order(tmp_path):
     process = launch(tmp_path / "run", "--steps", "100000")
     os.killpg(process.pid, signal.SIGINT)  # what a terminal does

@@ -94,7 +94,7 @@ TINY = str.split("--agent ppo_mask --envs 2 --eval-visits 4 --parallel one --ste
 
 def test_any_terminal_will_do(tmp_path):
     """One with few letters shows "?" for the others; the files are whole."""
-    name, run = tmp_path / "r\u00e9sum\u00e9 \u2192.json", tmp_path / "\u2192"
+    name = tmp_path / "r\u00e9sum\u00e9 \u2192.json"
 
     def printed(*arguments):
         done = python(*arguments, PYTHONIOENCODING="ascii")
@@ -104,8 +104,6 @@ def test_any_terminal_will_do(tmp_path):
     printed("-m", "agents.evaluate", *QUICK, "--json", name)
     assert json.loads(Path(name).read_text())["results"]
     printed("-m", "agents.report", "--show", name)
-    assert "Means of 4 held-out visits" in printed("train.py", *TINY, "--out", run)
-    printed("-m", "agents.curves", run, "--out", tmp_path / "\u2192.png")
 
 
 def test_ctrl_c_is_one_line(capsys):

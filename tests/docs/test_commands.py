@@ -48,10 +48,16 @@ SHORT = {
 }
 """Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
 
-SLOW = {
+SLOW = {"docs/pictures/make.py"} | {
     f"benchmarks.{name}"
     for name in [
+        "coach",
+        "constants",
+        "flight",
+        "frames",
+        "layouts_picture",
         "learner",
+        "make_safety",
         "pockets",
         "rack",
         "scene",
@@ -62,7 +68,7 @@ SLOW = {
         "vector",
     ]
 }
-"""Those of ``SHORT`` that compile or train much."""
+"""Those of ``SHORT`` that compile, train or draw much."""
 
 ELSEWHERE = {
     "pytest": ".ci/run",

@@ -2,6 +2,7 @@
 
 import json
 import warnings
+from itertools import product
 
 import gymnasium
 import numpy as np
@@ -16,6 +17,7 @@ from snooker_env.tasks.box_actions import AIMS
 from tests.tables import viewed
 
 IDS = sorted(name for name in gymnasium.registry if name.startswith("Snooker") and name not in FORMS)
+SHOWN = ("rgb_array", "ansi", "human")
 
 
 def free(name, arguments):
@@ -33,8 +35,10 @@ def no_display(monkeypatch):
     monkeypatch.setattr("sys.platform", "linux")
 
 
-@pytest.mark.parametrize("name", IDS)
-@pytest.mark.parametrize("render_mode", [None, "rgb_array", "ansi", "human"])
+@pytest.mark.parametrize(
+    ("name", "render_mode"),
+    [(name, None) for name in IDS] + list(product(("Snooker-v0", "SnookerFrame-v0"), SHOWN)),
+)
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
 @pytest.mark.parametrize("aim", AIMS)
 def test_gymnasium_checks_it(name, render_mode, observation, aim, screen, strict):
@@ -68,10 +72,12 @@ ALLOWED = {"flat": set(), "masked": set(), "balls": {"Your observation balls has
 """Stable-Baselines3 warns of a table of balls, which is neither a vector nor an image, but meant so."""
 
 
-@pytest.mark.parametrize("name", IDS)
+@pytest.mark.parametrize(
+    ("name", "render_mode"),
+    [(name, None) for name in IDS] + [("Snooker-v0", "rgb_array"), ("Snooker-v0", "ansi")],
+)
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
 @pytest.mark.parametrize("longer", [{}, {"elevation": True, "placement": True, "layout": "break_off"}])
-@pytest.mark.parametrize("render_mode", [None, "rgb_array", "ansi"])
 def test_stable_baselines_checks_it(name, observation, longer, render_mode):
     checker = pytest.importorskip("stable_baselines3.common.env_checker")
     if observation == "masked":  # of discrete actions, which have no longer form

@@ -173,7 +173,7 @@ def actions_of(options, rng, masks):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("threads", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_each_table_plays_as_a_match_alone(kind, threads):
     options, rng = KINDS[kind], np.random.default_rng(1)
     tables = sn.MatchVectorEnv(N, **options, threads=threads)

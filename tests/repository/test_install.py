@@ -127,8 +127,9 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("installed", ["wheel"], indirect=True)
-@pytest.mark.parametrize("method", ["spawn", pytest.param("forkserver", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("method", ["spawn", "forkserver"])
 def test_workers_make_it_from_the_name_with_its_module(installed, method):
     (installed.cwd / "workers.py").write_text(WORKERS)
     code = "import subprocess, sys; sys.exit(subprocess.run([sys.executable, 'workers.py', {!r}]).returncode)"

@@ -157,7 +157,7 @@ class Planted:
         return Path.touch, (self.mark,)
 
 
-@pytest.mark.parametrize("which", ["top", "inner"])
+@pytest.mark.parametrize("which", [pytest.param("top", marks=pytest.mark.slow), "inner"])
 def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
     """Where the folders are the user's own it would be: so this test can fail."""
     assert toy() == (FRESH, "")
@@ -195,7 +195,7 @@ OTHER = pickle.dumps(("something", "else"))
 """Whole, but not what this numba makes."""
 
 
-OFTEN = ("*double*.nbi", "garbage"), ("*double*.nbc", "one bit"), ("*double*.nbc", "another numba's")
+OFTEN = ("*double*.nbi", "garbage"), ("*double*.nbc", "one bit")
 CASES = [(what, how) for what in ("*double*.nbi", "*double*.nbc") for how in DAMAGED]
 CASES.remove(("*double*.nbi", "another numba's"))
 
@@ -264,7 +264,7 @@ def test_equal_sources_share_their_machine_code_wherever_they_lie(toy, tmp_path)
         assert toy(PYTHONPATH=path) == (result, "")
 
 
-@pytest.mark.parametrize("way", ["-c", "-"])
+@pytest.mark.parametrize("way", ["-c", pytest.param("-", marks=pytest.mark.slow)])
 def test_a_kernel_that_is_in_no_file_is_not_kept(tmp_path, way):
     """Two versions have the same bytecode and place: the second would run the code of the first."""
     here = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "0"}

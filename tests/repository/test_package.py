@@ -211,7 +211,7 @@ def golden():
 
 @pytest.mark.parametrize(
     "options",
-    [{}, {"physics": "match", "table": "tight"}, {"fidelity": "fast"}],
+    [pytest.param({}, marks=pytest.mark.slow), {"physics": "match", "table": "tight"}, {"fidelity": "fast"}],
     ids=["paper", "match", "fast"],
 )
 def test_the_same_bits_in_every_process_and_for_any_number_of_threads(golden, options):

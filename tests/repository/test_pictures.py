@@ -14,6 +14,8 @@ from tests.processes import ROOT
 
 mpl.use("Agg")
 REDRAWN = ("paper", "pockets", "rack", "scene", "speed", "stability", "tradeoff")
+COMPUTED = ("paper", "scene", "stability")
+"""Those that compute more than they read."""
 """Benchmarks whose figures are kept in benchmarks/figures."""
 
 
@@ -25,7 +27,9 @@ def read(figures, least=1):
         assert unreadable(figure) == []
 
 
-@pytest.mark.parametrize("name", REDRAWN)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in COMPUTED else []) for name in REDRAWN]
+)
 def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch):
     try:
         command = importlib.import_module(f"benchmarks.{name}.command")

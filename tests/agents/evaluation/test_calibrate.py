@@ -90,6 +90,7 @@ def test_the_chance_to_win_is_compared_with_who_won(monkeypatch, tmp_path):
     assert figures[0].axes[0].get_lines()[1].get_xydata() == pytest.approx(100.0 * table)
 
 
+@pytest.mark.slow
 def test_the_command_compares_frames_played_with_those_of_a_file(tmp_path, capsys, monkeypatch):
     short = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 60}
     monkeypatch.setattr(calibrate, "FRAME", short)

@@ -112,6 +112,7 @@ MEASURE = """if True:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="on Linux alone threads can be bound")
 def test_a_decision_takes_one_thread():
     code = f"import sys; sys.argv[1:] = {PLAYERS!r}\n{MEASURE}"
