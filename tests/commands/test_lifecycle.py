@@ -117,7 +117,13 @@ def test_ctrl_c_is_one_line(capsys):
     assert stop.value.code == 130
 
 
-@pytest.mark.parametrize("arguments", [["-m", "agents.report", "--show", str(LADDER)], ["train.py", *TINY]])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["-m", "agents.report", "--show", str(LADDER)],
+        pytest.param(["train.py", *TINY], marks=pytest.mark.slow),
+    ],
+)
 def test_a_reader_that_leaves_ends_a_command_in_one_line_at_most(arguments, tmp_path):
     out = [] if "-m" in arguments else ["--out", str(tmp_path / "run")]
     reading, writing = os.pipe()

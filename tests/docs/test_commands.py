@@ -53,11 +53,13 @@ SLOW = {"docs/pictures/make.py"} | {
     for name in [
         "coach",
         "constants",
+        "fit_cushion",
         "flight",
         "frames",
         "layouts_picture",
         "learner",
         "make_safety",
+        "pictures",
         "pockets",
         "rack",
         "scene",

@@ -495,7 +495,16 @@ def test_reds_off_leaves_it_to_the_balls_what_is_on(shown):
     shown.until("page.state.ball_on === 'pink'")
 
 
-@pytest.mark.parametrize("size", [(390, 844), (844, 390), (820, 1180), (1440, 900), (3840, 2160)])
+@pytest.mark.parametrize(
+    "size",
+    [
+        (390, 844),
+        pytest.param((844, 390), marks=pytest.mark.slow),
+        pytest.param((820, 1180), marks=pytest.mark.slow),
+        (1440, 900),
+        (3840, 2160),
+    ],
+)
 def test_it_fits_every_screen_and_can_be_touched(chromium, line, size):  # noqa: F811
     """The table stands where the screen does, and fills it; buttons are as large as a finger, and grow with the screen."""
     viewport = dict(zip(("width", "height"), size, strict=True))

@@ -216,6 +216,7 @@ def test_it_plays_frames_without_a_shot_and_each_position_by_itself():
     assert hands > 40 and safe > 40
 
 
+@pytest.mark.slow
 def test_it_wins_frames_against_players_that_see_no_position(tmp_path):
     out = tmp_path / "frames.json"
     tournament.main(

@@ -22,9 +22,8 @@ ROOT = Path(__file__).parents[3]
 SHORT = ["--envs", "16", "--eval-visits", "4", "--checkpoint-every", "8000"]
 
 
-def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
-    """With one runner, then with two; the second part begins with the weights and counters of the first."""
-    out = tmp_path / "run"
+def of_one_update(out):
+    """The counters and the policy of a run with one runner, which was saved and judged."""
     assert run.main(["--steps", "8192", "--out", str(out), *SHORT]) == 0
     state, first = json.loads((out / run.STATE).read_text()), read_policy(out / "policy.npz", "out")
     progress = state["progress"]
@@ -34,7 +33,19 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
     assert not np.array_equal(untrained.policy.weights[0][0], first.policy.weights[0][0])
     results = json.loads((out / run.RESULTS).read_text())
     assert set(results["evaluation"]) == {"trained", "untrained", "ghost_ball", "random"}
-    assert results["versions"]["ray"]
+    assert results["versions"]["ray"] and not ray.is_initialized()
+    return progress, first
+
+
+def test_a_run_is_saved_and_judged(tmp_path):
+    of_one_update(tmp_path / "run")
+
+
+@pytest.mark.slow
+def test_a_run_goes_on_with_more_runners(tmp_path, capsys):
+    """With the weights and counters of the first part."""
+    out = tmp_path / "run"
+    progress, first = of_one_update(out)
     kept, algorithm_of, restore = [], run.algorithm_of, run.restore
 
     def of_runners(made):
