@@ -277,7 +277,7 @@ def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves(bo
     """All but a few rows are tried; what passes must be a field that the page calls unproved."""
     passed = set()
     for path in leaves(boxes):
-        if path[0] == "rows" and path[1] not in (0, 23):
+        if path[0] == "rows" and path[1] != 23:
             continue
         for value in others(at(boxes, path)):
             if faults(put(boxes, path, value)) == []:

@@ -245,6 +245,7 @@ def test_a_full_disk_ends_it_in_one_line(tmp_path, monkeypatch, full):
     assert resume(out) == 0
 
 
+@pytest.mark.slow
 def test_the_systems_own_limit_is_reported_in_one_line(tmp_path):
     """A process that may write 50 kB a file: no traceback, nothing left."""
     code = f"""
