@@ -26,7 +26,7 @@ const LEVELS = {
 const OWN = "own";
 const NOISE = { none: "none", professional: "a professional's", amateur: "an amateur's", club: "a club player's", robot: "a robot's", olympiad: "the Olympiad's robots'" };
 const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
-/** Slow motion, zoom, and how long a call is shown [ms]. */
+/** Slow motion, zoom, time of a call [ms]. */
 const SLOW = 0.2, ZOOM = 2, CALLED = 1600;
 /** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels]. */
 const LOUPE = 0.24, SMALL = 9;
@@ -225,11 +225,11 @@ class Page {
         const { strokes } = await ask("strokes", undefined, `?from=${this.played}`);
         strokes.forEach((stroke, k) => this.known.set(this.played + k, stroke));
       }
-      const stroke = this.known.get(this.played);
-      this.known.delete(this.played);
-      this.played++;
+      const stroke = this.known.get(this.played), shown = ++this.played;
+      this.known.delete(shown - 1);
       if (!stroke) { this.played = this.state.strokes; break; }
       if (!this.hurried) await this.move(stroke);
+      if (shown !== this.played) continue;
       this.call(stroke);
       if (this.drills.now && this.played === this.state.strokes) this.scored = stroke;
       if (this.played < this.state.strokes && !this.hurried) await new Promise(done => setTimeout(done, 500));
@@ -336,10 +336,10 @@ class Page {
     call.className = fouls.length ? "foul" : "";
     call.hidden = false;
     clearTimeout(this.called);
-    this.called = setTimeout(() => { call.hidden = true; }, CALLED);
+    this.called = setTimeout(() => call.hidden = true, CALLED);
   }
 
-  /** Animate a stroke; resolves when the balls rest or the motion is skipped. */
+  /** Animate a stroke until the balls rest or it is skipped. */
   move(data, rate = 1) {
     const stroke = decode({ format: "snooker-replay", version: 1, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     return new Promise(done => {

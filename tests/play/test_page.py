@@ -828,6 +828,17 @@ def test_a_drill_counts_and_keeps_its_best(shown):
     assert not shown.page.is_visible("#drill")
 
 
+def test_a_stroke_that_a_drill_cuts_short_is_neither_called_nor_scored(shown):
+    shown.set_up(EASY)
+    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})  # it pots a red
+    shown.until("page.moving")
+    shown("page.drills.begin('escapes')")
+    shown.until(f"page.drills.now === 'escapes' && page.state.snookered && {SETTLED} && page.aiming")
+    assert shown("page.drills.tries") == 0 and not shown.page.is_visible("#call")
+    shown("page.drills.end()")
+    shown.until(f"!page.state.practice && {SETTLED}")
+
+
 def link_of(shown, kind):
     """What the button for this kind of link makes."""
     shown.page.click(f"#share-{kind}")
