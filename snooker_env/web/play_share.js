@@ -59,8 +59,9 @@ export class Share {
       const link = await packed(kind, await KINDS[kind](this.app.state.strokes)), field = by("link");
       field.value = link;
       field.select();
-      try { await navigator.clipboard.writeText(link); } catch { /* it is selected */ }
-      by("last").textContent = "The link is copied: put it behind the page's address, or paste it into the field Link.";
+      let where = "copied";
+      try { await navigator.clipboard.writeText(link); } catch { where = "in the field Link"; }
+      by("last").textContent = `The link is ${where}: put it behind the page's address.`;
     } catch (error) { this.app.trouble(error); }
   }
 

@@ -879,6 +879,17 @@ def test_a_position_and_a_stroke_are_passed_on_as_links(shown):
     assert "copied whole" in shown.page.inner_text("#last")
 
 
+def test_a_link_says_whether_it_was_copied(shown):
+    shown.set_up(EASY)
+    shown.page.click("#files summary")
+    for answer, says in (("resolve", "copied"), ("reject", "in the field Link")):
+        shown(f"(navigator.clipboard.writeText = () => Promise.{answer}(), 0)")
+        link_of(shown, "game")
+        shown.until(
+            "document.getElementById('last').textContent.startsWith(argument)", f"The link is {says}: ", 20
+        )
+
+
 def test_a_whole_replay_is_passed_on_as_a_link(shown):
     """It is shown from its first stroke, and gone on with; it meets the same errors as when it was played."""
     shown.set_up(VISIT)
