@@ -14,9 +14,9 @@ from tests.processes import ROOT
 
 mpl.use("Agg")
 REDRAWN = ("paper", "pockets", "rack", "scene", "speed", "stability", "tradeoff")
+"""Benchmarks whose figures are kept in benchmarks/figures."""
 COMPUTED = ("paper", "scene", "stability")
 """Those that compute more than they read."""
-"""Benchmarks whose figures are kept in benchmarks/figures."""
 
 
 def read(figures, least=1):

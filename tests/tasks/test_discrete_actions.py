@@ -173,7 +173,7 @@ def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
         ("break_off", 40, 1.0, 1.0),
         ("break_off_six_red", 40, 1.0, 1.0),
         ("break_off_shoot_out", 40, 1.0, 1.0),
-        ("snookered", 10, 0.9, 0.9),
+        ("snookered", 10, 0.95, 0.95),
         pytest.param("snookered_match", 30, 0.95, 0.95, marks=pytest.mark.slow),
         ("frames", 60, 0.99, 0.85),
     ],
