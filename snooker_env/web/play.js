@@ -114,7 +114,7 @@ class Page {
     for (const one of document.querySelectorAll("#panel details")) one.ontoggle = () => {
       if (one.open) one.scrollIntoView({ block: "nearest" });
     };
-    document.addEventListener("click", event => event.detail && event.target.closest("button, summary")?.blur());  // keys are for the stroke again
+    document.addEventListener("click", event => event.detail && event.target.closest("button, summary, [type=range]")?.blur());  // keys are for the stroke again
     document.addEventListener("keydown", event => this.key(event));
   }
 
@@ -175,7 +175,6 @@ class Page {
       try {
         const down = by("last").textContent === DOWN, after = this.state?.revision;
         const state = await ask("state", undefined, this.state ? `?after=${after}&wait=${down ? 0 : 20}` : "");
-        if (state.revision < after) location.reload();  // another server
         this.take(state);
         if (down) { by("last").className = ""; this.show(); }
       } catch (error) {
@@ -196,7 +195,7 @@ class Page {
     if (first) { this.put(state); this.drills.resume(); }
     if (fresh || state.strokes < this.played) this.still();
     if (fresh && !first) {
-      this.stats.times.clear();
+      this.stats.clear();
       this.played = 0;
       this.replay = state.strokes > 0;
     }
@@ -229,7 +228,7 @@ class Page {
       this.known.delete(shown - 1);
       if (!stroke) { this.played = this.state.strokes; break; }
       if (!this.hurried) await this.move(stroke);
-      if (shown !== this.played) continue;
+      if (shown !== this.played || this.setup.open) continue;
       this.call(stroke);
       if (this.drills.now && this.played === this.state.strokes) this.scored = stroke;
       if (this.played < this.state.strokes && !this.hurried) await new Promise(done => setTimeout(done, 500));
@@ -301,7 +300,7 @@ class Page {
     if (state.phase === "over" || state.players[state.striker] === "person") this.hurried = false;
     this.put(state);
     if (this.settled !== state.revision) {
-      const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes]);
+      const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes, state.phase]);
       if (moved !== this.lay) this.firstAim(state);
       else if (this.chosen === state.revision) this.advisor.changed(this.dragged);
       this.lay = moved;
@@ -387,7 +386,7 @@ class Page {
   }
 
   async play() {
-    if (!this.aiming || this.sending) return;  // one stroke for each press, even if the answer is slow
+    if (!this.aiming || this.sending) return;  // one stroke a press
     by("play").disabled = true;
     this.sending = true;
     this.stats.played();
@@ -469,6 +468,7 @@ class Page {
         a: () => aim.tip(side - 0.05, top, event), d: () => aim.tip(side + 0.05, top, event), c: () => aim.set({ side: 0, top: 0 }, event),
         e: () => aim.raise(1, event), q: () => aim.raise(-1, event), Enter: () => this.play(),
       },
+      ...!by("tour").hidden && { Enter: () => by("tour-next").click(), Escape: () => by("tour-skip").click() },
     };
     if (!acts[key]) return;
     acts[key]();

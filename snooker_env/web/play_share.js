@@ -60,7 +60,7 @@ export class Share {
       field.value = link;
       field.select();
       let where = "copied";
-      try { await navigator.clipboard.writeText(link); } catch { where = "in the field Link"; }
+      try { await navigator.clipboard.writeText(link); field.blur(); } catch { where = "in the field Link"; }
       by("last").textContent = `The link is ${where}: put it behind the page's address.`;
     } catch (error) { this.app.trouble(error); }
   }

@@ -45,7 +45,6 @@ export class Stats {
   constructor(app) {
     this.app = app;
     this.times = new Map();  // of a person's stroke, by its number: seconds
-    this.since = null;
     this.at = performance.now();
     by("stats-open").onclick = by("over-stats").onclick = () => this.open();
     setting("limit", LIMITS, "off", () => this.show());
@@ -54,27 +53,32 @@ export class Stats {
 
   /** A stroke is asked of a person, or no longer. */
   turn(asked) {
-    const { strokes, striker } = this.app.state, key = asked ? `${strokes} ${striker}` : null;
-    if (key !== this.key) this.since = asked ? performance.now() : null;
-    this.key = key;
+    const { strokes, striker } = this.app.state, key = `${strokes} ${striker}`;
+    if (asked && key !== this.key) { this.key = key; this.spent = 0; }
+    this.asked = asked;
     this.show();
   }
 
   played() {
-    if (this.since !== null) this.times.set(this.app.state.strokes, (performance.now() - this.since) / 1000);
+    if (this.asked) this.times.set(this.app.state.strokes, this.spent);
+  }
+
+  clear() {
+    this.times.clear();
+    this.key = null;
   }
 
   /** The shot clock; when it has run down, the stroke is played as it is aimed. */
   show() {
     const limit = parseInt(by("limit").value), clock = by("clock"), now = performance.now();
-    if (document.querySelector("dialog[open], #tour:not([hidden])")) this.since &&= this.since + now - this.at;  // it stands still
+    if (this.asked && !document.querySelector("dialog[open], #tour:not([hidden])")) this.spent += (now - this.at) / 1000;
     this.at = now;
-    clock.hidden = !limit || this.since === null || document.hidden;
+    clock.hidden = !limit || !this.asked || document.hidden;
     if (clock.hidden) return;
-    const left = limit - (now - this.since) / 1000;
+    const left = limit - this.spent;
     clock.textContent = Math.max(0, Math.ceil(left));
     clock.classList.toggle("late", left < 5);
-    if (left <= 0) { this.app.aim.held = null; this.app.play(); }
+    if (left <= 0) { this.app.aim.up(false); this.app.play(); }
   }
 
   async open() {

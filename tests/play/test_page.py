@@ -983,7 +983,7 @@ def test_a_shot_clock_plays_the_stroke_as_it_is_aimed(shown):
     shown.page.click("#options summary")
     shown.page.select_option("#limit", "15 s")
     assert 12 <= int(shown.page.inner_text("#clock")) <= 15
-    shown("page.stats.since -= 14000")
+    shown("page.stats.spent += 14")
     shown.until("document.getElementById('clock').className === 'late' || page.state.strokes")
     shown.played(1)
     cue = shown.line("api/strokes")[1]["strokes"][0]["cue"]

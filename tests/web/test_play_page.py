@@ -5,7 +5,7 @@ import time
 import pytest
 
 from tests.play.conftest import line  # noqa: F401
-from tests.play.test_page import SETTLED, Shown
+from tests.play.test_page import AWAY, SETTLED, Shown
 from tests.playing import EASY, STRAIGHT
 from tests.web.chromium import chromium  # noqa: F401
 
@@ -168,7 +168,7 @@ def test_the_clock_of_a_first_visitor_is_a_number(chromium, line):  # noqa: F811
     """The tutorial is open before the first state has come."""
     shown = Shown(chromium, line, new=True)
     shown.until(f"{SETTLED} && page.aiming")
-    assert shown.page.is_visible("#tour") and shown("Number.isFinite(page.stats.since)")
+    assert shown.page.is_visible("#tour") and shown("Number.isFinite(page.stats.spent)")
     shown.close()
 
 
@@ -178,10 +178,70 @@ def test_the_shot_clock_stands_while_something_is_read(shown):
     shown.page.select_option("#limit", "15 s")
     shown.page.keyboard.press("Escape")
     shown.page.click("#help-open")
-    shown("page.stats.since -= 14000")
+    shown("page.stats.spent += 14")
     shown.until("document.getElementById('clock').className === 'late'")
     left = shown.page.inner_text("#clock")
     time.sleep(1.2)
     assert shown("page.state.strokes") == 0 and shown.page.inner_text("#clock") == left
     shown.page.click("#help-close")
     shown.played(1)
+
+
+def test_the_shot_clock_is_not_wound_back_but_by_another_table(shown):
+    shown.set_up(EASY)
+    shown.page.click("#options summary")
+    shown.page.select_option("#limit", "15 s")
+    shown("page.stats.spent += 6")
+    shown.page.click("#set")
+    assert not shown.page.is_visible("#clock")
+    shown.page.click("#set-cancel")
+    assert int(shown.page.inner_text("#clock")) <= 9
+    shown.set_up(EASY)
+    assert 12 <= int(shown.page.inner_text("#clock")) <= 15
+
+
+def test_after_a_foul_the_choices_cover_no_words_and_the_next_aim_is_a_new_one(chromium, line):  # noqa: F811
+    """The foul's own aim struck nothing. Folded, on a tablet."""
+    shown = Shown(chromium, line, viewport={"width": 1180, "height": 820})
+    shown.set_up(EASY)
+    shown.page.click("#fold")
+    shown("page.aim.set({aim: argument, speed: 0.5})", AWAY)
+    assert shown("page.aim.words") == "cushion first"
+    shown.page.click("#play")
+    shown.played(1)
+    shown.until("page.state.phase === 'choice'")
+    assert all(seen(shown, name) for name in ("choices", "asked", "last", "advise"))
+    shown.page.click("#choices button[data-choice=play]")
+    shown.until(f"{SETTLED} && page.aiming")
+    assert shown("page.aim.words").startswith("red")
+    shown.close()
+
+
+def test_keys_turn_the_pages_of_the_tutorial_and_play_nothing(chromium, line):  # noqa: F811
+    shown = Shown(chromium, line, new=True)
+    shown.until(f"{SETTLED} && page.aiming")
+    before = shown("page.state.revision")
+    shown.page.keyboard.press("Enter")
+    assert shown.page.inner_text("#tour-step") == "2 of 6"
+    shown.page.keyboard.press("Escape")
+    assert not shown.page.is_visible("#tour") and not shown("page.sending")
+    assert shown("page.state.revision") == before
+    shown.close()
+
+
+def test_after_a_slider_was_clicked_the_keys_are_for_the_stroke(shown):
+    shown.set_up(EASY)
+    shown.page.click("#speed")
+    speed, aim = shown("[page.aim.wish.speed, page.aim.wish.aim]")
+    shown.page.keyboard.press("ArrowLeft")
+    assert shown("[page.aim.wish.speed, page.aim.wish.aim]") == pytest.approx([speed, aim + 0.1 * 0.017453293])
+
+
+def test_what_a_stroke_brought_is_not_called_over_set_up(shown):
+    shown.set_up(EASY)
+    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})
+    shown.until("page.moving")
+    shown.page.click("#set")
+    shown.until("!page.busy")
+    assert shown("page.state.scores[0]") == 1 and not shown.page.is_visible("#call")
+    shown.page.click("#set-cancel")
