@@ -125,7 +125,7 @@ def main(argv: list[str] | None = None) -> int:
         return 130
     try:
         print(f"Snooker is played at\n\n    {server.address}\n")
-        print("Programs play at its api/ (documentation: The protocol). Ctrl-C ends it and the game.", flush=True)
+        print("Programs play at its api/ (docs: The protocol). Ctrl-C ends it and the game.", flush=True)
         if not args.no_browser and not webbrowser.open(server.address):
             print(f"No browser was found: open {server.address} in one.", flush=True)
         server.serve_forever(poll_interval=0.2)

@@ -193,7 +193,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         name = re.sub("^/+(?=api/)", "", name)
         known = hmac.compare_digest(token.encode(), self.server.token.encode())
         if not parts.path.startswith("/") or not known:
-            raise self._last(403, "the address must hold the token of the server that runs now: open the address that it printed")
+            raise self._last(403, "the address must hold this server's token: open the one that it printed")
         if self.command not in ("GET", "POST"):
             raise self._last(405, "the method must be GET or POST", Allow="GET, POST")
         methods = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}

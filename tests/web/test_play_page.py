@@ -234,7 +234,9 @@ def test_after_a_slider_was_clicked_the_keys_are_for_the_stroke(shown):
     shown.page.click("#speed")
     speed, aim = shown("[page.aim.wish.speed, page.aim.wish.aim]")
     shown.page.keyboard.press("ArrowLeft")
-    assert shown("[page.aim.wish.speed, page.aim.wish.aim]") == pytest.approx([speed, aim + 0.1 * 0.017453293])
+    assert shown("[page.aim.wish.speed, page.aim.wish.aim]") == pytest.approx(
+        [speed, aim + 0.1 * 0.017453293]
+    )
 
 
 def test_what_a_stroke_brought_is_not_called_over_set_up(shown):
