@@ -13,7 +13,7 @@ export folder
 
 runs() { # name, then the options of train.py
     local long="--imitate 153600 --steps 1507328"
-    echo "ppo_value-0 --seed 0 $long"
+    for seed in 0 1 2 3 4; do echo "ppo_value-$seed --seed $seed $long"; done
     for noise in none amateur club; do echo "ppo_value_$noise --noise $noise $long"; done
 }
 
@@ -45,7 +45,7 @@ evaluate() { # name of the output, then the options of agents.evaluate
     shift
     module agents.evaluate "$@" ${RAY:+--ray "$RAY"} --json "agents/results/$name.json" --markdown "agents/results/$name.md"
 }
-module agents.curves "ppo_value=$folder/ppo_value-0"
+module agents.curves "ppo_value=$folder/ppo_value-[0-4]"
 # the published models, by their names
 evaluate visits --layouts held_out=500 --noise professional --against search best_pot --picture agents/pictures/destinations.png --agent \
     planner best_pot ghost_ball search stroke_value ppo_value random

@@ -19,9 +19,18 @@ judge() {  # its name, all simulated shots of its training
     $bench run all --agent "$1" --training-shots "$2" --out leaderboard --resume
 }
 
-judge_each() {  # the same, of models that are trained on each task without an opponent: one that searches takes hours for them
+judge_seeds() {  # the same learned from five training seeds, one of them the package's model; what stands before its name; as above
+    labels+=("$1")
     if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
-    tasks=$(python -c "from snooker_env.benchmark import TASKS; print(*(t.id for t in TASKS.values() if not t.frame))") || exit 1
+    ONLY='ppo_value-[1-4]' bash agents/experiments.sh || return
+    models=$(seq -s, -f "$2runs/experiments/ppo_value-%g" 1 4)
+    $bench run all --agent "$1=$2ppo_value,$models" --training-shots "$3" --out leaderboard --resume
+}
+
+judge_each() {  # the same, of models that are trained on each task
+    labels+=("$1")
+    if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
+    tasks=$(python -c "from snooker_env.benchmark import TASKS; print(*TASKS)") || exit 1
     for task in $tasks; do
         file=leaderboard/$task.$1.json
         if [ -e "$file" ] && grep -q '"incomplete": null' "$file"; then continue; fi
@@ -43,6 +52,9 @@ judge tactician 46101376
 # The values of three levels, the worth of the tactician, and 13 million shots of its own: strokes that are tried, play, and who plays against it.
 judge stroke_value 96000000
 judge ppo_value 18403328
+# planner and ppo_value from five training seeds, all with a professional's errors: those of planner above are the task's.
+judge_seeds planner_seeds planner@ 18403328
+judge_seeds ppo_value_seeds "" 18403328
 
 # Plain PPO, five training seeds.
 judge_each ppo_50k 49152

@@ -35,7 +35,7 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     comparisons, curves = (
         [line[3:] for line in lines if line[2] == f"agents.{name}"] for name in ("evaluate", "curves")
     )
-    assert len(runs) == 4 and len(comparisons) == 1 and len(curves) == 1 and len(runs) + 3 == len(lines)
+    assert len(runs) == 8 and len(comparisons) == 1 and len(curves) == 1 and len(runs) + 3 == len(lines)
     assert all(agent.partition("=")[2].startswith(f"{tmp_path}/") for agent in curves[0])
     recipes = {train.recipe_of(train.Settings(**train.parse(run)[1])).name for run in runs}
     assert recipes == {"ppo_value"}
