@@ -19,12 +19,12 @@ judge() {  # its name, all simulated shots of its training
     $bench run all --agent "$1" --training-shots "$2" --out leaderboard --resume
 }
 
-judge_seeds() {  # the same learned from five training seeds, one of them the package's model; what stands before its name; as above
+judge_seeds() {  # the same learned from five training seeds: its name, the package's of them, what stands before the others, as above
     labels+=("$1")
     if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
     ONLY='ppo_value-[1-4]' bash agents/experiments.sh || return
-    models=$(seq -s, -f "$2runs/experiments/ppo_value-%g" 1 4)
-    $bench run all --agent "$1=$2ppo_value,$models" --training-shots "$3" --out leaderboard --resume
+    models=$(seq -s, -f "$3runs/experiments/ppo_value-%g" 1 4)
+    $bench run all --agent "$1=$2,$models" --training-shots "$4" --out leaderboard --resume
 }
 
 judge_each() {  # the same, of models that are trained on each task
@@ -53,8 +53,8 @@ judge tactician 46101376
 judge stroke_value 96000000
 judge ppo_value 18403328
 # planner and ppo_value from five training seeds, all with a professional's errors: those of planner above are the task's.
-judge_seeds planner_seeds planner@ 18403328
-judge_seeds ppo_value_seeds "" 18403328
+judge_seeds planner_seeds planner@professional planner@ 18403328
+judge_seeds ppo_value_seeds ppo_value "" 18403328
 
 # Plain PPO, five training seeds.
 judge_each ppo_50k 49152
