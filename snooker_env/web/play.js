@@ -34,7 +34,7 @@ const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "esca
 const CUES = { real: "can be blocked", free: "never blocked" };
 /** What may be chosen after the foul of a player with this name. */
 const CHOICES = { play: () => "Play the table as it lies", play_again: who => `${who} plays again from here`, replace: who => `Put the balls back: ${who} plays again`, anywhere: () => "Put the cue ball anywhere" };
-/** A phone, which shows the controls of the stroke alone unless it is asked for all. */
+/** A phone shows the controls of the stroke alone unless asked for all. */
 const PHONE = matchMedia("(orientation: portrait) and (max-width: 640px), (max-height: 480px) and (orientation: landscape)");
 
 const seed = () => Math.floor(Math.random() * 2 ** 48);
@@ -246,7 +246,7 @@ class Page {
   /** Does the game wait for Continue? */
   get waits() { return this.agentsAlone && this.held || !this.behind && this.state.paused; }
 
-  /** Are there strokes that have not been shown yet? Their results are not shown before. */
+  /** Are there strokes that have not been shown yet? */
   get behind() { return Boolean(this.moving || this.busy || this.played < this.state.strokes); }
 
   /** Show no motion until a person is asked. */
@@ -300,10 +300,11 @@ class Page {
     if (state.phase === "over" || state.players[state.striker] === "person") this.hurried = false;
     this.put(state);
     if (this.settled !== state.revision) {
-      const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes, state.phase]);
-      if (moved !== this.lay) this.firstAim(state);
+      const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes]);
+      if (moved !== this.lay || state.phase !== this.phase) this.firstAim(state, moved !== this.lay);
       else if (this.chosen === state.revision) this.advisor.changed(this.dragged);
       this.lay = moved;
+      this.phase = state.phase;
       this.settled = state.revision;
       this.room.changed();
       if (this.zoomed) this.fit();
@@ -312,14 +313,14 @@ class Page {
   }
 
   /** Set a first aim on a new table; not while the player places the cue ball: then advice for its own place stays. */
-  firstAim(state) {
+  firstAim(state, moved) {
     const key = JSON.stringify([state.ball_on, state.striker, state.strokes, Object.entries(state.positions).filter(([name]) => name !== "cue")]);
     if (key === this.aimed && (this.placing.busy || this.chosen === state.revision || this.aim.held === "ball")) {
       this.advisor.placed();
       this.advisor.changed(this.dragged);
       return;
     }
-    this.advisor.clear();
+    if (moved) this.advisor.clear();
     if (state.phase !== "stroke") return;
     this.aimed = key;
     const aim = firstAim(state, this.balls, this.names, this.scene.extent, this.view.R, this.aim.wish.aim);
@@ -454,7 +455,7 @@ class Page {
       if (!(key === "Enter" && event.target.type === "range")) return;
     }
     if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
-    if (event.repeat && (key === "Enter" || key === " " || "urvbzfm".includes(key))) return;  // once for a key held down
+    if (event.repeat && (key === "Enter" || key === " " || "urvbzfm".includes(key))) return;  // once a press
     if (event.altKey && !key.startsWith("Arrow")) return;
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, { side, top } = aim.wish;
     const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end() } : {

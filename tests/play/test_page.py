@@ -712,6 +712,9 @@ def test_advice_after_a_foul_says_what_to_choose(shown):
     shown.until("document.querySelectorAll('#advice button').length")
     marked = shown("[...document.querySelectorAll('#choices .best')].map(one => one.dataset.choice)")
     assert marked == [asked["choice"]]
+    shown.page.click("#choices button[data-choice=play]")
+    shown.until("page.aiming")
+    assert shown("document.querySelectorAll('#advice button').length")  # of the same balls
 
 
 def test_one_menu_seats_an_opponent_of_a_strength(shown):
