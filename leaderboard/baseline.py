@@ -33,6 +33,7 @@ def trained(task, seed):
     while (simulated() - before) * (rollouts + 1) <= SHOTS * rollouts:  # room for one more
         agent.learn(TABLES * SETTINGS["n_steps"], reset_num_timesteps=False)
         rollouts += 1
+    assert simulated() - before <= SHOTS, "a rollout took more shots than those before it"
     envs.close()
     return agent
 

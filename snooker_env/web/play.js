@@ -193,9 +193,9 @@ class Page {
     this.alias = [state.labels[1], state.labels[1]];
     if (level && state.players[1] !== "person") this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
     if (first) { this.put(state); this.drills.resume(); }
-    if (fresh || state.strokes < this.played) this.still();
+    if (fresh || state.strokes < this.played) { this.still(); this.stats.key = null; }
     if (fresh && !first) {
-      this.stats.clear();
+      this.stats.times.clear();
       this.played = 0;
       this.replay = state.strokes > 0;
     }
@@ -301,7 +301,7 @@ class Page {
     this.put(state);
     if (this.settled !== state.revision) {
       const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes]);
-      if (moved !== this.lay || state.phase !== this.phase) this.firstAim(state, moved !== this.lay);
+      if (moved !== this.lay || this.phase === "choice") this.firstAim(state, moved !== this.lay);
       else if (this.chosen === state.revision) this.advisor.changed(this.dragged);
       this.lay = moved;
       this.phase = state.phase;

@@ -51,21 +51,16 @@ export class Stats {
     setInterval(() => this.show(), 200);
   }
 
-  /** A stroke is asked of a person, or no longer. */
+  /** A stroke is asked of a person, or no longer; on another table the clock begins anew. */
   turn(asked) {
-    const { strokes, striker } = this.app.state, key = `${strokes} ${striker}`;
-    if (asked && key !== this.key) { this.key = key; this.spent = 0; }
+    const { aimed } = this.app;
+    if (asked && aimed !== this.key) { this.key = aimed; this.spent = 0; }
     this.asked = asked;
     this.show();
   }
 
   played() {
     if (this.asked) this.times.set(this.app.state.strokes, this.spent);
-  }
-
-  clear() {
-    this.times.clear();
-    this.key = null;
   }
 
   /** The shot clock; when it has run down, the stroke is played as it is aimed. */

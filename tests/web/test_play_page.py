@@ -196,7 +196,16 @@ def test_the_shot_clock_is_not_wound_back_but_by_another_table(shown):
     assert not shown.page.is_visible("#clock")
     shown.page.click("#set-cancel")
     assert int(shown.page.inner_text("#clock")) <= 9
-    shown.set_up(EASY)
+    shown.page.click("#set")
+    shown.drag(EASY["reds"][1], (-0.3, 0.4))
+    shown.page.click("#set-done")
+    shown.until(f"{SETTLED} && page.aiming")
+    assert 12 <= int(shown.page.inner_text("#clock")) <= 15
+    shown("page.stats.spent += 6")
+    shown.page.click("#play")
+    shown.until("page.moving")
+    shown.page.click("#undo")
+    shown.until(f"{SETTLED} && page.aiming")
     assert 12 <= int(shown.page.inner_text("#clock")) <= 15
 
 
