@@ -285,11 +285,11 @@ def over(after: State, winner: int) -> None:
 
 def _shoot_out(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules) -> None:
     """The Shoot Out: in hand anywhere after a foul; the clock, from the first stroke on, which does not end a
-    re-spotted black."""
+    re-spotted black. Time is up when the ten minutes are full."""
     if verdict.fouls and after.phase == "stroke":
         after.in_hand = after.anywhere = after.on_table[0] = True
     after.clock = state.clock + stroke.duration + (rules.time_to_play if state.clock else 0)
-    if after.phase == "stroke" and not state.respotted_black and after.clock + rules.time_to_play > 600_000:
+    if after.phase == "stroke" and not state.respotted_black and after.clock + rules.time_to_play >= 600_000:
         verdict.notes.add("time is up")
         after.anywhere = False
         _last_black(after, verdict)
