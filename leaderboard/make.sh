@@ -13,23 +13,26 @@ bench="python -m snooker_env.benchmark"
 wanted="$*"
 labels=()
 
-judge() {  # its name, all simulated shots of its training
+wants() {  # whether this agent is to be judged; it stands on the page in any case
     labels+=("$1")
-    if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
+    [ -z "$wanted" ] || [[ " $wanted " == *" $1 "* ]]
+}
+
+judge() {  # its name, all simulated shots of its training
+    wants "$1" || return
     $bench run all --agent "$1" --training-shots "$2" --out leaderboard --resume
 }
 
-judge_seeds() {  # the same learned from five training seeds: its name, the package's of them, what stands before the others, as above
-    labels+=("$1")
-    if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
+judge_seeds() {  # the same of five training seeds, the first of which is the package's
+    local label=$1 shots=$2 first=$3 before=$4
+    wants "$label" || return
     ONLY='ppo_value-[1-4]' bash agents/experiments.sh || return
-    models=$(seq -s, -f "$3runs/experiments/ppo_value-%g" 1 4)
-    $bench run all --agent "$1=$2,$models" --training-shots "$4" --out leaderboard --resume
+    others=$(seq -s, -f "${before}runs/experiments/ppo_value-%g" 1 4)
+    $bench run all --agent "$label=$first,$others" --training-shots "$shots" --out leaderboard --resume
 }
 
-judge_each() {  # the same, of models that are trained on each task
-    labels+=("$1")
-    if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
+judge_each() {  # the same of five models that are trained on each task
+    wants "$1" || return
     tasks=$(python -c "from snooker_env.benchmark import TASKS; print(*TASKS)") || exit 1
     for task in $tasks; do
         file=leaderboard/$task.$1.json
@@ -53,8 +56,8 @@ judge tactician 46101376
 judge stroke_value 96000000
 judge ppo_value 18403328
 # planner and ppo_value from five training seeds, all with a professional's errors: those of planner above are the task's.
-judge_seeds planner_seeds planner@professional planner@ 18403328
-judge_seeds ppo_value_seeds ppo_value "" 18403328
+judge_seeds planner_seeds 18403328 planner@professional planner@
+judge_seeds ppo_value_seeds 18403328 ppo_value ""
 
 # Plain PPO, five training seeds.
 judge_each ppo_50k 49152

@@ -4,7 +4,6 @@ Only how an agent sees and acts stays free. docs/benchmark.md holds the rules.""
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from itertools import count
 from types import MappingProxyType
 from typing import Any
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from .._check import choice, integer, refuse, refuse_what
 from ..game.balls import N_REDS, VALUES
+from ..game.banks import HELD_OUT
 from ..game.layouts import layout as deal
 from ..game.layouts import plan_of
 from ..tasks.options import SAYS, Options
@@ -146,7 +146,8 @@ def task_of(name: Any) -> Task:
 @lru_cache(maxsize=32)
 def _tables_of(layout: str, n: int) -> tuple[int, ...]:
     plan, seeds, known = plan_of(layout), [], set()
-    for seed in count(HELD_OUT_SEED):
+    draws = n + 20 * min(n, HELD_OUT)  # 20 for each table of a bank bring all of them, but once in 200,000
+    for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + draws):
         positions, _ = deal(plan, np.random.default_rng(seed))
         table = np.sort(np.abs(positions[:, 0])).round(9).tobytes()
         if table not in known:
@@ -154,8 +155,6 @@ def _tables_of(layout: str, n: int) -> tuple[int, ...]:
             seeds.append(seed)
             if len(seeds) == n:
                 return tuple(seeds)
-        elif seed > seeds[-1] + 20 * len(seeds) + 1000:  # a new table of a bank comes sooner, but once in 5e8
-            break
     raise refuse("visits", n, f"must be at most {len(seeds)} on layout {layout!r}: it has no more tables")
 
 

@@ -45,7 +45,7 @@ def test_the_list_of_what_nothing_proves():
 
 
 SLOW = ("SnookerFrame-v0", "SnookerSafety-v0")
-"""Tasks whose strokes are checked by asking the opponent again: 100 s and 7 s a file, five times as much for five training seeds."""
+"""Tasks whose strokes are checked by asking the opponent again: 100 s and 7 s a file of one training seed."""
 
 
 @pytest.mark.parametrize(
