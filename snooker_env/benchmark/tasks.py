@@ -146,8 +146,7 @@ def task_of(name: Any) -> Task:
 @lru_cache(maxsize=32)
 def _tables_of(layout: str, n: int) -> tuple[int, ...]:
     plan, seeds, known = plan_of(layout), [], set()
-    draws = n + 20 * min(n, HELD_OUT)  # 20 for each table of a bank bring all of them, but once in 200,000
-    for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + draws):
+    for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + n + 20 * min(n, HELD_OUT)):  # brings all of a bank
         positions, _ = deal(plan, np.random.default_rng(seed))
         table = np.sort(np.abs(positions[:, 0])).round(9).tobytes()
         if table not in known:
