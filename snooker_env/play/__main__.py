@@ -76,7 +76,7 @@ def warm_up(service: Any) -> None:
         if session.frame.phase == "stroke":
             stroke = CueStroke(speed=2.0, aim=1.0)
             questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
-            for name in {service.seats.agents[0], service.seats.who[1]}:
+            for name in {service.seats.advisers(session.practice)[0], service.seats.who[1]}:
                 service.seats.decided(name, session)
     with service.reading():
         report(service)

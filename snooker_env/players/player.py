@@ -261,6 +261,7 @@ class BoundPlayer:
 
     name: str = ""
     training_shots: int | None = None  # all simulated shots of its training; None: not known
+    frames: bool = True  # whether it knows frames; False: it plays their strokes as those of visits
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:
