@@ -226,7 +226,8 @@ class Player(Protocol):
     """A player: a function of positions and a seed.
 
     It may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position, first of all
-    the stroke that ``play`` returns. Advice shows it.
+    the stroke that ``play`` returns. Advice shows it. One whose ``frames`` is False knows visits alone, and is not
+    asked for advice in frames.
 
     Examples
     --------

@@ -12,6 +12,7 @@ from snooker_env.game.ruling import AUTO
 from snooker_env.planning import Position
 from snooker_env.play.acts import MOST_ACTS, opened, written
 from snooker_env.play.session import DECLINED, Session
+from snooker_env.simulation import SimulationError
 from tests.play.test_session import standing
 from tests.playing import EASY, STRAIGHT
 
@@ -172,3 +173,15 @@ def test_what_is_not_sound_is_refused_and_changes_nothing(change, words):
     with pytest.raises(ValueError, match=words):
         opened(other, saved)
     assert other.save() == before and other.acts == acts
+
+
+def test_an_act_that_cannot_be_computed_is_named(monkeypatch):
+    session = standing(EASY)
+    session.play(CueStroke(speed=2.0, aim=STRAIGHT))
+
+    def fails(self, *args, **kwargs):
+        raise SimulationError("shot 0 has too many events")
+
+    monkeypatch.setattr(Session, "play", fails)
+    with pytest.raises(ValueError, match=r"^saved\.acts\[0\]\.shot 0 has too many events"):
+        opened(Session(), sent(session))
