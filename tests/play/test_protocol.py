@@ -137,7 +137,7 @@ def test_the_chance_to_win_is_said_of_seat_0_after_each_stroke(game):
     assert "Chance to win, both with an amateur's errors: Player 1 99 %, Player 2 1 %." in ahead["text"]
     theirs = game("position", position=EASY, scores=[0, 130], striker=1)
     assert theirs["win_chance"] < 0.05
-    judge = player("tactician").at(game.session.options_with("professional"))
+    judge = player("tactician").at(game.session.options_with("amateur"))
     level = game("position", position=EASY, scores=[20, 30])
     assert level["win_chance"] == pytest.approx(judge.chance_to_win(game.session.position)[0], abs=1e-4)
     answer = game("stroke", speed=2.0, aim=STRAIGHT)
