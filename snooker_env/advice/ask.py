@@ -4,7 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from .._check import integer
+from .._check import integer, refuse
 from ..planning.positions import PositionsLike
 from ..players import Player
 from ..players import player as player_of
@@ -44,8 +44,9 @@ def advise(
         One position, as ``Positions.of`` takes it, or a ``Position.to_dict()``. With the cue ball in hand
         each stroke has its ``place``. Points of the break so far do not count.
     agent : str, Path or player, optional
-        The player, as ``snooker_env.player`` takes it. One without ``rank`` has one stroke. Default None:
-        "planner_500", in a frame "tactician".
+        The player, as ``snooker_env.player`` takes it, in a frame one that knows frames ("tactician",
+        "stroke_value", your own). One without ``rank`` has one stroke. Default None: "planner_500", in a frame
+        "tactician".
     scores : (int, int), optional
         Of the striker and of the other, in [0, 1000]: they make a frame of a position of a visit. Default None:
         it is what it is.
@@ -88,6 +89,10 @@ def advise(
     practice = practice_of(noise, options, position, of_frames=at.of_frames)
     agent = (OF_FRAMES if at.of_frames else AGENT) if agent is None else agent
     asked = player_of(agent, trust=trust)
+    name = str(agent) if isinstance(agent, str | Path) else getattr(asked, "name", "") or type(asked).__name__
+    if at.of_frames and not getattr(asked, "frames", True):
+        allowed = f'must know frames, as "{OF_FRAMES}" or "stroke_value" do: this player knows visits alone'
+        raise refuse("agent", name, allowed)
 
     def tried(one: Player) -> list[judging.Tried]:
         bound = one.at(practice.options)
@@ -103,7 +108,6 @@ def advise(
         strokes += tried(player_of(INSTEAD))
         chosen = judging.fair(practice, strokes, n, **judge)
     chosen = chosen or [judging.least_bad(practice, strokes, **judge)]
-    name = str(agent) if isinstance(agent, str | Path) else getattr(asked, "name", "") or type(asked).__name__
     return Advice(
         suggestions=tuple(chosen),
         position=at[0],

@@ -14,6 +14,7 @@ from ..physics.parameters import Physics
 from ..planning import Position, Positions
 from ..planning.strokes import FARTHEST, encoded
 from ..players import Strokes
+from ..replays.words import errors_words
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, Actions
 from .room import Room
 
@@ -239,7 +240,7 @@ class Advice(Sequence[Suggestion]):
     >>> len(advice), advice.agent
     (1, 'search')
     >>> print(advice)  # doctest: +ELLIPSIS
-    Pots by points expected:
+    Pots by points expected, without errors:
     1. black, top left, ... m/s, ..., pot 100 %, 7 points expected
     """
 
@@ -267,13 +268,14 @@ class Advice(Sequence[Suggestion]):
 
     @property
     def order(self) -> str:
-        """Whose strokes these are if not the agent's own, and by what they are ordered, in words."""
+        """Whose strokes these are if not the agent's own, by what they are ordered, and with whose errors, in words."""
         whose = "" if self.own else f"{self.agent} has no fair stroke here; these are not its own. "
+        errors = errors_words(self.noise)
         if self.scores is not None:
-            return f"{whose}By chance to win:"
+            return f"{whose}By chance to win, {errors}:"
         by = {True: "pots by points expected", False: "strokes without a pot by how often they are fair"}
         parts = ", then ".join(by[pot] for pot in dict.fromkeys(one.kind == "pot" for one in self))
-        return f"{whose}{parts.capitalize()}:"
+        return f"{whose}{parts.capitalize()}, {errors}:"
 
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types; the position and the suggestions as dicts."""

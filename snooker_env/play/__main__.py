@@ -25,7 +25,8 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--port", type=int, help=f"port to listen on (default: {PORT} if it is free, else any)")
     add("--no-browser", action="store_true", help="only print the address")
     agent = """an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or
-        MODULE:CLASS; the first one is your opponent (default: tactician_500); may be given more than once"""
+        MODULE:CLASS; the first one is your opponent (default: tactician_500), and your adviser if it knows frames;
+        may be given more than once"""
     add("--agent", action="append", default=[], metavar="NAME", help=agent)
     add_model_options(parser)
     noise = "execution errors of the agent (default: %(default)s)"
@@ -76,7 +77,7 @@ def warm_up(service: Any) -> None:
         if session.frame.phase == "stroke":
             stroke = CueStroke(speed=2.0, aim=1.0)
             questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
-            for name in {service.seats.agents[0], service.seats.who[1]}:
+            for name in {service.seats.advisers(session.practice)[0], service.seats.who[1]}:
                 service.seats.decided(name, session)
     with service.reading():
         report(service)

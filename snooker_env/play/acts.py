@@ -1,17 +1,18 @@
 """How is a whole game written down, and played again? As its first table, with its random stream, and what was asked
 for from there.
 
-Played again, strokes meet the same execution errors, so they must lead to the table that is written at the end.
+Played again, strokes meet the same execution errors, so each act must lead to the scores and places written with it.
 """
 
 from typing import Any
 
 import numpy as np
 
-from .._check import array, choice, refuse, refuse_what, truth
+from .._check import choice, number, refuse, refuse_what, truth
 from ..advice import CueStroke
 from ..game.balls import NAMES
 from ..game.ruling import AUTO
+from ..simulation import SimulationError
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from .questions import colour_named, place_asked
@@ -23,11 +24,13 @@ STROKE = ("speed", "aim", "side", "top", "elevation", "place", "nominate", "nois
 
 
 def written(session: Session) -> dict[str, Any]:
-    """The game from its last new table on: a ``Session.save`` of the first table, "acts" and "end"."""
+    """The game from its last new table on: a ``Session.save`` of the first table, and "acts"."""
     acts = session.acts[: session.at]
     first = max(k for k, act in enumerate(acts) if not act.asked)
     begun = session.save() | {"state": acts[first].state}
-    return begun | {"acts": [act.asked for act in acts[first + 1 :]], "end": _end(session)}
+    states = [act.state for act in acts[first:]]
+    asked = zip(acts[first + 1 :], states, states[1:], strict=False)
+    return begun | {"acts": [act.asked | {"left": _left(before, after)} for act, before, after in asked]}
 
 
 def opened(session: Session, saved: Any) -> None:
@@ -37,27 +40,26 @@ def opened(session: Session, saved: Any) -> None:
         return
     game, acts = dict(saved), saved["acts"]
     del game["acts"]
-    end = game.pop("end", None)
     if not isinstance(acts, list) or len(acts) > MOST_ACTS:
         raise refuse_what("saved.acts", "something else", f"must be a list of at most {MOST_ACTS}")
     twin = session.twin()
     twin.load(game)
     for k, act in enumerate(acts):
         try:
-            _do(twin, act)
-        except ValueError as error:
+            if not isinstance(act, dict):
+                raise refuse("act", act, "must be an object")
+            before, asked = twin.state, dict(act)
+            left = asked.pop("left", None)
+            _do(twin, asked)
+            _compare(left, before, twin.state)
+        except (ValueError, SimulationError) as error:
             raise ValueError(f"saved.acts[{k}].{error}") from None
-    if not _alike(_end(twin), end):
-        allowed = "must be where its acts lead; another version or table of snooker_env may have played them"
-        raise refuse_what("saved.end", "another table", allowed)
     twin.noise[:], twin.practice, twin.cue = game["noise"], game["practice"], game.get("cue", "free")
     session.become(twin)
 
 
-def _do(session: Session, act: Any) -> None:
+def _do(session: Session, act: dict[str, Any]) -> None:
     """Do what was asked for; ValueError names the field that is invalid."""
-    if not isinstance(act, dict):
-        raise refuse("act", act, "must be an object")
     says: Any = {"concede": session.concede, "claim": session.claim}
     declare = lambda what: says[choice("declare", what, says)]()  # noqa: E731
     for one, do in (("choice", session.choose), ("declare", declare)):
@@ -82,18 +84,36 @@ def _do(session: Session, act: Any) -> None:
     session.play(stroke, nominated=nominated)
 
 
-def _end(session: Session) -> dict[str, Any]:
-    """Scores, and the place of each ball on the table to 0.1 mm."""
-    places = np.round(session.tables.positions[0], 4).tolist()
-    on_table = np.flatnonzero(session.tables.on_table[0])
-    return {"scores": list(session.frame.scores), "positions": {NAMES[i]: places[i] for i in on_table}}
+def _left(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
+    """What an act leaves: the scores, and the place of each ball that it moved, to 0.1 mm."""
+    was = _places(before)
+    return {name: place for name, place in _places(after).items() if place != was[name] or name == "scores"}
 
 
-def _alike(found: dict[str, Any], end: Any) -> bool:
-    """Whether this is the end that was written down."""
-    here = found["positions"]
-    there = end.get("positions") if isinstance(end, dict) else None
-    if not isinstance(there, dict) or there.keys() != here.keys() or end.get("scores") != found["scores"]:
-        return False
-    places = array("saved.end.positions", [there[name] for name in here], (len(here), 2))
-    return bool((np.abs(places - list(here.values())) < NEAR).all())
+def _places(state: dict[str, Any]) -> dict[str, Any]:
+    """The scores, and where each ball lies; None: it is off the table, or in hand."""
+    hand, balls = state["frame"]["in_hand"], zip(NAMES, state["positions"], state["on_table"], strict=True)
+    places = {
+        name: np.round(at, 4).tolist() if on and not (hand and name == "cue") else None
+        for name, at, on in balls
+    }
+    return {"scores": list(state["frame"]["scores"])} | places
+
+
+def _compare(left: Any, before: dict[str, Any], after: dict[str, Any]) -> None:
+    """ValueError names what an act was said to leave and does not leave here."""
+    if not isinstance(left, dict):
+        raise refuse("left", left, 'must be an object: {"scores": [0, 0], "cue": [x, y], ...}')
+    said, here = _places(before) | left, _places(after)
+    for name, place in said.items():
+        if not _alike(place, here[choice("field of left", name, here)]):
+            led = "off the table" if here[name] is None else here[name]
+            allowed = f"must be {led}: that is what this act leads to here, maybe another version played it"
+            raise refuse(f"left.{name}", place, allowed)
+
+
+def _alike(one: Any, other: Any) -> bool:
+    """Whether these are the same scores, or the same place to within ``NEAR``."""
+    if not isinstance(one, list) or not isinstance(other, list) or len(one) != len(other):
+        return one is other
+    return all(abs(number("left", a) - b) < NEAR for a, b in zip(one, other, strict=True))

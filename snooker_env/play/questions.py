@@ -103,7 +103,7 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
     """What an agent would choose after the foul, and how likely the striker wins after each choice."""
     seat, found = session.frame.striker, []
     for what in session.frame.choices:
-        (chance,) = service.win_chances([session.twin().choose(what)])
+        (chance,) = service.win_chances([session.twin().choose(what)], session.noise[seat])
         win = chance if chance is None or seat == 0 else 1.0 - chance
         found.append({"choice": what, "win": win})
     decided = service.seats.decided(agent, session)
@@ -112,11 +112,13 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
 
 def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:
     """At most n strokes of the agent, the best of each ``_idea``, in words, data and paths; their order."""
-    choice("agent", agent, seats.agents)
     how: Any = {**errors, "n": n + RIVALS * (n - 1), "options": {"cue": session.cue}}
     at = session.planned()
     if not session.practice:  # alone at the table nobody wins
-        at, how["options"]["miss"] = session.position, session.miss
+        at, how["options"] = (
+            session.position,
+            {"cue": session.cue, "miss": session.miss, "game": session.game},
+        )
     advice, best, out = advise(at, agent=seats.players[agent], **how), {}, []
     for one in advice:
         best.setdefault(_idea(one), one)
@@ -128,7 +130,7 @@ def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors:
         names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
         names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
         out.append(one.to_dict() | names | paths(exact(twin, one.stroke)))
-    return {"agent": agent, "order": advice.order, "suggestions": out}
+    return {"agent": agent, "order": advice.order, "noise": advice.noise, "suggestions": out}
 
 
 def _idea(one: Suggestion) -> tuple[Any, ...]:

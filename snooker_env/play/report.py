@@ -12,8 +12,8 @@ from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
 from ..planning.strokes import FARTHEST
 from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
+from ..replays.words import ERRORS, errors_words
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
-from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import Service
@@ -35,9 +35,8 @@ def scene(service: Service) -> dict[str, Any]:
         "cue": {"tip": TIP, "butt": BUTT, "length": LENGTH, "rail": RAIL},
         "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
         "pockets": [{"name": name, "x": x, "y": y} for name, (x, y) in pockets],
-        "agents": service.seats.agents,
         "players": service.seats.names,
-        "noise": list(LEVELS),
+        "noise": ERRORS,
         "cues": list(CUES),
         "games": list(RULES),
     }
@@ -98,6 +97,8 @@ def report(service: Service) -> dict[str, Any]:
     state |= {
         "players": list(seats.who),
         "labels": list(service.labels),
+        "advisers": seats.advisers(session.practice),
+        "level": seats.level(session),
         "noise": list(session.noise),
         "balls_on": [NAMES[i] for i in ids_of(on)],
         "snookered": hidden,
@@ -124,7 +125,8 @@ def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[floa
         return facts
     if (chance := state["win_chance"]) is not None:
         share = min(99, max(1, round(100 * chance)))  # as the page shows it: nothing is certain yet
-        facts.append(f"Chance to win: {one} {share} %, {other} {100 - share} %.")
+        errors = errors_words(state["level"])
+        facts.append(f"Chance to win, both {errors}: {one} {share} %, {other} {100 - share} %.")
     left = f"{state['available']} points are left on the table"
     facts.append(f"{left}, {reds} red{'' if reds == 1 else 's'} among the balls.")
     if state["needs_snookers"]:

@@ -184,10 +184,13 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    agent = choice("agent", fields.get("agent", service.seats.agents[0]), service.seats.agents)
     n = integer("n", fields.get("n", 5), 1, questions.MOST_SUGGESTIONS)
     with service.asking(_revision(fields)) as session:
-        errors, foul = _errors(fields, 200, session), session.frame.phase == "choice"
+        first = service.seats.advisers(session.practice)[0]
+        agent = choice("agent", fields.get("agent", first), service.seats.players)
+        errors = _errors(fields, 200, service.seats.level(session))
+        foul = session.frame.phase == "choice"
+        session.noise[:] = [errors["noise"]] * 2  # the question's own: nothing is played
         decided = questions.decision(session, service, agent) if foul else {"choice": None, "choices": []}
         if foul:
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
@@ -196,7 +199,7 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
-        errors = _errors(fields, 500, session)
+        errors = _errors(fields, 500, session.noise[session.frame.striker])
         return questions.scatter(session, stroke_asked(session, fields), **errors)
 
 
@@ -211,9 +214,9 @@ def _revision(fields: dict[str, Any]) -> int | None:
     return integer("revision", fields["revision"], 0, MOST) if "revision" in fields else None
 
 
-def _errors(fields: dict[str, Any], samples: int, session: Session) -> dict[str, Any]:
-    """Noise, samples and seed of a question; the noise is that of the striker's seat unless it is given."""
-    noise = choice("noise", fields.get("noise", session.noise[session.frame.striker]), LEVELS)
+def _errors(fields: dict[str, Any], samples: int, noise: str) -> dict[str, Any]:
+    """Noise, samples and seed of a question; ``noise``, ``samples``: unless they are given."""
+    noise = choice("noise", fields.get("noise", noise), LEVELS)
     samples = integer("samples", fields.get("samples", samples), 1, questions.MOST_SAMPLES)
     return {"noise": noise, "samples": samples, "seed": integer("seed", fields.get("seed", 0), 0, MOST)}
 
@@ -221,7 +224,7 @@ def _errors(fields: dict[str, Any], samples: int, session: Session) -> dict[str,
 def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], Any]) -> Any:
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
-        labels, judge = service.labels, service.judge
+        labels, judge = service.labels, service.judge()
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
     title = f"{labels[0]} - {labels[1]}"

@@ -1,7 +1,7 @@
 """How does the game answer a browser or a program? A small HTTP server, for those who have its token.
 
-Every request is checked before anything is done: the token in its path, in constant time; ``Host``, so that
-no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
+Every request is checked before anything is done: the token in its path, in constant time; ``Host``, and the host of a
+target that has one, so that no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
 path, length, type and form of the body. Requests are limited in head, body, time and number. Every error is
 answered by one JSON object."""
 
@@ -31,7 +31,9 @@ FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_HEAD = 16_384
 MOST_BODY = 131_072  # largest head and body of a request [bytes]; a replay has about 200 for each stroke
-MOST_AT_ONCE = 32  # largest number of connections; a browser keeps six
+MOST_AT_ONCE = (
+    32  # largest number of connections; a browser keeps six. One that waits gives way to a further one
+)
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
 _HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"
 FULL = b"%sContent-Length: %d\r\n\r\n%s" % (_HEAD, len(_FULL), _FULL)  # the answer to further connections
@@ -125,6 +127,8 @@ class PlayHandler(BaseHTTPRequestHandler):
             self.close_connection = True
         except (TimeoutError, ConnectionError):
             self.close_connection = True
+        finally:
+            self.server.answered(self.connection)
 
     def log_message(self, format: str, *args: Any) -> None:
         """Log nothing: a path holds the token."""
@@ -176,8 +180,13 @@ class PlayHandler(BaseHTTPRequestHandler):
     def _checked(self) -> tuple[str, dict[str, Any]]:
         """The path after the token and the query, of a valid request."""
         head = self.headers
+        try:
+            parts = urlsplit(self.path)
+        except ValueError:
+            raise self._last(400, "the target of a request must be an address") from None
         host = head.get_all("Host") or []
-        if len(host) != 1 or host[0].lower() not in self.server.hosts:
+        asked = [*host, parts.netloc] if parts.scheme or parts.netloc else host
+        if len(host) != 1 or not self.server.hosts.issuperset(map(str.lower, asked)):
             raise self._last(403, "Host must be " + " or ".join(sorted(self.server.hosts)))
         for field in ("Origin", "Sec-Fetch-Site", "Content-Length"):
             if len(head.get_all(field) or []) > 1:
@@ -187,13 +196,13 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise self._last(403, "Origin must be this server's own")
         if head.get("Sec-Fetch-Site", "none").lower() not in ("none", "same-origin"):
             raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
-        parts = urlsplit(self.path)
         token, _, name = parts.path.removeprefix("/").partition("/")
         # the printed address ends with "/", and clients often append "/api/state"
         name = re.sub("^/+(?=api/)", "", name)
         known = hmac.compare_digest(token.encode(), self.server.token.encode())
         if not parts.path.startswith("/") or not known:
             raise self._last(403, "the address must hold this server's token: open the one that it printed")
+        self.server.waiting.pop(self.connection, None)
         if self.command not in ("GET", "POST"):
             raise self._last(405, "the method must be GET or POST", Allow="GET, POST")
         methods = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
@@ -294,6 +303,8 @@ class PlayServer(ThreadingHTTPServer):
         self.service, self.token = service, secrets.token_urlsafe(24)
         self.hosts = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
         self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
+        self.waiting: dict[socket.socket, bool] = {}
+        """The connections without a request that shows the token, the longest first; and whether one did so before."""
 
     @property
     def address(self) -> str:
@@ -301,20 +312,34 @@ class PlayServer(ThreadingHTTPServer):
         return f"http://127.0.0.1:{self.server_port}/{self.token}/"
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection in its own thread, unless there are too many."""
-        if not self._free.acquire(blocking=False):
+        """Serve a connection in its own thread, unless there are too many that do not wait."""
+        if not (self._free.acquire(blocking=False) or self._made_room()):
             with suppress(OSError):
                 request.settimeout(1.0)
                 request.sendall(FULL)
             self.shutdown_request(request)
             return
+        self.waiting[request] = False
         super().process_request(request, client_address)
+
+    def _made_room(self) -> bool:
+        """Close the connection that has waited longest, of those that never showed the token if there are any."""
+        for one, _ in sorted(self.waiting.copy().items(), key=lambda item: item[1])[:1]:
+            with suppress(OSError):
+                one.shutdown(socket.SHUT_RDWR)
+            return self._free.acquire(timeout=1.0)
+        return False
+
+    def answered(self, request: Any) -> None:
+        """A connection waits again."""
+        self.waiting.setdefault(request, True)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
         """Serve a connection, then free its place."""
         try:
             super().process_request_thread(request, client_address)
         finally:
+            self.waiting.pop(request, None)
             self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .._check import choice, refuse, refuse_what
+from .._types import NoiseName
 from ..advice.ask import AGENT
 from ..advice.strokes import cue_strokes
 from ..game.frame import Frame
@@ -45,10 +46,19 @@ class Seats:
         """The players that may sit down: "person" and the agents."""
         return [PERSON, *self.players]
 
-    @property
-    def agents(self) -> list[str]:
-        """The agents' names."""
-        return list(self.players)
+    def advisers(self, practice: bool) -> list[str]:
+        """The agents that may be asked for advice: alone at the table all, in a frame those that know frames."""
+        return [name for name, one in self.players.items() if practice or getattr(one, "frames", True)]
+
+    def level(self, session: Session) -> NoiseName:
+        """With whose errors the chance to win and advice are counted, for both players alike: the largest of the persons'
+        who play, else of the agents'. A person without errors counts as an amateur, who errs by hand, and nobody as
+        better than a professional, for whom the tactician has learned."""
+        seats = range(1 if session.practice else 2)
+        people = [seat for seat in seats if not self.is_agent(seat)]
+        levels: list[NoiseName] = [session.noise[seat] for seat in people or seats]
+        levels.append("amateur" if people and "none" in levels else "professional")
+        return max(levels, key=lambda name: LEVELS[name].direction_deg())
 
     def sit(self, who: list[str]) -> None:
         """Assign both seats; ValueError for an unknown name."""
@@ -157,20 +167,18 @@ class Service:
         finally:
             self._asking.release()
 
-    @property
-    def judge(self) -> Judge | None:
-        """Who says how likely each seat wins, with the larger errors, at least a professional's; or None."""
+    def judge(self, noise: NoiseName | None = None) -> Judge | None:
+        """Who says how likely each seat wins, with these errors, by default those of ``Seats.level``; or None."""
         if not self._judged or self.session.practice:
             return None
-        level = max(("professional", *self.session.noise), key=lambda name: LEVELS[name].direction_deg())
-        options = self.session.options_with(level)
+        options = self.session.options_with(noise or self.seats.level(self.session))
         if self._judge[0] is not options:
             self._judge = options, player("tactician").at(options)
         return self._judge[1]
 
-    def win_chances(self, acts: Sequence[Act]) -> list[float] | list[None]:
-        """How likely seat 0 was to win after each of some acts; None for nobody says it."""
-        if (judge := self.judge) is None:
+    def win_chances(self, acts: Sequence[Act], noise: NoiseName | None = None) -> list[float] | list[None]:
+        """How likely seat 0 was to win after each of some acts; None for nobody says it. ``noise``: see ``judge``."""
+        if (judge := self.judge(noise)) is None:
             return [None] * len(acts)
         tables = [(act.state["positions"], act.state["on_table"], act.state["frame"]) for act in acts]
         parts = [(Frame.from_dict(frame), np.array(at), np.array(on)) for at, on, frame in tables]

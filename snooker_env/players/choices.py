@@ -32,6 +32,7 @@ class ChoicePlayer(BoundPlayer):
     [0.9]
     """
 
+    frames = False
     _planner: Any = None
 
     def _bind(self, options: Options) -> None:

@@ -226,7 +226,8 @@ class Player(Protocol):
     """A player: a function of positions and a seed.
 
     It may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position, first of all
-    the stroke that ``play`` returns. Advice shows it.
+    the stroke that ``play`` returns. Advice shows it. One whose ``frames`` is False knows visits alone, and is not
+    asked for advice in frames.
 
     Examples
     --------
@@ -261,6 +262,7 @@ class BoundPlayer:
 
     name: str = ""
     training_shots: int | None = None  # all simulated shots of its training; None: not known
+    frames: bool = True  # whether it knows frames; False: it plays their strokes as those of visits
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:

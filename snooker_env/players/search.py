@@ -26,6 +26,8 @@ RANKED = 40  # most strokes of a ranking
 class SearchPlayer(BoundPlayer):
     """The best stroke of a ``StrokeSearch``; ``learned``: a planner's, by default the package's."""
 
+    frames = False
+
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
         self.budget = integer("budget", budget, LEAST, MOST)

@@ -31,6 +31,15 @@ FOUL_WORDS = {
     Foul.NO_CUSHION: "no ball reached a cushion",
     Foul.LATE: "not played in time",
 }
+ERRORS = {
+    "none": "none",
+    "professional": "a professional's",
+    "amateur": "an amateur's",
+    "club": "a club player's",
+    "robot": "a robot's",
+    "olympiad": "the Olympiad's robots'",
+}
+"""Whose execution errors the levels are."""
 
 
 def ball_name(ball: int) -> str:
@@ -46,6 +55,11 @@ def on_words(ball_on: BallOn) -> str:
 def foul_words(fouls: Foul) -> list[str]:
     """The names of these fouls."""
     return [words for foul, words in FOUL_WORDS.items() if foul & fouls]
+
+
+def errors_words(noise: object) -> str:
+    """With whose execution errors something was found: those of a level, or others."""
+    return "without errors" if noise == "none" else f"with {ERRORS.get(str(noise), 'the given')} errors"
 
 
 def pots_of(shot: Shot) -> list[int]:

@@ -24,10 +24,11 @@ const LEVELS = {
   professional: ["tactician_500", "professional"], perfect: ["tactician_500", "none"], "nobody: two play here": ["person", "none"],
 };
 const OWN = "own";
-const NOISE = { none: "none", professional: "a professional's", amateur: "an amateur's", club: "a club player's", robot: "a robot's", olympiad: "the Olympiad's robots'" };
 const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
 /** Slow motion, zoom, time of a call [ms]. */
 const SLOW = 0.2, ZOOM = 2, CALLED = 1600;
+/** Keys that go on while they are held: after [ms], by so many steps [1/ms]. */
+const STEPS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", ..."wsadeq"], HOLD = 300, RATE = 0.03;
 /** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels]. */
 const LOUPE = 0.24, SMALL = 9;
 const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "escape", "safety", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
@@ -50,14 +51,13 @@ class Page {
     this.known = new Map();
     this.moving = null;
     this.held = false;
-    this.drawn = [];
     this.kind = "play";
     this.zoomed = false;
     for (const [name, rgb] of Object.entries(this.scene.palette)) document.documentElement.style.setProperty(`--${name}`, `rgb(${rgb})`);
     this.view = new TableView(by("table"), this.scene, true);
     this.loupe = new TableView(by("loupe"), this.scene, true);
-    this.placing = new Latest("place", ({ state }, event) => { Object.assign(this, { chosen: state.revision, dragged: event }); this.take(state); }, error => this.trouble(error));
-    this.aim = new Aim(this, event => { this.advisor.changed(event); this.room.changed(); this.redraw(); }, (x, y, event) => this.placing.ask({ place: [x, y] }, event));
+    this.placing = new Latest("place", ({ state }) => { this.chosen = state.revision; this.take(state); }, error => this.trouble(error));
+    this.aim = new Aim(this, () => { this.advisor.changed(); this.room.changed(); this.redraw(); }, (x, y) => this.placing.ask({ place: [x, y] }));
     this.advisor = new Advisor(this);
     this.room = new Room(this);
     this.setup = new SetUp(this);
@@ -74,7 +74,7 @@ class Page {
 
   wire() {
     const act = (id, what) => { by(id).onclick = () => this.try(what); };
-    by("play").onclick = event => this.play(event);
+    by("play").onclick = () => this.play();
     by("skip").onclick = () => this.skip();
     by("turn").onclick = () => this.hurry();
     by("fold").onclick = () => this.fold();
@@ -88,7 +88,7 @@ class Page {
     by("concede").onclick = async () => { if (await confirmed("Concede the frame?", "Concede")) this.try(() => ask("concede", {})); };
     by("new").onclick = () => this.sure("Leave this frame and begin a new game? This cannot be undone.", "New game", () => this.begin());
     by("again").onclick = () => this.again();
-    by("next").onclick = () => this.go("new", { next: true, seed: seed() });
+    by("next").onclick = () => this.once(() => this.go("new", { next: true, seed: seed() }));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
@@ -103,7 +103,7 @@ class Page {
     by("level").onchange = () => this.level();
     for (const k of [0, 1]) {
       fill(by(`who-${k}`), this.players);
-      fill(by(`noise-${k}`), this.noise, undefined, name => NOISE[name]);
+      fill(by(`noise-${k}`), Object.keys(this.noise), undefined, name => this.noise[name]);
       by(`who-${k}`).onchange = () => this.seats(k);
       by(`noise-${k}`).onchange = () => this.seats();
     }
@@ -116,6 +116,8 @@ class Page {
     };
     document.addEventListener("click", event => event.detail && event.target.closest("button, summary, [type=range]")?.blur());  // keys are for the stroke again
     document.addEventListener("keydown", event => this.key(event));
+    document.addEventListener("keyup", event => { if (event.code === this.pressed?.code) this.pressed = null; });
+    window.onblur = () => { this.pressed = null; };
   }
 
   fold(wanted) {
@@ -273,7 +275,7 @@ class Page {
   async go(name, body) {
     await this.drills.stop();
     this.held = false;
-    this.try(() => ask(name, body));
+    await this.try(() => ask(name, body));
   }
 
   help() {
@@ -302,7 +304,7 @@ class Page {
     if (this.settled !== state.revision) {
       const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes]);
       if (moved !== this.lay || this.phase === "choice") this.firstAim(state, moved !== this.lay);
-      else if (this.chosen === state.revision) this.advisor.changed(this.dragged);
+      else if (this.chosen === state.revision) this.advisor.changed();
       this.lay = moved;
       this.phase = state.phase;
       this.settled = state.revision;
@@ -317,7 +319,7 @@ class Page {
     const key = JSON.stringify([state.ball_on, state.striker, state.strokes, Object.entries(state.positions).filter(([name]) => name !== "cue")]);
     if (key === this.aimed && (this.placing.busy || this.chosen === state.revision || this.aim.held === "ball")) {
       this.advisor.placed();
-      this.advisor.changed(this.dragged);
+      this.advisor.changed();
       return;
     }
     if (moved) this.advisor.clear();
@@ -386,19 +388,24 @@ class Page {
     return Boolean(state) && !this.behind && !this.drills.dealing && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
   }
 
-  async play() {
-    if (!this.aiming || this.sending) return;  // one stroke a press
-    by("play").disabled = true;
+  /** Do what is meant for this table alone: a second tap before the answer is none. */
+  async once(what) {
+    if (this.sending) return;
     this.sending = true;
-    this.stats.played();
-    try {
+    try { await what(); } finally { this.sending = false; }
+  }
+
+  play() {
+    if (this.aiming) this.once(async () => {
+      by("play").disabled = true;
+      this.stats.played();
       const { speed, side, top, aim, elevation } = this.aim.wish;
       await this.placing.quiet();  // the last place of a drag makes a new revision
       const { state } = this, body = { revision: state.revision, speed, side, top, aim, elevation };
       if (state.in_hand) body.place = state.positions.cue;
       if (by("nominate").value && state.nominations.includes(by("nominate").value)) body.nominate = by("nominate").value;
       await this.send(body);
-    } finally { this.sending = false; }
+    });
   }
 
   async send(body) {
@@ -455,25 +462,37 @@ class Page {
       if (!(key === "Enter" && event.target.type === "range")) return;
     }
     if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
-    if (event.repeat && (key === "Enter" || key === " " || "urvbzfm".includes(key))) return;  // once a press
     if (event.altKey && !key.startsWith("Arrow")) return;
-    const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, { side, top } = aim.wish;
+    const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, tip = (x, y) => aim.tip(aim.wish.side + x, aim.wish.top + y);
     const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end() } : {
       " ": () => (event.shiftKey ? this.hurry() : this.skip()), Escape: () => (aim.held === "cue" ? aim.up(false) : this.skip()), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
       z: () => this.zoom(), f: () => this.full(), m: () => this.sound.flip(),
       "?": () => this.help(),
       ...this.ended && { Enter: () => this.goOn() },
       ...this.aiming && {
-        ArrowLeft: () => aim.turn(turn, event), ArrowRight: () => aim.turn(-turn, event), ArrowUp: () => aim.faster(push, event),
-        ArrowDown: () => aim.faster(-push, event), w: () => aim.tip(side, top + 0.05, event), s: () => aim.tip(side, top - 0.05, event),
-        a: () => aim.tip(side - 0.05, top, event), d: () => aim.tip(side + 0.05, top, event), c: () => aim.set({ side: 0, top: 0 }, event),
-        e: () => aim.raise(1, event), q: () => aim.raise(-1, event), Enter: () => this.play(),
+        ArrowLeft: () => aim.turn(turn), ArrowRight: () => aim.turn(-turn), ArrowUp: () => aim.faster(push), ArrowDown: () => aim.faster(-push),
+        w: () => tip(0, 0.05), s: () => tip(0, -0.05), a: () => tip(-0.05, 0), d: () => tip(0.05, 0), c: () => aim.set({ side: 0, top: 0 }),
+        e: () => aim.raise(1), q: () => aim.raise(-1), Enter: () => this.play(),
       },
       ...!by("tour").hidden && { Enter: () => by("tour-next").click(), Escape: () => by("tour-skip").click() },
     };
     if (!acts[key]) return;
-    acts[key]();
     event.preventDefault();
+    if (event.repeat) return;  // once a press
+    acts[key]();
+    if (STEPS.includes(key)) this.hold(event.code, acts[key]);
+  }
+
+  /** Go on with what a held key does, by the time and not by how often its keyboard repeats it. */
+  hold(code, act) {
+    const pressed = this.pressed = { code }, begun = performance.now() + HOLD;
+    let done = 0;
+    const on = now => {
+      if (this.pressed !== pressed || !this.aiming) return;
+      for (; done < RATE * (now - begun); done++) act();
+      requestAnimationFrame(on);
+    };
+    requestAnimationFrame(on);
   }
 
   // ---- what is shown
@@ -490,7 +509,8 @@ class Page {
     fill(by("level"), [...Object.keys(LEVELS), OWN], this.strength);
     const own = by("level").lastChild;
     own.hidden = this.strength !== OWN;
-    own.textContent = `${state.labels[1]}, mistakes: ${NOISE[state.noise[1]]}`;
+    own.textContent = `${state.labels[1]}, mistakes: ${this.noise[state.noise[1]]}`;
+    fill(by("agent"), state.advisers);
     by("practice").checked = state.practice;
     by("side-1").style.visibility = state.practice ? "hidden" : "";
     by("cue").value = state.cue;
@@ -516,7 +536,7 @@ class Page {
       by("choices").replaceChildren(...state.choices.map(choice => {
         const button = make("button", { textContent: choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice](state.labels[1 - state.striker]) });
         button.dataset.choice = choice;
-        button.onclick = () => this.send({ choice });
+        button.onclick = () => this.once(() => this.send({ choice }));
         return button;
       }));
     }
@@ -551,7 +571,7 @@ class Page {
       by(`side-${k}`).querySelector("b").textContent = table.scores[k];
       by(`side-${k}`).classList.toggle("turn", table.striker === k && table.phase !== "over");
     }
-    showChance(by("win"), table.win_chance, this.state.labels);
+    showChance(by("win"), table.win_chance, this.state.labels, `, both with ${this.noise[this.state.level]} mistakes`);
     put("n-break", "break ", make("b", { textContent: table.break }));
     if (!on) put("n-on", "frame over");
     else {
@@ -590,9 +610,8 @@ class Page {
     bubble.style.top = `${Math.max(4, Math.min(box.height - bubble.offsetHeight - 4, py + 18))}px`;
   }
 
-  /** Draw at the next frame; then call `seen`. */
-  redraw(seen) {
-    if (seen) this.drawn.push(seen);
+  /** Draw at the next frame. */
+  redraw() {
     this.asked ??= requestAnimationFrame(now => { this.asked = null; this.draw(now); });
   }
 
@@ -654,7 +673,6 @@ class Page {
       this.view.draw(frame);
     }
     if (moving || this.setup.open) by("loupe").hidden = true;
-    for (const seen of this.drawn.splice(0)) seen();
   }
 }
 

@@ -20,7 +20,7 @@ const DEGREE = Math.PI / 180;
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 
 export class Aim {
-  /** app: `view`, `balls` (as shown), `state`, `aiming` (can this person play now?), `scene`, `limits`; changed(event): called at every change. */
+  /** app: `view`, `balls` (as shown), `state`, `aiming` (can this person play now?), `scene`, `limits`; changed(): called at every change. */
   constructor(app, changed, place) {
     Object.assign(this, { app, changed, place });
     this.wish = { speed: 2.5, side: 0, top: 0, aim: Math.PI / 2, elevation: 0 };
@@ -32,15 +32,15 @@ export class Aim {
     const { limits } = this.app, speed = by("speed"), elevation = by("elevation"), canvas = by("table"), dial = by("dial");
     [speed.min, speed.max] = limits.speed;
     elevation.max = Math.round(limits.elevation[1] / DEGREE);
-    speed.oninput = event => this.set({ speed: Number(speed.value) }, event);
-    elevation.oninput = event => this.set({ elevation: Math.min(limits.elevation[1], Number(elevation.value) * DEGREE) }, event);
+    speed.oninput = () => this.set({ speed: Number(speed.value) });
+    elevation.oninput = () => this.set({ elevation: Math.min(limits.elevation[1], Number(elevation.value) * DEGREE) });
     const fine = by("fine");
     fine.addEventListener("pointerdown", event => fine.setPointerCapture(event.pointerId));
-    fine.addEventListener("pointermove", event => fine.hasPointerCapture(event.pointerId) && event.movementX && this.turn(-FINE * event.movementX, event));
-    by("centre").onclick = event => this.set({ side: 0, top: 0 }, event);
-    by("left").onclick = event => this.turn(0.05, event);
-    by("right").onclick = event => this.turn(-0.05, event);
-    by("nominate").onchange = event => this.set({}, event);
+    fine.addEventListener("pointermove", event => fine.hasPointerCapture(event.pointerId) && event.movementX && this.turn(-FINE * event.movementX));
+    by("centre").onclick = () => this.set({ side: 0, top: 0 });
+    by("left").onclick = () => this.turn(0.05);
+    by("right").onclick = () => this.turn(-0.05);
+    by("nominate").onchange = () => this.set({});
     canvas.addEventListener("pointerdown", event => this.down(event));
     canvas.addEventListener("pointermove", event => this.move(event));
     canvas.addEventListener("pointerup", event => event.pointerId === this.finger && this.up(true));
@@ -48,36 +48,36 @@ export class Aim {
     canvas.addEventListener("wheel", event => {
       if (!this.app.aiming) return;
       event.preventDefault();
-      this.turn(event.deltaY < 0 ? 0.05 : -0.05, event);
+      this.turn(event.deltaY < 0 ? 0.05 : -0.05);
     }, { passive: false });
     const tip = event => {
       const box = dial.getBoundingClientRect(), half = box.width / 2 / 1.08;
-      this.tip((event.clientX - box.left - box.width / 2) / half, (box.top + box.height / 2 - event.clientY) / half, event);
+      this.tip((event.clientX - box.left - box.width / 2) / half, (box.top + box.height / 2 - event.clientY) / half);
     };
     dial.addEventListener("pointerdown", event => { dial.setPointerCapture(event.pointerId); tip(event); });
     dial.addEventListener("pointermove", event => dial.hasPointerCapture(event.pointerId) && tip(event));
     this.show();
   }
 
-  set(part, event) {
+  set(part) {
     Object.assign(this.wish, part);
     this.show();
-    this.changed(event);
+    this.changed();
   }
 
   /** The elevation at which the stroke is played: its own, or what the cue needs over what is in its way [rad]. */
   get elevation() { return Math.max(this.wish.elevation, this.app.room?.found?.elevation ?? 0); }
 
   /** Turn the aim by degrees, anticlockwise for positive ones. */
-  turn(degrees, event) { this.set({ aim: this.wish.aim + degrees * DEGREE }, event); }
+  turn(degrees) { this.set({ aim: this.wish.aim + degrees * DEGREE }); }
 
-  tip(side, top, event) {
+  tip(side, top) {
     const { offset } = this.app.limits, far = Math.hypot(side, top), k = far > offset ? offset / far : 1;
-    this.set({ side: Math.abs(side * k) < 0.02 ? 0 : side * k, top: Math.abs(top * k) < 0.02 ? 0 : top * k }, event);
+    this.set({ side: Math.abs(side * k) < 0.02 ? 0 : side * k, top: Math.abs(top * k) < 0.02 ? 0 : top * k });
   }
 
-  faster(by_, event) { this.set({ speed: clamp(this.wish.speed + by_, ...this.app.limits.speed) }, event); }
-  raise(degrees, event) { this.set({ elevation: clamp(this.wish.elevation + degrees * DEGREE, ...this.app.limits.elevation) }, event); }
+  faster(by_) { this.set({ speed: clamp(this.wish.speed + by_, ...this.app.limits.speed) }); }
+  raise(degrees) { this.set({ elevation: clamp(this.wish.elevation + degrees * DEGREE, ...this.app.limits.elevation) }); }
 
   // ---- the pointer
 
@@ -118,10 +118,10 @@ export class Aim {
     else this.set({ speed: pulled.before });
   }
 
-  pull(x, y, event) {
+  pull(x, y) {
     const { app, pulled, wish } = this, [least, most] = app.limits.speed, { balls } = app;
     pulled.pull = clamp((balls.x[0] - x) * Math.cos(wish.aim) + (balls.y[0] - y) * Math.sin(wish.aim) - pulled.from, 0, PULL);
-    this.set({ speed: least + (most - least) * (pulled.pull / PULL) ** SOFT }, event);
+    this.set({ speed: least + (most - least) * (pulled.pull / PULL) ** SOFT });
     const [px, py] = app.view.toScreen(balls.x[0], balls.y[0]), power = by("power");
     power.hidden = false;
     power.textContent = pulled.pull > LEAST_PULL ? `${wish.speed.toFixed(1)} m/s` : "no stroke";
@@ -133,13 +133,13 @@ export class Aim {
     if (!app.aiming || this.other(event)) return;
     const [x, y] = this.at(event);
     if (!this.held) { by("table").style.cursor = this.onCue(x, y, event) ? "grab" : ""; return; }
-    if (this.held === "cue") this.pull(x, y, event);
+    if (this.held === "cue") this.pull(x, y);
     else if (this.held === "ball") {
       [app.balls.x[0], app.balls.y[0]] = app.state.anywhere ? [x, y] : intoD(x, y, app.scene.lines);
-      this.place(app.balls.x[0], app.balls.y[0], event);
-      this.changed(event);
+      this.place(app.balls.x[0], app.balls.y[0]);
+      this.changed();
     } else if (Math.hypot(x - app.balls.x[0], y - app.balls.y[0]) > app.view.R) {
-      this.set({ aim: Math.atan2(y - app.balls.y[0], x - app.balls.x[0]) }, event);
+      this.set({ aim: Math.atan2(y - app.balls.y[0], x - app.balls.x[0]) });
     }
   }
 

@@ -1,7 +1,5 @@
 /**
  * What does the advisor say, and where would the balls stop? Its list of strokes, and clouds of the stopping points of cue ball and object ball.
- *
- * `times`: from an input to the picture that shows its clouds [ms].
  */
 
 import { numbers } from "./table.js";
@@ -33,14 +31,12 @@ const percent = share => `${Math.round(100 * share)} %`;
 export class Advisor {
   constructor(app) {
     this.app = app;
-    fill(by("agent"), app.agents);
     this.list = [];
     this.hover = null;
     this.found = null;
-    this.times = [];
-    this.wait = new Latest("destinations", (found, input, more) => this.take(found, input, more), error => this.wrong(error));
+    this.wait = new Latest("destinations", (found, input) => this.take(found, input), error => this.wrong(error));
     by("pockets").replaceChildren(...app.pockets.map(({ name }) => make("span", { textContent: name })));
-    setting("guide", GUIDES, "line", event => this.changed(event));
+    setting("guide", GUIDES, "line", () => this.changed());
     by("advise").onclick = () => this.advise();
   }
 
@@ -72,17 +68,17 @@ export class Advisor {
     });
   }
 
-  changed(event) {
+  changed() {
     const { app } = this;
     if (!app.aiming || by("guide").value === "line") { this.found = null; this.wait.drop(); this.say(); app.redraw(); return; }
-    this.question(app.aim.wish, event, true);
+    this.question(app.aim.wish, true);
   }
 
-  question(wish, event, own) {
+  question(wish, own) {
     const { state } = this.app, body = { speed: wish.speed, side: wish.side, top: wish.top, aim: wish.aim, elevation: wish.elevation, revision: state.revision };
     if (state.in_hand && wish.place) body.place = wish.place;
     if (this.hover) body.noise = this.noise;
-    this.wait.ask(body, { at: event?.timeStamp ?? performance.now(), revision: state.revision, own });
+    this.wait.ask(body, { revision: state.revision, own });
   }
 
   take(found, input) {
@@ -92,7 +88,7 @@ export class Advisor {
     found.heat = spread ? [cloud(numbers(found.ball, Float32Array), app.scene.extent, BALL_CLOUD), cloud(numbers(found.cue, Float32Array), app.scene.extent, CUE_CLOUD)] : [];
     this.found = found;
     this.say();
-    app.redraw(() => { this.times.push(performance.now() - input.at); });
+    app.redraw();
   }
 
   wrong(error) {
@@ -121,9 +117,8 @@ export class Advisor {
     button.disabled = true;
     button.textContent = "Thinking …";
     try {
-      const own = app.state.noise[app.state.striker];
-      this.noise = ["none", "professional"].includes(own) ? "amateur" : own;  // a person errs
-      const found = await ask("advise", { agent: by("agent").value, n: 5, revision, noise: this.noise });
+      const found = await ask("advise", { agent: by("agent").value, n: 5, revision });
+      this.noise = found.noise;
       if (found.suggestions && revision === app.state.revision) this.show(found);
     } catch (error) {
       by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
@@ -144,16 +139,16 @@ export class Advisor {
       const [what, ...how] = pocketWords(one.words, this.app.view.upright).split("; ")[0].split(", "), told = this.told(one, what, how);
       const button = make("button", { title: `${range} (95 % interval)` }, make("b", { textContent: told.figure }), told.what, make("small", { textContent: told.how }));
       button.setAttribute("aria-pressed", "false");
-      button.onpointerenter = event => event.pointerType === "mouse" && this.preview(k, event);
-      button.onfocus = event => this.preview(k, event);
-      button.onpointerleave = event => event.pointerType === "mouse" && this.preview(-1, event);
-      button.onblur = event => this.preview(-1, event);
-      button.onclick = event => this.adopt(k, event);
+      button.onpointerenter = event => event.pointerType === "mouse" && this.preview(k);
+      button.onfocus = () => this.preview(k);
+      button.onpointerleave = event => event.pointerType === "mouse" && this.preview(-1);
+      button.onblur = () => this.preview(-1);
+      button.onclick = () => this.adopt(k);
       return make("li", {}, button);
     });
     by("advice").replaceChildren(...items);
-    const errs = this.noise === this.app.state.noise[this.app.state.striker] ? order : order.replace(/:$/, ", with an amateur's mistakes:");
-    by("advice-order").textContent = choices.length ? `If you play, ${errs[0].toLowerCase()}${errs.slice(1)}` : errs;
+    const said = order.replace("errors", "mistakes");
+    by("advice-order").textContent = choices.length ? `If you play, ${said[0].toLowerCase()}${said.slice(1)}` : said;
     by("advice").scrollIntoView({ block: "nearest" });
     this.app.redraw();
   }
@@ -168,29 +163,29 @@ export class Advisor {
   }
 
   /** Show a suggestion and its clouds; -1: the player's stroke again. */
-  preview(k, event) {
+  preview(k) {
     const one = this.list[k] ?? null;
     if (one === this.hover) return;
     this.hover = one;
     this.found = null;
-    if (one && this.app.aiming) this.question(one, event, false);
-    else this.changed(event);
+    if (one && this.app.aiming) this.question(one, false);
+    else this.changed();
     this.app.redraw();
   }
 
   /** Take over the stroke of a suggestion. */
-  adopt(k, event) {
+  adopt(k) {
     const one = this.list[k], { app } = this;
     by("advice").querySelectorAll("button").forEach((button, j) => button.setAttribute("aria-pressed", String(j === k)));
     this.hover = null;
     this.adopted = true;
     if (one.place && app.state.in_hand) {
       [app.balls.x[0], app.balls.y[0]] = one.place;
-      app.aim.place(...one.place, event);
+      app.aim.place(...one.place);
     }
     app.compact();
     by("play").focus();
-    app.aim.set({ speed: one.speed, side: one.side, top: one.top, aim: one.aim, elevation: one.elevation }, event);
+    app.aim.set({ speed: one.speed, side: one.side, top: one.top, aim: one.aim, elevation: one.elevation });
   }
 
   /** Drawing of the advice. */

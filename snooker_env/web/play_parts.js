@@ -82,7 +82,7 @@ export class Latest {
     if (this.busy) { this.next = [body, about]; return; }
     this.busy = true;
     try {
-      this.then(await ask(this.name, body), about, this.next !== null);
+      this.then(await ask(this.name, body), about);
     } catch (error) {
       if (!this.next) this.wrong(error, about);
     }

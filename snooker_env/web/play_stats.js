@@ -47,14 +47,14 @@ export class Stats {
     this.times = new Map();  // of a person's stroke, by its number: seconds
     this.at = performance.now();
     by("stats-open").onclick = by("over-stats").onclick = () => this.open();
-    setting("limit", LIMITS, "off", () => this.show());
+    setting("limit", LIMITS, "off", () => { this.from = this.spent; this.show(); });
     setInterval(() => this.show(), 200);
   }
 
   /** A stroke is asked of a person, or no longer; on another table the clock begins anew. */
   turn(asked) {
     const { aimed } = this.app;
-    if (asked && aimed !== this.key) { this.key = aimed; this.spent = 0; }
+    if (asked && aimed !== this.key) { this.key = aimed; this.spent = this.from = 0; }
     this.asked = asked;
     this.show();
   }
@@ -63,14 +63,14 @@ export class Stats {
     if (this.asked) this.times.set(this.app.state.strokes, this.spent);
   }
 
-  /** The shot clock; when it has run down, the stroke is played as it is aimed. */
+  /** The shot clock, which runs from its choice on; when it has run down, the stroke is played as it is aimed. */
   show() {
     const limit = parseInt(by("limit").value), clock = by("clock"), now = performance.now();
     if (this.asked && !document.querySelector("dialog[open], #tour:not([hidden])")) this.spent += (now - this.at) / 1000;
     this.at = now;
     clock.hidden = !limit || !this.asked || document.hidden;
     if (clock.hidden) return;
-    const left = limit - this.spent;
+    const left = limit - this.spent + this.from;
     clock.textContent = Math.max(0, Math.ceil(left));
     clock.classList.toggle("late", left < 5);
     if (left <= 0) { this.app.aim.up(false); this.app.play(); }

@@ -119,7 +119,7 @@ def test_a_choice_in_a_frame_is_asked_as_the_stroke_to_come():
     session.play(sn.advice.CueStroke(speed=0.3, aim=-1.0))
     assert session.frame.phase == "choice"
     assert stroke_of(OfFrames(), session.position).aim == pytest.approx(np.pi / 2)
-    assert len(sn.advise(session.position, agent="search", **QUICK)) >= 1
+    assert len(sn.advise(session.position, **QUICK)) >= 1
 
 
 @pytest.mark.parametrize("name", ["planner", "ppo_value_club", "test_asked_players:Soft"])

@@ -13,6 +13,7 @@ from snooker_env.play.session import Session
 
 TABLES = 30
 QUICK = {"samples": 60, "visits": 2}
+ERRORS = ", with a professional's errors:"
 
 
 @cache
@@ -92,11 +93,14 @@ def test_where_no_fair_stroke_is_found_the_least_bad_is_said_to_be_that():
 
 
 def test_a_heading_says_by_what():
-    last, pots = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), "Pots by points expected:"
+    last, pots = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), f"Pots by points expected{ERRORS}"
     assert sn.advise(last, agent="search", **QUICK).order == pots
     others = sn.advise(SNOOKERED, agent="random", **QUICK).order
-    assert others == "Strokes without a pot by how often they are fair:"
+    assert others == f"Strokes without a pot by how often they are fair{ERRORS}"
     long = sn.Position(in_hand=True, black=(0.0, 1.4605))
     both = sn.advise(long, agent="random", n=20, **QUICK)
     assert {one.kind == "pot" for one in both} == {True, False} and both[0].kind != "pot"
-    assert both.order == "Strokes without a pot by how often they are fair, then pots by points expected:"
+    assert (
+        both.order
+        == f"Strokes without a pot by how often they are fair, then pots by points expected{ERRORS}"
+    )

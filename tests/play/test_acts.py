@@ -12,6 +12,7 @@ from snooker_env.game.ruling import AUTO
 from snooker_env.planning import Position
 from snooker_env.play.acts import MOST_ACTS, opened, written
 from snooker_env.play.session import DECLINED, Session
+from snooker_env.simulation import SimulationError
 from tests.play.test_session import standing
 from tests.playing import EASY, STRAIGHT
 
@@ -105,9 +106,9 @@ def test_a_free_ball_that_was_declined_is_declined_again():
 
 
 def pushed(saved, by):
-    """With the pink elsewhere at its end, by so many metres."""
-    x, y = saved["end"]["positions"]["pink"]
-    saved["end"]["positions"]["pink"] = [x, y + by]
+    """With the cue ball elsewhere after its stroke, by so many metres."""
+    x, y = saved["acts"][0]["left"]["cue"]
+    saved["acts"][0]["left"]["cue"] = [x, y + by]
 
 
 def test_another_machine_may_round_a_little():
@@ -133,16 +134,31 @@ def test_another_machine_may_round_a_little():
         (lambda s: s["acts"][0].update(cue=[]), r"^saved\.acts\[0\]\.cue"),
         (lambda s: s["acts"][0].update(place=[0.0, -1.2]), r"^saved\.acts\[0\]\.place"),
         (lambda s: s["acts"][0].update(nominate="red 1"), r"^saved\.acts\[0\]\.nominate = 'red 1'"),
-        (lambda s: s["acts"].append({"choice": "play"}), r"^saved\.acts\[1\]\.choice = 'play'"),
-        (lambda s: s["acts"].append({"declare": "claim"}), r"^saved\.acts\[1\]\.lead"),
-        (lambda s: s["acts"].append({"declare": "resign"}), r"^saved\.acts\[1\]\.declare = 'resign'"),
-        (lambda s: s["acts"].append({"declare": "concede", "aim": 1}), r"^saved\.acts\[1\]\.field = 'aim'"),
-        (lambda s: s["acts"][0].update(aim=STRAIGHT + 0.01), r"^saved\.end = another table"),
-        (lambda s: s.pop("end"), r"^saved\.end = another table"),
-        (lambda s: s["end"]["scores"].reverse(), r"^saved\.end = another table"),
-        (lambda s: s["end"]["positions"].pop("pink"), r"^saved\.end = another table"),
-        (lambda s: pushed(s, 1.3e-3), r"^saved\.end = another table"),
-        (lambda s: s["end"]["positions"].update(pink="x"), r"^saved\.end\.positions"),
+        (lambda s: s["acts"].insert(1, {"choice": "play"}), r"^saved\.acts\[1\]\.choice = 'play'"),
+        (lambda s: s["acts"].append({"declare": "claim"}), r"^saved\.acts\[2\]\.lead"),
+        (lambda s: s["acts"].append({"declare": "resign"}), r"^saved\.acts\[2\]\.declare = 'resign'"),
+        (lambda s: s["acts"].append({"declare": "concede", "aim": 1}), r"^saved\.acts\[2\]\.field = 'aim'"),
+        (
+            lambda s: s["acts"][0].update(aim=1.0),
+            r"^saved\.acts\[0\]\.left\.scores = \[1, 0\]: must be \[0, 0\]",
+        ),
+        (
+            lambda s: s["acts"][1].update(speed=1.1),
+            r"^saved\.acts\[1\]\.left\.[\w ]+ = \[.*\]: must be \[.*another version",
+        ),
+        (lambda s: s["acts"][0].pop("left"), r"^saved\.acts\[0\]\.left = None: must be an object"),
+        (lambda s: s["acts"][0]["left"].pop("cue"), r"^saved\.acts\[0\]\.left\.cue"),
+        (
+            lambda s: s["acts"][0]["left"].pop("red 1"),
+            r"^saved\.acts\[0\]\.left\.red 1 = \[.*: must be off the table",
+        ),
+        (lambda s: pushed(s, 1.3e-3), r"^saved\.acts\[0\]\.left\.cue"),
+        (lambda s: s["acts"][0]["left"].update(pink="x"), r"^saved\.acts\[0\]\.left\.pink = 'x'"),
+        (
+            lambda s: s["acts"][0]["left"].update(scores=[1, None]),
+            r"^saved\.acts\[0\]\.left = None: must be a finite",
+        ),
+        (lambda s: s["acts"][0]["left"].update(white=[0, 0]), r"^saved\.acts\[0\]\.field of left = 'white'"),
         (lambda s: s.pop("noise"), "^saved = version 1"),
         (lambda s: s["state"].update(stream=[1]), "stream"),
     ],
@@ -150,9 +166,22 @@ def test_another_machine_may_round_a_little():
 def test_what_is_not_sound_is_refused_and_changes_nothing(change, words):
     session = standing(EASY)
     session.play(CueStroke(speed=2.0, aim=STRAIGHT))
+    session.play(CueStroke(speed=1.0, aim=-2.5))
     saved, other = sent(session), standing(EASY)
     before, acts = other.save(), list(other.acts)
     change(saved)
     with pytest.raises(ValueError, match=words):
         opened(other, saved)
     assert other.save() == before and other.acts == acts
+
+
+def test_an_act_that_cannot_be_computed_is_named(monkeypatch):
+    session = standing(EASY)
+    session.play(CueStroke(speed=2.0, aim=STRAIGHT))
+
+    def fails(self, *args, **kwargs):
+        raise SimulationError("shot 0 has too many events")
+
+    monkeypatch.setattr(Session, "play", fails)
+    with pytest.raises(ValueError, match=r"^saved\.acts\[0\]\.shot 0 has too many events"):
+        opened(Session(), sent(session))

@@ -20,6 +20,7 @@ from snooker_env.play.program import ProgramPlayer
 from snooker_env.play.words import lines_of, where
 from snooker_env.players import Strokes, player
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
+from snooker_env.tasks.options import Options
 from tests.playing import COVERED, EASY, FROZEN, STRAIGHT
 from tests.processes import ROOT
 
@@ -133,10 +134,10 @@ def test_the_chance_to_win_is_said_of_seat_0_after_each_stroke(game):
     behind = game("position", position=EASY, scores=[0, 130])
     ahead = game("position", position=EASY, scores=[130, 0])
     assert 0.0 < behind["win_chance"] < 0.05 and 0.95 < ahead["win_chance"] < 1.0
-    assert "Chance to win: Player 1 99 %, Player 2 1 %." in ahead["text"]
+    assert "Chance to win, both with an amateur's errors: Player 1 99 %, Player 2 1 %." in ahead["text"]
     theirs = game("position", position=EASY, scores=[0, 130], striker=1)
     assert theirs["win_chance"] < 0.05
-    judge = player("tactician").at(game.session.options_with("professional"))
+    judge = player("tactician").at(game.session.options_with("amateur"))
     level = game("position", position=EASY, scores=[20, 30])
     assert level["win_chance"] == pytest.approx(judge.chance_to_win(game.session.position)[0], abs=1e-4)
     answer = game("stroke", speed=2.0, aim=STRAIGHT)
@@ -150,7 +151,7 @@ def test_the_chance_is_for_the_larger_errors_and_nobody_wins_practice(game):
     game("position", position=EASY, scores=[20, 30])
     said = [
         game("players", noise=noise)["win_chance"]
-        for noise in (["none"] * 2, ["club", "none"], ["robot"] * 2)
+        for noise in (["none"] * 2, ["club", "none"], ["amateur", "robot"])
     ]
     assert said[0] == said[2] != said[1]
     alone = game("players", practice=True, noise=["none", "none"])
@@ -176,13 +177,59 @@ def test_questions_are_answered_for_the_errors_of_the_seat(game):
         found = game("destinations", speed=2.0, aim=STRAIGHT + 0.01)
         assert found["samples"] == samples
         assert found == game("destinations", speed=2.0, aim=STRAIGHT + 0.01, noise=noise)
-        asked = game("advise", agent="ghost_ball", n=2)
-        assert asked == game("advise", agent="ghost_ball", n=2, noise=noise)
-        assert asked["order"] == "By chance to win:"
-        assert all(0.0 < one["win"] < 1.0 for one in asked["suggestions"])
     game("players", practice=True)
     alone = game("advise", agent="ghost_ball", n=2)  # where nobody wins
-    assert alone["order"] == "Pots by points expected:" and alone["suggestions"][0]["win"] is None
+    assert alone["order"] == "Pots by points expected, with an amateur's errors:"
+    assert alone["suggestions"][0]["win"] is None
+
+
+@pytest.mark.parametrize(
+    ("who", "noise", "level"),
+    [
+        (["person", "tactician_500"], ["none", "professional"], "amateur"),
+        (["person", "tactician_500"], ["professional", "club"], "professional"),
+        (["ghost_ball", "person"], ["none", "club"], "club"),
+        (["person", "person"], ["none", "club"], "club"),
+        (["person", "person"], ["robot", "robot"], "professional"),
+    ],
+)
+def test_chance_and_advice_are_counted_with_the_same_errors(game, who, noise, level):
+    """Of a frame of even scores the bar said 78 % with a professional's, the best stroke 59 % with an amateur's."""
+    game("players", players=who, noise=noise)
+    state = game("position", position=EASY, scores=[20, 30], striker=who.index("person"))
+    options = Options(task="frame", miss="clear_path", noise=level, cue="real")
+    chance = player("tactician").at(options).chance_to_win(game.session.position)[0]
+    mine = state["win_chance"] if state["striker"] == 0 else 1.0 - state["win_chance"]
+    assert state["level"] == level and mine == pytest.approx(chance, abs=1e-4)
+    asked = game("advise", n=2)
+    assert asked == game("advise", n=2, noise=level) and asked["noise"] == level
+    whose = {"club": "a club player's"}.get(level, f"{'an' if level == 'amateur' else 'a'} {level}'s")
+    assert asked["order"] == f"By chance to win, with {whose} errors:"
+    assert f"Chance to win, both with {whose} errors: " in state["text"]
+    assert asked["suggestions"][0]["win"] == pytest.approx(mine, abs=0.1)
+
+
+def test_in_a_frame_those_advise_who_know_frames(game):
+    """A player of visits may sit opposite, and advise whoever practises alone."""
+    state = game("players", players=["person", "planner_500"])
+    assert state["players"][1] == "planner_500" and state["advisers"] == ["tactician_500"]
+    assert game("advise", n=1, samples=20)["agent"] == "tactician_500"
+    with pytest.raises(ValueError, match=r"^agent = 'planner_500': must know frames, as \"tactician\""):
+        game("advise", agent="planner_500")
+    state = game("players", practice=True)
+    assert set(state["advisers"]) >= {"planner_500", "tactician_500", "ghost_ball"}
+    assert game("advise", n=1, samples=20)["agent"] == "planner_500"
+
+
+def test_advice_knows_the_rules_that_are_played(game):
+    for rules in ("six_red", "shoot_out"):
+        game("new", game=rules, seed=4)
+        asked = game("advise", n=1, samples=20)
+        session = game.session
+        options = {"cue": "real", "miss": session.miss, "game": rules}
+        same = {"agent": "tactician_500", "noise": "amateur", "samples": 20, "n": 1}
+        (one,) = advise(session.position, options=options, **same)
+        assert asked["suggestions"][0]["words"] == one.words and asked["suggestions"][0]["win"] == one.win
 
 
 def test_an_aim_may_be_given_by_a_pot_and_is_solved(game):
@@ -376,12 +423,13 @@ def test_advice_is_ranked_named_and_drawn(game):
 
 
 @pytest.mark.parametrize(
-    ("layout", "agent", "pots"), [("opened", "search_2000", True), ("break_off", "tactician_500", False)]
+    ("layout", "agent", "pots"), [("opened", "mine", True), ("break_off", "tactician_500", False)]
 )
 def test_hints_are_different_strokes_and_the_best_of_each(game, layout, agent, pots):
     """One for each pot, and for each kind of safety: what an agent ranks are mostly ways of the same one."""
     game("new", layout=layout, seed=2)
     asked = {"noise": "amateur", "samples": 40, "seed": 3}
+    game.service.seats.players["mine"] = player("stroke_value")
     session, by = game.session, game.service.seats.players[agent]
     options = {"cue": session.cue, "miss": session.miss}
     ranked = advise(session.position, agent=by, n=13, options=options, **asked)
@@ -513,6 +561,7 @@ def test_a_free_cue_is_a_choice_of_the_players(game):
     with pytest.raises(ValueError, match="cue"):
         game("players", cue="short")
     game("players", cue="real")
+    game("players", practice=True)
     advice = game("advise", agent="search_2000", n=3, samples=10)["suggestions"]
     assert any("over the rail" in one["words"] and one["room"]["over"] == "rail" for one in advice)
 

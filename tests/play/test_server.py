@@ -1,5 +1,6 @@
 """Does the server answer those alone who know its address, and stay within its bounds?"""
 
+import http.client
 import json
 import signal
 import socket
@@ -59,6 +60,18 @@ def test_this_machines_names_are_served_and_others_refused(line):
     for host in (*others, f"127.0.0.1.nip.io:{port}"):
         refused(line("api/state", host=host), 403, "Host")
     refused(line("api/state", headers={"Host": None}), 403, "Host")
+
+
+def test_the_host_of_a_target_is_checked_as_host_is(line):
+    """A proxy that is told to go to another host must not arrive here."""
+    own, token = f"127.0.0.1:{line.server.server_port}", line.server.token
+    for name in (own, own.replace("127.0.0.1", "LOCALHOST")):
+        assert line("", path=f"http://{name}/{token}/api/state")[0] == 200
+    targets = [f"http://{name}" for name in ("evil", "evil:80", "127.0.0.1", f"x@{own}", f"{own}.evil", "")]
+    for target in (*targets, "foo:", "http:", f"foo://{own}/..", "//evil"):
+        status, body, _ = line("", path=f"{target}/{token}/api/state")
+        assert status == 403 and "must" in body["error"]["message"], target
+    refused(line("", path=f"http://[evil/{token}/api/state"), 400, "must be an address")
 
 
 def test_other_pages_are_refused(line):
@@ -195,27 +208,45 @@ def closed(connection):
         return True
 
 
-def test_connections_at_once_are_bounded(line):
+def test_connections_that_wait_give_way(line):
+    """Others on this machine who hold all places do not shut the player out, whose own connection stays."""
     address = "127.0.0.1", line.server.server_port
+    own = http.client.HTTPConnection(*address, timeout=20)
+    own.request("GET", f"/{line.server.token}/api/scene")
+    assert own.getresponse().read()
     held = [socket.create_connection(address) for _ in range(module.MOST_AT_ONCE + 4)]
+    for one in held[-8:]:
+        one.sendall(b"GET /")  # a request that does not end
     try:
-        time.sleep(0.3)
-        held[-1].settimeout(5)
-        reply = held[-1].recv(1000)
+        assert line("api/state")[0] == 200
+        assert closed(held[0]) and not closed(held[-1])
+        own.request("GET", f"/{line.server.token}/api/scene")
+        assert own.getresponse().status == 200
+    finally:
+        for one in (own, *held):
+            one.close()
+
+
+def test_connections_that_are_answered_are_bounded(line):
+    """A further one is told so, and served once one of them has ended."""
+    wait = f"GET /{line.server.token}/api/state?after={line('api/state')[1]['revision']}&wait=20 HTTP/1.1\r\n"
+    address = "127.0.0.1", line.server.server_port
+    held = [socket.create_connection(address) for _ in range(module.MOST_AT_ONCE)]
+    try:
+        for one in held:
+            one.sendall(f"{wait}Host: localhost:{address[1]}\r\n\r\n".encode())
+        time.sleep(0.5)
+        with socket.create_connection(address, timeout=5) as further:
+            reply = further.recv(1000)
         assert reply.startswith(b"HTTP/1.1 503 ") and b'"message": "busy: too many connections"' in reply
-        assert closed(held[-1]) and not closed(held[0])
+        assert not closed(held[0])
+        with line.server.service.acting():  # a change, which they wait for
+            pass
+        assert [one.recv(12) for one in held] == [b"HTTP/1.1 200"] * len(held)
+        assert line("api/state")[0] == 200
     finally:
         for one in held:
             one.close()
-    for _ in range(50):
-        time.sleep(0.05)
-        try:
-            assert line("api/state")[0] == 200
-            break
-        except OSError:
-            continue
-    else:
-        raise AssertionError("the server did not come back")
 
 
 def test_one_connection_serves_many_requests(line):

@@ -6,12 +6,12 @@ const shares = chance => {
   return [first, 100 - first];
 };
 
-/** Show in an element how likely the first of two players wins; null: nobody says it. */
-export function showChance(element, chance, names) {
+/** Show in an element how likely the first of two players wins; null: nobody says it. `how`: more words. */
+export function showChance(element, chance, names, how = "") {
   element.toggleAttribute("hidden", chance === null);
   if (chance === null) return;
   const both = shares(chance).map(share => `${share} %`);
-  const words = `chance to win: ${names.map((name, k) => `${name} ${both[k]}`).join(", ")}`;
+  const words = `chance to win${how}: ${names.map((name, k) => `${name} ${both[k]}`).join(", ")}`;
   element.setAttribute("role", "img");
   element.setAttribute("aria-label", words);
   element.title = words;
