@@ -124,7 +124,8 @@ def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[floa
     if state["phase"] == "over":
         return facts
     if (chance := state["win_chance"]) is not None:
-        share = min(99, max(1, round(100 * chance)))  # as the page shows it: nothing is certain yet
+        sure = chance in (0.0, 1.0)  # by the rules; as the page shows it, rounding makes nothing certain
+        share = round(100 * chance) if sure else min(99, max(1, round(100 * chance)))
         errors = errors_words(state["level"])
         facts.append(f"Chance to win, both {errors}: {one} {share} %, {other} {100 - share} %.")
     left = f"{state['available']} points are left on the table"

@@ -44,7 +44,7 @@ def checked_judge(judge: Any) -> Judge | None:
 
 
 def win_chances(judge: Judge, standings: Sequence[Standing]) -> list[float]:
-    """How likely player 0 wins each of n frames as they stand: 0 and 1 only where it is over."""
+    """How likely player 0 wins each of n frames as they stand: 0 and 1 only where the judge is certain."""
     n = len(standings)
     game = np.zeros((n, columns.COLUMNS), np.int64)
     saved = columns.Layouts(np.zeros((n, 22, 2)), np.zeros((n, 22), np.bool_))
@@ -54,9 +54,9 @@ def win_chances(judge: Judge, standings: Sequence[Standing]) -> list[float]:
     places = np.where(present[..., None], np.stack([one.positions for one in standings]), 0.0)
     at = Positions(places, present, strikers_own(game), saved)
     theirs = np.asarray(judge.chance_to_win(at), np.float64)
-    first = np.where(game[:, columns.STRIKER] == 0, theirs, 1.0 - theirs).round(DIGITS)
-    least = np.where(game[:, columns.PHASE] == columns.FINISHED, 0.0, 10.0**-DIGITS)
-    return np.clip(first, least, 1.0 - least).tolist()
+    first = np.where(game[:, columns.STRIKER] == 0, theirs, 1.0 - theirs)
+    least = np.where((first > 0.0) & (first < 1.0), 10.0**-DIGITS, 0.0)  # rounding makes nothing certain
+    return np.clip(first.round(DIGITS), least, 1.0 - least).tolist()
 
 
 def standings_of(strokes: Sequence[Any]) -> list[Standing]:
