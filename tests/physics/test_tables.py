@@ -96,12 +96,14 @@ def test_balls_lie_between_the_noses_of_the_table_given(own, inside, outside, al
     refused(shot(positions=[(0.2, 0.2), outside], table=own), "positions[1]", str(outside), allowed)
 
 
+_SIZES = {"start": 0.1018, "jaw_radius": 0.0926, "turn": 43.894, "fall_depth": 0.0289, "fall_radius": 0.0697}
 DEEP = Table.rectangular(
     2.0,
     1.0,
-    corner=sn.Pocket.corner(mouth=0.144, shelf=0.043, fall_radius=0.0697, jaw_radius=0.0926, cut=136.1),
+    corner=sn.Pocket(is_middle=False, **_SIZES),
+    middle=sn.Pocket.middle(mouth=0.15, shelf=0.12, fall_radius=0.08),
 )
-"""A table whose balls can lie deep in the mouths of its corners."""
+"""A table whose balls can lie deep in the mouths of its middle pockets, as no ball can behind its corners."""
 
 
 @pytest.mark.parametrize(
