@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ._check import array, flags, integer, refuse, refuse_what
+from ._check import array, flags, integer, refuse, refuse_what, truth
 from ._shots import count
 from ._types import Batches, Fidelity, FlagRows, Flags, Solver, Vectors
 from .physics import cloth, engine
@@ -84,7 +84,8 @@ def simulate(
         Balls may touch balls and cushions, and overlap by at most 1e-6 m. All balls are equal; n is 1 to
         4096. With ``physics.flight`` (n, 3), too: the third column is the height of the centre above its height on the bed.
     velocities : array_like, float (n, 2)
-        Velocities [m/s], each component within 1,000 of zero. With ``physics.flight`` (n, 3), too.
+        Velocities [m/s], each component within 1,000 of zero. With ``physics.flight`` (n, 3), too: a ball on the bed that is
+        driven into it bounces.
     spins : array_like, float (n, 3)
         Angular velocities [rad/s], each component within 100,000 of zero.
     table : str, Table or None
@@ -207,6 +208,7 @@ def simulate_batch(
     r, here = state[0], state[3]
     physics.check_stopping()
     table.check_ball(physics.R)
+    events = truth("events", events)
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
     start = tuple(a.copy() for a in state)

@@ -425,7 +425,7 @@ def run(balls, aloft, lift, setup, max_events, log, paths, forecast, series, so_
                 w = spins[i, 0], spins[i, 1], spins[i, 2]
                 motion[i, Z] = motion[i, UZ] = 0.0
                 cloth.begin(motion, state, i, 0.0, r, v, w, phys)
-                if aloft is not None and (aloft[i, 0] > 0.0 or aloft[i, 1] > 0.0):
+                if aloft is not None and (aloft[i, 0] > 0.0 or aloft[i, 1] != 0.0):
                     r3, v3 = (r[0], r[1], aloft[i, 0]), (v[0], v[1], aloft[i, 1])
                     flight.take_off(motion, state, i, 0.0, r3, v3, w, phys)
                 _bound(bounds, i, motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y])
@@ -597,7 +597,7 @@ def _flies(aloft):
     """Whether a shot begins with a ball in the air, or on its way up."""
     flies = False
     for i in range(aloft.shape[0]):
-        flies |= aloft[i, 0] > 0.0 or aloft[i, 1] > 0.0
+        flies |= aloft[i, 0] > 0.0 or aloft[i, 1] != 0.0
     return flies
 
 

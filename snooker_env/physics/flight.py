@@ -78,6 +78,8 @@ _NEAR_ENOUGH = 1e-12
 """A ball this near to a jaw touches it [m]."""
 _GLIDES = 1e-9
 """The gap of a ball that touches a jaw, but does not approach it [m]."""
+_HOLLOW = 1e12
+"""The most that an edge is hollow: by the centre of its arc; finite, so that it times a speed of zero is zero."""
 _MOST_STEPS = 1000
 """Of the search for a jaw, which converges as Newton's method does."""
 
@@ -194,17 +196,20 @@ def pair_time(motion, state, i, j, t, d, phys):
 
 @kernel
 def _edge_of(x, y, jaws, k, inset):
-    """The place on the edge of jaw k that is nearest to (x, y) [m]; ``inset``: how far the edge lies inside the table's line."""
+    """The place on the edge of jaw k that is nearest to (x, y) [m], and how hollow the edge is from there, as ``_jaw_time``
+    needs it: at most 1 in front of it; ``inset``: how far the edge lies inside the table's line."""
     dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
     cos_half, radius, far = jaws[k, JAW_COS], jaws[k, JAW_RADIUS] + inset, hypot(dx, dy)
     if far == 0.0:
-        return jaws[k, JAW_X] + radius * ux, jaws[k, JAW_Y] + radius * uy
+        return jaws[k, JAW_X] + radius * ux, jaws[k, JAW_Y] + radius * uy, _HOLLOW
     nx, ny = dx / far, dy / far
-    if nx * ux + ny * uy < cos_half:  # beside it: its end
-        sin_half = sqrt(1.0 - cos_half * cos_half)
-        s = sin_half if dy * ux - dx * uy > 0.0 else -sin_half
+    hollow = radius / far
+    if cos_half > -1.0 and nx * ux + ny * uy < cos_half:  # beside it: its end
+        sin_half, aside = sqrt(1.0 - cos_half * cos_half), dy * ux - dx * uy
+        hollow = radius * sin_half / abs(aside) if aside != 0.0 else _HOLLOW
+        s = sin_half if aside > 0.0 else -sin_half
         nx, ny = cos_half * ux - s * uy, cos_half * uy + s * ux
-    return jaws[k, JAW_X] + radius * nx, jaws[k, JAW_Y] + radius * ny
+    return jaws[k, JAW_X] + radius * nx, jaws[k, JAW_Y] + radius * ny, min(hollow, _HOLLOW)
 
 
 @kernel
@@ -213,12 +218,19 @@ def _jaw_time(r, v, jaws, k, high, T, phys):
 
     Along a line the distance to a convex edge is convex; gravity bends it by at most g. So while the ball is in front of
     the edge its gap after h is at least gap - closing h - g h^2 / 2: each step goes to where this is zero.
+
+    Behind the edge, which is hollow there, other places of it come nearer. Let D be the distance from P to e, the nearest.
+    For any place e' on the edge |e' - e|^2 <= hollow (|P - e'|^2 - D^2): hollow is the arc's radius over the distance from its
+    centre, or where an end is the nearest, half the chord over the distance from the axis. With the speed s in the
+    plane, |P + v h - e'|^2 is then at least (D - closing h)^2 - m h^2, m = hollow s^2 + closing^2 - |v|^2: the gap bends by up
+    to g + 2 m / R. No gap closes faster than the ball moves: that bound is the better one by the arc's centre.
     """
     (x, y, z), (vx, vy, u), R, g = r, v, phys[P_R], phys[P_G]
+    level2 = vx * vx + vy * vy
     inset, t, goal = R - sqrt(R * R - high * high), 0.0, 0.0
     for n in range(_MOST_STEPS):
         px, py, pz = x + vx * t, y + vy * t, z + (u - 0.5 * g * t) * t
-        ex, ey = _edge_of(px, py, jaws, k, inset)
+        ex, ey, hollow = _edge_of(px, py, jaws, k, inset)
         dx, dy, dz = ex - px, ey - py, high - pz
         far = sqrt(dx * dx + dy * dy + dz * dz)
         closing = (vx * dx + vy * dy + (u - g * t) * dz) / far
@@ -231,7 +243,13 @@ def _jaw_time(r, v, jaws, k, high, T, phys):
             if closing > 0.0:
                 return min(t, T)
             gap = _GLIDES
-        t += (sqrt(closing * closing + 2.0 * g * gap) - closing) / g
+        step = (sqrt(closing * closing + 2.0 * g * gap) - closing) / g
+        if hollow > 1.0:
+            speed2 = level2 + (u - g * t) * (u - g * t)
+            bend = g + 2.0 * max(0.0, hollow * level2 + closing * closing - speed2) / (R + goal)
+            step = (sqrt(closing * closing + 2.0 * bend * gap) - closing) / bend
+            step = max(step, (sqrt(speed2 + 2.0 * g * gap) - sqrt(speed2)) / g)
+        t += step
         if t > T:
             return inf
     return inf
@@ -245,7 +263,7 @@ def edge_normal(motion, state, i, t, kind, j, boundaries, phys):
     z, _ = height(motion, state, i, t, phys)
     inset, noses = R - R * sqrt(1.0 - phys[P_SIN] * phys[P_SIN]), boundaries.noses
     if kind == events.JAW:
-        ex, ey = _edge_of(x, y, boundaries.jaws, j, inset)
+        ex, ey, _ = _edge_of(x, y, boundaries.jaws, j, inset)
         dx, dy = ex - x, ey - y
     else:
         side, level = noses[j, NOSE_SIDE], noses[j, NOSE_LEVEL] - inset
@@ -300,9 +318,15 @@ def next_event(motion, i, boundaries, clear, phys):
             p, p1, q, q1 = side * y, side * vy, x, vx
         if max(p, p + p1 * T) < edge - R:
             continue
-        s = distance_crossing(edge - p, high - z, -p1, -u, 0.0, 0.5 * g, R, T)
-        if s < best and noses[k, NOSE_LOW] - SEAM <= q + q1 * s <= noses[k, NOSE_HIGH] + SEAM:
-            best, kind, index = s, events.CUSHION, k
+        # the edge has ends: a ball is judged from where it comes beside it
+        low, upto, since = noses[k, NOSE_LOW], noses[k, NOSE_HIGH], 0.0
+        if (q < low and q1 > 0.0) or (q > upto and q1 < 0.0):
+            since = ((low if q < low else upto) - q) / q1
+        if since <= T:
+            off, up, u0 = edge - (p + p1 * since), high - (z + (u - 0.5 * g * since) * since), u - g * since
+            s = since + distance_crossing(off, up, -p1, -u0, 0.0, 0.5 * g, R, T - since)
+            if s < best and low - SEAM <= q + q1 * s <= upto + SEAM:
+                best, kind, index = s, events.CUSHION, k
         s = (edge + RAIL - p) / p1 if p1 > 0.0 else inf
         if s < best:
             best, kind, index = max(0.0, s), events.OFF, -1

@@ -1,6 +1,6 @@
 """Is a layout sound? The first ball off the table, in a cushion, jaw or ball, or over a pocket: a kernel."""
 
-from math import sqrt
+from math import inf, sqrt
 
 from .._jit import entry, kernel
 from .arrays import Boundaries
@@ -43,14 +43,9 @@ def in_jaw(x, y, jaws, k, R, allowed):
 
 
 @kernel
-def place_fault(x, y, reach, boundaries, allowed, edge):
-    """What is wrong with a ball on the bed at (x, y) [m]: kind, index of nose, fall or jaw; or (SOUND, -1).
-
-    It may be ``allowed`` [m] deep in a cushion and ``edge`` [m] over a pocket.
-    """
+def _piece_at(x, y, boundaries, allowed, edge):
+    """The piece of the table that a ball at (x, y) [m] is in: kind, index of nose, fall or jaw; or (SOUND, -1)."""
     noses, jaws, falls, R = boundaries
-    if not (reach[0, 0] < x < reach[0, 1] and reach[1, 0] < y < reach[1, 1]):
-        return OFF, -1
     for j in range(noses.shape[0]):
         along, across = (y, x) if noses[j, NOSE_AXIS] == 0.0 else (x, y)
         if (
@@ -66,6 +61,50 @@ def place_fault(x, y, reach, boundaries, allowed, edge):
         if in_jaw(x, y, jaws, j, R, allowed):
             return IN_JAW, j
     return SOUND, -1
+
+
+@kernel
+def _is_cut_off(x, y, reach, boundaries):
+    """Whether a ball at (x, y) [m], in no piece of the table, is behind one: a fall, a jaw, a nose.
+
+    A pocket grows no narrower towards the table. So a ball in its mouth goes out of it along its axis: straight away from
+    the nearest fall, or back over the nose's line where that is another pocket's. One that is behind a piece meets it.
+    """
+    _noses, _jaws, falls, R = boundaries
+    lo_x, hi_x, lo_y, hi_y = reach[0, 2], reach[0, 3], reach[1, 2], reach[1, 3]
+    out_x, out_y = min(max(x, lo_x), hi_x) - x, min(max(y, lo_y), hi_y) - y
+    if out_x == 0.0 and out_y == 0.0:
+        return False
+    ux, uy, nearest = out_x, out_y, inf
+    for j in range(falls.shape[0]):
+        fx, fy = falls[j, FALL_X], falls[j, FALL_Y]
+        far = (x - fx) * (x - fx) + (y - fy) * (y - fy)
+        if far < nearest:
+            nearest, ux, uy = far, min(max(fx, lo_x), hi_x) - fx, min(max(fy, lo_y), hi_y) - fy
+    if (out_x != 0.0 and ux * out_x <= 0.0) or (out_y != 0.0 and uy * out_y <= 0.0):
+        ux, uy = out_x, out_y
+    way = max(out_x / ux if out_x != 0.0 else 0.0, out_y / uy if out_y != 0.0 else 0.0)
+    n = int(way * sqrt(ux * ux + uy * uy) / (0.25 * R)) + 1
+    for k in range(1, n):
+        part = way * k / n
+        # a straight facing is an arc: hence 0.1 R
+        if _piece_at(x + ux * part, y + uy * part, boundaries, 0.1 * R, 0.1 * R)[0] != SOUND:
+            return True
+    return False
+
+
+@kernel
+def place_fault(x, y, reach, boundaries, allowed, edge):
+    """What is wrong with a ball on the bed at (x, y) [m]: kind, index of nose, fall or jaw; or (SOUND, -1).
+
+    It may be ``allowed`` [m] deep in a cushion and ``edge`` [m] over a pocket.
+    """
+    if not (reach[0, 0] < x < reach[0, 1] and reach[1, 0] < y < reach[1, 1]):
+        return OFF, -1
+    fault, j = _piece_at(x, y, boundaries, allowed, edge)
+    if fault == SOUND and _is_cut_off(x, y, reach, boundaries):
+        return OFF, -1
+    return fault, j
 
 
 @kernel
@@ -90,7 +129,7 @@ def layout_fault(positions, on_table, reach, boundaries):
 def first_fault(positions, on_table, reach, noses, jaws, falls, R):
     """The first unsound place in positions (b, n, 2) [m]: table, ball, kind, index of what it is in.
 
-    ``reach`` (2, 2): lowest and highest x and y of centres [m]. (-1, -1, SOUND, -1) if all are sound.
+    ``reach`` (2, 4): lowest and highest x and y of centres [m], and of those that touch a nose. (-1, -1, SOUND, -1) if all are sound.
     """
     boundaries = Boundaries(noses, jaws, falls, R)
     for k in range(positions.shape[0]):

@@ -134,7 +134,11 @@ class Table:
         """
         length = number("table.length", length, 0, 100, open_low=True)
         width = number("table.width", width, 0, 100, open_low=True)
-        if not isinstance(pockets, (int, np.integer)) or pockets not in (6, 4, 0):
+        if (
+            isinstance(pockets, bool)
+            or not isinstance(pockets, (int, np.integer))
+            or pockets not in (6, 4, 0)
+        ):
             raise refuse("table.pockets", pockets, "must be 6, 4 or 0")
         shapes = []
         kinds = ("corner", corner, False, pockets > 0), ("middle", middle, True, pockets == 6)
@@ -191,14 +195,15 @@ class Table:
         return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
     def _reach(self, R):
-        """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth; kept per R.
+        """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth, and beside them the places of
+        balls that touch the noses; kept per R.
 
         Without pockets that is nowhere: beyond a corner's two noses a ball would be off the table.
         """
         if R not in self._reaches:
             has_mouths = len(self.jaws) + len(self.falls) > 0
             past = max(MOUTH, deepest(self.jaws, self.falls, self.bounds, R)) if has_mouths else 0.0
-            self._reaches[R] = self.bounds + np.array([-past, past])
+            self._reaches[R] = np.tile(self.bounds, 2) + np.array([-past, past, R, -R])
         return self._reaches[R]
 
     def unfit(self, positions: Floats, R: float) -> list[int]:

@@ -15,7 +15,8 @@ v_z = 0: ``tiny_steps`` moves it), in the air, or gone.
 * Two balls: both on the bed, ``ball_ball``, and the bed throws the pressed one up with e_t; both in the air, free
   spheres; one on the bed, ``tilted`` (below).
 * The rail's top, beyond an edge line, is a bed at the height H + R. A ball ``RAIL`` beyond an edge line is off.
-  A ball that comes to z = 0 in a fall circle is potted, and one that flies out of it at the back at z <= H.
+  A ball that comes to z = 0 in a fall circle is potted, and one that flies out of it at the back at z <= H; higher, but
+  below the rail's top, it is off.
 
 Slow contacts on the bed part as the package's text says (``meetings``): at ``PART`` or more, below it without
 friction, with energy from the spins.
@@ -105,6 +106,19 @@ def _edge_line(nose, m):
 
 
 @numba.njit
+def _to_jaw(ball, jaw, m):
+    """From a ball in the air to the nearest place on a jaw's edge, in the plane: unit vector and distance [m]. From behind
+    the edge, too; beside the arc that place is its end."""
+    dx, dy, half = ball[X] - jaw[JAW_X], ball[Y] - jaw[JAW_Y], math.acos(jaw[JAW_COS])
+    middle = math.atan2(jaw[JAW_UY], jaw[JAW_UX])
+    turn = math.atan2(math.sin(math.atan2(dy, dx) - middle), math.cos(math.atan2(dy, dx) - middle))
+    at, radius = middle + min(max(turn, -half), half), jaw[JAW_RADIUS] + m.R - m.ahead
+    dx, dy = radius * math.cos(at) - dx, radius * math.sin(at) - dy
+    far = max(math.sqrt(dx * dx + dy * dy), 1e-300)
+    return dx / far, dy / far, far
+
+
+@numba.njit
 def _gap(kind, a, b, part, m):
     """How far [m] ball a is from a contact, and the rate [m/s]. ``b``: the other ball; ``part``: the table's row."""
     if kind == BALL:
@@ -121,7 +135,10 @@ def _gap(kind, a, b, part, m):
         d = max(math.sqrt(dx * dx + dy * dy), 1e-300)
         way = 1.0 if a[MODE] == BED else -1.0
         return way * (d - part[FALL_RADIUS]), way * (dx * a[VX] + dy * a[VY]) / d
-    if kind == JAW:
+    if kind == JAW and a[MODE] == AIR:
+        hx, hy, off = _to_jaw(a, part, m)
+        away = -(hx * a[VX] + hy * a[VY])
+    elif kind == JAW:
         dx, dy = a[X] - part[JAW_X], a[Y] - part[JAW_Y]
         far = max(math.sqrt(dx * dx + dy * dy), 1e-300)
         off, away = far - part[JAW_RADIUS] - m.R + m.ahead, (dx * a[VX] + dy * a[VY]) / far
@@ -161,7 +178,7 @@ def _counts(kind, ball, part, noses, falls, m):
     if kind == CUSHION:
         along = ball[Y - int(part[NOSE_AXIS])]
         return part[NOSE_LOW] <= along <= part[NOSE_HIGH]
-    if kind == JAW:
+    if kind == JAW and ball[MODE] == BED:
         dx, dy = ball[X] - part[JAW_X], ball[Y] - part[JAW_Y]
         far = math.sqrt(dx * dx + dy * dy)
         in_sector = dx * part[JAW_UX] + dy * part[JAW_UY] >= part[JAW_COS] * far
@@ -169,7 +186,7 @@ def _counts(kind, ball, part, noses, falls, m):
     if kind == RAIL_TOP:
         return _outside(ball, noses, m) and _over(ball, falls) < 0
     if kind == POT and ball[MODE] == AIR:
-        return ball[Z] <= m.height and _outside(ball, noses, m)
+        return ball[Z] <= m.height + m.R and _outside(ball, noses, m)
     return True
 
 
@@ -535,7 +552,10 @@ class _Shot:
         """A nose or a jaw."""
         p, R, model = self.p, self.p.R, self.model
         v, w = ball[[VX, VY, VZ]], ball[[WX, WY, WZ]]
-        if kind == JAW:
+        if kind == JAW and ball[MODE] == AIR:
+            hx, hy, off = _to_jaw(ball, self.jaws[k], model)
+            h = np.array([hx, hy, 0.0])
+        elif kind == JAW:
             h = np.array([self.jaws[k, JAW_X] - ball[X], self.jaws[k, JAW_Y] - ball[Y], 0.0])
             far = math.sqrt(h @ h)
             h, off = h / far, far - self.jaws[k, JAW_RADIUS] - R + model.ahead
@@ -571,7 +591,7 @@ class _Shot:
         elif kind == RAIL_TOP and -self.e_t * ball[VZ] >= SETTLE:
             self.put(ball, *self.bounce(ball[[VX, VY, VZ]], ball[[WX, WY, WZ]]))
             return RAIL_TOP, -1
-        elif kind in (RAIL_TOP, OFF):
+        elif kind in (RAIL_TOP, OFF) or (kind == POT and ball[Z] > self.model.height):
             ball[MODE] = OFF_TABLE
             return OFF, -1
         else:

@@ -293,6 +293,10 @@ LAYOUTS = [
         )
         for wrong in (0, -2, 1.0, "2", True, 1025)
     ],
+    *[
+        case(batch(events=wrong), "events", repr(wrong), "must be True or False", f"events={wrong!r}")
+        for wrong in ("x", 1, None, [True])
+    ],
     case(batch(max_events=0), "max_events", "0", "must be an integer in [1, 2147483648]", "batch-max_events"),
     *[
         case(

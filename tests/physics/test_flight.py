@@ -25,7 +25,7 @@ def kinds(shot, ball=None):
     return [EventKind(e["kind"]).name for e in shot.events if ball is None or e["i"] == ball]
 
 
-def one(place, velocity, spin=STILL, physics=FLYING, table: str | None = "match"):
+def one(place, velocity, spin=STILL, physics=FLYING, table: sn.Table | str | None = "match"):
     """A shot of one ball from ``place`` (3,)."""
     return sn.simulate([place], [velocity], [spin], table=table, physics=physics)
 
@@ -237,6 +237,75 @@ def test_heights_need_flight_and_are_above_the_bed():
         sn.Physics(e_t=1.0)
     with pytest.raises(ValueError, match=r"physics.flight = 1"):
         sn.Physics(flight=1)  # type: ignore[arg-type]
+
+
+def past_the_edges(places, table, physics):
+    """How deep balls at ``places`` (m, 3) are in the edges of the noses and jaws [m], from the table's geometry alone."""
+    R, (x, y, z) = physics.R, places.T
+    inset, least = R * (1.0 - math.sqrt(1.0 - physics.sin_theta**2)), np.full(len(places), np.inf)
+    up = z - R * physics.sin_theta
+    for axis, side, level, low, high in table.noses:
+        p, q = (x, y) if axis == 0 else (y, x)
+        off, along = level - inset - side * p, q - np.clip(q, low, high)
+        least = np.minimum(least, off**2 + along**2 + up**2)
+    for jx, jy, radius, ux, uy, cosine in table.jaws:
+        along, aside = (x - jx) * ux + (y - jy) * uy, (y - jy) * ux - (x - jx) * uy
+        half = math.acos(cosine)
+        turn = np.clip(np.arctan2(aside, along), -half, half)
+        off = along - (radius + inset) * np.cos(turn), aside - (radius + inset) * np.sin(turn)
+        least = np.minimum(least, off[0] ** 2 + off[1] ** 2 + up**2)
+    return R - np.sqrt(least)
+
+
+def deepest(shot):
+    """``past_the_edges`` of a shot of one ball, but for where it is over a pocket or gone [m]."""
+    times = np.concatenate([np.linspace(0.0, min(shot.duration, 3.0), 1500), shot.events["time"]])
+    gone = [
+        t
+        for t, kind in shot.events[["time", "kind"]].tolist()
+        if EventKind(kind).name in ("DROP", "POT", "OFF")
+    ]
+    times = times[times < min(gone, default=np.inf)]
+    return past_the_edges(shot.at(times)[0][:, 0], shot.table, shot.physics).max() if len(times) else 0.0
+
+
+@pytest.mark.parametrize(
+    ("place", "velocity", "first"),
+    [
+        ((-0.333, 1.704, 0.0), (-1.28, 0.27, 2.09), "JAW"),
+        # along a nose out of the mouth of a pocket, where its line goes on without an edge
+        ((-0.8306, 0.0545, 0.0), (-1.602, 0.0143, 0.8209), "JAW"),
+    ],
+)
+def test_no_ball_is_in_an_edge_that_it_comes_down_on_from_behind(place, velocity, first):
+    shot = one(place, velocity, physics=sn.Physics.preset("paper", flight=True))
+    assert kinds(shot)[0] == first and deepest(shot) < 1e-9
+
+
+@pytest.mark.slow
+def test_lobs_at_pockets_meet_every_edge_from_every_side():
+    """4,000 of four tables: no ball is deeper than ``SKIN``, which the text of ``detection`` allows, and rounding."""
+    rng, jaws = np.random.default_rng(0), 0
+    for k in range(4000):
+        table = sn.Table.preset(("match", "tight", "pool9", "uk8")[k % 4])
+        physics = sn.Physics.preset("match" if k % 8 < 4 else "paper", flight=True, **table.ball)
+        fall, most = table.falls[rng.integers(len(table.falls))], table.bounds[:, 1] - physics.R - 5e-3
+        start = np.clip(rng.uniform(-most, most), fall[:2] - 0.6, fall[:2] + 0.6)
+        t = rng.uniform(0.03, 0.6)
+        way, z = (fall[:2] + rng.normal(0.0, 0.06, 2) - start) / t, rng.choice([0.0, rng.uniform(0.0, 0.2)])
+        up = (rng.uniform(-0.02, 0.06) - z + 0.5 * G * t * t) / t
+        shot = one((*start, z), (*way, up), rng.normal(0.0, 60.0, 3), physics, table)
+        jaws += "JAW" in kinds(shot)
+        assert deepest(shot) < flight.SKIN * (1.0 + 1e-3), (k, table.name, start, z, way, up)
+    assert jaws > 500
+
+
+def test_a_ball_that_is_driven_into_the_bed_bounces():
+    shot = one((0, 0, 0), (1.0, 0.0, -1.0))
+    assert kinds(shot)[0] == "LAND" and shot.events["time"][0] == 0.0
+    assert shot.at(0.0)[1][0, 2] == E_T
+    slow = one((0, 0, 0), (1.0, 0.0, -0.05))
+    assert slow.at(0.0)[1][0].tolist() == [1.0 - FLYING.mu_s * 0.05, 0.0, 0.0]
 
 
 def test_a_jaw_is_met_in_the_air_where_its_edge_is():

@@ -96,6 +96,31 @@ def test_balls_lie_between_the_noses_of_the_table_given(own, inside, outside, al
     refused(shot(positions=[(0.2, 0.2), outside], table=own), "positions[1]", str(outside), allowed)
 
 
+_SIZES = {"start": 0.1018, "jaw_radius": 0.0926, "turn": 43.894, "fall_depth": 0.0289, "fall_radius": 0.0697}
+DEEP = Table.rectangular(
+    2.0,
+    1.0,
+    corner=sn.Pocket(is_middle=False, **_SIZES),
+    middle=sn.Pocket.middle(mouth=0.15, shelf=0.12, fall_radius=0.08),
+)
+"""A table whose balls can lie deep in the mouths of its middle pockets, as no ball can behind its corners."""
+
+
+@pytest.mark.parametrize(
+    ("behind", "beside"),
+    [((0.6193, 1.0356), "the fall"), ((0.5539, 1.1146), "the fall"), ((0.4293, 1.0913), "a jaw")],
+)
+def test_no_ball_lies_behind_a_deep_pocket(behind, beside):
+    """A ball in the mouth is as far beyond the lines of the noses as these."""
+    fall = DEEP.falls[3]
+    axis = np.sqrt(0.5) * np.ones(2)
+    mouth = fall[:2] - (fall[2] + 1e-4) * axis
+    for sign in ((1, 1), (-1, 1), (1, -1), (-1, -1)):
+        DEEP.check([mouth * sign], 0.02625)
+        with pytest.raises(ValueError, match=r"positions\[0\] = .*must be on the table"):
+            DEEP.check([np.multiply(behind, sign)], 0.02625)
+
+
 def test_a_table_of_pockets_and_jaws_alone_has_no_bounds():
     bare = Table("bare", np.zeros((0, 5)), MATCH.jaws, MATCH.falls)
     assert sn.simulate([(50.0, 50.0)], [(0.1, 0.0)], [Z], bare).positions[0, 0] > 50.0
@@ -121,6 +146,9 @@ NOSE, JAW = (
     ("call", "field", "value", "allowed"),
     [
         case(own(name=None), "table.name", "None", "must be a str"),
+        case(
+            lambda: Table.rectangular(2.0, 1.0, pockets=False), "table.pockets", "False", "must be 6, 4 or 0"
+        ),
         case(own(name=3), "table.name", "3", "must be a str"),
         case(own(noses=[(2, 1, 1, -1, 1)]), "table.noses[0]", "(2.0, 1.0, 1.0, -1.0, 1.0)", NOSE),
         case(
