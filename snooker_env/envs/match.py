@@ -83,9 +83,11 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self.render_mode = render_mode
         self.tables = match_tables(self.options, seats, 1)
         self.possible_agents, self.agents = list(PLAYERS), []
-        self.observation_spaces = {name: observation_space_of(self.options) for name in PLAYERS}
+        acts = [seat.actions for seat in self.tables.seats]
+        seen = (observation_space_of(self.options, actions) for actions in acts)
+        self.observation_spaces = dict(zip(PLAYERS, seen, strict=True))
         # each with its own generator
-        spaces = [copy.deepcopy(seat.actions.space) for seat in self.tables.seats]
+        spaces = [copy.deepcopy(actions.space) for actions in acts]
         self.action_spaces = dict(zip(PLAYERS, spaces, strict=True))
         self.np_random, _ = seeding.np_random()
         self._selected: str | None = None

@@ -13,7 +13,7 @@ from .._types import Bools, Floats, Ints, Observation
 from ..game.frame_columns import STRIKER
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
-from ..tasks.options import Options
+from ..tasks.options import Options, observation_space_of
 from ..tasks.tables import Tables
 from .opponents import match_options, match_tables
 from .vector import SnookerVectorEnv
@@ -64,8 +64,12 @@ class MatchVectorEnv(SnookerVectorEnv):
         super().__init__(num_envs, options, autoreset_mode=AutoresetMode.DISABLED, **keywords)
         one, other = (seat.actions.space for seat in self.tables.seats)
         self._alike = one == other
+        if self.options.observation == "masked" and not self._alike:
+            raise refuse("seats", seats, 'must give both players the same choices with observation="masked"')
         self.single_action_space = one if self._alike else spaces.Tuple((one, other))
         self.action_space = batch_space(self.single_action_space, self.num_envs)
+        self.single_observation_space = observation_space_of(self.options, self.tables.seats[0].actions)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
 
     _game_of = staticmethod(lambda options, keywords: (match_options(options, keywords), None))
 
@@ -115,7 +119,8 @@ class MatchVectorEnv(SnookerVectorEnv):
         written = self.tables.output()
         written.observations[:] = self.tables.observe(np.arange(self.num_envs), player)
         if len(written.masks):
-            written.masks[:] = self.action_masks() & (self.strikers == player)[:, None]
+            written.masks[:] = self.action_masks()
+            written.masks[(self.strikers != player) | self.tables.ended()] = False
         return super()._shaped(written, None)
 
     def action_masks(self) -> Bools:
@@ -126,9 +131,11 @@ class MatchVectorEnv(SnookerVectorEnv):
         return self.tables.action_masks()
 
     def _shaped(self, written: Any, out: Any) -> Any:
-        """The strikers' observations."""
+        """The strikers' observations, without a choice where the frame or match has ended."""
         theirs = np.flatnonzero(self.tables.game[:, STRIKER])
         written.observations[theirs] = self.tables.observe(theirs, 1)
+        if len(written.masks):
+            written.masks[self.tables.ended()] = False
         return super()._shaped(written, out)
 
 

@@ -47,7 +47,8 @@ def faults(frame: Any) -> Iterator[tuple[bool, str, str]]:
     stroke, after_foul, missing = frame.phase == "stroke", frame.phase == "choice", frame.miss != "off"
     rules = frame.rule_set
     known = frame.on_table | (0 if frame.saved is None else frame.saved.on_table)
-    yield bool(known & ~frame.rack), "rack", "must hold the balls of on_table, and of saved"
+    came = 1 << BLACK if frame.respotted_black else 0  # it comes though the frame began without it
+    yield bool(known & ~(frame.rack | came)), "rack", "must hold the balls of on_table, and of saved"
     if frame.phase == "over":
         for name, value in SETTLED.items():
             yield getattr(frame, name) != value, name, f'must be {value!r} in phase "over"'

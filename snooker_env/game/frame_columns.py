@@ -46,7 +46,7 @@ class Effort(NamedTuple):
 
 
 class Layouts(NamedTuple):
-    """The balls on n tables before the last foul: (n, 22, 2) [m], (n, 22)."""
+    """The balls on n tables before the last stroke: (n, 22, 2) [m], (n, 22)."""
 
     positions: Floats
     on_table: Bools
@@ -74,7 +74,7 @@ def begin_frame(row, on_table, breaker, in_hand):
 
 @kernel
 def _end(row, winner):
-    """End the frame; what no frame that is over has is cleared (``frame_checks.SETTLED``)."""
+    """End the frame; what no frame that is over has is cleared (``frame.SETTLED``)."""
     row[PHASE], row[OVER], row[WINNER] = FINISHED, 1, winner
     row[BALL_ON] = -1
     row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = 0

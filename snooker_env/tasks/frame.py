@@ -10,9 +10,9 @@ go to the opponent's score; after a foul the agent plays on from where the balls
 With ``one_stroke`` the agent begins, and its first step is the episode.
 
 A frame that ends in the opponent's first visit is shown by that reset; the next step plays nothing, reports
-the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once on the free place of the D
-nearest to its usual one (``balls.SPOTS``), so that it can be seen; the player may place it elsewhere. The
-physics is planar: no ball leaves the table or jumps over another."""
+the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once, so that it can be seen: on
+the free place of the D nearest to its usual one (``balls.SPOTS``), or if it may go anywhere, nearest to where it
+came to rest. The player may place it elsewhere."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
@@ -136,7 +136,7 @@ class Frames(Tables):
 
     @property
     def saved(self) -> columns.Layouts:
-        """Where the balls lay before the last fouls: ``frame_columns.Layouts``."""
+        """Where the balls lay before the last strokes: ``frame_columns.Layouts``."""
         return columns.Layouts(self._saved_positions, self._saved_on_table)
 
     @property
@@ -271,6 +271,7 @@ class Frames(Tables):
         out.terminated[~going] = self.game[~going, columns.OVER]
         out.truncated[~going] = ~out.terminated[~going]
         crew(np.flatnonzero(~going), lambda which, _: self._show(which, out, fresh=False))
+        crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def go_on(self, which: Ints) -> None:
         """After each turn: the next frame of a match, where one has ended. Here there is none."""

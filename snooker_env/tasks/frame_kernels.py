@@ -16,6 +16,7 @@ from ..game.paths import best_paths
 from ..game.philox import pair
 from ..game.rule_sets import SHOOT_OUT, SIX_RED
 from ..game.ruling import AUTO, FLAG, OUTCOME, Before, Facts, ruling
+from ..game.shut_in import shut_in
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import EventKind, Status
 from . import declarations, stroke
@@ -383,16 +384,26 @@ def gap_of(positions, on_table, row, shots, path, j):
 
 def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[int, float]:
     """Write into ``b.seen`` which shots were attempts; returns the gaps [m], by row, of those that struck no
-    ball on and had no clear path: they are played once more, uncounted, with the cue ball's path."""
+    ball on and had no clear path: they are played once more, uncounted, with the cue ball's path. Where no
+    ball on can be hit, only the balls on that the stroke goes toward are left on the table. In hand that never
+    is: too few balls are not on to shut the D in."""
     positions, on_table, game, *_ = tables.arrays
-    asked = np.empty(len(which), np.bool_)
+    asked, cushions = np.empty(len(which), np.bool_), (tables.rules.table.noses, tables.rules.table.jaws)
     question(which, on_table, game, b.status, b.seen, asked)
     gaps = {}
     for j in np.flatnonzero(asked).tolist():
         k = int(which[j])
+        here, row, world = on_table[k], game[k], tables.world(k)
         one, at = b, j
         if not b.segments.shape[1]:
-            one, at = stroke.with_path(b, j, positions[k], on_table[k], *tables.world(k)), 0
-        gaps[j] = gap_of(positions[k], on_table[k], game[k], one.played, (one.segments, one.n_segments), at)
+            one, at = stroke.with_path(b, j, positions[k], here, *world), 0
+        gaps[j] = gap_of(positions[k], here, row, one.played, (one.segments, one.n_segments), at)
+        placed, on = row[columns.IN_HAND] or row[columns.ANYWHERE], tables.on(k)
+        if gaps[j] > ATTEMPT_GAP and not placed and shut_in(positions[k], here, on, *cushions, BALL_RADIUS):
+            ahead = (positions[k] - positions[k, CUE]) @ b.shots[j, [stroke.VX, stroke.VY]] > 0.0
+            only = here & (on >> np.arange(N_BALLS) & 1 > 0) & ahead
+            only[CUE] = True
+            one = stroke.with_path(b, j, positions[k], only, *world)
+            gaps[j] = gap_of(positions[k], only, row, one.played, (one.segments, one.n_segments), 0)
         b.seen[j, stroke.ATTEMPT] = gaps[j] <= ATTEMPT_GAP
     return gaps

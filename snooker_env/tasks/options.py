@@ -363,10 +363,13 @@ for _name in SAYS:
     setattr(Options, _name, _has(_name))
 
 
-def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:
-    """The observation space of a game with these options."""
+def observation_space_of(
+    options: Options, actions: Actions | Choices | None = None
+) -> spaces.Box | spaces.Dict:
+    """The observation space of a game with these options, for a player with these ``actions`` if they differ."""
     rules, frame = options.rules, options.task != "visit"
-    choices = rules.actions.choices if isinstance(rules.actions, Choices) else 0
+    actions = rules.actions if actions is None else actions
+    choices = actions.choices if isinstance(actions, Choices) else 0
     more = {"replaced": rules.misses, "conditions": rules.observed}
     return observations.space(options.observation, frame=frame, choices=choices, **more)
 

@@ -196,8 +196,8 @@ class Tables(ABC):
 
     def output(self, *, last: bool = False, arrays: Mapping[str, Any] | None = None) -> StepOutput:
         """New arrays for the results of a step or reset, except for ``arrays`` by name."""
-        masked = self.rules.actions if self.rules.observation == "masked" else None
-        choices = masked.choices if isinstance(masked, Choices) else 0
+        nobody = np.empty(0, np.int64)
+        choices = self.action_masks(nobody).shape[1] if self.rules.observation == "masked" else 0
         sizes = self.n, self.SIZE, len(self.reals), len(self.COUNTS)
         out = StepOutput(*sizes, last=last, choices=choices)
         for name, array in (arrays or {}).items():

@@ -209,6 +209,85 @@ def test_each_table_plays_as_a_match_alone(kind, threads):
     assert strokes > 300 and ended.any()
 
 
+LOOKS = {
+    "masked": MASKED | {"layout": "colours"},
+    "masked, everything said": MASKED | SAID | {"layout": "random:1", "noise": "amateur"},
+    "masked match with misses": MASKED | {"frames": 3, "layout": "random:0", "miss": "attempt"},
+    "masked six-red": MASKED | {"game": "six_red", "miss": "clear_path", "nominate": True},
+    "masked Shoot Out": MASKED | {"game": "shoot_out", "layout": "random:2"},
+    "masked, drawn and seen": MASKED | {"conditions": "drawn", "observe_conditions": True, "cue": "real"},
+    "masked, other errors": MASKED | {"layout": "random:1", "seats": ({}, {"noise": "amateur"})},
+    "masked, both concede": MASKED | {"layout": "random:0", "seats": ({"concede": True},) * 2},
+    "balls with misses": PLAIN | {"observation": "balls", "layout": "random:1", "miss": "clear_path"},
+    "balls, six-red": PLAIN | {"observation": "balls", "game": "six_red", "nominate": True},
+    "flat Shoot Out": PLAIN | {"game": "shoot_out", "layout": "random:2"},
+}
+
+
+def sees(observations, k, alone):
+    """Whether table k of many is seen as a match alone is seen, in every bit and in its space."""
+    if not isinstance(observations, dict):
+        return observations[k].tobytes() == alone.tobytes()
+    same = (observations[name][k].tobytes() == alone[name].tobytes() for name in alone)
+    return observations.keys() == alone.keys() and all(same)
+
+
+@pytest.mark.parametrize("look", LOOKS)
+def test_both_players_see_on_each_of_many_tables_what_they_see_in_a_match_alone(look):
+    """After resets of all and of some, steps, states and ends: the strikers' observations, and ``observe``."""
+    options, rng, n = {"max_strokes": 14} | LOOKS[look], np.random.default_rng(3), 4
+    tables = sn.MatchVectorEnv(n, threads=1, **options)
+    alone = [sn.match_env(**options) for _ in range(n)]
+    seen, _ = tables.reset(seed=2)
+    [one.reset(seed=2 + k) for k, one in enumerate(alone)]
+    over, ends = np.zeros(n, bool), 0
+
+    def check():
+        assert tables.observation_space.contains(seen)
+        both = [tables.observe(player) for player in range(2)]
+        for k, one in enumerate(alone):
+            striker = one.possible_agents.index(one.agent_selection)
+            assert sees(seen, k, one.observe(one.agent_selection)) and sees(both[striker], k, one.last()[0])
+            assert sees(both[1 - striker], k, one.observe(one.possible_agents[1 - striker]))
+            assert one.observation_space(one.agent_selection).contains(one.last()[0])
+
+    check()
+    for step in range(44):
+        if options.get("action") == "discrete":
+            masks = tables.action_masks()
+            actions = np.array([rng.choice(np.flatnonzero(mask)) for mask in masks])
+        else:
+            actions = rng.uniform(-0.4, 0.4, (n, tables.single_action_space.shape[0]))
+        seen, _, terminated, truncated, _ = tables.step(actions)
+        [one.step(actions[k]) for k, one in enumerate(alone) if not over[k]]
+        check()
+        ends += int((terminated | truncated)[~over].sum())
+        over = terminated | truncated
+        if over.sum() > 1:
+            seen, _ = tables.reset(options={"reset_mask": over.copy()})
+            [alone[k].reset() for k in np.flatnonzero(over)]
+            over[:] = False
+            check()
+        if step == 20:
+            states = plain(tables.get_state())
+            playing = [state["frame"]["phase"] != "over" and state["strokes"] < 14 for state in states]
+            if all(playing):
+                seen, _ = tables.reset(options={"states": states})
+                [one.reset(options={"state": state}) for one, state in zip(alone, states, strict=True)]
+                check()
+    assert ends >= 2
+
+
+def test_seats_with_other_choices_have_masks_of_their_own():
+    seats = ({}, {"concede": True})
+    match = begun(sn.match_env(**MASKED, seats=seats, layout="random:1"), 1)
+    for name, many in (("player_0", 540), ("player_1", 541)):
+        assert match.observe(name)["action_mask"].shape == (many,)
+        assert match.observation_space(name).contains(match.observe(name))
+    with pytest.raises(ValueError, match=r"^seats = .*: must give both players the same choices"):
+        sn.MatchVectorEnv(2, **MASKED, seats=seats, threads=1)
+
+
 def test_tables_that_have_ended_stand_still_until_they_are_reset():
     tables = begun(sn.MatchVectorEnv(4, layout="random:0", max_strokes=6, threads=1, reward="win"), 0)
     for _ in range(6):

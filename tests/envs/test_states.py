@@ -11,9 +11,10 @@ from gymnasium.utils.env_checker import data_equivalence
 
 import snooker_env as sn
 from snooker_env import SnookerEnv
-from snooker_env.game.balls import BallOn
+from snooker_env.game.balls import BLACK, CUE, YELLOW, BallOn
+from snooker_env.game.frame import Frame
 from snooker_env.tasks.noise import Noise
-from tests.tables import COPIES, begun, drawn, jsonable, plain, viewed
+from tests.tables import COPIES, begun, drawn, frame_state, jsonable, plain, viewed
 
 
 def shots(env, n=5):
@@ -138,6 +139,125 @@ def test_a_reset_is_needed_first_and_after_the_end():
     assert json.dumps(env.get_state()) == before
     env.reset()
     env.step(np.zeros(4))
+
+
+# An environment takes every state that it gives
+
+FULL = {"decision": True, "placement": True, "aim": "target"}
+BLACKLESS = {"cue": (0.2, -0.5), "reds": [(0.5, 1.2)], "yellow": (0.292, -1.0475)}
+OWN = {
+    "visit": {"layout": "random:3", "placement": True},
+    "visit, drawn": {"layout": "colours", "conditions": "drawn", "aim": "target"},
+    "alone": FULL | {"task": "frame", "layout": "random:1", "miss": "attempt"},
+    "one stroke": {"task": "frame", "opponent": "random", "one_stroke": True, "layout": "safety"},
+    "due": FULL | {"task": "frame", "layout": "random:0", "opponent": "ghost_ball", "reward": "win"},
+    "miss": FULL | {"task": "frame", "layout": "break_off", "opponent": "random", "miss": "clear_path"},
+    "six-red": FULL | {"task": "frame", "game": "six_red", "opponent": "random", "miss": "attempt"},
+    "Shoot Out": FULL | {"task": "frame", "game": "shoot_out", "opponent": "random", "lot": True},
+    "match": FULL
+    | {"task": "match", "frames": 3, "layout": "colours", "opponent": "random", "max_strokes": 40},
+    "discrete": {"task": "frame", "action": "discrete", "observation": "masked", "layout": "random:1"}
+    | {"opponent": "random", "nominate": True, "concede": True, "claim": True, "lot": True},
+    "flight": FULL | {"task": "frame", "layout": "random:2", "physics": {"flight": True}, "elevation": True},
+    "position": FULL | {"task": "frame", "opponent": "random", "lot": True, "miss": "clear_path"},
+}
+TWO = {
+    "six-red": FULL | {"game": "six_red", "miss": "attempt", "lot": True, "nominate": True},
+    "match": FULL | {"frames": 3, "layout": "random:0", "lot": True, "concede": True, "claim": True},
+    "Shoot Out": FULL | {"game": "shoot_out", "layout": "random:2", "lot": True, "time_to_play": 14.0},
+    "position": FULL | {"lot": True, "miss": "clear_path"},
+}
+
+
+def goes_on(one, other, rng):
+    """Whether both play one random stroke alike, up to every bit of the state after it."""
+    action = drawn(one, rng, 0.4)
+    for env in (one, other):
+        env.action_space.seed(1)
+    got, want = other.step(action), one.step(action)
+    assert pickle.dumps(jsonable(got)) == pickle.dumps(jsonable(want))
+
+
+@pytest.mark.parametrize("kind", OWN)
+def test_every_state_that_an_environment_gives_is_taken_and_goes_on(kind):
+    """By ``set_state``, by resets of one table and of many; a table that is over by ``set_state`` alone."""
+    options, rng = {"noise": "club"} | OWN[kind], np.random.default_rng(2)
+    env, other, many = (
+        SnookerEnv(**options),
+        SnookerEnv(**options),
+        sn.SnookerVectorEnv(2, threads=1, **options),
+    )
+    start = {"position": sn.Position(**BLACKLESS)} if kind == "position" else None
+    for seed in range(3):
+        env.reset(seed=seed, options=start)
+        for _ in range(30):
+            state = plain(env.get_state())
+            other.set_state(state)
+            assert plain(other.get_state()) == state
+            if env.tables.finished()[0]:
+                break
+            other.reset(options={"state": state})
+            assert plain(other.get_state()) == state
+            many.reset(options={"states": [state, state]})
+            assert plain(many.get_state()) == [state, state]
+            goes_on(env, other, rng)
+
+
+@pytest.mark.parametrize("kind", TWO)
+def test_every_state_of_two_players_is_taken_and_goes_on(kind):
+    pytest.importorskip("pettingzoo")
+    options, rng = {"noise": "club", "aim": "target"} | TWO[kind], np.random.default_rng(5)
+    env, other, many = (
+        sn.match_env(**options),
+        sn.match_env(**options),
+        sn.MatchVectorEnv(2, threads=1, **options),
+    )
+    start, phases = {"position": sn.Position(**BLACKLESS)} if kind == "position" else None, set()
+    for seed in range(3):
+        env.reset(seed=seed, options=start)
+        for _ in range(60):
+            state = plain(env.get_state())
+            other.reset(options={"state": state})
+            assert plain(other.get_state()) == state
+            phases.add(state["frame"]["phase"])
+            if any(env.terminations.values()):
+                break
+            many.reset(options={"states": [state, state]})
+            action = rng.uniform(-0.4, 0.4, env.action_space("player_0").shape)
+            action[4:7] = rng.uniform(-1, 1, 3)
+            env.step(action), other.step(action), many.step(np.tile(action, (2, 1)))
+            after = plain(env.get_state())
+            assert plain(other.get_state()) == after and other.rewards == env.rewards
+            assert [one | {"rng": 0, "unpaid": 0} for one in plain(many.get_state())] == [
+                after | {"rng": 0, "unpaid": 0}
+            ] * 2
+    assert "stroke" in phases
+
+
+@pytest.mark.parametrize("miss", ["off", "clear_path"])
+def test_the_state_of_a_respotted_black_that_the_frame_began_without_is_taken(miss):
+    """Level scores when the last ball falls bring the black back, whatever the frame began with."""
+    options = {"task": "frame", "aim": "target", "decision": True, "placement": True, "miss": miss}
+    env = frame_state(
+        sn.match_env(**options, lot=True),
+        {CUE: (0.326, 1.031), YELLOW: (0.6, 1.4)},
+        {"ball_on": BallOn.YELLOW, "scores": (5, 7), "rack": 1 << YELLOW},
+    )
+    env.step(np.array([0.0, 0, 0, 0, 0, 0, 0, 1], np.float32))
+    for phase, declared in (("lot", -1.0), ("stroke", 1.0)):
+        assert env.frame.phase == phase and env.frame.on_table == 1 << BLACK
+        other = sn.match_env(**options, lot=True)
+        state = plain(env.get_state())
+        other.reset(options={"state": state})
+        assert plain(other.get_state()) == state
+        assert Frame.from_dict(env.frame.to_dict()) == env.frame
+        action = np.array([-0.5, 0, 0, 0.5, 0, 0, 0, declared], np.float32)
+        env.step(action), other.step(action)
+        assert plain(other.get_state()) == plain(env.get_state())
+        state, rack = plain(env.get_state()), env.frame.rack
+    assert env.frame.phase == "over" and rack == 1 << YELLOW
+    other.set_state(state)
+    assert plain(other.get_state()) == state
 
 
 # What a call is given is left as it is, neither written into, repaired nor kept

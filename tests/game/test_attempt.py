@@ -2,14 +2,20 @@
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 import snooker_env as sn
 from snooker_env.game import attempt
 from snooker_env.game.attempt import ATTEMPT_GAP
-from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, mask_of
+from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, YELLOW, BallOn, mask_of
+from snooker_env.game.shut_in import shut_in
 from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.physics import cloth
+from snooker_env.physics.table import Table
+from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
 from tests.kernels import from_python
+from tests.tables import frame_state
 
 closest_approach = from_python(attempt.closest_approach)
 nearest_on_piece = from_python(attempt.nearest_on_piece)
@@ -78,3 +84,128 @@ def test_nothing_moves_and_nothing_is_on():
     positions[1] = 0.3, 0.4
     assert closest_approach(segments, 1, 1.0, positions, here, mask_of([1]), R) == pytest.approx(0.5 - 2 * R)
     assert CUE == 0
+
+
+# Where no ball on can be hit
+
+
+def ring(radius, at=(0.0, 0.0), turn=0.0, balls=range(YELLOW, N_BALLS)):
+    """Balls evenly around a place, the first of them in the direction ``turn``."""
+    angles = turn + 2 * np.pi * np.arange(len(balls)) / len(balls)
+    return {
+        i: (at[0] + radius * np.cos(a), at[1] + radius * np.sin(a))
+        for i, a in zip(balls, angles, strict=True)
+    }
+
+
+def is_shut_in(places, on):
+    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
+    for ball, place in places.items():
+        positions[ball], on_table[ball] = place, True
+    table = Table.preset("match")
+    return bool(shut_in(positions, on_table, mask_of(on), table.noses, table.jaws, R))
+
+
+BESIDE_CUSHION = {CUE: (HALF_WIDTH - R, 0.5), 1: (0.0, 1.0), 16: (0.86, 0.5526), 17: (0.86, 0.4474)}
+
+
+@pytest.mark.parametrize(
+    ("places", "shut"),
+    [
+        ({CUE: (0, 0), 1: (0, 1)} | ring(2.004 * R), True),
+        ({CUE: (0, 0), 1: (0, 1)} | ring(3.999 * R, turn=0.3), True),  # six in a ring: as far from each other
+        ({CUE: (0, 0), 1: (0, 1)} | ring(4.001 * R, turn=0.3), False),
+        ({CUE: (0, 0), 1: (0, 1)} | ring(2.3 * R, balls=(16, 17, 18)), True),
+        ({CUE: (0, 0), 1: (0, 1)} | ring(2.4 * R, balls=(16, 17, 18)), False),
+        ({CUE: (0, 0), 1: (0, 1), 2: (0.2, -0.3)} | ring(2.1 * R), True),
+        (
+            {CUE: (0, 0), 1: (0, 3.5 * R), 2: (0.2, -0.3)}
+            | ring(3.5 * R, turn=np.pi / 6, balls=range(16, 21)),
+            False,
+        ),
+        (BESIDE_CUSHION | {18: (0.80, 0.5)}, True),
+        (BESIDE_CUSHION, False),
+        ({CUE: (0.86, 1.75), 1: (0, 1), 16: (0.80, 1.72), 17: (0.83, 1.69)}, True),  # before a corner pocket
+        ({CUE: (0.86, 1.75), 1: (0, 1), 17: (0.83, 1.69)}, False),
+        (
+            {CUE: (0.88, 0), 1: (0.85, -1), 16: (0.83, 0.06), 17: (0.83, -0.04)},
+            True,
+        ),  # in a middle pocket's mouth
+        ({CUE: (0.88, 0), 1: (0.85, -1), 16: (0.83, 0.06)}, False),
+    ],
+)
+def test_walls_of_balls_and_cushions_shut_the_cue_ball_in(places, shut):
+    on = [ball for ball in places if 1 <= ball <= 15]
+    assert is_shut_in(places, on) == shut
+
+
+def flooded(places, on, reach, h=0.006):
+    """Whether no ball on is reached by flooding a grid from the cue ball; balls not on bar a disc of ``reach``."""
+    far = np.array([HALF_WIDTH, HALF_LENGTH]) - R
+    x, y = np.meshgrid(*(np.arange(-a, a, h) for a in far), indexing="ij")
+    away = {ball: np.hypot(x - at[0], y - at[1]) for ball, at in places.items()}
+    free = np.all([away[ball] >= reach for ball in places if ball != CUE and ball not in on], axis=0)
+    rooms, _ = ndimage.label(free)
+    mine = rooms.ravel()[np.where(free, away[CUE], 9.0).argmin()]
+    return not any((free & (rooms == mine) & (away[ball] < 2 * R + 2 * h)).any() for ball in on)
+
+
+def test_who_is_shut_in_against_a_flood():
+    """Random crowds: with thinner balls a flood says who is shut in at least, with thicker ones who is free."""
+    rng, found = np.random.default_rng(6), [0, 0]
+    for trial in range(60):
+        side = (HALF_WIDTH - R) * rng.choice([-1, 1]) if trial % 2 else rng.uniform(-0.8, 0.8)
+        places = {CUE: (side, rng.uniform(-1.5, 1.5))}
+        for ball in (*range(YELLOW, N_BALLS), 1, 2):
+            for _ in range(60):
+                at = np.array(places[CUE]) + rng.normal(0, 0.06 if ball > 2 else 0.3, 2)
+                apart = min(np.hypot(*(at - other)) for other in places.values())
+                if apart >= 2 * R and np.all(np.abs(at) <= (HALF_WIDTH - R, HALF_LENGTH - R)):
+                    places[ball] = tuple(at)
+                    break
+        on = [ball for ball in (1, 2) if ball in places]
+        if on and flooded(places, on, 2 * R - 0.006):
+            assert is_shut_in(places, on)
+            found[0] += 1
+        elif on and not flooded(places, on, 2 * R + 0.003):
+            assert not is_shut_in(places, on)
+            found[1] += 1
+    assert min(found) >= 10
+
+
+CAGES = [
+    {CUE: (0, 0), 1: (0, 1)} | ring(0.0526),
+    {CUE: (0, 0), 1: (0, 1)} | ring(0.07, turn=0.2),
+    {CUE: (-0.3, -0.4), 1: (-0.3, 0.6)} | ring(0.058, (-0.3, -0.4), 0.1, range(16, 20)),
+]
+
+
+@pytest.mark.parametrize("cage", CAGES)
+@pytest.mark.parametrize(
+    ("speed", "aim", "miss"),
+    [
+        (6.0, 90.0, False),
+        (2.5, 92.0, False),
+        (0.3, 90.0, True),
+        (6.0, 0.0, True),
+        (6.0, -90.0, True),
+        (1.0, 60.0, True),
+    ],
+)
+def test_a_shut_in_striker_attempts_what_would_reach_a_ball_on_without_the_balls_between(
+    cage, speed, aim, miss
+):
+    """S3 R14(a). Straight away the cue ball would come back to the red; it is not played toward it."""
+    env = frame_state(sn.match_env(miss="attempt"), cage, {"ball_on": BallOn.RED})
+    a = 2 * (speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1
+    env.step(np.array([a, 0, 0, aim / 180, 0, 0, 0], np.float32))
+    assert env.frame.phase == "choice" and env.frame.scores[1] >= 4
+    assert env.frame.miss_called == miss
+
+
+def test_a_striker_who_can_get_out_must_come_near():
+    """One ball less in the cage: there is a way over cushions, so the blow at the balls between is a miss."""
+    cage = {ball: at for ball, at in (CAGES[0] | ring(0.09)).items() if ball != 19}
+    env = frame_state(sn.match_env(miss="attempt"), cage, {"ball_on": BallOn.RED})
+    env.step(np.array([0.7, 0, 0, 0.5, 0, 0, 0], np.float32))
+    assert env.frame.miss_called

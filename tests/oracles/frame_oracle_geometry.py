@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from scipy import ndimage
 
 R = 0.02625
 D2 = 2 * R
@@ -229,6 +230,25 @@ def _stops(cue, direction, ball, others, slack):
         abs(y) > HALF_LENGTH - R and abs(x) < HALF_WIDTH - 0.0976346
     )
     return None if outside else hit
+
+
+def shut_in(cue, balls_on, others, h=0.004):
+    """Whether no way over the bed, however it turns, leads the cue ball to a ball on: by flooding a grid. None if a
+    passage as narrow as the grid decides."""
+    far = np.array([HALF_WIDTH, HALF_LENGTH]) - R
+    x, y = np.meshgrid(*(np.arange(-a, a, h) for a in far), indexing="ij")
+
+    def away(at):
+        return np.hypot(x - at[0], y - at[1])
+
+    def reached(reach):
+        free = np.all([away(ball) >= reach for ball in others], axis=0) | (away(cue) < h)  # it lies there
+        rooms, _ = ndimage.label(free)
+        mine = rooms.ravel()[away(cue).argmin()]
+        return any((free & (rooms == mine) & (away(ball) < D2 + 2 * h)).any() for ball in balls_on)
+
+    thin, thick = reached(D2 - h), reached(D2 + h / 2)
+    return not thin if thin == thick else None
 
 
 def clear_path(cue, balls_on, others, slack=0.0):

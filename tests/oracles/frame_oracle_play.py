@@ -132,6 +132,12 @@ def stroke_of(shot, nominated=None) -> Stroke:
     )
 
 
+def among(shot, balls):
+    """The same stroke with only these balls, and the cue ball, on the table."""
+    present = np.isin(np.arange(22), [0, *balls])
+    return sn.simulate(*shot.at(0.0), shot.table, shot.physics, on_table=present)
+
+
 def path_of(shot) -> np.ndarray:
     """The cue ball's way up to its first impact with a ball, or to rest; close enough to know its distances
     to some nm."""
@@ -338,7 +344,7 @@ class Checker:
         said = decisions.named(state, float(action[self.at["nominate"]])) if self.rules.nominate else None
         stroke = stroke_of(shot, said)
         if self.rules.miss == "attempt":
-            stroke.path = path_of(shot)
+            stroke.path, stroke.among = path_of(shot), lambda balls: path_of(among(shot, balls))
         if state.in_hand and state.anywhere:
             self._anywhere(state, action, stroke.cue)
         elif state.in_hand:

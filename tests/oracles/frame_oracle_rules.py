@@ -336,6 +336,11 @@ def _foul(
         after.failures, after.warned, after.misses = 0, False, 0
 
 
+def _gap(state: State, path: np.ndarray, on: list[int]) -> float:
+    """How near the cue ball came to one of these balls [m]."""
+    return min(float(np.hypot(*(path - state.positions[i]).T).min()) for i in on) - geometry.D2
+
+
 def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules) -> None:
     """Section 3 Rule 14(c) and (d)."""
     on = state.on()
@@ -353,7 +358,15 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
     again = state.failures > 0 and full
     poor = bool(clear)
     if rules.miss == "attempt" and not clear:
-        gap = min(float(np.hypot(*(stroke.path - state.positions[i]).T).min()) for i in on) - geometry.D2
+        gap = _gap(state, stroke.path, on)
+        if gap > ATTEMPT and not state.in_hand:
+            shut = geometry.shut_in(stroke.cue, state.positions[on], state.positions[others])
+            if shut is None:
+                verdict.unsure.add("miss")
+            elif shut:  # impossible to hit: where it would have gone but for the balls between
+                verdict.notes.add("shut in")
+                ahead = [i for i in on if (state.positions[i] - stroke.cue) @ stroke.velocity > 0]
+                gap = _gap(state, stroke.among(ahead), ahead) if ahead else math.inf
         if abs(gap - ATTEMPT) < 1e-6:
             verdict.unsure.add("miss")
         poor = gap > ATTEMPT

@@ -3,6 +3,7 @@ explains them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -85,6 +86,8 @@ class Stroke:
     path: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
     """Of the cue ball's centre up to its first impact with a ball, or to rest, at close points [m]; only for
     ``miss="attempt"``."""
+    among: Callable[[list[int]], np.ndarray] | None = None
+    """``path``, had only these balls been on the table beside the cue ball."""
     nominated: int | None = None
     """The colour named; None where players name none and the one struck first counts."""
     cushion: bool = True

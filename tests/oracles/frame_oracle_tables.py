@@ -49,6 +49,27 @@ def table(state: dict, rng: np.random.Generator) -> dict:
     return state | {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame}
 
 
+def caged(state: dict, rng: np.random.Generator) -> dict:
+    """Two reds, and the cue ball in a ring of colours, through which it often cannot get."""
+    positions, on_table = np.array(state["positions"], float), np.zeros(22, bool)
+    positions[0], on_table[0], many = rng.uniform((-0.7, -1.5), (0.7, 1.5)), True, int(rng.integers(4, 7))
+    far, turn = rng.uniform(1.004 * geometry.D2, 1.43 * geometry.D2), rng.uniform(0, 2 * np.pi)
+    for k in range(many):
+        angle = turn + 2 * np.pi * k / many
+        positions[16 + k] = positions[0] + far * np.array([np.cos(angle), np.sin(angle)])
+        on_table[16 + k] = True
+    for red in (1, 2):
+        positions[red] = _place(red, list(positions[on_table]), None, rng)
+        on_table[red] = True
+    frame = {"on_table": int(sum(1 << int(i) for i in np.flatnonzero(on_table) if i)), "ball_on": 1}
+    frame |= {"in_hand": False, "scores": [0, 0]}
+    return state | {
+        "positions": positions.tolist(),
+        "on_table": on_table.tolist(),
+        "frame": state["frame"] | frame,
+    }
+
+
 def with_free_ball(state: dict, rng: np.random.Generator) -> dict:
     """The colours with a free ball; two of them hang before one pocket: the ball on and another go down now
     and then, alone or together."""

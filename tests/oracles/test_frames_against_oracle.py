@@ -6,6 +6,8 @@ import pytest
 from .frame_oracle import check, recorded
 from .frame_oracle_kinds import KINDS
 from .frame_oracle_mutants import mutants, strokes_to_see
+from .frame_oracle_play import Checker, Kind
+from .frame_oracle_tables import caged
 
 MANY = 300
 
@@ -24,6 +26,15 @@ def agrees(name, frames, seed):
 @pytest.mark.parametrize("name", KINDS)
 def test_every_stroke_is_judged_as_the_rules_say(name):
     agrees(name, 60 if KINDS[name].tables else 4, 1000)
+
+
+def test_a_striker_who_is_shut_in_is_judged_as_the_rules_say():
+    checker = Checker(Kind("caged", "steady", {"miss": "attempt"}, tables=True))
+    for seed in range(20):
+        checker.frame(seed, most=3, begin=caged)
+    seen = checker.tally.seen
+    assert not checker.tally.disagreements and seen["shut in"] >= 10
+    assert seen["a good attempt at an escape"] >= 4 and seen["a poor attempt at an escape"] >= 4
 
 
 @pytest.mark.slow
