@@ -24,10 +24,11 @@ def writable(name, file):
         raise refuse(name, str(file), f"must be a file that can be written ({error.strerror})") from None
 
 
-def read_json(name, file, wanted):
-    """The content of a JSON file. ValueError that says what is ``wanted`` if it cannot be read."""
+def read_json(name, file, wanted, checked=False):
+    """The content of a JSON file, with its checksum if ``checked``. ValueError that says what is ``wanted`` if it cannot be
+    read."""
     try:
-        return _files.read_json(file, name, wanted)
+        return _files.read_json(file, name, wanted, checked=checked)
     except OSError as error:
         raise refuse(name, str(file), f"{wanted} ({error.strerror})") from None
 

@@ -8,7 +8,8 @@ import os
 import re
 import sys
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -48,12 +49,14 @@ def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], objec
 
 
 def read_bytes(path: str | Path, most: int) -> bytes:
-    """What a file holds; ValueError if that is more than ``most`` bytes. A device may have no end."""
+    """What a file holds; ValueError if that is more than ``most`` bytes. A device may have no end, and no size."""
+    data = bytearray()
     with open(path, "rb") as file:
-        data = file.read(most + 1)
-    if len(data) > most:
-        raise ValueError(f"it has more than {most:,} bytes")
-    return data
+        while part := file.read(2**20):
+            data += part
+            if len(data) > most:
+                raise ValueError(f"it has more than {most:,} bytes")
+    return bytes(data)
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -105,23 +108,37 @@ def with_checksum(content: dict[str, Any]) -> dict[str, Any]:
     return content | {CHECKSUM: _checksum(content)}
 
 
-def without_checksum(content: Any) -> Any:
-    """The content without its checksum, if it has one; ValueError if that is another."""
-    if not isinstance(content, dict) or CHECKSUM not in content:
-        return content
-    rest = {name: value for name, value in content.items() if name != CHECKSUM}
-    if content[CHECKSUM] != _checksum(rest):
+def without_checksum(content: dict[str, Any]) -> dict[str, Any]:
+    """The content without its checksum; ValueError if it has none, or another."""
+    rest = {name: value for name, value in dict(content).items() if name != CHECKSUM}
+    if content.get(CHECKSUM) != _checksum(rest):
         raise ValueError(f"it is damaged: its {CHECKSUM} is not that of the rest")
     return rest
 
 
-def read_json(path: str | Path, field: str = "path", wanted: str = "must be JSON") -> Any:
-    """``strict_json`` of a file of at most ``MOST_JSON`` bytes, without its checksum; the ValueError names ``field``, the file, what is
-    ``wanted`` and what is wrong. OSError if it cannot be read."""
+def read_json(
+    path: str | Path, field: str = "path", wanted: str = "must be JSON", *, checked: bool = False
+) -> Any:
+    """``strict_json`` of a file of at most ``MOST_JSON`` bytes, without its checksum, which it must have if ``checked``.
+
+    The ValueError names ``field``, the file, what is ``wanted`` and what is wrong. OSError if it cannot be read."""
     try:
-        return without_checksum(strict_json(read_bytes(path, MOST_JSON)))
+        read = strict_json(read_bytes(path, MOST_JSON))
+        found = isinstance(read, dict) and (checked or CHECKSUM in read)
+        return without_checksum(read) if found else read
     except ValueError as error:
         raise refuse(field, str(path), f"{wanted} ({error})") from None
+
+
+@contextmanager
+def in_file(path: str | Path) -> Iterator[None]:
+    """A ValueError about what is in a file names the file, too."""
+    try:
+        yield
+    except ValueError as error:
+        if str(path) in str(error):
+            raise
+        raise ValueError(f"{path}: {error}") from None
 
 
 def unzipped(file: zipfile.ZipFile, part: zipfile.ZipInfo) -> bytes:

@@ -15,12 +15,13 @@ from agents.learning.learn_strokes import SETTINGS, StrokeSettings
 from agents.learning.policy_files import read_policy
 from agents.players.trained import load_player
 from commands.files import read_json
-from snooker_env._files import MOST_JSON, MOST_NPZ, read_npz, strict_json
+from snooker_env._files import MOST_JSON, MOST_NPZ, read_npz, strict_json, with_checksum
 from snooker_env.advice import read_strokes
-from snooker_env.benchmark import faults, read_result, text
+from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, text
 from snooker_env.play.__main__ import _read as read_position
 from snooker_env.play.server import RefusedError, parsed
 from snooker_env.players.saved import saved_player
+from tests.flips import flipped
 
 JSON = {
     "nothing": b"",
@@ -63,14 +64,17 @@ def zipped(file):
     return saved_player(file, {}, True)
 
 
-def result(file):
-    raise ValueError(f"{file}: {faults(read_result(file))[0]}")
+def result_of(file):
+    """As ``python -m snooker_env.benchmark`` reads it."""
+    if wrong := faults(found := read_result(file)):
+        raise ValueError(f"{file}: {wrong[0]}")
+    return found
 
 
 READERS = {
     "a position": sn.Position.load,
     "strokes and replays": read_strokes,
-    "a result": result,
+    "a result": result_of,
     "a track of texts": lambda file: text._rows_in(file, {"track": "text", "visits": 2}),
     "a report": report.read,
     "a tournament": lambda file: tournament_file.kept(file, {}, {}, []),
@@ -120,6 +124,28 @@ def test_numbers_of_json_are_as_they_were():
     """The state of a random generator has integers of 128 bits."""
     state = {"a": [2**128, -(2**128), 0, -0.0, 1e308, 5e-324, 1.5, True, None, "NaN"]}
     assert json.dumps(strict_json(json.dumps(state))) == json.dumps(state)
+
+
+def test_no_flipped_bit_of_json_that_a_command_goes_on_with_is_used(tmp_path):
+    result, track, run = tmp_path / "result.json", tmp_path / "track.json", tmp_path / "run"
+    made = judge(TASKS["SnookerPotHard-v0"], Agent.of("random"), episodes=2, out=result)
+    head, rows = (
+        {"track": "text", "visits": 2},
+        [{"table": text.TASK.seeds(2)[0], **dict.fromkeys(text.COUNTS, 1)}],
+    )
+    track.write_text(json.dumps(with_checksum(head | {"rows": rows})))
+    run.mkdir()
+    StrokeSettings(3).save(run)
+    for file, read in (
+        (result, lambda: result_of(result)),
+        (track, lambda: text._rows_in(track, head)),
+        (run / SETTINGS, lambda: StrokeSettings.read(run)),
+    ):
+        for _ in flipped(file):
+            with pytest.raises(ValueError, match=str(file)):
+                read()
+    assert read_result(result) == json.loads(json.dumps(made))
+    assert text._rows_in(track, head) == rows and StrokeSettings.read(run).seed == 3
 
 
 # Arrays
@@ -208,7 +234,7 @@ def test_arrays_are_read_as_numpy_reads_them(tmp_path):
         with np.load(tmp_path / "a.npz") as by_numpy:
             for name, mine in read_npz(tmp_path / "a.npz").items():
                 its = by_numpy[name]
-                assert mine.dtype == its.dtype and mine.shape == its.shape and mine.strides == its.strides
+                assert mine.dtype == its.dtype and mine.shape == its.shape and mine.flags.fnc == its.flags.fnc
                 assert mine.tobytes() == its.tobytes() and mine.flags.writeable
     file = io.BytesIO()
     np.savez(file, **dict.fromkeys("ab", np.zeros(3)))

@@ -90,8 +90,8 @@ class Store:
         """The object in a file, {} if there is none. Raises ValueError if it is damaged."""
         data = self.read(name)
         try:
-            return {} if data is None else dict(without_checksum(strict_json(data)))
-        except (ValueError, TypeError) as error:
+            return {} if data is None else without_checksum(strict_json(data))
+        except (ValueError, TypeError, AttributeError) as error:
             raise self._refused(f"hold a {name} as it was written: this one is damaged ({error})") from None
 
     def write_json(self, name, content):

@@ -36,7 +36,11 @@ class Mirror:
         """Write the checkpoint into the run's folder if its own is older. ValueError if both went on."""
         saves, local = self.store.read_json(SAVES), out / CHECKPOINT
         if local.is_file():
-            known = read_json("out", out / SAVES, "must be whole") if (out / SAVES).is_file() else {}
+            known = (
+                read_json("out", out / SAVES, "must be whole", checked=True)
+                if (out / SAVES).is_file()
+                else {}
+            )
             if saves.get("count", 0) <= known.get("count", 0):
                 return
             if hashlib.sha256(local.read_bytes()).hexdigest() != known.get("digest"):

@@ -208,7 +208,9 @@ class StrokeSettings:
     def read(cls, out):
         """Of the run in that folder. Raises ValueError."""
         try:
-            return cls(**read_json("out", out / SETTINGS, "must be a complete file of settings"))
+            return cls(
+                **read_json("out", out / SETTINGS, "must be a complete file of settings", checked=True)
+            )
         except TypeError:
             raise refuse("out", str(out / SETTINGS), "must be a complete file of settings") from None
 

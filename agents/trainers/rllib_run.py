@@ -151,7 +151,7 @@ def opened(out, given, resume):
     if not resume:
         return checked(RunSettings(**given)), Counters()
     try:
-        found = read_json("out", out / STATE, "must be whole")
+        found = read_json("out", out / STATE, "must be whole", checked=True)
         was, progress = checked(RunSettings(**found["settings"])), Counters(**found["progress"])
         if digest_of(out / str(progress.checkpoint)) != progress.digest:
             raise ValueError(f"{progress.checkpoint} is missing or damaged")

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .._check import choice, integer, number, refuse, refuse_what, truth
-from .._files import MOST_JSON, read_bytes, strict_json, write_atomic
+from .._files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
 from .._types import Floats
 from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
@@ -238,7 +238,8 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
     if player is not None:
         integer("player", player, 0, 1)
     try:
-        strokes = readers[form](kept, player)
+        with in_file(path):
+            strokes = readers[form](kept, player)
     except (KeyError, TypeError, IndexError, AttributeError, binascii.Error) as error:
         what = f"a damaged file ({type(error).__name__}: {error})"
         raise refuse_what(str(path), what, f"must be a whole {form!r}") from None

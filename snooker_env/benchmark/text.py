@@ -18,6 +18,7 @@ from ..players.resolver import PROGRAM
 from .agents import Agent
 from .playing import tables_for
 from .provenance import commit, machine, software
+from .schema import MOST_WHOLE
 from .statistics import Resamples, figure
 from .tasks import TASKS
 
@@ -137,11 +138,14 @@ def _rows_in(out: Path, head: dict[str, Any]) -> list[dict[str, int]]:
     """The visits in a file that was begun with the same head."""
     wanted = "must be a result of this track"
     try:
-        kept = read_json(out, "out", wanted)
+        kept = read_json(out, "out", wanted, checked=True)
         same = {name: kept[name] for name in head} == head
-        rows = [{name: int(row[name]) for name in ("table", *COUNTS)} for row in kept["rows"]]
-    except (KeyError, TypeError):
+        rows = [{name: row[name] for name in ("table", *COUNTS)} for row in kept["rows"]]
+    except (KeyError, TypeError):  # what its fields cannot be
         raise refuse("out", str(out), wanted) from None
+    for row in rows:
+        for name, value in row.items():
+            integer(f"{name} of {out}", value, 0, MOST_WHOLE)
     if not same or [row["table"] for row in rows] != TASK.seeds(head["visits"])[: len(rows)]:
         raise refuse("out", str(out), "must be of the same agent, visits and budget to be gone on with")
     return rows
