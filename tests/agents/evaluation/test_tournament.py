@@ -144,7 +144,7 @@ MAIN = "agents/results/visits.json"
         ("ghost_ball random --options aim=target", "options = 'aim=target': must be left out"),
         ("ghost_ball random --resume", "resume = True: must be given together with --out"),
         ("ghost_ball random --out pyproject.toml", "out = 'pyproject.toml': must be a new file"),
-        ("ghost_ball random --out pyproject.toml --resume", "pyproject.toml: must be JSON"),
+        ("ghost_ball random --out pyproject.toml --resume", "pyproject.toml': must be JSON"),
         ("ghost_ball random --out tests --force", "out = 'tests': must be a file"),
         ("--show nothing.json", "show = 'nothing.json': must be the file of a tournament .cannot be read"),
         (f"--show {MAIN}", f"show = '{MAIN}': must be the file of a tournament"),
