@@ -221,7 +221,12 @@ def test_a_file_holds_the_position_to_the_last_bit_on_any_table(tmp_path):
     far = Position(cue=(0.0, 0.0), black=(3.0, 0.0), table=None)
     far.save(tmp_path / "far.json")
     assert Position.load(tmp_path / "far.json", table=None) == far
-    refused(lambda: Position.load(tmp_path / "far.json"), f"{tmp_path / 'far.json'}: black", "3.0", "must be on the table")
+    refused(
+        lambda: Position.load(tmp_path / "far.json"),
+        f"{tmp_path / 'far.json'}: black",
+        "3.0",
+        "must be on the table",
+    )
 
 
 def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
