@@ -3,7 +3,7 @@
     python -m benchmarks.value_inputs [--positions 40000] [--steps 3000] [--seed 0] [--json FILE] [--out
     FOLDER]
 
-Both learn the same numbers: for positions of visits by ``lookahead_60`` under a professional's errors, the
+Both learn the same numbers: for positions of visits by ``search_60`` under a professional's errors, the
 mean over 16 fresh noise samples of the points of its stroke plus the rule of thumb's value of what it leaves.
 So neither helps to make its own targets. Equal positions, batches and steps; visits of the last fifth of the
 tables are kept out. ``features`` is one of the networks of the planner's value; ``sets`` is the encoder of

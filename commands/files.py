@@ -4,6 +4,7 @@ import io
 import json
 import tempfile
 
+from snooker_env import _files
 from snooker_env._files import UNFINISHED, write_atomic
 from snooker_env.checks import refuse
 
@@ -23,12 +24,13 @@ def writable(name, file):
         raise refuse(name, str(file), f"must be a file that can be written ({error.strerror})") from None
 
 
-def read_json(name, file, wanted):
-    """The content of a JSON file. ValueError that says what is ``wanted`` if it cannot be read."""
+def read_json(name, file, wanted, checked=False):
+    """The content of a JSON file, with its checksum if ``checked``. ValueError that says what is ``wanted`` if it cannot be
+    read."""
     try:
-        return json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        raise refuse(name, str(file), wanted) from None
+        return _files.read_json(file, name, wanted, checked=checked)
+    except OSError as error:
+        raise refuse(name, str(file), f"{wanted} ({error.strerror})") from None
 
 
 def write_json(file, content):

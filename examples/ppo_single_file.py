@@ -12,13 +12,13 @@ only the value after the end must be left out.
 import argparse
 import json
 import time
+from collections import deque
 from itertools import pairwise
 from pathlib import Path
 
 import gymnasium
 import numpy as np
 import torch
-from gymnasium.wrappers.vector import RecordEpisodeStatistics
 from torch import nn
 from torch.distributions import Categorical
 
@@ -105,7 +105,6 @@ def main(argv=None):
         action="discrete",
         noise=args.noise,
     )
-    envs = RecordEpisodeStatistics(envs, buffer_length=1000)
     numbers, choices = envs.single_observation_space.shape[0], int(envs.single_action_space.n)
     agent = Agent(numbers, choices)
     optimiser = torch.optim.Adam(agent.parameters(), lr=LEARNING_RATE)
@@ -114,6 +113,10 @@ def main(argv=None):
     actions, logs = torch.zeros(STEPS, TABLES, dtype=torch.long), torch.zeros(STEPS, TABLES)
     rewards, ends, values = (torch.zeros(STEPS, TABLES) for _ in range(3))
 
+    visits, returns = (
+        np.zeros(TABLES),
+        deque(maxlen=1000),
+    )  # rewards of those that go on; of the last that ended
     observation, _ = envs.reset(seed=args.seed)
     updates, played, began = -(-args.steps // (STEPS * TABLES)), 0, time.perf_counter()
     for update in range(updates):
@@ -129,7 +132,11 @@ def main(argv=None):
                 actions[t] = policy.sample()
                 logs[t], values[t] = policy.log_prob(actions[t]), agent.value(seen[t])
             observation, reward, terminated, truncated, _ = envs.step(actions[t].numpy())
-            rewards[t], ends[t] = torch.from_numpy(reward), torch.from_numpy(terminated | truncated)
+            done = terminated | truncated
+            rewards[t], ends[t] = torch.from_numpy(reward), torch.from_numpy(done)
+            visits += reward
+            returns.extend(visits[done])
+            visits[done] = 0.0
         played += STEPS * TABLES
 
         # advantages and returns
@@ -152,7 +159,7 @@ def main(argv=None):
                 nn.utils.clip_grad_norm_(agent.parameters(), GRADIENT)
                 optimiser.step()
 
-        points = float(np.mean(envs.return_queue))
+        points = float(np.mean(returns))
         print(
             f"{played:,} shots, {points:.2f} points a visit, "
             f"{played / (time.perf_counter() - began):.0f} shots/s",

@@ -31,6 +31,7 @@ from stable_baselines3.common.utils import LinearSchedule
 import snooker_env
 from agents.learning.networks import TablePolicy, TableReader
 from commands.files import write_atomic, write_json
+from snooker_env._seal import sealed, unsealed
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning.learned.pot_view import with_pots
 from snooker_env.progress import Progress
@@ -58,7 +59,7 @@ LEARNING: dict[str, Any] = {
 """As ``agents/hyperparams/ppo_mask.yml``, which gives the reasons."""
 SELVES = 20
 """Size of the pool at the end: one more past self for every twentieth of the shots."""
-MODEL = Path(__file__).with_suffix(".pt")
+MODEL, CHECKPOINT = Path(__file__).with_suffix(".pt"), "checkpoint.pkl"
 
 
 def view(observations):
@@ -237,7 +238,7 @@ class Run(BaseCallback):
             "seconds": time.perf_counter() - self.began,
             "asked": (args.shots, args.tables, args.seed),
         }
-        write_atomic(args.out / "checkpoint.pkl", pickle.dumps(state))
+        write_atomic(args.out / CHECKPOINT, sealed(pickle.dumps(state), CHECKPOINT))
 
     def _on_step(self):
         won = ", ".join(f"{self.curve[-1][name]:.1%} won against {name}" for name in ("random", "ghost_ball"))
@@ -247,8 +248,11 @@ class Run(BaseCallback):
 
 def train(args):
     """Train, or go on from the checkpoint. Returns the model, the curve and the seconds of training."""
-    file = args.out / "checkpoint.pkl"
-    state = pickle.loads(file.read_bytes()) if file.is_file() else None
+    file = args.out / CHECKPOINT
+    try:
+        state = pickle.loads(unsealed(file.read_bytes(), CHECKPOINT)) if file.is_file() else None
+    except ValueError as error:
+        raise SystemExit(f"{file}: {error}; remove it to begin anew") from None
     if state and state["asked"] != (args.shots, args.tables, args.seed):
         raise SystemExit(
             f"{file} was made with --shots, --tables and --seed {state['asked']}: "

@@ -6,7 +6,7 @@
   elsewhere. So the folder is named by a hash of all source in the rooms that kernels are made from; kernels
   of others (agents, benchmarks) have a folder in it, named by a hash of their whole package. Equal copies
   share machine code.
-* Files end with a checksum: damaged machine code would crash the process.
+* Files end with a checksum, of their place too: damaged machine code, or another kernel's, would crash the process.
 * Whatever goes wrong, the kernel is compiled again, and the process warns once."""
 
 import hashlib
@@ -21,9 +21,11 @@ from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
 
+from ._seal import sealed, unsealed
+
 _PACKAGE = Path(__file__).resolve().parent
 _WRITE_GROUP, _WRITE_OTHERS, _STICKY = 0o020, 0o002, 0o1000
-_DIGEST = hashlib.sha256().digest_size
+_LARGE = 2**21  # bytes: twice the machine code of the largest kernel
 
 
 _FILES = "_inner.py", "_jit.py", "_lanes.py", "geometry.py", "impacts.py", "simulation.py"
@@ -159,23 +161,28 @@ class _Implementation(CompileResultCacheImpl):
     _locator_classes = [_Place]  # noqa: RUF012 - numba's own convention
 
 
-def _check_whole(path):
-    """ValueError unless the file ends with the checksum of the bytes before it."""
-    data = Path(path).read_bytes()
-    if hashlib.sha256(data[:-_DIGEST]).digest() != data[-_DIGEST:]:
-        raise ValueError("it is damaged")
-
-
 class _Files(IndexDataCacheFile):
-    """numba's index and data files of one kernel, with checksums: ``pickle.loads`` ignores a tail."""
+    """numba's index and data files of one kernel, sealed by their place: ``pickle.loads`` ignores a tail."""
+
+    def _name(self, path):
+        assert CACHE_FOLDER is not None
+        return Path(path).relative_to(CACHE_FOLDER.parent).as_posix()
 
     def _load_index(self):
-        with suppress(FileNotFoundError):
-            _check_whole(self._index_path)
-        return super()._load_index()
+        try:
+            with suppress(FileNotFoundError):
+                unsealed(Path(self._index_path).read_bytes(), self._name(self._index_path))
+            return super()._load_index()
+        except OSError:
+            raise
+        except Exception:  # without it the next compile is kept again
+            with suppress(OSError):
+                os.unlink(self._index_path)
+            raise
 
     def _load_data(self, name):
-        _check_whole(self._data_path(name))
+        path = self._data_path(name)
+        unsealed(Path(path).read_bytes(), self._name(path))
         return super()._load_data(name)
 
     @contextmanager
@@ -186,17 +193,12 @@ class _Files(IndexDataCacheFile):
         handle, name = tempfile.mkstemp(dir=self._cache_path)
         try:
             with open(handle, "wb") as file:
-                file.write(data + hashlib.sha256(data).digest())
+                file.write(sealed(data, self._name(filepath)))
             os.replace(name, filepath)
         except BaseException:
             with suppress(OSError):
                 os.unlink(name)
             raise
-
-    def discard(self):
-        """Remove the index, so that the next compile is kept again."""
-        with suppress(OSError):
-            os.unlink(self._index_path)
 
 
 def may_be_kept(py_func: Any) -> bool:
@@ -222,10 +224,19 @@ class Kept(FunctionCache):
         except OSError as error:
             _warn_once("place", f"machine code is not read from {self.cache_path} ({error}): {_ALONE}")
         except Exception as error:  # a damaged file can make pickle, numba or LLVM raise anything
-            self._cache_file.discard()
             what = f"cannot be used ({type(error).__name__}: {error}): it is compiled and kept anew"
             _warn_once("broken", f"machine code kept in {self.cache_path} {what}")
         return None
+
+    def has_room(self) -> bool:
+        """Whether what is compiled now could be kept: a full disk still makes a file, but holds nothing in it."""
+        try:
+            self._impl.locator.ensure_cache_path()
+            with tempfile.TemporaryFile(dir=self.cache_path) as file:
+                file.write(bytes(_LARGE))
+            return True
+        except OSError:
+            return False
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Write the machine code to disk, if that is possible."""

@@ -74,7 +74,7 @@ class _Listener(event.Listener):
         cost = getattr(kernel, "cost", None)  # other packages compile too
         if cost is None or not cost.what or (seconds := cost.total()) < 1:
             return
-        kept = isinstance(kernel._cache, Kept)
+        kept = isinstance(kernel._cache, Kept) and kernel._cache.has_room()
         text = f"compiling {cost.what}, {'once, ' if kept else ''}about {seconds} s"
         if not (_running and _running[-1].spoke):  # said once in a warm-up
             text += f" ({f'kept in {CACHE_FOLDER}' if kept else 'for this process only'}; SNOOKER_ENV_QUIET=1 hides this)"

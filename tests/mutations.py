@@ -37,7 +37,7 @@ def spoilt(value):
     elif isinstance(value, int | float):
         wrong += [value + 1, value - 1, -value, value + 2**64, str(value), value + 0.25, 0, 1, 2, 7, 155]
     elif isinstance(value, list):
-        wrong += [value[:-1], [*value, value[-1]], [None, *value[1:]], value[::-1], tuple(value)]
+        wrong += [value[:-1], [*value, *value[-1:]], [None, *value[1:]], value[::-1], tuple(value)]
         wrong.append(dict.fromkeys(map(str, range(len(value)))))
     elif isinstance(value, dict):
         wrong += [{k: v for k, v in value.items() if k != key} for key in value]

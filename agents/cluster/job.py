@@ -8,7 +8,7 @@ before it, nor on how often a machine died over it.
 import importlib
 from dataclasses import dataclass
 
-from .keep import digest_of, packed
+from .keep import digest_of
 
 
 class ClusterError(Exception):
@@ -60,7 +60,7 @@ def ended(parts, shared, where, store=None):
             yield k, result
     for n, result in where.played([(parts[k].task, shared[parts[k].shared], parts[k].args) for k in left]):
         if store:
-            store.write(f"parts/{keys[left[n]]}.npz", packed(result))
+            store.keep_part(keys[left[n]], result)
         yield left[n], result
 
 

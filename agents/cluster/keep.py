@@ -13,6 +13,8 @@ import numpy as np
 
 from commands.files import write_atomic
 from commands.lock import Lock
+from snooker_env._files import arrays_in, strict_json, with_checksum, without_checksum
+from snooker_env._seal import sealed, unsealed
 from snooker_env.checks import refuse
 
 KEPT = Path("runs/kept")
@@ -77,22 +79,34 @@ class Store:
     def part(self, key):
         """The result of the part of this name; None if it is not kept, or damaged."""
         data = self.read(f"parts/{key}.npz")
-        with suppress(Exception):  # any error of zip or NumPy on a damaged file
-            return None if data is None else unpacked(data)
+        with suppress(ValueError):
+            return None if data is None else arrays_in(unsealed(data, key))
+
+    def keep_part(self, key, result):
+        """Keep the result of the part of this name."""
+        self.write(f"parts/{key}.npz", sealed(packed(result), key))
+
+    def read_json(self, name):
+        """The object in a file, {} if there is none. Raises ValueError if it is damaged."""
+        data = self.read(name)
+        try:
+            return {} if data is None else without_checksum(strict_json(data))
+        except (ValueError, TypeError, AttributeError) as error:
+            raise self._refused(f"hold a {name} as it was written: this one is damaged ({error})") from None
+
+    def write_json(self, name, content):
+        """Write an object, with its checksum."""
+        self.write(name, (json.dumps(with_checksum(content), indent=1) + "\n").encode())
 
     def join(self, job):
         """Make this the store of a ``job``, a dict. ValueError that says what differs if it is another's."""
-        before = self.read("job.json")
-        if before is None:
+        if "job.json" not in self.names(""):
             if self.names("parts"):
                 same = "be a new folder, or that of the same job"
                 raise self._refused(f"{same}: it holds parts and no job.json")
-            self.write("job.json", (json.dumps(job, indent=1) + "\n").encode())
+            self.write_json("job.json", job)
             return
-        try:
-            was, now = dict(json.loads(before)), json.loads(json.dumps(job))
-        except (ValueError, TypeError):
-            raise self._refused("hold a job.json as it was written: this one is damaged") from None
+        was, now = self.read_json("job.json"), json.loads(json.dumps(job))
         for name in {**now, **was}:
             if was.get(name) != now.get(name):
                 before, asked = (f"{json.dumps(one.get(name)):.200}" for one in (was, now))
@@ -115,10 +129,18 @@ def packed(result):
     return file.getvalue()
 
 
-def unpacked(data):
-    """The inverse of ``packed``; numbers come back as arrays of no dimension."""
-    with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-        return {name: arrays[name] for name in arrays.files}
+def keep_arrays(file, result):
+    """Write a dict of arrays and numbers, from which the same command goes on."""
+    write_atomic(file, sealed(packed(result), file.name))
+
+
+def kept_arrays(file):
+    """What ``keep_arrays`` wrote; numbers come back as arrays of no dimension. ValueError if it is damaged."""
+    try:
+        return arrays_in(unsealed(file.read_bytes(), file.name))
+    except ValueError as error:
+        wanted = f"must be as it was written ({error}): remove it, and the same command plays it again"
+        raise refuse("out", str(file), wanted) from None
 
 
 def digest_of(data):

@@ -11,7 +11,8 @@ import platform
 import time
 import uuid
 
-from commands.files import write_atomic
+from commands.files import read_json, write_atomic, write_json
+from snooker_env._files import with_checksum
 from snooker_env.checks import refuse
 
 from .job import ClusterError
@@ -31,14 +32,15 @@ class Mirror:
     def __init__(self, url):
         self.store, self._mine = Store(url, "mirror"), uuid.uuid4().hex
 
-    def _json(self, name):
-        return json.loads(self.store.read(name) or b"{}")
-
     def fetch(self, out):
         """Write the checkpoint into the run's folder if its own is older. ValueError if both went on."""
-        saves, local = self._json(SAVES), out / CHECKPOINT
+        saves, local = self.store.read_json(SAVES), out / CHECKPOINT
         if local.is_file():
-            known = json.loads((out / SAVES).read_bytes()) if (out / SAVES).is_file() else {}
+            known = (
+                read_json("out", out / SAVES, "must be whole", checked=True)
+                if (out / SAVES).is_file()
+                else {}
+            )
             if saves.get("count", 0) <= known.get("count", 0):
                 return
             if hashlib.sha256(local.read_bytes()).hexdigest() != known.get("digest"):
@@ -49,11 +51,11 @@ class Mirror:
             raise refuse("mirror", str(self.store), "holds no checkpoint: start the run without --resume")
         out.mkdir(parents=True, exist_ok=True)
         write_atomic(local, data)
-        write_atomic(out / SAVES, json.dumps(saves))
+        write_json(out / SAVES, with_checksum(saves))
 
     def claim(self, out, settings, resume):
         """Become the one that writes, for the run in ``out``. ValueError if another run is kept here."""
-        now, was = json.loads(json.dumps(settings)), self._json(RUN)
+        now, was = json.loads(json.dumps(settings)), self.store.read_json(RUN)
         if CHECKPOINT in self.store.names(""):
             if not resume:
                 why = "holds a run: --resume continues it, another --mirror keeps a new one"
@@ -64,15 +66,15 @@ class Mirror:
                     raise refuse("mirror", str(self.store), f"must be that of the same run: {differs}")
         owner = {"token": self._mine, "process": os.getpid(), "machine": platform.node()}
         owner["since"] = time.strftime("%Y-%m-%d %H:%M:%S")
-        self.store.write(RUN, json.dumps(now, indent=1).encode())
-        self.store.write(OWNER, json.dumps(owner, indent=1).encode())
+        self.store.write_json(RUN, now)
+        self.store.write_json(OWNER, owner)
         _mirrors[out.resolve()] = self
 
     def save(self, data, name=CHECKPOINT):
         """Copy a file, with patience for a network. ClusterError if it fails on, or if another took over."""
         for k in range(TRIES):
             try:
-                owner = self._json(OWNER)
+                owner = self.store.read_json(OWNER)
                 if owner.get("token") == self._mine:
                     self.store.write(name, data)
                     return
@@ -93,11 +95,11 @@ def copied(out, data, name=CHECKPOINT):
         return
     mirror.save(data, name)
     if name == CHECKPOINT:
-        count = mirror._json(SAVES).get("count", 0) + 1
-        saves = json.dumps({"count": count, "digest": hashlib.sha256(data).hexdigest()})
-        mirror.save(saves.encode(), SAVES)
+        count = mirror.store.read_json(SAVES).get("count", 0) + 1
+        saves = with_checksum({"count": count, "digest": hashlib.sha256(data).hexdigest()})
+        mirror.save(json.dumps(saves).encode(), SAVES)
         out.mkdir(parents=True, exist_ok=True)
-        write_atomic(out / SAVES, saves)
+        write_json(out / SAVES, saves)
 
 
 def left(out):

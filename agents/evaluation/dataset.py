@@ -32,7 +32,7 @@ with needs("agents.dataset"):
     from snooker_env.progress import Progress
     from snooker_env.tasks import POTS, SIDES, SPEEDS, TOPS, choice_of
 
-    from ..cluster.keep import packed, unpacked
+    from ..cluster.keep import keep_arrays, kept_arrays
 
 TABLES = 256
 """Tables of a part, each of which plays one episode."""
@@ -268,10 +268,6 @@ def seeds_of(part):
     return list(range(FIRST_SEED + part * TABLES, FIRST_SEED + (part + 1) * TABLES))
 
 
-def _kept(file):
-    return unpacked(file.read_bytes())
-
-
 @command("agents.dataset")
 def main(argv=None):
     """Play what is missing, write the data set and its card."""
@@ -316,14 +312,17 @@ def main(argv=None):
                     parser.error(str(error))
                 file.parent.mkdir(parents=True, exist_ok=True)
                 part = played(task, args.player, form, seeds, args.threads)
-                write_atomic(file, packed(part))
+                keep_arrays(file, part)
                 new += len(part["rewards"])
             parts.append(file)
-            strokes += len(_kept(file)["rewards"])
+            try:
+                strokes += len(kept_arrays(file)["rewards"])
+            except ValueError as error:
+                parser.error(str(error))
             progress.at(strokes)
     seconds = time.perf_counter() - began
     folder = out / name
-    figures = written(folder, name, task, args.player, form, map(_kept, parts))
+    figures = written(folder, name, task, args.player, form, map(kept_arrays, parts))
     if new:
         print(
             f"{new:,} strokes played at {new / seconds:,.0f} strokes/s: 1,000,000 take {1e6 / new * seconds / 3600:.2g} h"

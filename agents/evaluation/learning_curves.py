@@ -49,7 +49,7 @@ def run_of(path):
         levels = {name: (float(end["points_a_visit"]), float(end["points_a_visit_se"])) for name, end in ends}
         end = run["steps"], run["seconds"] / 60.0
         return {"shots": shots, "minutes": minutes, "points": points, "end": end, "levels": levels}
-    except (ValueError, KeyError, TypeError, IndexError, AttributeError):
+    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError):
         raise refuse("run", str(file), "must be what today's train.py writes") from None
 
 

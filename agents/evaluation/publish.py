@@ -31,7 +31,7 @@ def results_of(run):
         results = read_json("run", run / "results.json", wanted)
         card_of(results, "")
         name_of(results, "any")
-    except (ValueError, KeyError, TypeError, IndexError):
+    except (ValueError, LookupError, TypeError, AttributeError):
         raise refuse("run", str(run), wanted) from None
     return results, load_trained(run, "run")
 

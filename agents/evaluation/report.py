@@ -324,7 +324,7 @@ def read(file):
     try:
         list(parts(report))
         title(report)
-    except (ValueError, KeyError, TypeError, IndexError, AttributeError):
+    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RuntimeError):
         raise refuse("file", str(file), wanted) from None
     return report
 

@@ -9,7 +9,6 @@ command goes on, and with other options it is refused. One machine and a cluster
 bit. ``read`` gives them as arrays.
 """
 
-import json
 import sys
 
 from commands.lifecycle import command, needs, parser_of
@@ -74,8 +73,7 @@ def checked(args):
 def read(url):
     """The data of a folder or URL: arrays as of ``searched.play``. ValueError if they are incomplete."""
     store = Store(url, "out", only_read=True)
-    index = store.read(INDEX)
-    keys = [] if index is None else json.loads(index)["parts"]
+    keys = store.read_json(INDEX).get("parts", [])
     parts = [part for key in keys if (part := store.part(key)) is not None]
     if not parts or len(parts) < len(keys):
         raise refuse("out", url, "must hold complete data: give the command that makes them again")
@@ -110,7 +108,6 @@ def main(argv=None):
         kept = f"{each * len(store.names('parts')):,} of {total:,} positions are kept in {store}"
         print(f"agents.search: {why}; {kept}, the same command goes on", file=sys.stderr)
         return code
-    index = {"positions": total, "parts": keys_of(parts, shared)}
-    store.write(INDEX, (json.dumps(index, indent=1) + "\n").encode())
+    store.write_json(INDEX, {"positions": total, "parts": keys_of(parts, shared)})
     print(f"{total:,} positions: {store}")
     return 0

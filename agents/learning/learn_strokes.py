@@ -10,7 +10,6 @@ beside what they seem to be worth. After each round the run's folder holds its d
 from there.
 """
 
-import io
 import json
 from dataclasses import asdict, astuple, dataclass, fields
 from itertools import pairwise
@@ -20,8 +19,9 @@ import torch
 from torch import nn
 
 import snooker_env as sn
-from commands.files import write_atomic
+from commands.files import read_json, write_atomic, write_json
 from commands.noise_option import noise_option
+from snooker_env._files import strict_json, with_checksum
 from snooker_env.benchmark import simulated
 from snooker_env.checks import choice, integer, refuse
 from snooker_env.planning import Planner, Positions, processors
@@ -33,7 +33,7 @@ from snooker_env.players.search import SearchPlayer
 from snooker_env.players.stroke_value import StrokeValuePlayer
 from snooker_env.players.weights import STROKES, StrokeLayers, layers_of
 
-from ..cluster.keep import packed
+from ..cluster.keep import keep_arrays, kept_arrays, packed
 from .hyperparameters import changes_of
 from .stroke_frames import frames_tried
 
@@ -175,11 +175,6 @@ def arrays_of(of, layers):
     return made | {f"{of}/{k}/bias": bias.astype(np.float32) for k, (_, bias) in enumerate(layers)}
 
 
-def _kept(file):
-    with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
-        return {name: arrays[name] for name in arrays.files}
-
-
 @dataclass(frozen=True)
 class StrokeSettings:
     """Of a run: what its rounds are made of."""
@@ -207,15 +202,17 @@ class StrokeSettings:
 
     def save(self, out):
         """Into the run's folder."""
-        write_atomic(out / SETTINGS, json.dumps(asdict(self)).encode())
+        write_json(out / SETTINGS, with_checksum(asdict(self)))
 
     @classmethod
     def read(cls, out):
         """Of the run in that folder. Raises ValueError."""
         try:
-            return cls(**json.loads((out / SETTINGS).read_text()))
-        except (OSError, ValueError, TypeError):
-            raise refuse("out", str(out), f"must hold a complete {SETTINGS}") from None
+            return cls(
+                **read_json("out", out / SETTINGS, "must be a complete file of settings", checked=True)
+            )
+        except TypeError:
+            raise refuse("out", str(out / SETTINGS), "must be a complete file of settings") from None
 
     def words(self):
         """The options of ``train.py`` that repeat the run."""
@@ -265,7 +262,7 @@ class Rounds:
         self.first, self.rounds, self.curve, self.layers = first, [], [], ()
         self._asked = [*map(str, (*astuple(settings), *_VERSION))]
         while len(self.rounds) < many and self._file().is_file():
-            rows = _kept(self._file())
+            rows = kept_arrays(self._file())
             if rows.pop("asked").tolist() != self._asked:
                 raise refuse("out", str(out), "must hold rounds of this version and of the same settings")
             self._learn(rows)
@@ -317,7 +314,7 @@ class Rounds:
                 return
         seen, worth, table = map(np.concatenate, zip(*parts, strict=True))
         rows = {"seen": seen, "worth": worth, "table": table, "shots": np.array(simulated() - before)}
-        write_atomic(self._file(), packed(rows | {"asked": np.array(self._asked)}))
+        keep_arrays(self._file(), rows | {"asked": np.array(self._asked)})
         self._learn(rows)
 
     @property
@@ -332,9 +329,9 @@ class Rounds:
         weights, k, of = self._file("-weights"), len(self.rounds), self.of
         self.rounds.append(rows)
         if weights.is_file():
-            arrays = _kept(weights)
+            arrays = kept_arrays(weights)
             self.layers = layers_of(arrays, of)
-            self.curve.append(json.loads(str(arrays["figures"])))
+            self.curve.append(strict_json(str(arrays["figures"])))
             return
         seed, passes = (0, LAST_PASSES[of]) if self.complete else (k, PASSES)
         seen, worth, table = (
@@ -344,7 +341,7 @@ class Rounds:
         seems = POINTS * seen[..., 0] if of == "frames" else None
         self.layers, figures = fitted(seen, worth, table, self.settings.seed + seed, passes, seems)
         self.curve.append(figures)
-        write_atomic(weights, packed(arrays_of(of, self.layers) | {"figures": np.array(json.dumps(figures))}))
+        keep_arrays(weights, arrays_of(of, self.layers) | {"figures": np.array(json.dumps(figures))})
 
 
 class StrokeTraining:

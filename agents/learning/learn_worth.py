@@ -10,7 +10,6 @@ weights: the same command goes on from there. The last round's weights are writt
 into the package.
 """
 
-import io
 import sys
 import time
 from pathlib import Path
@@ -21,7 +20,7 @@ with needs("agents.learn_worth"):
     import numpy as np
 
     import snooker_env
-    from agents.cluster.keep import packed
+    from agents.cluster.keep import keep_arrays, kept_arrays, packed
     from agents.cluster.ray_cluster import add_ray, checked_ray, place
     from commands.files import writable, write_atomic
     from snooker_env.checks import integer, refuse
@@ -29,7 +28,7 @@ with needs("agents.learn_worth"):
     from snooker_env.planning.learned.dense_layers import Layers
     from snooker_env.planning.learned.frame_features import errors_seen
     from snooker_env.planning.learned.learned_worth import worth_of
-    from snooker_env.players.weights import FOLDER, WORTH, learned_worth
+    from snooker_env.players.weights import FOLDER, WORTH, worth_in
 
     from .frame_worth import calibration, fitted, fitted_chance, targets
 
@@ -110,15 +109,10 @@ def learned(rounds, seed):
 
 
 def arrays_of(layers, chance):
-    """The arrays of a file that ``weights.learned_worth`` reads."""
+    """The arrays of a file that ``weights.worth_in`` reads."""
     made = {f"worth/{k}/weight": weight for k, (weight, _) in enumerate(layers)}
     made |= {f"worth/{k}/bias": bias for k, (_, bias) in enumerate(layers)}
     return made | {"chance": np.array(chance)}
-
-
-def _kept_round(file):
-    with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as arrays:
-        return {name: arrays[name] for name in arrays.files}
 
 
 @command("agents.learn_worth")
@@ -144,6 +138,13 @@ def main(argv=None):
         writable("out", args.out / "worth.npz")
     except ValueError as error:
         p.error(str(error))
+
+    def kept(file):
+        try:
+            return kept_arrays(file)
+        except ValueError as error:
+            p.error(str(error))
+
     snooker_env.warmup()
     layers, chance, past, rounds = None, None, [], []
     asked = [args.frames, args.budget, args.seed]
@@ -153,16 +154,16 @@ def main(argv=None):
             shared = {"options": FRAME, "layers": layers, "chance": chance, "explore": EXPLORE}
             shared, began = shared | {"budget": args.budget, "replies": True}, time.time()
             if rows_file.is_file():
-                rows = _kept_round(rows_file)
+                rows = kept(rows_file)
                 if rows.pop("asked").tolist() != asked or "equals" not in rows:
                     wanted = "must hold rounds of this version with the same --frames, --budget and --seed"
                     p.error(str(refuse("out", str(args.out), wanted)))
             else:
                 rows = played(where, shared, drawn_parts(args.seed, k, args.frames // TABLES, past))
-                write_atomic(rows_file, packed(rows | {"asked": np.array(asked)}))
+                keep_arrays(rows_file, rows | {"asked": np.array(asked)})
             rounds = [*rounds, rows][-KEEP:]
             if weights_file.is_file():
-                layers, chance = learned_worth(weights_file)
+                layers, chance = worth_in(kept(weights_file))
                 past.append((layers, chance))
                 continue
             try:
@@ -170,7 +171,7 @@ def main(argv=None):
             except ValueError as error:
                 p.error(str(error))
             past.append((layers, chance))
-            write_atomic(weights_file, packed(arrays_of(layers, chance)))
+            keep_arrays(weights_file, arrays_of(layers, chance))
             frames = len(np.unique(rows["unit"]))
             told = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())
             spent = (

@@ -1,9 +1,9 @@
 """Where are trained models? Pre-trained ones, the model of a run's folder, and weights to start from."""
 
 import io
-import json
 from pathlib import Path
 
+from commands.files import read_json
 from snooker_env.checks import refuse
 
 from .hyperparameters import ACTION_OPTIONS
@@ -76,8 +76,8 @@ def _simulated(path):
     if not path.is_dir() and path.name != "model.zip":
         return None
     try:
-        shots = json.loads(file.read_text())["simulated_shots"]
-    except (OSError, ValueError, KeyError, TypeError):
+        shots = read_json("start", file, "must be JSON")["simulated_shots"]
+    except (ValueError, KeyError, TypeError):
         return None
     return shots if isinstance(shots, int) else None
 

@@ -7,13 +7,13 @@ first layer, ``weight_1`` and so on, and ``about``, JSON with the keys ``ABOUT``
 
 import io
 import json
-import zipfile
 from itertools import count
 from pathlib import Path
 
 import numpy as np
 
 from commands.files import write_atomic
+from snooker_env._files import MOST_NPZ, arrays_in, read_bytes, strict_json
 from snooker_env.checks import choice, integer, number, refuse
 from snooker_env.planning.learned.dense_layers import ACTIVATIONS, Layers
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
@@ -21,8 +21,6 @@ from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
 from .hyperparameters import SHOT_OPTIONS, TRAINING_OPTIONS
 from .model_files import Trained
 
-MOST = 2**27
-"""The most bytes of weights that are read: a hundred times the largest policy of this repository."""
 ABOUT = {"trainer": "RLlib", "activation": "tanh", "shots": 0, "seed": 0, "gamma": 0.95, "env_options": {}}
 """What ``about`` says, with an example: ``env_options`` are the layout, noise, ... of the training."""
 
@@ -47,16 +45,13 @@ def write_policy(path, weights, **about):
 def read_policy(path, field):
     """The ``Trained`` policy in a file, its network ``Layers``. ValueError, naming ``field``; no pickles."""
     try:
-        with zipfile.ZipFile(path) as parts:
-            if sum(part.file_size for part in parts.infolist()) > MOST:
-                raise ValueError(f"it holds more than {MOST:,} bytes")
-        with np.load(path, allow_pickle=False) as arrays:
-            about = json.loads(arrays["about"].item())
-            many = next(k for k in count() if f"weight_{k}" not in arrays.files)
-            layers = [(arrays[f"weight_{k}"], arrays[f"bias_{k}"]) for k in range(many)]
+        arrays = arrays_in(read_bytes(path, MOST_NPZ))
+        about = strict_json(arrays["about"].item())
+        many = next(k for k in count() if f"weight_{k}" not in arrays)
+        layers = [(arrays[f"weight_{k}"], arrays[f"bias_{k}"]) for k in range(many)]
         _check_layers(layers)
         return _described(about, layers)
-    except Exception as error:  # any error of zip, NumPy or JSON on a file of another kind
+    except (ValueError, KeyError, TypeError, OSError) as error:
         wanted = "must be a policy's .npz: weights of layers from the flat observation to the choices"
         why = " ".join(str(error).split())[:200]
         raise refuse(field, str(path), f"{wanted}, and what they are about ({why})") from None

@@ -13,6 +13,7 @@ from commands.files import UNFINISHED, write_atomic
 from commands.lifecycle import python
 from commands.lock import NAME as LOCK
 from commands.lock import Lock
+from snooker_env._seal import sealed, unsealed
 from snooker_env.checks import refuse
 
 from ..cluster.mirror import copied
@@ -76,7 +77,7 @@ def save_checkpoint(out, settings, model, seconds, curve, imitation, imitating=N
     state |= {"tables": tables.env_method("get_state"), "running": tables.running}
     # SB3 draws from the global generator
     state["random"] = np.random.get_state(), torch.get_rng_state(), model.action_space  # noqa: NPY002
-    data = pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL)
+    data = sealed(pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL), CHECKPOINT)
     write_atomic(out / CHECKPOINT, data)
     copied(out, data)
 
@@ -91,10 +92,19 @@ def stale(out):
 def read_checkpoint(out, settings):
     """The checkpoint and the settings in it, made by the class ``settings``. Raises ValueError."""
     try:
-        state = pickle.loads((out / CHECKPOINT).read_bytes())
-        state.setdefault("imitating", state.get("teaching"))  # its name before 0.3, and later than the rest
+        state = pickle.loads(unsealed((out / CHECKPOINT).read_bytes(), CHECKPOINT))
         was = settings(**state["settings"])
-        wanted = {"model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"}
+        wanted = {
+            "model",
+            "tables",
+            "random",
+            "replay",
+            "running",
+            "imitation",
+            "imitating",
+            "curve",
+            "seconds",
+        }
         if not state.keys() >= wanted or "shots" not in (state["imitating"] or {"shots": 0}):
             raise KeyError
     except Exception:  # any error of pickle on a file of another kind

@@ -15,7 +15,7 @@ with seeds that no earlier part of the run has used.
 """
 
 import argparse
-import json
+import hashlib
 import logging
 import os
 import re
@@ -37,10 +37,12 @@ with needs("agents.train_rllib"):
         logging.getLogger(part).setLevel(logging.ERROR)
 
     import snooker_env
-    from commands.files import write_json
+    from commands.files import read_json, write_json
     from commands.lock import NAME as LOCK
     from commands.lock import Lock
     from snooker_env import Options
+    from snooker_env._files import with_checksum
+    from snooker_env._seal import sealed
     from snooker_env.benchmark import play_visits, summary
     from snooker_env.benchmark.provenance import software
     from snooker_env.benchmark.tasks import tables_of
@@ -131,6 +133,17 @@ class Counters:
     """How often it was started."""
     checkpoint: str | None = None
     """The folder of RLlib's."""
+    digest: str | None = None
+    """Of all files in it."""
+
+
+def digest_of(folder):
+    """A digest of all files in a folder, their names too."""
+    files = {file.relative_to(folder).as_posix(): file for file in folder.rglob("*") if file.is_file()}
+    made = hashlib.sha256()
+    for name in sorted(files):
+        made.update(sealed(files[name].read_bytes(), name)[-32:])
+    return made.hexdigest()
 
 
 def opened(out, given, resume):
@@ -138,10 +151,10 @@ def opened(out, given, resume):
     if not resume:
         return checked(RunSettings(**given)), Counters()
     try:
-        found = json.loads((out / STATE).read_text(encoding="utf-8"))
+        found = read_json("out", out / STATE, "must be whole", checked=True)
         was, progress = checked(RunSettings(**found["settings"])), Counters(**found["progress"])
-        if not (out / str(progress.checkpoint)).is_dir():
-            raise ValueError(f"{progress.checkpoint} is missing")
+        if digest_of(out / str(progress.checkpoint)) != progress.digest:
+            raise ValueError(f"{progress.checkpoint} is missing or damaged")
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise refuse("out", str(out), f"must be the folder of a run with a checkpoint ({error})") from None
     for name, value in given.items():
@@ -171,9 +184,9 @@ def save(out, settings, progress, algorithm):
         algorithm.save_to_path(str(half))
         shutil.rmtree(out / name, ignore_errors=True)
         os.replace(half, out / name)
-        progress.checkpoint = name
+        progress.checkpoint, progress.digest = name, digest_of(out / name)
     _write(out / POLICY, settings, progress, algorithm)
-    write_json(out / STATE, {"settings": asdict(settings), "progress": asdict(progress)})
+    write_json(out / STATE, with_checksum({"settings": asdict(settings), "progress": asdict(progress)}))
     for file in out.iterdir():
         if _CHECKPOINT.fullmatch(file.name) and file.name != name:
             shutil.rmtree(file, ignore_errors=True)

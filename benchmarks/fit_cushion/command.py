@@ -38,7 +38,7 @@ LOW, HIGH = np.array((0.5, 0.0, 0.005, 4.0, 0.0)), np.array((3.4, 0.8, 0.02, 13.
 START_AT = np.array((2.1, 0.25, 0.0115, 10.0, 0.002))
 STEP = np.array((0.12, 0.04, 0.0007, 0.8, 0.002))
 BEFORE = {"e_c_knee": 2.17, "e_c_power": 0.31, "mu_r": 0.0127}
-"""The preset until version 0.3: the cushion fitted to its rebounds alone, the cloth of one table."""
+"""The preset before this fit: the cushion fitted to its rebounds alone, the cloth of one table."""
 RADIUS = sn.Physics().R
 ALONG = LENGTH - 2.0 * RADIUS
 MPH, POOL_LENGTH, POOL_BALL = 0.44704, 2.54, 0.028575
@@ -188,7 +188,7 @@ def main():
         "fitted, roll_drag free": fitted(misfit, NAMES),
     }
     shipped = {name: getattr(match, name) for name in (*BEFORE, "roll_drag")}
-    for name, constants in (("shipped", shipped), ("until version 0.3", {**BEFORE, "roll_drag": 0.0})):
+    for name, constants in (("shipped", shipped), ("before", {**BEFORE, "roll_drag": 0.0})):
         values = fits["fitted, roll_drag 0"].copy()
         for field, value in constants.items():
             values[NAMES.index(field)] = value
@@ -201,7 +201,7 @@ def main():
     print_measurements(misfit, fits["shipped"])
     print_pool(misfit)
     before = sn.Physics.preset("match", **BEFORE)
-    travelled = print_lengths({"until version 0.3": before})
+    travelled = print_lengths({"before": before})
     low, high = np.quantile(walk, (0.025, 0.975), axis=0)
     save_json(
         options.json,

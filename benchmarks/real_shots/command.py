@@ -18,12 +18,12 @@ shots, every strike searched again around the one that was. ``--peer`` plays the
 """
 
 import dataclasses
-import json
 from pathlib import Path
 
 import numpy as np
 
 from commands import provenance
+from commands.files import read_json
 from commands.tables import text_table
 from snooker_env.physics.parameters import PRESETS, Physics
 
@@ -103,7 +103,7 @@ def measure(options, shots):
     )
     judges, strikes, found, kept = [], [], [], {}
     if options.strikes:
-        for old in json.loads(options.strikes.read_text(encoding="utf-8"))["shots"]:
+        for old in read_json("strikes", options.strikes, "must be what --json wrote")["shots"]:
             kept[old["id"]] = np.array(list(old["strike"].values()))
     for shot in shots:
         judge = Judge(shot, physics)

@@ -4,10 +4,11 @@ The form: {"shots": [{"id": 0, "balls": {"1": {"t": [...], "x": [...], "y": [...
 metres and seconds, the origin in the middle of a carom table (noses at x +-0.71 and y +-1.42), three balls.
 """
 
-import json
 from dataclasses import dataclass, field
 
 import numpy as np
+
+from snooker_env._files import read_json
 
 R = 0.03075
 HALF = (0.71, 1.42)
@@ -123,12 +124,9 @@ def _first_moves(track):
 def read(file):
     """The shots of a file, [Tracked]; ValueError that names the field if one is wrong."""
     try:
-        with open(file, encoding="utf-8") as text:
-            data = json.load(text)
+        data = read_json(file, "file", "must be JSON of tracked shots")
     except OSError as error:
         raise ValueError(f"{file}: {error.strerror or error}") from None
-    except ValueError as error:
-        raise ValueError(f"{file} is not JSON: {error}") from None
     if not isinstance(data, dict) or not isinstance(data.get("shots"), list) or not data["shots"]:
         raise ValueError(f"{file}: shots is missing, it must be a list of shots")
     return [_shot(f"shots[{k}]", shot) for k, shot in enumerate(data["shots"])]

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .._check import choice, integer, number, refuse, refuse_what, truth
-from .._files import write_atomic
+from .._files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
 from .._types import Floats
 from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
@@ -223,14 +223,14 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
     True
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = read_bytes(path, MOST_JSON).decode("utf-8")
         page = _DATA.search(text)
-        kept = json.loads(page[1] if page else text)
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        kept = strict_json(page[1] if page else text)
+    except ValueError as error:
         raise refuse("path", str(path), f"must be a file of strokes or a replay ({error})") from None
     form = kept.get("format") if isinstance(kept, dict) else None
     readers = {FORMAT: _from_strokes, "snooker-replay": _from_replay}
-    if form not in readers or not isinstance(kept.get("strokes"), list):
+    if not isinstance(form, str) or form not in readers or not isinstance(kept.get("strokes"), list):
         allowed = f"must be a file of strokes ({FORMAT!r}) or a replay ('snooker-replay')"
         raise refuse("path", str(path), allowed)
     if kept.get("version") != VERSION or kept["version"] is True:
@@ -238,7 +238,8 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
     if player is not None:
         integer("player", player, 0, 1)
     try:
-        strokes = readers[form](kept, player)
+        with in_file(path):
+            strokes = readers[form](kept, player)
     except (KeyError, TypeError, IndexError, AttributeError, binascii.Error) as error:
         what = f"a damaged file ({type(error).__name__}: {error})"
         raise refuse_what(str(path), what, f"must be a whole {form!r}") from None

@@ -206,7 +206,7 @@ def _check(args: Any) -> int:
             result = read_result(file)
             wrong = faults(result, args.threads)
         except ValueError as error:
-            wrong = [str(error).removeprefix(f"{file}: ")]
+            wrong = [str(error).removeprefix(f"path = {str(file)!r}: ")]
         except OSError as error:
             wrong = [f"cannot be read: {error.strerror}"]
         if not wrong and asked:

@@ -12,7 +12,7 @@ from ..play.program import ProgramPlayer
 from ..players import Player
 from ..players import player as player_named
 from ..players.model_options import LEFT_OUT, checked
-from ..players.resolver import PROGRAM, RENAMED, is_name
+from ..players.resolver import PROGRAM, is_name
 from ..players.weights import levels
 from .playing import BATCH
 from .schema import LABEL
@@ -148,16 +148,10 @@ def is_known(text: str) -> bool:
     return ":" not in name and is_name(name) and (not at or model in levels())
 
 
-def present(name: str) -> str:
-    """The present name of a player: that of an alias, or the name itself."""
-    kind, line, budget = name.partition("_")
-    return RENAMED.get(kind, kind) + line + budget
-
-
 def is_reserved(label: str, sources: Sequence[str]) -> bool:
     """Whether the label is, or looks like, the name of a known player that these sources are not."""
     alike = re.sub("[.+-]", "_", label.lower()).strip("_")  # what a reader would take for it
-    return (is_known(label) or is_known(alike)) and [present(one) for one in sources] != [present(label)]
+    return (is_known(label) or is_known(alike)) and list(sources) != [label]
 
 
 def _label(source: Any) -> str:

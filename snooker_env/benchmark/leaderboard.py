@@ -6,7 +6,6 @@ from textwrap import wrap
 from typing import Any
 
 from .._tables import markdown_table, shown, text_table
-from .agents import present
 from .playing import STROKES
 from .tasks import TASKS, Task
 
@@ -110,8 +109,8 @@ def lines(results: Sequence[Any], *, markdown: bool = False, awaited: Sequence[s
     made: list[str] = []
     for task in TASKS.values():
         head, rows = board(results, task)
-        labels = {present(one["agent"]["label"]) for one in results if one["task"] == task.id}
-        lacking = [label for label in awaited if present(label) not in labels]
+        labels = {one["agent"]["label"] for one in results if one["task"] == task.id}
+        lacking = [label for label in awaited if label not in labels]
         if not rows and not lacking:
             continue
         judged = f"Judged by {task.measure}, {task.episodes:,} episodes."

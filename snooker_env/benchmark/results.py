@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse, refuse_what
-from .._files import read_json, write_atomic
+from .._files import read_json, with_checksum, write_atomic
 from .._types import Floats
 from ..players import FRAMES, VISITS
 from ..players.resolver import PROGRAM
@@ -159,7 +159,7 @@ def write_result(path: str | Path, result: dict[str, Any]) -> None:
     {'rows': [[0, 1]]}
     """
     rows = ",\n".join("  " + json.dumps(row, separators=(",", ":")) for row in result["rows"])
-    text = json.dumps(result | {"rows": "@rows@"}, indent=1, allow_nan=False)
+    text = json.dumps(with_checksum(result) | {"rows": "@rows@"}, indent=1, allow_nan=False)
     write_atomic(path, text.replace('"@rows@"', f"[\n{rows}\n ]" if rows else "[]") + "\n")
 
 

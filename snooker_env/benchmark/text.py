@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .._check import integer, refuse
-from .._files import write_atomic
+from .._files import read_json, with_checksum, write_atomic
 from ..planning import Positions
 from ..play.program import AnswerError, ProgramPlayer
 from ..players import decided, decision_seeds
@@ -18,6 +18,7 @@ from ..players.resolver import PROGRAM
 from .agents import Agent
 from .playing import tables_for
 from .provenance import commit, machine, software
+from .schema import MOST_WHOLE
 from .statistics import Resamples, figure
 from .tasks import TASKS
 
@@ -123,7 +124,7 @@ def judge_text(
     def keep(done: bool = False) -> dict[str, Any]:
         about = {"software": software(), "machine": machine(), "commit": commit()} if done else {}
         result = head | {"figures": figures_of(rows) if done else None, "rows": rows} | about
-        write_atomic(out, json.dumps(result, indent=1) + "\n")
+        write_atomic(out, json.dumps(with_checksum(result), indent=1) + "\n")
         if tick is not None:
             tick(len(rows), visits)
         return result
@@ -135,12 +136,16 @@ def judge_text(
 
 def _rows_in(out: Path, head: dict[str, Any]) -> list[dict[str, int]]:
     """The visits in a file that was begun with the same head."""
+    wanted = "must be a result of this track"
     try:
-        kept = json.loads(out.read_text(encoding="utf-8"))
+        kept = read_json(out, "out", wanted, checked=True)
         same = {name: kept[name] for name in head} == head
-        rows = [{name: int(row[name]) for name in ("table", *COUNTS)} for row in kept["rows"]]
-    except (ValueError, KeyError, TypeError):
-        raise refuse("out", str(out), "must be a result of this track") from None
+        rows = [{name: row[name] for name in ("table", *COUNTS)} for row in kept["rows"]]
+    except (KeyError, TypeError):  # what its fields cannot be
+        raise refuse("out", str(out), wanted) from None
+    for row in rows:
+        for name, value in row.items():
+            integer(f"{name} of {out}", value, 0, MOST_WHOLE)
     if not same or [row["table"] for row in rows] != TASK.seeds(head["visits"])[: len(rows)]:
         raise refuse("out", str(out), "must be of the same agent, visits and budget to be gone on with")
     return rows

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import array, choice, integer, refuse, refuse_what, truth
-from .._files import read_json, write_atomic
+from .._files import in_file, read_json, write_atomic
 from .._types import Flags, Integers, Place, Vectors
 from ..game.balls import (
     COLOUR_NAMES,
@@ -152,7 +152,8 @@ class Position:
     @classmethod
     def load(cls, path: str | Path, *, table: TableLike = "match") -> "Position":
         """Read a file of ``save``, or one written by hand; ValueError names what is wrong in it."""
-        return cls(**_checked(read_json(path), str(path)), table=table)
+        with in_file(path):
+            return cls(**_checked(read_json(path), str(path)), table=table)
 
 
 _NAMES = tuple(f.name for f in fields(Position))  # keys that a position in JSON may have

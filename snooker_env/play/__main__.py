@@ -13,7 +13,6 @@ from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 
 PORT = 8147  # unless another is named: always the same, since a browser keeps scores by the page's address
-MOST_FILE = 1_000_000  # largest size of a position's file [bytes]
 
 
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
@@ -99,12 +98,7 @@ def _server(service: Any, port: int | None) -> Any:
 
 def _read(path: Path) -> dict[str, Any]:
     """The JSON object in a file."""
-    if path.stat().st_size > MOST_FILE:
-        raise refuse_what("position", str(path), f"must have at most {MOST_FILE} bytes")
-    try:
-        read = read_json(path)
-    except ValueError as error:
-        raise ValueError(f"position = {error}") from None
+    read = read_json(path, "position")
     if not isinstance(read, dict):
         raise refuse_what("position", str(path), "must hold a JSON object")
     return read

@@ -226,7 +226,7 @@ class PlayHandler(BaseHTTPRequestHandler):
             if name in fields:
                 raise RefusedError(400, "must be given once", name, value)
             is_number = re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value)
-            fields[name] = json.loads(value) if is_number else value
+            fields[name] = strict_json(value) if is_number else value
         return fields
 
     def _body(self) -> dict[str, Any]:
@@ -280,8 +280,8 @@ class PlayHandler(BaseHTTPRequestHandler):
 def parsed(raw: bytes) -> dict[str, Any]:
     """The JSON object in a body; RefusedError for others, NaN, Infinity and repeated names."""
     try:
-        fields = strict_json(raw.decode("utf-8") or "{}")
-    except (ValueError, RecursionError) as error:
+        fields = strict_json(raw or b"{}")
+    except ValueError as error:
         raise RefusedError(400, f"the body must be JSON in UTF-8 ({error})") from None
     if not isinstance(fields, dict):
         raise RefusedError(400, "the body must be a JSON object")

@@ -1,12 +1,12 @@
 """How are the actions of a model of Stable-Baselines3 read? By these options, of code or of a command line."""
 
-import json
 from argparse import ArgumentParser
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from .._check import choice, refuse
+from .._files import strict_json
 from .._notices import say
 from ..tasks.options import Options
 from ..tasks.saved_models import by_train, entries
@@ -40,7 +40,7 @@ def options_of_words(words: Sequence[str]) -> dict[str, Any]:
 def _value(text: str) -> Any:
     """A truth value or a number, else the text itself."""
     try:
-        value = json.loads(text.lower())
+        value = strict_json(text.lower())
     except ValueError:
         return text
     return value if isinstance(value, bool | int | float) else text

@@ -3,7 +3,6 @@
 import importlib
 import importlib.util
 import re
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -20,10 +19,9 @@ from .tactician import Tactician
 GROUP = "snooker_env.players"  # entry points for players: NAME = MODULE:MAKER, called without arguments
 READERS = "snooker_env.models"  # entry points that read models, called with a path; None if it is not theirs
 BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician", "stroke_value")
-RENAMED = {"lookahead": "search"}  # names of players of version 0.3 that are still understood
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
 PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"  # loaded as an entry point
-_KINDS = "best_pot|search|lookahead|tactician|stroke_value|planner(?:_value|_policy)?"
+_KINDS = "best_pot|search|tactician|stroke_value|planner(?:_value|_policy)?"
 _SEARCHING = re.compile(rf"({_KINDS})(?:_(\d+))?(?:@(.+))?")
 
 
@@ -132,9 +130,6 @@ def _built_in(name: str) -> Player | None:
     if form is None:
         return None
     kind, budget, model = form.groups()
-    if kind in RENAMED:
-        kind, old = RENAMED[kind], kind
-        warnings.warn(f"the player {old!r} is called {kind!r} now", DeprecationWarning, stacklevel=3)
     if kind == StrokeValuePlayer.name:
         if budget:
             raise refuse("player", name, "must not name a number of shots: stroke_value simulates none")
@@ -211,8 +206,9 @@ def _strokes(name: str, path: Path) -> Any:
 
     try:
         return learned_strokes(path)
-    except (OSError, KeyError, ValueError):
-        raise refuse("player", name, "must name a strokes.npz of train.py --agent stroke_value") from None
+    except (OSError, KeyError, ValueError) as error:
+        allowed = f"must name a strokes.npz of train.py --agent stroke_value ({error})"
+        raise refuse("player", name, allowed) from None
 
 
 def _learned(model: str) -> Any:

@@ -184,7 +184,7 @@ class Choices:
     claim: bool
     lot: bool
     choices: int
-    space: spaces.Discrete[np.int64]
+    space: "spaces.Discrete[np.int64]"  # evaluated, it would need Gymnasium 1.2.2
 
     def __init__(self, physics: Physics, says: Collection[str] = ()):
         self.physics = physics

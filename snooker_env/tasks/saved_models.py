@@ -2,7 +2,6 @@
 Stable-Baselines3 or sb3-contrib holds weights and ``data``, JSON in which all but plain values is a pickle,
 whose code runs when loaded. Only ``SavedModel.network`` unpickles, and requires consent."""
 
-import json
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,11 +12,9 @@ from typing import Any
 from gymnasium import spaces
 
 from .._check import refuse
+from .._files import MOST_JSON, strict_json, unzipped
 from .._install import missing
 
-MOST = 2**26
-"""Most bytes of JSON that are read (SB3 stores the last observations there): a small zip can unpack to more
-than a machine's memory, and JSON to objects 25 times as large."""
 PLAIN = "model.json"
 """The part that replaces ``data`` in zips written by ``agents.publish``, which hold no pickles."""
 _ALGORITHMS = (
@@ -50,19 +47,20 @@ def one_thread() -> Iterator[None]:
         torch.set_num_threads(usual)
 
 
-def part(path: str | Path, name: str, most: int = MOST) -> bytes:
+def part(path: str | Path, name: str, most: int) -> bytes:
     """One part of a zip file; ValueError if it is larger than ``most`` bytes, KeyError if there is none."""
     with zipfile.ZipFile(path) as file:
         if file.getinfo(name).file_size > most:
-            raise ValueError(f"{name} is larger than {most} bytes")
-        return file.read(name)
+            raise ValueError(f"{name} is larger than {most:,} bytes")
+        return unzipped(file, file.getinfo(name))
 
 
 def entries(path: str | Path) -> dict[str, Any]:
     """The description that a model's ``.zip`` holds of itself, ``PLAIN`` or ``data``; pickles in it stay text."""
     with zipfile.ZipFile(path) as file:
         name = PLAIN if PLAIN in file.namelist() else "data"
-    description = json.loads(part(path, name))
+    # SB3 stores the last observations there
+    description = strict_json(part(path, name, MOST_JSON))
     if not isinstance(description, dict):
         raise ValueError(f"{name} holds no object")
     return description

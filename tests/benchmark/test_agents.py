@@ -247,16 +247,6 @@ def test_names_and_what_is_known_of_them():
     assert (agent.label, agent.training_shots, agent.player(HARD).budget) == ("search_60", 0, 60)
     assert Agent.of("planner_500").training_shots is None
     assert Agent.of("planner_500@club").label == "planner_500_club"
-    with pytest.warns(DeprecationWarning):
-        assert Agent.of("lookahead_30").player(HARD).kind == "search"
-
-
-def test_an_alias_may_stand_under_both_names():
-    from snooker_env.benchmark.agents import is_reserved
-
-    assert not is_reserved("lookahead_60", ["lookahead_60"])
-    assert not is_reserved("search_60", ["lookahead_60"])
-    assert is_reserved("lookahead", ["search_60"]) and is_reserved("lookahead", ["mine:Player"])
 
 
 @pytest.fixture(scope="module")

@@ -9,14 +9,16 @@ import numpy as np
 import pytest
 
 from agents.cluster.job import Here, Part, ended, in_order, keys_of
-from agents.cluster.keep import Keep, Store, digest_of, packed, unpacked
+from agents.cluster.keep import Keep, Store, digest_of, keep_arrays, kept_arrays, packed
 from agents.evaluation import protocol, visits
 from agents.evaluation.entrants import Entrant
 from snooker_env import player
+from snooker_env._seal import sealed
 from snooker_env.benchmark import play_visits
 from snooker_env.benchmark.tasks import tables_of
 from tests.agents.training import interrupted_at
 from tests.cluster.players import AT, same
+from tests.flips import flipped
 from tests.processes import ROOT
 
 
@@ -106,10 +108,42 @@ def test_a_damaged_part_is_played_again(tmp_path):
     whole, pickled, gone = (tmp_path / "parts" / f"{keys_of(PARTS, SHARED)[k]}.npz" for k in (1, 3, 4))
     before = whole.read_bytes()
     whole.write_bytes(before[:-30])
-    pickled.write_bytes(packed({"a": np.array([{}], object)}))  # it would have to be unpickled
+    hidden = packed({"a": np.array([{}], object)})
+    pickled.write_bytes(sealed(hidden, pickled.stem))  # it would have to be unpickled
     gone.unlink()
     assert sums(in_order(ended(PARTS, SHARED, again, store))) == [0, 0, 1, 3, 6, 10]
-    assert sorted(again.played_parts) == [1, 3, 4] and unpacked(before)["n"].item() == 1
+    assert sorted(again.played_parts) == [1, 3, 4] and whole.read_bytes() == before
+
+
+def test_a_part_under_another_name_is_played_again(tmp_path):
+    store, again = Store(tmp_path), Sums()
+    list(ended(PARTS, SHARED, Sums(), store))
+    one, other = (tmp_path / "parts" / f"{keys_of(PARTS, SHARED)[k]}.npz" for k in (1, 3))
+    one.write_bytes(other.read_bytes())
+    assert sums(in_order(ended(PARTS, SHARED, again, store))) == [0, 0, 1, 3, 6, 10]
+    assert again.played_parts == [1]
+
+
+def test_no_flipped_bit_of_what_is_kept_is_used(tmp_path):
+    """Parts are played again; what describes the job, and the data of a run, are refused by name."""
+    store, rows = Store(tmp_path), {"a": np.arange(9.0), "figures": np.array('{"b": 1.25}')}
+    store.join({"noise": ["club"], "seed": 3})
+    store.write_json("index.json", {"parts": ["a", "b"]})
+    store.keep_part("a", rows)
+    keep_arrays(tmp_path / "round-0.npz", rows)
+    for name in ("job.json", "index.json"):
+        for _ in flipped(tmp_path / name):
+            with pytest.raises(ValueError, match=rf"{tmp_path}.*{name}"):
+                store.read_json(name)
+    for _ in flipped(tmp_path / "parts/a.npz"):
+        assert store.part("a") is None
+    for _ in flipped(tmp_path / "round-0.npz"):
+        with pytest.raises(ValueError, match=rf"^out = '{tmp_path}/round-0.npz': must be as it was written"):
+            kept_arrays(tmp_path / "round-0.npz")
+    assert np.array_equal(store.part("a")["a"], rows["a"]) and store.read_json("job.json")["seed"] == 3
+    (tmp_path / "round-0.npz").rename(tmp_path / "round-1.npz")
+    with pytest.raises(ValueError, match="was written under another name"):
+        kept_arrays(tmp_path / "round-1.npz")
 
 
 def test_a_full_disk_keeps_what_was_written_and_names_the_file(tmp_path, monkeypatch):

@@ -1,6 +1,5 @@
 """Does a checkpoint outlive its machine, with one writer at a time, in a folder and at a URL?"""
 
-import json
 import uuid
 
 import pytest
@@ -106,7 +105,7 @@ def test_what_cannot_be_written_is_refused(tmp_path):
 
 def test_the_run_is_kept_in_words(url, tmp_path):
     Mirror(url).claim(tmp_path, RUN, resume=False)
-    assert json.loads(Store(url).read("run.json")) == {"agent": "ppo_value", "seed": 3, "set": ["gamma=0"]}
+    assert Store(url).read_json("run.json") == {"agent": "ppo_value", "seed": 3, "set": ["gamma=0"]}
     left(tmp_path)
 
 

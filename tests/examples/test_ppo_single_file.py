@@ -1,5 +1,8 @@
 """Is the PPO of one file right, and does it learn? Its advantages, masks and file, and a short run."""
 
+from pathlib import Path
+
+import gymnasium
 import numpy as np
 import pytest
 import torch
@@ -8,6 +11,7 @@ from agents.players.trained import load_player
 from examples import ppo_single_file as example
 from snooker_env import SnookerVectorEnv
 from snooker_env.benchmark import play_visits, summary
+from tests.docs.pages import blocks
 
 
 def test_advantages_are_those_of_the_definition():
@@ -63,6 +67,63 @@ def test_it_learns(tmp_path, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 7 and points > 1.7 * float(lines[0].partition(" shots, ")[2].partition(" ")[0])
     assert summary(play_visits(player, 200))["points_a_visit"] > 3.3  # after 8,192 shots: 2.4
+
+
+@pytest.fixture
+def played(monkeypatch):
+    """Rewards and ends of all steps of tables that are made now."""
+    made, make_vec = [], gymnasium.make_vec
+
+    def watched(*args, **options):
+        envs = make_vec(*args, **options)
+        step = envs.step
+
+        def kept(actions):
+            given = step(actions)
+            made.append((given[1].copy(), given[2] | given[3]))
+            return given
+
+        envs.step = kept
+        return envs
+
+    monkeypatch.setattr(gymnasium, "make_vec", watched)
+    before = torch.random.get_rng_state(), torch.get_num_threads()
+    yield made
+    torch.random.set_rng_state(before[0]), torch.set_num_threads(before[1])
+
+
+def returns_of(played, since=0):
+    """What each visit brought that ended from step ``since`` on, counted table by table."""
+    returns = []
+    for k in range(len(played[0][0])):
+        begun = 0
+        for t, (_, ends) in enumerate(played):
+            if ends[k]:
+                returns += [sum(rewards[k] for rewards, _ in played[begun : t + 1])] * (t >= since)
+                begun = t + 1
+    return returns
+
+
+def test_the_returns_that_it_prints_are_those_of_whole_visits(tmp_path, capsys, monkeypatch, played):
+    """Every reward of a visit counts, the first one too."""
+    monkeypatch.setattr(example, "STEPS", 16)
+    points, _ = trained(1024, tmp_path)
+    returns = returns_of(played)
+    assert len(played) == 16 and 300 < len(returns) < 1000
+    assert points == pytest.approx(np.mean(returns))
+    assert f", {np.mean(returns):.2f} points a visit" in capsys.readouterr().out
+
+
+def test_so_are_those_of_the_loop_on_the_page_of_trainers(capsys, played):
+    text = Path("docs/environment/trainers.md").read_text(encoding="utf-8")
+    (loop,) = [block for block in blocks(text) if "log_std" in block]
+    exec(loop, {})
+    printed = [float(line.rpartition(" ")[2]) for line in capsys.readouterr().out.splitlines()]
+    steps = len(played) // 4
+    for update, mean in enumerate(printed):
+        assert mean == pytest.approx(
+            np.mean(returns_of(played[: (update + 1) * steps], update * steps)), abs=1e-3
+        )
 
 
 def test_its_file_is_played_by_our_protocol(tmp_path):

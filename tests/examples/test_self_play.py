@@ -9,6 +9,7 @@ import torch
 
 from examples import self_play
 from snooker_env import SnookerVectorEnv
+from tests.flips import flipped
 
 SHORT = ("--shots", "640", "--tables", "4", "--frames", "6", "--checked", "2", "--threads", "1")
 """Three rollouts of 256 shots."""
@@ -57,6 +58,12 @@ def test_an_interrupted_run_goes_on_exactly(whole, tmp_path, monkeypatch):
     for point in one["curve"] + other["curve"]:
         del point["seconds"]
     assert one["curve"] == other["curve"]
+
+
+def test_no_flipped_bit_of_a_checkpoint_is_used(whole):
+    for _ in flipped(whole / "checkpoint.pkl", 20):
+        with pytest.raises(SystemExit, match=r"checkpoint\.pkl: it is damaged"):
+            self_play.main([*SHORT, "--out", str(whole)])
 
 
 def test_a_checkpoint_of_other_settings_is_refused(whole):

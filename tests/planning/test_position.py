@@ -221,7 +221,12 @@ def test_a_file_holds_the_position_to_the_last_bit_on_any_table(tmp_path):
     far = Position(cue=(0.0, 0.0), black=(3.0, 0.0), table=None)
     far.save(tmp_path / "far.json")
     assert Position.load(tmp_path / "far.json", table=None) == far
-    refused(lambda: Position.load(tmp_path / "far.json"), "black", "3.0", "must be on the table")
+    refused(
+        lambda: Position.load(tmp_path / "far.json"),
+        f"{tmp_path / 'far.json'}: black",
+        "3.0",
+        "must be on the table",
+    )
 
 
 def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
@@ -253,14 +258,15 @@ def test_what_is_wrong_is_named(tmp_path, change, field, value, allowed):
     refused(lambda: Position.from_dict(GOOD | change), field, value, allowed)
     file = tmp_path / "wrong.json"
     file.write_text(json.dumps(GOOD | change))
-    refused(lambda: Position.load(file), field if "key" not in field else f"key of {file}", value, allowed)
+    named = f"key of {file}" if "key" in field else f"{file}: {field}"
+    refused(lambda: Position.load(file), named, value, allowed)
 
 
 def test_what_is_no_json_is_refused(tmp_path):
     file = tmp_path / "wrong.json"
     for text in ("", "{", "\ud800".encode("utf-8", "surrogatepass"), "[" * 100_000):
         file.write_bytes(text if isinstance(text, bytes) else text.encode())
-        with pytest.raises(ValueError, match=r"wrong.json: must be JSON"):
+        with pytest.raises(ValueError, match=r"^path = .*wrong.json': must be JSON"):
             Position.load(file)
     for text in ("[]", "3", '"black"'):
         file.write_text(text)

@@ -122,7 +122,7 @@ def test_wrong_fields_are_named(line):
     error = refused(line("api/stroke", {"speed": 99, "aim": 0}), 422, "must be a finite number in [0.2, 7]")
     assert (error["field"], error["value"]) == ("speed", "99")
     assert refused(line("api/stroke", {"speed": 1, "aim": "nan"}), 422, "finite")["field"] == "aim"
-    assert refused(line("api/stroke", b'{"speed": 1e999, "aim": 0}'), 422, "finite")["field"] == "speed"
+    refused(line("api/stroke", b'{"speed": 1e999, "aim": 0}'), 400, "1e999 is no number")
     assert refused(line("api/undo", {"steps": 2}), 422, "no fields")["value"] == "'steps'"
     assert refused(line("api/state?x=1"), 422, "must be one of")["value"] == "'x'"
     assert refused(line("api/state?after=1&after=2"), 400, "once")["field"] == "after"
@@ -312,7 +312,7 @@ def test_the_first_agent_or_the_tactician_sits_opposite(agents, other):
         (["--layout", "x"], "layout = 'x'"),
         (["--agent", "nobody"], "player = 'nobody'"),
         (["--options", "aim=target"], "options = {'aim': 'target'}: must be left out"),
-        (["--position", str(ROOT / "pyproject.toml")], "pyproject.toml: must be JSON ("),
+        (["--position", str(ROOT / "pyproject.toml")], "pyproject.toml': must be JSON ("),
         (["--port", "99999"], "port = 99999: must be an integer in [0, 65535]"),
         (["--seed", "-1"], "seed = -1"),
     ],

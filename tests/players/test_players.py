@@ -168,11 +168,6 @@ def test_what_is_no_player_is_refused(name, why):
         sn.player(name)
 
 
-def test_lookahead_is_an_old_name_of_search():
-    with pytest.warns(DeprecationWarning, match="search"):
-        assert sn.player("lookahead_60").name == "search_60"
-
-
 def test_positions_of_one_kind_are_enough():
     position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     player = sn.player("search_30").at({"noise": "none"})

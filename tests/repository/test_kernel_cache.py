@@ -6,12 +6,12 @@ import stat
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from hashlib import sha256
 from pathlib import Path
 
 import pytest
 
 from snooker_env import _cache
+from snooker_env._seal import sealed
 from tests.processes import ROOT, python
 
 TOY = """
@@ -53,6 +53,11 @@ def toy(tmp_path):
 
 def files(toy, pattern):
     return sorted(toy.folder.rglob(pattern))
+
+
+def name_of(toy, file):
+    """Under which its checksum is made."""
+    return file.relative_to(toy.folder.parent).as_posix()
 
 
 # Folders of others
@@ -166,8 +171,7 @@ def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
     folder = toy.folder if which == "top" else index.parent
 
     def plant():
-        data = pickle.dumps(Planted(mark)) + planted
-        index.write_bytes(data + sha256(data).digest())
+        index.write_bytes(sealed(pickle.dumps(Planted(mark)) + planted, name_of(toy, index)))
 
     plant()
     folder.chmod(0o777)
@@ -189,7 +193,7 @@ DAMAGED = {
     "garbage": lambda data: b"garbage" * 99,
     "zeros": lambda data: bytes(len(data)),
     "one bit": lambda data: data[:40] + bytes([data[40] ^ 4]) + data[41:],
-    "another numba's": lambda data: OTHER + sha256(OTHER).digest(),
+    "another numba's": lambda data: OTHER,
 }
 OTHER = pickle.dumps(("something", "else"))
 """Whole, but not what this numba makes."""
@@ -208,11 +212,36 @@ def test_a_damaged_file_is_compiled_and_kept_anew(toy, what, how):
     """An index of another numba is no damage."""
     toy()
     (path,) = files(toy, what)
-    path.write_bytes(DAMAGED[how](path.read_bytes()))
+    data = DAMAGED[how](path.read_bytes())
+    path.write_bytes(sealed(data, name_of(toy, path)) if how == "another numba's" else data)
     out, err = toy()
     assert out == MIXED and err.count("RuntimeWarning") == 1
     assert how == "another numba's" or f"machine code kept in {path.parent} cannot be used" in err
     assert toy() == (LOADED, "")
+
+
+def test_another_kernels_machine_code_is_not_run_under_this_ones_name(toy):
+    """Each file is whole; a double would be halved."""
+    toy()
+    double, half = (files(toy, f"*{name}*.nbc")[0] for name in ("double", "half"))
+    a, b = double.read_bytes(), half.read_bytes()
+    double.write_bytes(b), half.write_bytes(a)
+    out, err = toy()
+    assert out == FRESH and "or was written under another name" in err
+    assert toy() == (LOADED, "")
+
+
+def test_one_damaged_entry_costs_no_other(toy):
+    """Of a kernel for floats and for integers, each with machine code of its own."""
+    both = "import toy; toy.double(1), toy.double(True)\n"
+    toy(both)
+    one, other = files(toy, "*double*.1.nbc")[0], files(toy, "*double*.2.nbc")[0]
+    one.write_bytes(b"garbage")
+    before = other.stat().st_mtime_ns
+    out, _ = toy(both)
+    assert out == "3.0 1.5 2 1"
+    assert other.stat().st_mtime_ns == before
+    assert toy(both) == ("3.0 1.5 3 1", "")
 
 
 FULL = """

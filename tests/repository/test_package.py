@@ -83,7 +83,7 @@ def test_what_is_missing_is_installed_as_the_package_was(tmp_path):
     ],
 )
 def test_options_keep_the_order_and_the_defaults_that_were_promised(name, promised):
-    """Users call these with positional arguments: design.md's list is the contract."""
+    """Users call these with positional arguments, and docs/develop/versions.md promises that their calls go on working."""
     parameters = inspect.signature(getattr(sn, name)).parameters.values()
     ordered = [p for p in parameters if p.kind is not p.KEYWORD_ONLY]
     assert " ".join(p.name if p.default is p.empty else f"{p.name}={p.default}" for p in ordered) == promised

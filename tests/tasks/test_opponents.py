@@ -258,7 +258,7 @@ def test_a_file_that_holds_nothing_sound_is_refused(saved, tmp_path, change):
 def test_a_small_file_that_unpacks_to_gigabytes_is_not_unpacked(tmp_path):
     with zipfile.ZipFile(tmp_path / "model.zip", "w", zipfile.ZIP_DEFLATED) as file:
         file.writestr("data", b"{}" + b" " * 2**26)
-    says = r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \(.*data is larger than 67108864"
+    says = r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \(.*data is larger than 67,108,864"
     with pytest.raises(ValueError, match=says):
         SnookerEnv(task="frame", opponent=str(tmp_path / "model.zip"))
 

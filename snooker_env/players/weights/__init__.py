@@ -7,11 +7,12 @@ out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading 
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..._check import refuse
+from ..._files import read_npz
 from ..._types import Singles
 from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
 from ...planning.worth import Chance
@@ -50,28 +51,31 @@ def learned_of(arrays: Mapping[str, Singles]) -> Learned:
     return Learned(StrokePolicy(policy), members)
 
 
+def worth_in(arrays: Mapping[str, Any]) -> tuple[list[tuple[Singles, Singles]], Chance]:
+    """The layers of a ``LearnedWorth`` and the chance to win in the arrays of a file."""
+    return layers_of(arrays, "worth"), Chance(*arrays["chance"].tolist())
+
+
 @cache
 def learned_at(level: str) -> Learned:
     """What was learned under the errors of a level; ValueError if there is no file for it."""
     path = FOLDER / f"{level}.npz"
     if not path.is_file():
         raise refuse("level", level, f"must be one of {', '.join(levels())}")
-    with np.load(path, allow_pickle=False) as arrays:
-        return learned_of({name: arrays[name] for name in arrays.files})
+    return learned_of(read_npz(path))
 
 
 @cache
-def learned_worth(path: Path = FOLDER / WORTH) -> tuple[list[tuple[Singles, Singles]], Chance]:
-    """The layers of a ``LearnedWorth``, for all levels, and the chance to win; by default the package's."""
-    with np.load(path, allow_pickle=False) as arrays:
-        return layers_of(arrays, "worth"), Chance(*arrays["chance"].tolist())
+def learned_worth() -> tuple[list[tuple[Singles, Singles]], Chance]:
+    """The layers of a ``LearnedWorth``, for all levels, and the chance to win."""
+    return worth_in(read_npz(FOLDER / WORTH))
 
 
 @cache
 def learned_strokes(path: Path = FOLDER / STROKES) -> StrokeLayers:
     """The layers of the networks of ``stroke_value``; by default the package's."""
-    with np.load(path, allow_pickle=False) as arrays:
-        return StrokeLayers(*(layers_of(arrays, of) for of in StrokeLayers._fields))
+    arrays = read_npz(path)
+    return StrokeLayers(*(layers_of(arrays, of) for of in StrokeLayers._fields))
 
 
 def levels() -> list[str]:

@@ -8,6 +8,7 @@ import pytest
 from agents.evaluation import tournament, tournament_play
 from agents.evaluation.tournament_figures import COLUMNS, figures_of
 from agents.evaluation.tournament_file import FIELDS, PLAYER, faults
+from snooker_env.benchmark import read_result
 from tests.agents.training import interrupted_at
 from tests.processes import ROOT
 
@@ -25,7 +26,7 @@ def parts(monkeypatch):
 def played(tmp_path, *more, name="t.json", players=PLAYERS, code=0):
     file = tmp_path / name
     assert tournament.main([*players, *QUICK, "--out", str(file), *more]) == code
-    return json.loads(file.read_text(), parse_constant=lambda text: pytest.fail(f"{text} is not JSON"))
+    return read_result(file)
 
 
 def test_json_markdown_check_and_show(tmp_path, capsys):
@@ -99,7 +100,7 @@ def test_what_a_player_fails_at_keeps_what_was_played(tmp_path, monkeypatch, par
     interrupted_at(monkeypatch, tournament_play, "play_pair", 3, RuntimeError("no chalk"))
     with pytest.raises(RuntimeError, match="no chalk"):
         played(tmp_path)
-    found = json.loads((tmp_path / "t.json").read_text())
+    found = read_result(tmp_path / "t.json")
     assert found["incomplete"] == "RuntimeError: no chalk" and len(found["rows"]) == 6 and faults(found) == []
 
 
@@ -144,7 +145,7 @@ MAIN = "agents/results/visits.json"
         ("ghost_ball random --options aim=target", "options = 'aim=target': must be left out"),
         ("ghost_ball random --resume", "resume = True: must be given together with --out"),
         ("ghost_ball random --out pyproject.toml", "out = 'pyproject.toml': must be a new file"),
-        ("ghost_ball random --out pyproject.toml --resume", "pyproject.toml: must be JSON"),
+        ("ghost_ball random --out pyproject.toml --resume", "pyproject.toml': must be JSON"),
         ("ghost_ball random --out tests --force", "out = 'tests': must be a file"),
         ("--show nothing.json", "show = 'nothing.json': must be the file of a tournament .cannot be read"),
         (f"--show {MAIN}", f"show = '{MAIN}': must be the file of a tournament"),

@@ -21,7 +21,6 @@ import train
 from agents.evaluation import protocol, publish
 from agents.evaluation.entrants import Entrant
 from agents.features.observed import training_tables
-from agents.learning import policy_files
 from agents.learning.hyperparameters import Recipe, names
 from agents.learning.model_files import KEPT, packed, read
 from agents.learning.models import POLICY, PRETRAINED, load_weights
@@ -122,7 +121,7 @@ def test_wrong_figures_are_refused(plain, tmp_path, key, value):
     with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}") as info:
         load_player(file)
     assert type(info.value) is ValueError and len(str(info.value)) < 600
-    assert key in str(info.value) or "older" in str(info.value)
+    assert key in str(info.value) or "older" in str(info.value) or "NaN is no number" in str(info.value)
 
 
 @pytest.mark.parametrize("key", [key for key in KEPT if key not in ("seed", "imitated", "start", "recipe")])
@@ -392,14 +391,6 @@ def test_nothing_in_a_file_is_unpickled(tmp_path):
     with pytest.raises(ValueError, match=r"^agent = "):
         read_policy(tmp_path / "q.npz", "agent")
     assert not (tmp_path / "mark").exists()
-
-
-def test_a_file_that_would_fill_the_memory_is_refused_before_it_is_read(tmp_path, monkeypatch):
-    monkeypatch.setattr(policy_files, "MOST", 20_000)
-    with zipfile.ZipFile(tmp_path / "p.npz", "w", zipfile.ZIP_DEFLATED) as made:
-        made.writestr("weight_0.npy", b"\0" * 10**6)
-    with pytest.raises(ValueError, match=r"it holds more than 20,000 bytes"):
-        read_policy(tmp_path / "p.npz", "agent")
 
 
 def test_what_is_written_must_be_described():

@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,6 +14,8 @@ import pytest
 import train
 from agents.learning import callback
 from agents.learning.imitation import Imitation
+from agents.learning.models import CHECKPOINT
+from agents.learning.run_folder import read_checkpoint
 from agents.players.trained import load_player
 from commands import lock
 from commands.files import write_atomic
@@ -20,6 +23,7 @@ from commands.lifecycle import python
 from snooker_env.progress import Progress
 from tests.agents import training
 from tests.agents.training import TINY, results, resume, weights
+from tests.flips import flipped
 from tests.processes import ROOT
 
 CONTINUE = f"Continue with:  {python()} train.py --resume --out"
@@ -152,6 +156,14 @@ def test_imitation_is_saved_at_intervals(whole, tmp_path, capsys, monkeypatch):
     assert pickle.loads((out / "checkpoint.pkl").read_bytes())["imitating"]["done"] == 24
     assert resume(out) == 0
     assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
+
+
+def test_no_flipped_bit_of_a_checkpoint_is_used(whole, tmp_path):
+    shutil.copy(whole / CHECKPOINT, tmp_path)
+    for _ in flipped(tmp_path / CHECKPOINT):
+        with pytest.raises(ValueError, match=rf"^resume = '{tmp_path / CHECKPOINT}': must be a complete"):
+            read_checkpoint(tmp_path, train.Settings)
+    assert read_checkpoint(tmp_path, train.Settings)[1].steps == 256
 
 
 @pytest.mark.parametrize("first", [signal.SIGINT, signal.SIGTERM])

@@ -18,6 +18,8 @@ from tests.trainers import needed
 
 ray = needed("ray")
 config, run = needed("agents.trainers.rllib_config"), needed("agents.trainers.rllib_run")
+from tests.flips import flipped  # noqa: E402
+
 ROOT = Path(__file__).parents[3]
 SHORT = ["--envs", "16", "--eval-visits", "4", "--checkpoint-every", "8000"]
 
@@ -35,6 +37,25 @@ def of_one_update(out):
     assert set(results["evaluation"]) == {"trained", "untrained", "ghost_ball", "random"}
     assert results["versions"]["ray"] and not ray.is_initialized()
     return progress, first
+
+
+class Saves:
+    """Stands for RLlib's algorithm: it saves two files."""
+
+    def save_to_path(self, folder):
+        Path(folder, "part").mkdir(parents=True)
+        Path(folder, "state.pkl").write_bytes(bytes(range(250)))
+        Path(folder, "part/weights.pkl").write_bytes(bytes(range(99)))
+
+
+def test_no_flipped_bit_of_a_checkpoint_is_used(tmp_path, monkeypatch):
+    monkeypatch.setattr(run, "_write", lambda *given: None)
+    run.save(tmp_path, run.RunSettings(seed=7), run.Counters(shots=9, updates=3), Saves())
+    for name in (run.STATE, "checkpoint-000003/state.pkl", "checkpoint-000003/part/weights.pkl"):
+        for _ in flipped(tmp_path / name):
+            with pytest.raises(ValueError, match=rf"^out = '{tmp_path}': must be the folder of a run with a"):
+                run.opened(tmp_path, {}, True)
+    assert run.opened(tmp_path, {}, True)[1].shots == 9
 
 
 def test_a_run_is_saved_and_judged(tmp_path):
