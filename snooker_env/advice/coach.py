@@ -198,7 +198,7 @@ def coach(
         visits=visits,
         called=len(found.pots.rows),
         made=int(found.pots.made.sum()),
-        expected=None if found.direction is None else _counted(found),
+        expected=_counted(found),
         likely=_likely(found.pots, bench),
         target=target if isinstance(target, str) else asdict(bench.noise),
         costs=parts,
@@ -227,7 +227,7 @@ def _likely(pots: Pots, bench: Practice) -> Estimate | None:
 
 def _counted(found: Fitted) -> Estimate | None:
     """How many called pots are made: the mean over the errors' posterior, the normal interval of the count."""
-    if not len(found.pots.rows):
+    if found.direction is None or not len(found.pots.rows):
         return None
     mean = square = 0.0
     for chances, weights in zip(chances_of(found.pots, found.errors.at), found.direction, strict=True):

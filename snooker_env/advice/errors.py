@@ -333,8 +333,12 @@ def measured(strokes: list[Recorded], practice: Practice) -> Measured:
     paces = np.full(len(strokes), POT_SPEED)
     base, physics = LEVELS[BASE], practice.options.rules.physics
     unit = np.radians(base.direction_deg(physics, speed=0.0))
-    rows = [k for k, one in enumerate(strokes) if one.played and one.ball and not one.intended]
-    lines = dict(zip(rows, zip(*lines_of([strokes[k] for k in rows], practice), strict=True), strict=True))
+    at_pots = {
+        k: as_needed(one, practice)
+        for k, one in enumerate(strokes)
+        if one.played is not None and one.ball is not None and one.intended is None
+    }
+    lines = dict(zip(at_pots, zip(*lines_of(list(at_pots.values()), practice), strict=True), strict=True))
     for k, one in enumerate(strokes):
         if one.intended is not None:
             paces[k] = one.intended.speed
@@ -350,11 +354,10 @@ def measured(strokes: list[Recorded], practice: Practice) -> Measured:
             aside, more = one.played["aim"] - cue + squirted(one.played["side"] - side, physics), 1.0
         else:
             line, more = lines[k]
-            way = direction_of(one.played, physics)
-            tip = one.played["side"], one.played["top"]
-            needed, _ = as_meant(one, np.array([paces[k], *tip, way, 0.0]), practice)
-            own = one.played["elevation"]
-            elevation, aside = needed if own < needed + AS_NEEDED else own, way - line
+            elevation, aside = (
+                (at_pots[k].played or {})["elevation"],
+                direction_of(one.played, physics) - line,
+            )
         if practice.options.cue == "real":
             more *= 1.0 + elevation / TWICE
         directions[k], widths[k] = remainder(aside, 2.0 * pi) / (unit * more), CALLED / (unit * more)
@@ -368,6 +371,16 @@ def as_meant(one: Recorded, stroke: Floats, practice: Practice) -> tuple[float, 
         return float(stroke[4]), float(stroke[1])
     room = room_for(stroke, Positions.of(one.position), practice.options.rules)
     return room.elevation, room.side
+
+
+def as_needed(one: Recorded, practice: Practice) -> Recorded:
+    """A stroke at a pot with the elevation that was likely meant: as low as the cue could be, if it was nearly that."""
+    played: dict[str, float] = one.played or {}
+    way = direction_of(played, practice.options.rules.physics)
+    stroke = np.array([played["speed"], played["side"], played["top"], way, 0.0])
+    needed, _ = as_meant(one, stroke, practice)
+    own = played["elevation"]
+    return replace(one, played=played | {"elevation": needed if own < needed + AS_NEEDED else own})
 
 
 def lines_of(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats]:
@@ -387,7 +400,7 @@ def lines_of(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Float
     tip = base.offset_mm * 1e-3 / physics.R  # its error moves the line, too, by the throw of its spin
     parts = (
         np.full(len(strokes), radians(base.aim_deg)),
-        tip * (np.subtract(*squirts) / (2.0 * step) - turn(right, left)),
+        tip * (np.subtract(squirts[0], squirts[1]) / (2.0 * step) - turn(right, left)),
         tip * turn(up, down),
     )
     return aims, np.linalg.norm(parts, axis=0) / np.radians(base.direction_deg(physics, speed=0.0))

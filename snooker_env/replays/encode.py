@@ -98,7 +98,7 @@ def physics_data(physics: Physics) -> str | dict[str, Any]:
     """Constants as JSON types, which ``Physics.of`` reads: the name of a preset, or the nearest one and what differs."""
     own, changes = asdict(physics), {}
     for name in PRESETS:
-        usual = asdict(Physics.preset(name))
+        usual = asdict(Physics(**PRESETS[name]))
         changes[name] = {key: value for key, value in own.items() if value != usual[key]}
     nearest = min(changes, key=lambda name: len(changes[name]))
     return {"preset": nearest, **changes[nearest]} if changes[nearest] else nearest
