@@ -4,9 +4,10 @@
     [--seed 0] [--json FILE] [--out FOLDER]
 
 The strokes are pots that ``search_30`` means in visits from opened tables; each player plays such strokes with errors of
-its own. The errors are then estimated from what is known: the stroke meant and played; the pot meant and the stroke
-played; the stroke meant, and whether the pot went in. "drill" is the straight long blue from the one of six distances
-at which the player makes nearest to 85 %. Printed: medians, the root mean square of the estimates' errors, half of the
+its own. The errors, and how they grow with the speed, are then estimated from what is known: the stroke meant and
+played; the pot meant and the stroke played; the stroke meant, and whether the pot went in. "drill" is the straight long
+blue from the one of six distances at which the player makes nearest to 85 %. Printed: means of the estimates over the
+truth (of a growth, which may be 0, the growth itself), the root mean square of the estimates' errors, half of the
 median width of the 95 % intervals, the share of players whose estimate is within 15 %, and how often the interval holds
 the truth, with 95 % intervals of both shares (Wilson). Tolerances of pots are simulated once for the pool.
 """
@@ -23,29 +24,31 @@ from snooker_env.advice.judging import wilson
 from snooker_env.advice.practice import practice_of
 from snooker_env.planning import Planner, Positions
 from snooker_env.players import VISITS
-from snooker_env.tasks.noise import LEVELS, Noise
+from snooker_env.tasks.noise import LEVELS, POT_SPEED, Noise
 
 from ._common.command import Command, at_least, run, save_json
 
 MEANS, COPIES = "search_30", 50
 """Who means the strokes; how often the tolerance of each pot of the drill is found, with other errors each time."""
 BASE = LEVELS[coaching.BASE]
+WHERE = {"cue": "free", "physics": "paper", "table": "match"}
 
 
-def errors_like(times, speed_rel, aim_share=0.5):
-    """Errors of direction ``times`` a professional's, of which the aim has a share of the variance."""
-    whole = BASE.direction_deg(speed=0.0) * times
+def errors_like(times, speed_rel, aim_share=0.5, growth=BASE.growth):
+    """Errors of direction ``times`` a professional's at 1.5 m/s, of which the aim has a share of the variance."""
+    whole = BASE.direction_deg() * times / hypot(1.0, growth * POT_SPEED)
     squirt = Noise(offset_mm=1.0).direction_deg(speed=0.0)
     aim, tip = whole * aim_share**0.5, whole * (1.0 - aim_share) ** 0.5 / squirt
-    return Noise(
-        aim_deg=aim, offset_mm=tip, speed_rel=speed_rel, elevation_deg=0.2 * times, growth=BASE.growth
-    )
+    return Noise(aim_deg=aim, offset_mm=tip, speed_rel=speed_rel, elevation_deg=0.2 * times, growth=growth)
 
 
 PLAYERS = {
     "club": LEVELS["club"],
-    "amateur": LEVELS["amateur"],
     "professional": LEVELS["professional"],
+    "growth 0": errors_like(3.0, 0.03, growth=0.0),
+    "growth 0.5": errors_like(3.0, 0.03, growth=0.5),
+    "growth 1": errors_like(3.0, 0.03, growth=1.0),
+    "growth 2": errors_like(3.0, 0.03, growth=2.0),
     "straight but rash": errors_like(1.5, 0.06),
     "wild, all of it aim": errors_like(3.0, 0.015, 0.9),
 }
@@ -139,55 +142,59 @@ def told(one, *, cue=None, made=None, intended=True):
     )
 
 
-def ends(one):
-    """An estimate and its interval as three numbers."""
-    return one.value, one.low, one.high
-
-
-def found(weights, unit, n):
-    """Estimate and interval of a posterior."""
-    return ends(coaching.estimate(weights, unit, n))
+def told_by_pots(chances, paces, made):
+    """Estimate, interval and truth's speed of pots made or missed."""
+    at = coaching.speed_of(paces)
+    log_l = coaching.outcomes(coaching.Pots([], chances, made, paces), at)
+    weights = coaching.posterior(log_l + np.log(coaching.PRIOR)[:, None]).sum(axis=0)
+    return coaching.estimate(weights, BASE.direction_deg(speed=at), len(made)), at
 
 
 def level(name, noise, pool, chances, blues, args):
-    """What is found of players with one level's errors: {kind: (players, 3)}, {kind: truth}."""
+    """What is found of players with one level's errors: {kind: (players, 4)}, estimate, interval and truth of each."""
     rng = np.random.default_rng((args.seed, *name.encode()))
-    unit, truth = BASE.direction_deg(), noise.direction_deg()
-    out = {kind: [] for kind in ("meant, played", "pot, played", "pot made or not", "drill")}
-    speeds = {"meant, played": []}
-    blue, here = drill(), np.abs(coaching.SCALES - truth / unit).argmin()
+    kinds = ("meant, played", "pot, played", "pot made or not", "drill")
+    out = {f"direction: {kind}": [] for kind in kinds} | {
+        "growth: meant, played": [],
+        "speed: meant, played": [],
+    }
+    blue = drill()
+    paces, drilled = (np.array([one.intended.speed for one in rows]) for rows in (pool, blue))
+    here = np.abs(coaching.SCALES - noise.direction_deg(speed=2.0) / BASE.direction_deg(speed=2.0)).argmin()
     rates = blues.reshape(len(blue), COPIES, -1).mean(axis=1)
     best = int(np.abs(rates[:, here] - 0.85).argmin())
+
+    def keep(kind, one, truth):
+        out[kind].append((one.value, one.low, one.high, truth))
+
     for _ in range(args.players):
         rows = rng.choice(len(pool), args.strokes)
         cues, made = played(pool, rows, noise, rng)
-        both = [told(pool[k], cue=cue) for k, cue in zip(rows, cues, strict=True)]
-        errors = coaching.estimate_errors(both)
-        out["meant, played"].append(ends(errors.direction))
-        speeds["meant, played"].append(ends(errors.speed))
-        line = coaching.estimate_errors(
-            [told(pool[k], cue=cue, intended=False) for k, cue in zip(rows, cues, strict=True)]
-        )
-        out["pot, played"].append(ends(line.direction))
-        weights = coaching.posterior(coaching.outcome(chances[rows], made).sum(axis=0))
-        out["pot made or not"].append(found(weights, unit, len(rows)))
+        for kind, intended in (("meant, played", True), ("pot, played", False)):
+            strokes = [told(pool[k], cue=cue, intended=intended) for k, cue in zip(rows, cues, strict=True)]
+            errors = coaching.estimate_errors(strokes, options=WHERE)
+            keep(f"direction: {kind}", errors.direction, noise.direction_deg(speed=errors.at))
+            if intended:
+                keep("growth: meant, played", errors.growth, noise.growth)
+                keep("speed: meant, played", errors.speed, noise.speed_rel)
+        one, at = told_by_pots(chances[rows], paces[rows], made)
+        keep("direction: pot made or not", one, noise.direction_deg(speed=at))
         same = np.full(args.strokes, best)
         _, made = played(blue, same, noise, rng)
-        weights = coaching.posterior(coaching.outcome(rates[same], made).sum(axis=0))
-        out["drill"].append(found(weights, unit, args.strokes))
-    kinds = {f"direction: {kind}": (truth, rows) for kind, rows in out.items()}
-    return kinds | {f"speed: {kind}": (noise.speed_rel, rows) for kind, rows in speeds.items() if rows}
+        one, at = told_by_pots(rates[same], drilled[same], made)
+        keep("direction: drill", one, noise.direction_deg(speed=at))
+    return out
 
 
-def summary(truth, rows):
-    """The figures of one kind of knowledge for one level."""
-    value, low, high = np.array(rows).T
-    near, held = np.abs(value / truth - 1.0) < 0.15, (low <= truth) & (truth <= high)
+def summary(rows):
+    """The figures of one kind of knowledge for one level: estimates over the truth; of growth, which may be 0, as they are."""
+    value, low, high, truth = np.array(rows).T
+    held, over = (low <= truth) & (truth <= high), truth if truth.all() else np.ones(len(truth))
+    near = np.abs(value - truth) < 0.15 * over
     return {
-        "truth": truth,
-        "median": float(np.median(value)),
-        "rms_percent": float(100.0 * np.sqrt(np.mean((value / truth - 1.0) ** 2))),
-        "width_percent": float(100.0 * np.median((high - low) / (2.0 * truth))),
+        "mean": float(np.mean(value / over)),
+        "rms_percent": float(100.0 * np.sqrt(np.mean(((value - truth) / over) ** 2))),
+        "width_percent": float(100.0 * np.median((high - low) / (2.0 * over))),
         "within_15": [float(near.mean()), *wilson(int(near.sum()), len(near))],
         "covered": [float(held.mean()), *wilson(int(held.sum()), len(held))],
     }
@@ -202,24 +209,24 @@ def main():
     add("--pool", type=at_least(5), default=100, help="different strokes [100]")
     add("--levels", nargs="+", choices=PLAYERS, default=tuple(PLAYERS), help="whose errors [all]")
     args = parser.options()
-    pool, practice = pool_of(args.pool, args.seed), practice_of(coaching.BASE)
+    pool, practice = pool_of(args.pool, args.seed), practice_of(coaching.BASE, WHERE)
     mark = [told(one, made=True) for one in pool]
     chances = coaching.tolerances(mark, practice, args.seed).chances
     blue = [told(one, made=True) for one in drill() for _ in range(COPIES)]
     blues = coaching.tolerances(blue, practice, args.seed).chances
     print(f"{args.players} players, {args.strokes} strokes each, of {len(pool)}\n")
-    print(f"{'':50s}{'median':>9s}{'rms':>7s}{'+-':>7s}  within 15 %        interval holds the truth")
+    print(f"{'':50s}{'mean':>9s}{'rms':>7s}{'+-':>7s}  within 15 %        interval holds the truth")
     figures = {}
     for name in args.levels:
         noise = PLAYERS[name]
         kinds = level(name, noise, pool, chances, blues, args)
-        figures[name] = {"noise": asdict(noise)} | {kind: summary(*both) for kind, both in kinds.items()}
+        figures[name] = {"noise": asdict(noise)} | {kind: summary(rows) for kind, rows in kinds.items()}
         print(f"{name}: {noise.direction_deg():.4f} deg, speed {100 * noise.speed_rel:.1f} %")
         for kind in kinds:
             one = figures[name][kind]
             shares = ["{:5.1f} % [{:.1f}, {:.1f}]".format(*(100 * x for x in one[key])) for key in SHARES]
             print(
-                f"  {kind:48s}{one['median']:9.4f}{one['rms_percent']:6.1f}%{one['width_percent']:6.0f}%  "
+                f"  {kind:48s}{one['mean']:9.4f}{one['rms_percent']:6.1f}%{one['width_percent']:6.0f}%  "
                 f"{shares[0]:24s}{shares[1]}",
                 flush=True,
             )

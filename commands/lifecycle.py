@@ -8,11 +8,12 @@ import argparse
 import errno
 import functools
 import io
-import os
 import shutil
 import sys
 import threading
 from pathlib import Path
+
+from snooker_env._closed import until_closed
 
 EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "rllib"}
 """The extra of pyproject.toml that brings a package which is not in [train]."""
@@ -99,12 +100,10 @@ def command(name):
             any_terminal()
             before, threading.excepthook = threading.excepthook, _of_thread
             try:
-                return main(argv)
+                with until_closed():
+                    return main(argv)
             except ImportError as error:
                 raise SystemExit(f"{name}: {what_is_missing(error)}") from None
-            except BrokenPipeError:  # the reader closed: train.py | head
-                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-                return 1
             except OSError as error:
                 raise SystemExit(f"{name}: {of_disk(error)}") from None
             except KeyboardInterrupt:

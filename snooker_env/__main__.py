@@ -1,5 +1,7 @@
 """``python -m snooker_env``: which commands are there?"""
 
+from ._closed import until_closed
+
 COMMANDS = {
     "watch": "watch a player's visit or frame in the browser, or keep it as a page or a film",
     "play": "play in the browser, against a player or a person",
@@ -8,6 +10,7 @@ COMMANDS = {
 }
 
 if __name__ == "__main__":
-    print("Commands of snooker_env; each with --help says more.\n")
-    for name, what in COMMANDS.items():
-        print(f"  python -m snooker_env.{name:<10} {what}")
+    with until_closed():
+        print("Commands of snooker_env; each with --help says more.\n")
+        for name, what in COMMANDS.items():
+            print(f"  python -m snooker_env.{name:<10} {what}")

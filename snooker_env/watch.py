@@ -5,7 +5,6 @@ the seeds one after the other, as ``benchmark.play_visits`` does; --at-least tak
 points, else the longest. With --frame: a frame against --opponent, with the miss rule "clear_path"."""
 
 import argparse
-import os
 import sys
 import tempfile
 import webbrowser
@@ -16,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ._check import integer, number, refuse
+from ._closed import until_closed
 from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
 from .planning import Positions
@@ -169,14 +169,12 @@ def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     """Play, print, write. Exit code 0; 1: failed; 2: wrong arguments; 130: Ctrl-C."""
     p = parser()
-    args = p.parse_args(argv)
     try:
-        watched(args, _checked(args))
+        with until_closed():
+            args = p.parse_args(argv)
+            watched(args, _checked(args))
     except ValueError as error:
         p.error(str(error))
-    except BrokenPipeError:  # nobody reads on: ... | head
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
     except (ImportError, OSError) as error:
         why = str(error)
         if isinstance(error, OSError) and error.strerror:

@@ -5,13 +5,13 @@ import argparse
 import contextlib
 import io
 import json
-import os
 import signal
 import sys
 from pathlib import Path
 
 from commands import files
 from commands.lifecycle import any_terminal
+from snooker_env._closed import until_closed
 
 from .stops import WRITTEN, explained
 
@@ -134,17 +134,13 @@ def run(main):
     printed = _Copied(sys.stdout)
     _transcripts.clear()
     try:
-        with contextlib.redirect_stdout(printed):
+        with until_closed(), contextlib.redirect_stdout(printed):
             code = main()
-        sys.stdout.flush()
         for file in _transcripts:
             save_text(file, printed.getvalue())
     except (KeyboardInterrupt, ImportError) as error:
         _alarm(0.0)
         code = explained(error)
-    except BrokenPipeError:  # the reader has left: python -m benchmarks.paper | head
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = 1
     finally:
         signal.signal(signal.SIGINT, before)
     sys.exit(code)

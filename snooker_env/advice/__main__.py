@@ -7,6 +7,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from .._closed import until_closed
+from ..physics.parameters import PRESETS as PHYSICS
 from ..planning import Position
 from ..players import players
 from ..players.model_options import add_model_options, options_of_words
@@ -15,14 +17,17 @@ from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from .ask import AGENT, OF_FRAMES, advise
 from .coach import coach
-from .recorded import read_strokes
+from .recorded import PLAYED_ON, read_strokes
+
+TABLES = ("match", "tight")  # presets of snooker's size
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Print advice for a position; with the word "coach" first, what recorded strokes say of a player."""
     argv = sys.argv[1:] if argv is None else argv
     try:
-        _coach(argv[1:]) if argv[:1] == ["coach"] else _advice(argv)
+        with until_closed():
+            _coach(argv[1:]) if argv[:1] == ["coach"] else _advice(argv)
     except (ValueError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -36,12 +41,14 @@ def _coach(argv: Sequence[str]) -> None:
     parser.add_argument("--player", type=int, choices=(0, 1), help="of a replay of a frame: whose strokes")
     target = f"whom costs are counted against: {', '.join(LEVELS)} (default: professional)"
     parser.add_argument("--target", default="professional", help=target)
-    parser.add_argument("--cue", choices=CUES, default="free", help="the cue of the strokes (default: free)")
+    for name, names in (("cue", CUES), ("physics", PHYSICS), ("table", TABLES)):
+        parser.add_argument(f"--{name}", choices=names, help="of the strokes, where the file does not say it")
     parser.add_argument("--seed", type=int, default=0, help="seed of the simulated strokes (default: 0)")
     parser.add_argument("--json", action="store_true", help="print all figures as JSON")
     args = parser.parse_args(argv)
     strokes = read_strokes(args.file, player=args.player)
-    found = coach(strokes, target=args.target, options={"cue": args.cue}, seed=args.seed)
+    told = {name: value for name in PLAYED_ON if (value := getattr(args, name)) is not None}
+    found = coach(strokes, target=args.target, options=told, seed=args.seed)
     print(json.dumps(found.to_dict(), indent=1) if args.json else found)
 
 

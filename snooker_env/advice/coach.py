@@ -14,9 +14,9 @@ from .._types import Floats
 from ..planning import clear_paths, pots
 from ..tasks.noise import LEVELS, NoiseLike
 from .costs import PARTS, lost
-from .errors import BASE, SCALES, Estimate, PlayerErrors, checked, fitted
+from .errors import BASE, SCALES, Estimate, Fitted, PlayerErrors, Pots, chances_of, checked, fitted
 from .practice import Practice, practice_of
-from .recorded import Recorded
+from .recorded import Recorded, agreed
 
 WIDE, NARROW = 0.23, 0.06  # tolerances [deg] above which a pot is easy, below which hard, as of ``pots:D``
 RESAMPLES = 2000
@@ -68,7 +68,7 @@ class Coaching:
     >>> at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     >>> over = sn.Position(over=True)
     >>> made = Recorded(position=at, ball=21, pocket=3, potted=True, points=7, after=over)
-    >>> report = coach([made] * 3)
+    >>> report = coach([made] * 3, options={"cue": "real", "physics": "match", "table": "match"})
     >>> report.called, report.made, sorted(report.costs)
     (3, 3, ['position', 'potting'])
     """
@@ -92,9 +92,10 @@ class Coaching:
 
     def __str__(self) -> str:
         errors, lines = self.errors, [f"{self.strokes} strokes in {self.visits} visits"]
+        at = f"{errors.at:.3g} m/s"
         base = LEVELS[BASE]
         for name, one, unit, scale, usual in (
-            ("direction, at 1.5 m/s", errors.direction, "deg", 1.0, base.direction_deg()),
+            (f"direction, at {at}", errors.direction, "deg", 1.0, base.direction_deg(speed=errors.at)),
             ("speed", errors.speed, "%", 100.0, base.speed_rel),
         ):
             if one is None:
@@ -103,6 +104,13 @@ class Coaching:
             value, low, high = scale * one.value, scale * one.low, scale * one.high
             often = f"{one.value / usual:.1f} times a professional's, from {one.strokes} strokes"
             lines.append(f"error of {name}: {value:.3g} {unit} [{low:.3g}, {high:.3g}], {often}")
+        if errors.direction is not None:
+            one, law = errors.growth, "with the cue speed V it grows as sqrt(1 + (g V)^2)"
+            lines.append(
+                f"{law}, g = {one} s/m"
+                if one
+                else f"strokes of about {at} do not tell how it grows with the speed"
+            )
         for name, one, unit, scale, words in (
             ("aims", errors.aside, "deg", 1.0, ("left", "right")),
             ("strikes", errors.faster, "%", 100.0, ("too hard", "too softly")),
@@ -139,14 +147,15 @@ def coach(
     target : str, dict or Noise
         Errors of the player that costs are counted against.
     options : dict or Options, optional
-        Where they were played, as in ``advise``; in a frame also "miss" and "game".
+        Where they were played, as in ``advise``: what the strokes do not say of "cue", "physics" and "table"; in a frame
+        also "miss" and "game".
     seed : int
         Seed of the simulated strokes, in [0, 2**63].
 
     Returns
     -------
     Coaching
-        ValueError if an argument is invalid, or no stroke says anything of an error.
+        ValueError if an argument is invalid, no stroke says anything of an error, or nothing says where they were played.
 
     Examples
     --------
@@ -155,17 +164,19 @@ def coach(
     >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
     >>> pot = {"position": at, "ball": 21, "pocket": 4, "speed": 2.0}
     >>> after = sn.Position(over=True)
-    >>> report = coach([Recorded(**pot, potted=True, points=7, after=after) for _ in range(3)])
+    >>> table = {"cue": "real", "physics": "match", "table": "match"}
+    >>> report = coach([Recorded(**pot, potted=True, points=7, after=after) for _ in range(3)], options=table)
     >>> report.made, report.errors.speed is None
     (3, True)
     """
     kept = checked(strokes)
+    options = agreed(kept, options)
     if isinstance(target, str):
         choice("target", target, LEVELS)
     bench = practice_of(target, options, of_frames=True)
     physical = {name: getattr(bench.options, name) for name in ("physics", "table", "fidelity", "cue")}
     base = practice_of(BASE, physical)
-    found = fitted(kept, base, seed)
+    found = fitted(kept, base, seed, every_pot=True)
     kept = found.strokes
     points, counts = lost(kept, bench, seed)
     visits = visits_of(kept)
@@ -181,15 +192,14 @@ def coach(
     drill = {"potting": _potting, "position": _position, "safety": _safety}
     by_part: dict[str, Floats] = {name: points[:, k] for k, name in enumerate(PARTS)}
     largest = (drawn.argmax(axis=1) == PARTS.index(most)) & (drawn.max(axis=1) > 0.0) if most else np.zeros(1)
-    chances = found.pots.chances
     return Coaching(
         errors=found.errors,
         strokes=len(kept),
         visits=visits,
         called=len(found.pots.rows),
         made=int(found.pots.made.sum()),
-        expected=None if found.direction is None else _counted(chances, found.direction),
-        likely=_counted(chances, _weights_of(bench, base)),
+        expected=_counted(found),
+        likely=_likely(found.pots, bench),
         target=target if isinstance(target, str) else asdict(bench.noise),
         costs=parts,
         most=most,
@@ -203,22 +213,32 @@ def visits_of(strokes: Sequence[Recorded]) -> int:
     return sum(not one.goes_on for one in strokes) + strokes[-1].goes_on
 
 
-def _weights_of(bench: Practice, base: Practice) -> Floats:
-    """Weights (scales,) of a player of the target level, whose errors are known."""
-    physics = base.options.rules.physics
-    times = bench.noise.direction_deg(physics) / LEVELS[BASE].direction_deg(physics)
-    return np.eye(len(SCALES))[int(np.abs(np.log(SCALES / max(times, SCALES[0]))).argmin())]
+def _likely(pots: Pots, bench: Practice) -> Estimate | None:
+    """How many called pots a player of the target level makes, whose errors are known; the normal interval."""
+    physics, noise, base = bench.options.rules.physics, bench.noise, LEVELS[BASE]
+    times = [
+        noise.direction_deg(physics, speed=v) / base.direction_deg(physics, speed=v)
+        for v in pots.paces.tolist()
+    ]
+    at = np.log(np.maximum(times, SCALES[0]))
+    p = np.array([np.interp(x, np.log(SCALES), row) for x, row in zip(at, pots.chances, strict=True)])
+    return _interval(float(p.sum()), float((p * (1.0 - p)).sum()), len(p)) if len(p) else None
 
 
-def _counted(chances: Floats, weights: Floats) -> Estimate | None:
-    """How many called pots (n, scales) are made: the mean over the weights, the normal interval of the count."""
-    if not len(chances):
+def _counted(found: Fitted) -> Estimate | None:
+    """How many called pots are made: the mean over the errors' posterior, the normal interval of the count."""
+    if found.direction is None or not len(found.pots.rows):
         return None
-    counts, spread = chances.sum(axis=0), (chances * (1.0 - chances)).sum(axis=0)
-    mean = float(counts @ weights)
-    half = 1.96 * sqrt(max(0.0, float(spread @ weights + counts**2 @ weights) - mean * mean))
-    low, high = max(0.0, mean - half), min(float(len(chances)), mean + half)
-    return Estimate(value=mean, low=low, high=high, strokes=len(chances))
+    mean = square = 0.0
+    for chances, weights in zip(chances_of(found.pots, found.errors.at), found.direction, strict=True):
+        counts, spread = chances.sum(axis=0), (chances * (1.0 - chances)).sum(axis=0)
+        mean, square = mean + float(counts @ weights), square + float((spread + counts**2) @ weights)
+    return _interval(mean, square - mean * mean, len(found.pots.rows))
+
+
+def _interval(mean: float, variance: float, n: int) -> Estimate:
+    half = 1.96 * sqrt(max(0.0, variance))
+    return Estimate(value=mean, low=max(0.0, mean - half), high=min(float(n), mean + half), strokes=n)
 
 
 def _potting(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
@@ -244,7 +264,8 @@ def _position(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: Pla
     reason = f"the positions left after pots are {cost.value:.1f} points a visit worse than the target's"
     if errors.speed is not None and errors.direction is not None:
         base = LEVELS[BASE]
-        fast, aside = errors.speed.value / base.speed_rel, errors.direction.value / base.direction_deg()
+        usual = base.direction_deg(speed=errors.at)
+        fast, aside = errors.speed.value / base.speed_rel, errors.direction.value / usual
         if fast > 1.25 * aside:
             reason += f", and the error of speed is {fast:.1f} times a professional's, that of direction {aside:.1f}"
     return Drill(layout="line_up", reason=reason)

@@ -1,11 +1,12 @@
 """How large are a player's errors of direction and speed? ``estimate_errors``: estimates with 95 % intervals.
 
-The model is that of ``snooker_env.tasks.noise``; two multiples s of a professional's errors are estimated, by the
-likelihoods of docs/play/coach.md, "How errors are estimated"."""
+The model is that of ``snooker_env.tasks.noise``. Estimated are the errors of direction and of speed, as multiples s of a
+professional's, and how the first grow with the cue speed, by the likelihoods of docs/play/coach.md, "How errors are
+estimated"."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
-from math import erf, hypot, pi, remainder, sqrt
+from math import erf, hypot, pi, radians, remainder, sqrt
 from statistics import NormalDist
 from typing import Any, NamedTuple
 
@@ -16,14 +17,24 @@ from .._types import Floats
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
 from ..planning import Positions
 from ..planning.sobol import sobol_points
+from ..planning.strokes import STEEPEST_CUE
 from ..tasks.noise import LEVELS, POT_SPEED, TWICE, Noise
 from .practice import Practice, practice_of
-from .recorded import CALLED, Recorded, direction_of
+from .recorded import CALLED, Recorded, agreed, direction_of, squirted
+from .room import room_for
 
 BASE = "professional"  # whose errors the estimates are multiples of
 LEAST, MOST = 0.02, 50.0  # smallest and largest error that is thought of, over a professional's
 SCALES = np.geomspace(LEAST, MOST, 600)
-SHARES = np.linspace(0.005, 0.9, 40)  # shares of safeties among guessed pots that are thought of, each alike
+STEP = float(np.log(SCALES[1] / SCALES[0]))
+# Growths g [s/m] that are thought of, errors being as sqrt(1 + (g V)^2): one in five that they do not grow, as of robots;
+# else each angle whose tangent is g V at the speed of a pot is as likely as any other
+GROWTHS = np.tan(np.linspace(0.0, 0.97, 31) * 0.5 * pi) / POT_SPEED
+UNGROWN = 0.2
+PRIOR = np.where(GROWTHS == 0.0, UNGROWN, (1.0 - UNGROWN) / (len(GROWTHS) - 1))
+SEVERAL = 1.5  # highest over lowest speed from which the strokes tell a growth
+AS_NEEDED = radians(2.0)  # a cue so little above what rails and balls need was meant as low as they allow
+SHARES = np.linspace(0.005, 0.9, 12)  # shares of safeties among guessed pots that are thought of, each alike
 RADII = np.geomspace(0.12, 60.0, 27)  # sizes of errors that are tried [a professional's standard deviations]
 WAYS = 32  # errors of each radius that are tried
 
@@ -49,12 +60,17 @@ class PlayerErrors:
     Attributes
     ----------
     direction : Estimate or None
-        Standard deviation of the cue ball's direction at 1.5 m/s [deg]; None if no stroke tells it.
+        Standard deviation of the cue ball's direction at the cue speed ``at`` [deg]; None if no stroke tells it.
+    at : float
+        Cue speed [m/s]: 1.5, or the nearest between the quartiles of the strokes' speeds.
+    growth : Estimate or None
+        The g [s/m] of the law that errors of direction grow with the cue speed V as sqrt(1 + (g V)^2), see ``Noise``; its
+        interval holds the likeliest values. None if all strokes are of about one speed.
     speed : Estimate or None
-        That of the speed, as a share of the speed.
+        Standard deviation of the speed, as a share of the speed.
     aside, faster : Estimate or None
-        Mean errors: of the direction, anticlockwise (to the left as the player sees it) [deg at 1.5 m/s], and of the
-        speed, as a share. Only of strokes that were measured.
+        Mean errors: of the direction, anticlockwise (to the left as the player sees it) [deg, at the speed ``at``], and of
+        the speed, as a share. Only of strokes that were measured.
 
     Examples
     --------
@@ -63,12 +79,14 @@ class PlayerErrors:
     >>> at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     >>> meant = {"speed": 2.0, "aim": 0.8}
     >>> strokes = [Recorded(position=at, intended=meant, played={"speed": 2.0, "aim": 0.8 + e}) for e in (-0.002, 0.002)]
-    >>> found = estimate_errors(strokes)
-    >>> round(found.direction.value, 2), found.direction.strokes
-    (0.11, 2)
+    >>> found = estimate_errors(strokes, options={"cue": "free", "physics": "paper", "table": "match"})
+    >>> round(found.direction.value, 2), found.direction.strokes, found.at
+    (0.14, 2, 2.0)
     """
 
     direction: Estimate | None
+    at: float
+    growth: Estimate | None
     speed: Estimate | None
     aside: Estimate | None
     faster: Estimate | None
@@ -78,12 +96,15 @@ class PlayerErrors:
         """Execution errors like the player's, a ``Noise``, with a professional's proportions; of an error that is not known,
         as many times a professional's as the other."""
         base = LEVELS[BASE]
-        turned = self.direction and self.direction.value / base.direction_deg()
+        growth = base.growth if self.growth is None else self.growth.value
+        turned = self.direction and self.direction.value / base.direction_deg(speed=self.at)
         hurried = self.speed and self.speed.value / base.speed_rel
         many, fast = turned or hurried or 1.0, hurried or turned or 1.0
-        same = {"aim_deg": base.aim_deg, "offset_mm": base.offset_mm, "elevation_deg": base.elevation_deg}
-        errors: Any = {name: value * many for name, value in same.items()}
-        return Noise(**errors, speed_rel=base.speed_rel * fast, growth=base.growth)
+        still = many * hypot(1.0, base.growth * self.at) / hypot(1.0, growth * self.at)
+        errors: Any = {"aim_deg": base.aim_deg * still, "offset_mm": base.offset_mm * still}
+        return Noise(
+            **errors, elevation_deg=base.elevation_deg * many, speed_rel=base.speed_rel * fast, growth=growth
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types."""
@@ -91,18 +112,19 @@ class PlayerErrors:
 
 
 class Pots(NamedTuple):
-    """The strokes with a called pot: their rows, and the chances of the pots for each of ``SCALES``."""
+    """The strokes with a called pot: their rows, and the chances of the pots for each of ``SCALES`` at their own speeds."""
 
     rows: list[int]
     chances: Floats  # (n, scales)
     made: Any  # bool (n,)
+    paces: Floats  # (n,) cue speeds [m/s]
 
 
 class Fitted(NamedTuple):
     """The errors of a player, and what was found on the way."""
 
     errors: PlayerErrors
-    direction: Floats | None  # the posterior of its error over ``SCALES``
+    direction: Floats | None  # the posterior of its error over ``GROWTHS`` and ``SCALES``
     pots: Pots  # those that were called
     strokes: list[Recorded]  # without the guessed pots that were likelier to be safeties
 
@@ -115,26 +137,27 @@ def estimate_errors(strokes: Sequence[Recorded], *, options: Any = None, seed: i
     strokes : sequence of Recorded
         The strokes of one player. Those that say nothing of an error are left out.
     options : dict or Options, optional
-        Where they were played, as in ``advise``.
+        Where they were played, as in ``advise``: what the strokes do not say of "cue", "physics" and "table".
     seed : int
         Seed of the simulated strokes, in [0, 2**63].
 
     Returns
     -------
     PlayerErrors
-        ValueError if no stroke says anything, or an argument is invalid.
+        ValueError if no stroke says anything, an argument is invalid, or nothing says where they were played.
 
     Examples
     --------
     >>> import snooker_env as sn
     >>> from snooker_env.advice import Recorded, estimate_errors
     >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
-    >>> pot = {"position": at, "ball": 21, "pocket": 4, "speed": 2.0}
+    >>> pot = {"position": at, "ball": 21, "pocket": 4, "speed": 2.0, "cue": "free", "physics": "paper", "table": "match"}
     >>> found = estimate_errors([Recorded(**pot, potted=k > 0) for k in range(6)])
     >>> found.direction.low < found.direction.value < found.direction.high
     True
     """
-    return fitted(checked(strokes), practice_of(BASE, options), seed).errors
+    kept = checked(strokes)
+    return fitted(kept, practice_of(BASE, agreed(kept, options)), seed).errors
 
 
 def checked(strokes: Any) -> list[Recorded]:
@@ -148,53 +171,88 @@ def checked(strokes: Any) -> list[Recorded]:
     return kept
 
 
-def fitted(strokes: list[Recorded], practice: Practice, seed: int) -> Fitted:
-    """``estimate_errors`` with what was found on the way; ``practice``: with the errors ``BASE``."""
+def fitted(strokes: list[Recorded], practice: Practice, seed: int, *, every_pot: bool = False) -> Fitted:
+    """``estimate_errors`` with what was found on the way; ``practice``: with the errors ``BASE``; ``every_pot``: also those
+    that tell nothing of errors beside the stroke itself."""
     integer("seed", seed, 0, 2**63)
-    directions, speeds, widths = measured(strokes, practice)
-    guessed = np.array([one.guessed for one in strokes]) & ~np.isnan(directions)
-    mixed, meant = guesses(directions[guessed], widths[guessed])
+    seen = measured(strokes, practice)
+    directions = seen.directions.copy()
+    known = ~np.isnan(directions)
+    guessed = np.array([one.guessed for one in strokes]) & known
+    tells = known | np.array([one.potted is not None for one in strokes])
+    at = speed_of(seen.paces[tells])
+    more = grown(seen.paces, at)
+    mixed, meant = guesses(directions[guessed], seen.widths[guessed], more[:, guessed])
     strokes = list(strokes)
     for k in np.flatnonzero(guessed)[~meant].tolist():
         strokes[k] = replace(strokes[k], ball=None, pocket=None, potted=None, guessed=False)
         directions[k] = np.nan
-    pots = tolerances(strokes, practice, seed)
-    told = [k for k, row in enumerate(pots.rows) if np.isnan(directions[row])]
-    e = directions[~np.isnan(directions)]
-    base, direction, weights = LEVELS[BASE], None, None
-    unit = base.direction_deg(practice.options.rules.physics)
-    if len(e) + len(told):
-        sure = directions[~np.isnan(directions) & ~guessed]
-        log_l = direct(sure) + mixed + outcome(pots.chances[told], pots.made[told]).sum(axis=0)
-        weights = posterior(log_l)
-        direction = estimate(weights, unit, len(e) + len(told))
-    v = speeds[~np.isnan(speeds)]
-    speed = estimate(posterior(direct(v)), base.speed_rel, len(v)) if len(v) else None
+    known = ~np.isnan(directions)
+    asked = [
+        one if every_pot or not sure else replace(one, potted=None)
+        for one, sure in zip(strokes, known, strict=True)
+    ]
+    pots = tolerances(asked, practice, seed)
+    told = [k for k, row in enumerate(pots.rows) if not known[row]]
+    base, direction, growth, weights, aside = LEVELS[BASE], None, None, None, None
+    unit, n = base.direction_deg(practice.options.rules.physics, speed=at), int(known.sum()) + len(told)
+    if n:
+        sure = known & ~guessed
+        rest = Pots([], pots.chances[told], pots.made[told], pots.paces[told])
+        log_l = direct(directions[sure], more[:, sure]) + mixed + outcomes(rest, at)
+        weights = posterior(log_l + np.log(PRIOR)[:, None])
+        direction, likeliest = estimate(weights.sum(axis=0), unit, n), weights.sum(axis=1)
+        paces = np.concatenate([seen.paces[known], rest.paces])
+        if paces.max() >= SEVERAL * paces.min():
+            growth = growth_of(likeliest, n)
+        aside = mean_of(directions[known] / more[int(likeliest.argmax()), known], unit)
+    v = seen.speeds[~np.isnan(seen.speeds)]
+    speed = (
+        estimate(posterior(direct(v, np.ones((1, len(v))))[0]), base.speed_rel, len(v)) if len(v) else None
+    )
     if direction is None and speed is None:
         allowed = "with intended and played, with a pot and played, or with a pot and potted"
         raise refuse_what("strokes", "none that tells an error", f"must hold strokes {allowed}")
-    aside, faster = mean_of(e, unit), mean_of(v, base.speed_rel)
-    errors = PlayerErrors(direction=direction, speed=speed, aside=aside, faster=faster)
+    found: Any = {"aside": aside, "faster": mean_of(v, base.speed_rel)}
+    errors = PlayerErrors(direction=direction, at=at, growth=growth, speed=speed, **found)
     return Fitted(errors, weights, pots, strokes)
 
 
-def direct(e: Floats) -> Floats:
-    """Log-likelihood (scales,) of errors (n,) in a professional's standard deviations."""
-    return -len(e) * np.log(SCALES) - 0.5 * float(np.sum(e * e)) / SCALES**2
+def speed_of(paces: Floats) -> float:
+    """The cue speed at which an error is stated [m/s]: ``POT_SPEED``, or the nearest between the quartiles of ``paces``."""
+    if not len(paces):
+        return POT_SPEED
+    low, high = np.quantile(paces, (0.25, 0.75)).tolist()
+    return min(max(POT_SPEED, low), high)
 
 
-def guesses(e: Floats, widths: Floats) -> tuple[Floats, Any]:
-    """Log-likelihood (scales,) of guessed pots (n,), or safeties evenly within ``widths``; which are pots."""
+def grown(paces: Floats, at: float) -> Floats:
+    """Standard deviations of the direction at cue speeds (n,), in those of a professional at rest, for each of ``GROWTHS``
+    where it is a professional's at the speed ``at``: (growths, n)."""
+    g = GROWTHS[:, None]
+    return np.hypot(1.0, g * paces) / np.hypot(1.0, g * at) * hypot(1.0, LEVELS[BASE].growth * at)
+
+
+def direct(e: Floats, more: Floats) -> Floats:
+    """Log-likelihood (growths, scales) of errors (n,) whose deviations are ``more`` (growths, n) times each scale."""
+    squares = np.sum((e / more) ** 2, axis=1)[:, None]
+    return -len(e) * np.log(SCALES) - np.log(more).sum(axis=1)[:, None] - 0.5 * squares / SCALES**2
+
+
+def guesses(e: Floats, widths: Floats, more: Floats) -> tuple[Floats, Any]:
+    """Log-likelihood (growths, scales) of guessed pots (n,), as of ``direct``, or safeties evenly within ``widths``; which
+    are pots at the likeliest growth, scale and share of safeties."""
     if not len(e):
-        return np.zeros(len(SCALES)), np.zeros(0, np.bool_)
-    pot = np.exp(-0.5 * (e / SCALES[:, None]) ** 2) / (SCALES[:, None] * sqrt(2.0 * pi))
-    safety = 0.5 / widths
-    log_l = np.array([np.log((1.0 - share) * pot + share * safety).sum(axis=1) for share in SHARES])
-    both = np.exp(log_l - log_l.max())
-    both /= both.sum()
-    likely = [(1.0 - share) * pot / ((1.0 - share) * pot + share * safety) for share in SHARES]
-    meant = sum(weights @ each for weights, each in zip(both, likely, strict=True))
-    return np.log(np.maximum(both.sum(axis=0), 1e-300)), meant > 0.5
+        return np.zeros((len(more), len(SCALES))), np.zeros(0, np.bool_)
+    safety, log_l = 0.5 / widths, np.empty((len(more), len(SHARES), len(SCALES)))
+    each = lambda scales, row: np.exp(-0.5 * (e / (scales * row)) ** 2) / (scales * row * sqrt(2.0 * pi))  # noqa: E731
+    for row, out in zip(more, log_l, strict=True):
+        pot = each(SCALES[:, None], row)
+        for k, share in enumerate(SHARES.tolist()):
+            out[k] = np.log((1.0 - share) * pot + share * safety).sum(axis=1)
+    g, k, s = np.unravel_index(log_l.argmax(), log_l.shape)
+    meant = (1.0 - SHARES[k]) * each(SCALES[s], more[g]) > SHARES[k] * safety
+    return np.logaddexp.reduce(log_l, axis=1), meant
 
 
 def outcome(chances: Floats, made: Any) -> Floats:
@@ -203,10 +261,39 @@ def outcome(chances: Floats, made: Any) -> Floats:
     return np.where(np.asarray(made)[:, None], np.log(p), np.log1p(-p))
 
 
+def outcomes(pots: Pots, at: float) -> Floats:
+    """Log-likelihood (growths, scales) of pots made or missed; the scales are of errors at the cue speed ``at``."""
+    made = [outcome(chances, pots.made).sum(axis=0) for chances in chances_of(pots, at)]
+    return np.array(made)
+
+
+def chances_of(pots: Pots, at: float) -> Iterator[Floats]:
+    """The chances (n, scales) of pots for each of ``GROWTHS``; the scales are of errors at the cue speed ``at``."""
+    own = np.hypot(1.0, LEVELS[BASE].growth * pots.paces)
+    for row in grown(pots.paces, at):
+        yield shifted(pots.chances, row / own)
+
+
+def shifted(chances: Floats, times: Floats) -> Floats:
+    """Chances (n, scales) for scales that are ``times`` (n,) as large."""
+    x = np.clip(np.arange(len(SCALES)) + np.log(times)[:, None] / STEP, 0.0, len(SCALES) - 1.0)
+    left = np.minimum(x.astype(np.int64), len(SCALES) - 2)
+    low, high = (np.take_along_axis(chances, left + k, axis=1) for k in (0, 1))
+    return low + (x - left) * (high - low)
+
+
 def posterior(log_likelihood: Floats) -> Floats:
-    """Weights (scales,) that sum to 1, for a prior flat in the logarithm: ``SCALES`` are evenly spaced in it."""
+    """Weights that sum to 1, for a prior flat in the logarithm of the scale: ``SCALES`` are evenly spaced in it."""
     weights = np.exp(log_likelihood - log_likelihood.max())
     return weights / weights.sum()
+
+
+def growth_of(weights: Floats, strokes: int) -> Estimate:
+    """Median of a posterior over ``GROWTHS``, and the ends of the likeliest of them that hold 95 %."""
+    order = np.argsort(-weights, kind="stable")
+    kept = GROWTHS[order[: int(np.searchsorted(np.cumsum(weights[order]), 0.95)) + 1]]
+    value = float(np.interp(0.5, np.cumsum(weights) - 0.5 * weights, GROWTHS))
+    return Estimate(value=value, low=float(kept.min()), high=float(kept.max()), strokes=strokes)
 
 
 def quantiles(weights: Floats, shares: Sequence[float]) -> Floats:
@@ -231,48 +318,92 @@ def mean_of(e: Floats, unit: float) -> Estimate | None:
     return Estimate(value=middle * unit, low=(middle - half) * unit, high=(middle + half) * unit, strokes=n)
 
 
-def measured(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats, Floats]:
-    """Errors of direction and speed (n,) over a professional's, NaN if unknown; and ``CALLED`` over it."""
-    directions, speeds, widths = np.full((3, len(strokes)), np.nan)
+class Measured(NamedTuple):
+    """What strokes tell of errors, (n,), NaN where they do not."""
+
+    directions: Floats  # errors, in a professional's standard deviations for a level cue at rest
+    widths: Floats  # ``CALLED`` in the same unit
+    speeds: Floats  # errors, in a professional's standard deviations
+    paces: Floats  # the cue speeds [m/s]; where nothing is known ``POT_SPEED``
+
+
+def measured(strokes: list[Recorded], practice: Practice) -> Measured:
+    """Errors of direction and speed of strokes."""
+    directions, widths, speeds = np.full((3, len(strokes)), np.nan)
+    paces = np.full(len(strokes), POT_SPEED)
     base, physics = LEVELS[BASE], practice.options.rules.physics
     unit = np.radians(base.direction_deg(physics, speed=0.0))
+    at_pots = {
+        k: as_needed(one, practice)
+        for k, one in enumerate(strokes)
+        if one.played is not None and one.ball is not None and one.intended is None
+    }
+    lines = dict(zip(at_pots, zip(*lines_of(list(at_pots.values()), practice), strict=True), strict=True))
     for k, one in enumerate(strokes):
-        tipped = 1.0
-        if one.played is None:
+        if one.intended is not None:
+            paces[k] = one.intended.speed
+        elif one.played is not None or one.speed is not None:
+            paces[k] = one.played["speed"] if one.played is not None else one.speed
+        if one.played is None or (one.intended is None and one.ball is None):
             continue
         if one.intended is not None:
-            aim, speed = one.intended.aim, one.intended.speed
-            speeds[k] = (one.played["speed"] - speed) / (base.speed_rel * speed)
-        elif one.ball is not None:
-            speed, aim, tipped = one.played["speed"], *line_of(one, practice)
+            speeds[k] = (one.played["speed"] - paces[k]) / (base.speed_rel * paces[k])
+            elevation, side = as_meant(one, one.intended.numbers(), practice)
+            cue = one.intended.aim - squirted(one.intended.side, physics)
+            # as of a stroke without side: the squirt of a tip far off the middle changes less with it
+            aside, more = one.played["aim"] - cue + squirted(one.played["side"] - side, physics), 1.0
         else:
-            continue
-        raised = one.played["elevation"] / TWICE if practice.options.cue == "real" else 0.0
-        more = sqrt(1.0 + (base.growth * speed) ** 2) * (1.0 + raised) * tipped
-        aside = remainder(direction_of(one.played, physics) - aim, 2.0 * pi)
-        directions[k], widths[k] = aside / (unit * more), CALLED / (unit * more)
-    return directions, speeds, widths
+            line, more = lines[k]
+            elevation, aside = (
+                (at_pots[k].played or {})["elevation"],
+                direction_of(one.played, physics) - line,
+            )
+        if practice.options.cue == "real":
+            more *= 1.0 + elevation / TWICE
+        directions[k], widths[k] = remainder(aside, 2.0 * pi) / (unit * more), CALLED / (unit * more)
+    return Measured(directions, widths, speeds, paces)
 
 
-def line_of(one: Recorded, practice: Practice) -> tuple[float, float]:
-    """The line that a stroke at a pot should have had [rad]; by how much more the direction differs than it errs."""
-    physics, base = practice.options.rules.physics, LEVELS[BASE]
-    assert one.played is not None
-    step = 0.02
+def as_meant(one: Recorded, stroke: Floats, practice: Practice) -> tuple[float, float]:
+    """Elevation and side of a stroke as rails and balls allow them. The elevation that was played is more: where errors
+    take the room of the cue, it is raised once more."""
+    if practice.options.cue == "free":
+        return float(stroke[4]), float(stroke[1])
+    room = room_for(stroke, Positions.of(one.position), practice.options.rules)
+    return room.elevation, room.side
+
+
+def as_needed(one: Recorded, practice: Practice) -> Recorded:
+    """A stroke at a pot with the elevation that was likely meant: as low as the cue could be, if it was nearly that."""
+    played: dict[str, float] = one.played or {}
+    way = direction_of(played, practice.options.rules.physics)
+    stroke = np.array([played["speed"], played["side"], played["top"], way, 0.0])
+    needed, _ = as_meant(one, stroke, practice)
+    own = played["elevation"]
+    return replace(one, played=played | {"elevation": needed if own < needed + AS_NEEDED else own})
+
+
+def lines_of(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats]:
+    """The lines that strokes at pots should have had [rad]; by how much more their directions differ than they err."""
+    physics, base, step = practice.options.rules.physics, LEVELS[BASE], 0.02
+    if not strokes:
+        return np.empty(0), np.empty(0)
+    played: list[dict[str, float]] = [one.played or {} for one in strokes]
     moved = [
-        replace(one, played=one.played | {name: one.played[name] + by * step})
+        replace(one, played=its | {name: its[name] + by * step})
         for name, by in (("side", 0.0), ("side", 1.0), ("side", -1.0), ("top", 1.0), ("top", -1.0))
+        for one, its in zip(strokes, played, strict=True)
     ]
-    aim, right, left, up, down = solved(moved, practice)[:, 3].tolist()
+    aims, right, left, up, down = solved(moved, practice)[:, 3].reshape(5, -1)
+    turn = lambda a, b: np.array([remainder(x, 2.0 * pi) for x in (a - b).tolist()]) / (2.0 * step)  # noqa: E731
+    squirts = [[squirted(its["side"] + by, physics) for its in played] for by in (step, -step)]
     tip = base.offset_mm * 1e-3 / physics.R  # its error moves the line, too, by the throw of its spin
-    squirted = direction_of({"aim": 0.0, "side": step}, physics) / step
     parts = (
-        np.radians(base.aim_deg),
-        tip * (squirted - remainder(right - left, 2.0 * pi) / (2.0 * step)),
-        tip * remainder(up - down, 2.0 * pi) / (2.0 * step),
+        np.full(len(strokes), radians(base.aim_deg)),
+        tip * (np.subtract(squirts[0], squirts[1]) / (2.0 * step) - turn(right, left)),
+        tip * turn(up, down),
     )
-    whole = float(np.linalg.norm(parts))
-    return aim, whole / float(np.radians(base.direction_deg(physics, speed=0.0)))
+    return aims, np.linalg.norm(parts, axis=0) / np.radians(base.direction_deg(physics, speed=0.0))
 
 
 def solved(strokes: list[Recorded], practice: Practice) -> Floats:
@@ -286,6 +417,7 @@ def solved(strokes: list[Recorded], practice: Practice) -> Floats:
         tip = hypot(cue["side"], cue["top"])
         inside = min(1.0, most / tip) if tip > 0.0 else 1.0
         out[k, :3] = min(max(cue["speed"], 0.2), 7.0), inside * cue["side"], inside * cue["top"]
+        out[k, 4] = min(cue.get("elevation", 0.0), STEEPEST_CUE)
     rows = [k for k, one in enumerate(strokes) if one.intended is None]
     if rows:
         at = Positions.of([strokes[k].position for k in rows])
@@ -300,7 +432,7 @@ def tolerances(strokes: list[Recorded], practice: Practice, seed: int) -> Pots:
     """The called pots whose outcome is known, with their chances for each of ``SCALES``."""
     rows = [k for k, one in enumerate(strokes) if one.ball is not None and one.potted is not None]
     if not rows:
-        return Pots([], np.empty((0, len(SCALES))), np.empty(0, np.bool_))
+        return Pots([], np.empty((0, len(SCALES))), np.empty(0, np.bool_), np.empty(0))
     called = [strokes[k] for k in rows]
     meant, many = solved(called, practice), len(RADII) * WAYS
     # each stroke has errors of its own, so that equal strokes tell more together
@@ -313,7 +445,7 @@ def tolerances(strokes: list[Recorded], practice: Practice, seed: int) -> Pots:
     balls, pockets = np.array([(one.ball, one.pocket) for one in called]).T
     went = (stops.potted[np.arange(len(each)), balls[each]] == pockets[each]) & (stops.penalty == 0)
     shares = went.reshape(len(called), len(RADII), WAYS).mean(axis=2)
-    return Pots(rows, shares @ radius_weights(), np.array([one.potted for one in called]))
+    return Pots(rows, shares @ radius_weights(), np.array([one.potted for one in called]), meant[:, 0])
 
 
 def radius_weights() -> Floats:

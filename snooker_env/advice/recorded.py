@@ -15,18 +15,26 @@ import numpy as np
 
 from .._check import choice, integer, number, refuse, refuse_what, truth
 from .._files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
-from .._types import Floats
+from .._types import CueKind, Floats
 from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
 from ..physics import cloth
 from ..physics.cue import strike
-from ..physics.parameters import Physics
+from ..physics.parameters import Physics, PhysicsLike
+from ..physics.table import Table, TableLike
 from ..planning import Position, pots
 from ..replays import replay
+from ..replays.encode import physics_data, table_data, table_from
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
+from ..tasks.options import CUES, Options
 from .strokes import CueStroke
 
 FORMAT, VERSION = "snooker-strokes", 1
+VERSIONS = {
+    FORMAT: (VERSION,),
+    "snooker-replay": (1, 2),
+}  # of files that are read: replays of version 1 say less
+PLAYED_ON = ("cue", "physics", "table")  # what errors are told by beside the strokes: never assumed
 # How far a stroke may be from the pot that it is guessed for: 4 sigma of a club player's hard one
 CALLED = radians(2.0)
 CUE_PARTS = ("speed", "side", "top", "aim", "elevation")
@@ -63,6 +71,12 @@ class Recorded:
         The balls that whoever plays next meets; ``over=True`` where nobody does. None: not known.
     scores : (int, int)
         Of a frame: of the player and of the other, before the stroke. Default (0, 0).
+    cue : {"free", "real"}, optional
+        Whether rails and balls were in the way of the cue. None: not known, as the next two.
+    physics : str, dict or Physics, optional
+        The constants of the table, as of ``Physics.of``.
+    table : str or Table, optional
+        Its cushions and pockets.
 
     Examples
     --------
@@ -85,6 +99,9 @@ class Recorded:
     penalty: int = 0
     after: Position | None = None
     scores: tuple[int, int] = (0, 0)
+    cue: CueKind | None = None
+    physics: PhysicsLike = None
+    table: TableLike = None
 
     def __post_init__(self) -> None:
         put: Any = lambda name, value: object.__setattr__(self, name, value)  # noqa: E731
@@ -121,6 +138,11 @@ class Recorded:
         if not isinstance(self.scores, list | tuple) or len(self.scores) != 2:
             raise refuse("scores", self.scores, "must be two integers: of the player and of the other")
         put("scores", tuple(integer(f"scores[{k}]", one, 0, 1000) for k, one in enumerate(self.scores)))
+        if self.cue is not None:
+            choice("cue", self.cue, CUES)
+        for name, kind in (("physics", Physics), ("table", Table)):
+            if getattr(self, name) is not None:
+                put(name, kind.of(getattr(self, name)))
 
     @property
     def goes_on(self) -> bool:
@@ -133,6 +155,8 @@ class Recorded:
         for name in ("position", "intended", "after"):
             kept[name] = kept[name] and kept[name].to_dict()
         kept["scores"] = list(self.scores)
+        for name, data in (("physics", physics_data), ("table", table_data)):
+            kept[name] = kept[name] and data(kept[name])
         if self.pocket is not None:
             kept["pocket"] = POCKETS[self.pocket]
         return {name: value for name, value in kept.items() if value is not None}
@@ -153,6 +177,8 @@ class Recorded:
         for name in ("position", "after"):
             if made.get(name) is not None:
                 made[name] = Position.from_dict(made[name])
+        if made.get("table") is not None:
+            made["table"] = table_from(made["table"])
         if isinstance(made.get("ball"), str):
             made["ball"] = NAMES.index(choice("ball", made["ball"], NAMES[16:]))
         if isinstance(made.get("pocket"), str):
@@ -233,8 +259,9 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
     if not isinstance(form, str) or form not in readers or not isinstance(kept.get("strokes"), list):
         allowed = f"must be a file of strokes ({FORMAT!r}) or a replay ('snooker-replay')"
         raise refuse("path", str(path), allowed)
-    if kept.get("version") != VERSION or kept["version"] is True:
-        raise refuse(f"version of {path}", kept.get("version"), f"must be {VERSION}")
+    if kept.get("version") not in VERSIONS[form] or kept["version"] is True:
+        allowed = f"must be {' or '.join(map(str, VERSIONS[form]))}"
+        raise refuse(f"version of {path}", kept.get("version"), allowed)
     if player is not None:
         integer("player", player, 0, 1)
     try:
@@ -302,7 +329,9 @@ def _from_replay(
     made = []
     if player is None and len({one["player"] for one in kept["strokes"]}) > 1:
         raise refuse("player", None, "must be 0 or 1: the replay is of two players")
-    before = (0, 0)
+    before, where = (0, 0), {"physics": kept.get("physics"), "table": kept.get("table")}
+    if where["table"] is not None:
+        where["table"] = table_from(where["table"])
     for k, one in enumerate(kept["strokes"]):
         if one["player"] is None or one["cue"] is None or one["n"] != N_BALLS:
             raise refuse_what(f"strokes[{k}]", "a bare shot", "must be of a visit or a frame, with a referee")
@@ -311,14 +340,16 @@ def _from_replay(
         if player is None or who == player:
             try:
                 meant = None if intended is None else intended[k]
-                made.append(_of_replay(one, (scores[who], scores[1 - who]), meant))
+                made.append(_of_replay(one, (scores[who], scores[1 - who]), meant, where))
             except ValueError as error:
                 raise ValueError(f"strokes[{k}]: {error}") from None
     return made
 
 
-def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStroke | None) -> Recorded:
-    """A stroke of a replay; which pot was meant is told from the line of the stroke."""
+def _of_replay(
+    one: Mapping[str, Any], scores: tuple[int, int], intended: CueStroke | None, where: dict[str, Any]
+) -> Recorded:
+    """A stroke of a replay, played on the table ``where``; which pot was meant is told from the line of the stroke."""
     start, here = _numbers(one["start"], "f8", 2), _present(one["on_table"])
     word = one["ball_on"].replace(" ", "_")
     position = _position(start, here, None if word == "free_ball" else word)
@@ -338,7 +369,7 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
     else:
         after = None if left[1:].any() else Position(over=True)
     played = {name: one["cue"][name] for name in CUE_PARTS}
-    line = direction_of(played, Physics()) if intended is None else intended.aim
+    line = direction_of(played, Physics.of(where["physics"])) if intended is None else intended.aim
     meant = None if word == "free_ball" else called(position, line)
     ids = np.flatnonzero(here).tolist()
     # a position numbers its reds anew
@@ -348,6 +379,7 @@ def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], intended: CueStr
     pot: Any = {"ball": ball, "pocket": pocket, "guessed": ball is not None and intended is None}
     pot["potted"] = None if ball is None else (ball, pocket) in down and not one["penalty"]
     came: Any = {"points": one["points"], "penalty": one["penalty"], "after": after, "scores": scores}
+    came |= {**where, "cue": one.get("cue_kind")}
     return Recorded(position=position, intended=intended, played=played, **pot, **came)
 
 
@@ -372,9 +404,45 @@ def _position(places: Floats, here: Any, on: str | None) -> Position:
 
 def direction_of(played: Mapping[str, float], physics: Physics) -> float:
     """The direction in which the cue ball leaves a level cue [rad]: that of the cue, and its squirt."""
-    side = min(physics.max_offset, max(-physics.max_offset, played["side"]))
-    (vx, vy, _), _ = strike(1.0, 0.0, side, 0.0, 0.0, physics)
-    return played["aim"] + atan2(vy, vx)
+    return played["aim"] + squirted(played["side"], physics)
+
+
+def squirted(side: float, physics: Physics) -> float:
+    """The squirt of a tip that is off to the side [rad]."""
+    inside = min(physics.max_offset, max(-physics.max_offset, side))
+    (vx, vy, _), _ = strike(1.0, 0.0, inside, 0.0, 0.0, physics)
+    return atan2(vy, vx)
+
+
+def agreed(strokes: Sequence[Recorded], options: Any) -> Any:
+    """``options`` with what the strokes say of where they were played; ValueError where they contradict, or none says it."""
+    if not (options is None or isinstance(options, Options | Mapping)):
+        allowed = f"must be None, an Options, or a dict with keys as {PLAYED_ON}"
+        raise refuse_what("options", f"a {type(options).__name__}", allowed)
+    asked = {name: getattr(options, name) for name in PLAYED_ON} if isinstance(options, Options) else options
+    kept: dict[str, Any] = dict(asked or {})
+    for name in PLAYED_ON:
+        said = [getattr(one, name) for one in strokes]
+        if name not in kept and None in said:
+            allowed = f"must be given (options={{{name!r}: ...}}, --{name}): the strokes do not say it"
+            raise refuse(name, None, allowed)
+        whose = "options say" if name in kept else "the first stroke says"
+        usual = _data(name, kept.setdefault(name, said[0]))
+        for k, one in enumerate(said):
+            if one is not None and (data := _data(name, one)) != usual:
+                words = [
+                    each["name"] if name == "table" and isinstance(each, dict) else each
+                    for each in (data, usual)
+                ]
+                raise refuse(f"strokes[{k}].{name}", words[0], f"must be {words[1]!r}, as {whose}")
+    return options if isinstance(options, Options) else kept
+
+
+def _data(name: str, value: Any) -> Any:
+    """A value of ``PLAYED_ON`` as JSON types, to be compared."""
+    if name == "cue":
+        return value
+    return physics_data(Physics.of(value)) if name == "physics" else table_data(Table.of(value))
 
 
 def called(position: Position, direction: float) -> tuple[int, int] | None:

@@ -1,7 +1,6 @@
 """How is the benchmark run? The commands tasks, run, text, check, table and profile; rules: docs/benchmark.md."""
 
 import argparse
-import os
 import shlex
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from .._check import integer, refuse
+from .._closed import until_closed
 from .._files import write_atomic
 from .._tables import shown, text_table
 from .._warmup import warmup
@@ -85,17 +85,16 @@ def _agent(p: argparse.ArgumentParser, required: bool) -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command. Exit code 0; 1: wrong file or failed agent; 2: wrong arguments; 130: Ctrl-C."""
     words = list(sys.argv[1:] if argv is None else argv)
-    args = parser().parse_args(words)
-    args.line = f"{NAME} {shlex.join(words)}"
     try:
-        return COMMANDS[args.command](args)
+        with until_closed():
+            args = parser().parse_args(words)
+            args.line = f"{NAME} {shlex.join(words)}"
+            return COMMANDS[args.command](args)
     except (ValueError, TypeError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
     except (AgentError, ImportError) as error:
         print(f"error: {error}", file=sys.stderr)
-    except BrokenPipeError:  # nobody reads on: ... | head
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
         print(f"error: {error.filename or 'the output'}: {error.strerror}", file=sys.stderr)
     except KeyboardInterrupt:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .._check import integer, refuse_what
+from .._closed import until_closed
 from .._files import read_json
 from ..players.model_options import add_model_options, options_of_words
 from ..tasks.noise import LEVELS
@@ -104,6 +105,7 @@ def _read(path: Path) -> dict[str, Any]:
     return read
 
 
+@until_closed()
 def main(argv: list[str] | None = None) -> int:
     """Serve until Ctrl-C."""
     args = _arguments(argv)

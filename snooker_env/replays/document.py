@@ -4,6 +4,7 @@ import html
 import json
 import re
 from collections.abc import Iterable, Iterator
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +20,9 @@ from ..simulation import Shot, simulate
 from ..tasks.played import Played
 from ..web import WEB, table_js
 from .chances import Judge, checked_judge, standings_of, win_chances
-from .encode import encoded_stroke
+from .encode import encoded_stroke, physics_data, table_data
 
-FORMAT, VERSION = "snooker-replay", 1
+FORMAT, VERSION = "snooker-replay", 2
 SUFFIXES = (".html", ".json", ".mp4", ".gif")
 _PARTS = ("noses", "jaws", "falls")  # of a table
 
@@ -65,10 +66,12 @@ class Replay:
         strokes: Iterable[Shot | Played],
         *,
         title: str = "",
-        players: Iterable[str] = (),
+        players: Iterable[str] | None = None,
         table: TableLike = None,
         judge: Judge | None = None,
     ):
+        if not isinstance(strokes, Iterable):
+            raise refuse("strokes", strokes, "must be strokes, one after the other")
         self.strokes: tuple[Shot | Played, ...] = tuple(strokes)
         for k, stroke in enumerate(self.strokes):
             if not isinstance(stroke, Shot | Played):
@@ -122,9 +125,16 @@ class Replay:
         ValueError if a shot has no path, or more than 22 balls."""
         if self._data is None:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
-            physics = self.shots[0].physics
+            physics, *others = (shot.physics for shot in self.shots)
+            same = all(
+                one == physics for one in others
+            )  # shots of several kinds of balls and cloth may be shown
             self._data = {"format": FORMAT, "version": VERSION, "title": self.title}
             self._data |= {"players": list(self.players), "scene": scene_data(self.table)}
+            self._data |= {
+                "table": table_data(self.table),
+                "physics": physics_data(physics) if same else None,
+            }
             self._data |= {"R": physics.R, "spin_decel": physics.spin_decel, "strokes": strokes}
             self._data["win_chance"] = self.win_chance and list(self.win_chance)
         return dict(self._data)
@@ -161,7 +171,7 @@ class Replay:
         ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
         ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF: 15, 640 x 360).
         ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra."""
-        target = Path(path)
+        target = checked_path("path", path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)
         if suffix in (".mp4", ".gif"):
             from .film import write_film
@@ -175,6 +185,13 @@ class Replay:
         return target
 
 
+def checked_path(field: str, path: Any) -> Path:
+    """``path`` as a Path, else ValueError."""
+    if not isinstance(path, str | PathLike):
+        raise refuse(field, path, "must be a str or a Path")
+    return Path(path)
+
+
 def checked_text(field: str, text: Any) -> str:
     """``text`` if a file can hold it, else ValueError."""
     if not isinstance(text, str) or any(0xD800 <= ord(letter) < 0xE000 for letter in text):
@@ -184,7 +201,9 @@ def checked_text(field: str, text: Any) -> str:
 
 def checked_players(players: Any) -> tuple[str, ...]:
     """Names of players as a tuple; a single name may be a str."""
-    names = (players,) if isinstance(players, str) else tuple(players)
+    if players is not None and not isinstance(players, Iterable):
+        raise refuse("players", players, "must be None, or names")
+    names = (players,) if isinstance(players, str) else tuple(players or ())
     if len(names) > 2:
         raise refuse("players", players, "must be at most two names")
     return tuple(checked_text("players", name) for name in names)
@@ -195,7 +214,7 @@ def replay(
     path: str | Path | None = None,
     *,
     title: str = "",
-    players: Iterable[str] = (),
+    players: Iterable[str] | None = None,
     table: TableLike = None,
     judge: Judge | None = None,
 ) -> Replay:

@@ -4,6 +4,8 @@ The numbers of a path are binary in base64. Positions, velocities and accelerati
 browser computes the same positions as ``Shot.at``; spins, which are only displayed, 32."""
 
 import base64
+from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -11,7 +13,10 @@ import numpy as np
 from .._check import refuse_what
 from ..game.balls import N_BALLS
 from ..physics import cloth
+from ..physics.parameters import PRESETS, Physics
+from ..physics.table import Table
 from ..simulation import Shot
+from ..tasks.noise import LEVELS, Noise
 from ..tasks.played import Played
 from .words import foul_words, on_words, pots_of, sentence
 
@@ -63,16 +68,17 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
 def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, Any]:
     """One stroke of a replay. For a bare ``Shot``, the parts that come from the referee are empty."""
     if isinstance(item, Shot):
-        empty = dict.fromkeys(("cue", "player", "ball_on", "after"))
+        empty = dict.fromkeys(("cue", "cue_kind", "noise", "player", "ball_on", "after"))
         none = {"points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0}
         return encoded_shot(item) | empty | none
-    same = {name: getattr(item, name) for name in ("cue", "player", "points", "penalty")}
+    same = {name: getattr(item, name) for name in ("cue", "cue_kind", "player", "points", "penalty")}
     here, after = item.on_table, None  # the table before the next stroke, where it is another than at rest
     rest = item.shot.positions[here], item.shot.on_table
     if not all(map(np.array_equal, (item.positions[here], here), rest)):
         after = {"places": packed(item.positions, "f8"), "on_table": np.flatnonzero(here).tolist()}
     return encoded_shot(item.shot) | {
         **same,
+        "noise": noise_data(item.noise),
         "ball_on": "free ball" if item.free_ball else on_words(item.ball_on),
         "fouls": foul_words(item.fouls),
         "words": sentence(item, players),
@@ -80,3 +86,36 @@ def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, A
         "break": item.break_points,
         "after": after,
     }
+
+
+def noise_data(noise: Noise) -> str | dict[str, float]:
+    """Execution errors as JSON types, which ``Noise.of`` reads: the name of a level, or the deviations that are not 0."""
+    level = next((name for name, one in LEVELS.items() if one == noise), None)
+    return level or {name: value for name, value in asdict(noise).items() if value}
+
+
+def physics_data(physics: Physics) -> str | dict[str, Any]:
+    """Constants as JSON types, which ``Physics.of`` reads: the name of a preset, or the nearest one and what differs."""
+    own, changes = asdict(physics), {}
+    for name in PRESETS:
+        usual = asdict(Physics(**PRESETS[name]))
+        changes[name] = {key: value for key, value in own.items() if value != usual[key]}
+    nearest = min(changes, key=lambda name: len(changes[name]))
+    return {"preset": nearest, **changes[nearest]} if changes[nearest] else nearest
+
+
+def table_data(table: Table) -> str | dict[str, Any]:
+    """A table as JSON types, which ``table_from`` reads: the name of a preset, or its parts."""
+    if table.is_preset:
+        return table.name
+    parts: dict[str, Any] = {name: getattr(table, name).tolist() for name in ("noses", "jaws", "falls")}
+    return {"name": table.name, **parts, "ball_radius": table.ball_radius, "pockets": list(table.pockets)}
+
+
+def table_from(data: str | Mapping[str, Any]) -> Table:
+    """The table that ``table_data`` has written."""
+    if isinstance(data, str):
+        return Table.preset(data)  # type: ignore[arg-type]
+    columns = {"noses": 5, "jaws": 6, "falls": 3}
+    parts = {name: np.array(data[name], np.float64).reshape(-1, n) for name, n in columns.items()}
+    return Table(data["name"], **parts, ball_radius=data["ball_radius"], pockets=tuple(data["pockets"]))

@@ -8,7 +8,7 @@ import gymnasium
 
 from .._check import choice, refuse, refuse_what
 from .chances import Judge, checked_judge
-from .document import SUFFIXES, Replay, checked_players
+from .document import SUFFIXES, Replay, checked_path, checked_players
 
 
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
@@ -62,7 +62,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         *,
         name_prefix: str = "snooker",
         suffix: str = ".html",
-        players: Iterable[str] = (),
+        players: Iterable[str] | None = None,
         judge: Judge | None = None,
     ):
         arguments = {"episode_trigger": episode_trigger, "name_prefix": name_prefix, "suffix": suffix}
@@ -74,7 +74,9 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
             raise refuse_what("env", f"a {type(inner).__name__}", "must be a Snooker-v0 of one table")
         inner.keep_history = True  # type: ignore[attr-defined]
         self.paths: list[Path] = []
-        self._folder, self._prefix = Path(folder), name_prefix
+        self._folder, self._prefix = checked_path("folder", folder), name_prefix
+        if episode_trigger is not None and not callable(episode_trigger):
+            raise refuse("episode_trigger", episode_trigger, "must be None, or a callable(number) -> bool")
         self._suffix = choice("suffix", suffix, SUFFIXES)
         if not isinstance(name_prefix, str) or Path(name_prefix + suffix).name != name_prefix + suffix:
             words = "must be the beginning of a file's name, without folders"

@@ -134,6 +134,10 @@ class Frames(Tables):
         self._lot = self._reads[AGENT].copy()
         self._lot[A_LOT] = any(options[A_LOT] for options in self._reads)
 
+    def noise_of(self, player: int) -> Noise:
+        """The errors of a player; who plays alone has both turns."""
+        return self.seats[min(player, len(self.seats) - 1)].noise
+
     @property
     def saved(self) -> columns.Layouts:
         """Where the balls lay before the last strokes: ``frame_columns.Layouts``."""

@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 from typing import Any
 
-from .._types import Bools, Floats
+from .._types import Bools, CueKind, Floats
 from ..game.balls import BallOn, ids_of
 from ..game.frame import Frame
 from ..game.ruling import Foul
 from ..physics.cue_room import MOVED, RAISED, UNPLAYABLE
 from ..simulation import Shot
+from .noise import Noise
 from .stroke import BREAK, COST, CUE_SPEED, FIRST, FOULS, FREE, PLAYER, ROOM, SCORED, WAS_ON, ShotBuffers
 
 
@@ -18,6 +19,8 @@ class Played:
 
     shot: Shot  # with its path if that was recorded
     cue: dict[str, float]  # errors included: "speed" [m/s], "side", "top" (over R), "aim", "elevation" [rad]
+    cue_kind: CueKind  # whether rails and balls were in the way of the cue
+    noise: Noise  # the errors of the player
     player: int  # who played it: 0, or in a frame 0 or 1
     ball_on: BallOn  # what was on
     free_ball: bool  # whether the player had one

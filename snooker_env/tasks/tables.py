@@ -22,6 +22,7 @@ from . import discrete_actions, stroke
 from .box_actions import Actions
 from .declarations import A_END_MASS
 from .discrete_actions import Choices
+from .noise import Noise
 from .options import NEVER, Rules
 from .played import Played, judged, room_of, struck
 
@@ -230,7 +231,12 @@ class Tables(ABC):
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
         after: Any = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
-        return Played(**shot, **balls, **after, **judged(seen), **standing)
+        who: Any = {"cue_kind": self.rules.cue, "noise": self.noise_of(seen[stroke.PLAYER])}
+        return Played(**shot, **who, **balls, **after, **judged(seen), **standing)
+
+    def noise_of(self, player: int) -> Noise:
+        """The errors of a player."""
+        return self.rules.noise
 
     def shot(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Shot:
         """Shot j of the buffers, played on table k."""

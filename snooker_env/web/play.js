@@ -343,7 +343,7 @@ class Page {
 
   /** Animate a stroke until the balls rest or it is skipped. */
   move(data, rate = 1) {
-    const stroke = decode({ format: "snooker-replay", version: 1, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
+    const stroke = decode({ format: "snooker-replay", version: 2, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     return new Promise(done => {
       this.moving = { stroke, rate, at: -0.4, now: null, done };
       if (this.near) this.fit();

@@ -79,7 +79,7 @@ export class Stats {
   async open() {
     const { app } = this, { labels } = app.state;
     const { strokes } = await ask("strokes");
-    const decoded = strokes.length ? decode({ format: "snooker-replay", version: 1, R: app.R, spin_decel: app.spin_decel, strokes }).strokes : [];
+    const decoded = strokes.length ? decode({ format: "snooker-replay", version: 2, R: app.R, spin_decel: app.spin_decel, strokes }).strokes : [];
     const counts = counted(decoded, app.scene.falls), share = (part, all) => (all ? `${Math.round(100 * part / all)} % (${part} of ${all})` : "–");
     const spent = [0, 1].map(seat => strokes.flatMap((one, k) => (one.player === seat && this.times.has(k) ? [this.times.get(k)] : [])));
     const rows = [

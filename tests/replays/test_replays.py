@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env.advice import CueStroke
 from snooker_env.game.balls import BallOn
 from snooker_env.game.ruling import Foul
+from snooker_env.play.session import Session
 from snooker_env.replays.words import FOUL_WORDS, bars, foul_words, standing_bar
 from tests.refusals import refused
 from tests.tables import begun
@@ -146,6 +148,47 @@ def test_a_replay_of_a_replay_takes_another_title(strokes):
     second = sn.replay(first, title="two")
     assert (second.title, second.players, len(second)) == ("two", ("A",), 2)
     assert sn.replay(first).title == "one"
+
+
+def test_nobody_named_is_the_usual_players(strokes, tmp_path):
+    """None is as much as nothing, and what cannot be a name, a folder or a trigger is refused at once."""
+    assert sn.replay(strokes, players=None).players == ("Player",)
+    assert sn.replay(sn.replay(strokes, players="Ada"), players=None).players == ("Ada",)
+    assert sn.RecordReplay(made(), tmp_path, players=None).paths == []
+    refused(lambda: sn.replay(strokes, players=3), "players", "3", "must be None, or names")
+    refused(lambda: sn.replay(strokes, players=["a", None][1:]), "players", "None", "must be a str")
+    refused(lambda: sn.replay(strokes, title=None), "title", "None", "must be a str")
+    refused(lambda: sn.replay(strokes, 3), "path", "3", "must be a str or a Path")
+    refused(lambda: sn.Replay(None), "strokes", "None", "must be strokes")
+    refused(lambda: next(sn.replay(strokes).frames(size=None)), "size", "None", "must be")
+    refused(lambda: next(sn.replay(strokes).frames(fps=None)), "fps", "None", "must be")
+    refused(lambda: sn.RecordReplay(made(), None), "folder", "None", "must be a str or a Path")
+    refused(lambda: sn.RecordReplay(made(), tmp_path, 3), "episode_trigger", "3", "must be None")
+
+
+def test_errors_of_both_seats_and_what_was_played_on():
+    """Each stroke has the errors of its player; of shots with several physics no one is all's."""
+    env = keeping(task="frame", opponent="ghost_ball", action="discrete", noise={"aim_deg": 0.1}, cue="real")
+    for _ in range(4):
+        env.step(int(np.flatnonzero(env.action_masks())[0]))
+    data = sn.replay(env).to_dict()
+    assert (data["version"], data["physics"], data["table"]) == (2, "paper", "match")
+    assert all((one["cue_kind"], one["noise"]) == ("real", {"aim_deg": 0.1}) for one in data["strokes"])
+    match = Session(cue="free")
+    match.noise = ["club", "none"]
+    for aim in (np.pi / 2, 1.5):
+        match.play(CueStroke(speed=2.0, aim=aim))
+        if match.frame.phase == "choice":
+            match.choose("play")
+    both = sn.replay([act.played for act in match.acts if act.played is not None]).to_dict()["strokes"]
+    assert [one["noise"] for one in both] == [("club", "none")[one["player"]] for one in both]
+    assert {one["player"] for one in both} == {0, 1} and {one["cue_kind"] for one in both} == {"free"}
+    shots = [
+        sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0, 0, 0)], "match", name) for name in ("paper", "match")
+    ]
+    assert (
+        sn.replay(shots).to_dict()["physics"] is None and sn.replay(shots[1]).to_dict()["physics"] == "match"
+    )
 
 
 def test_a_bare_shot_and_other_tables():

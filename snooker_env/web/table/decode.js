@@ -193,8 +193,8 @@ class Stroke {
 
 /** A replay with its strokes ready to be evaluated. */
 export function decode(replay) {
-  if (replay?.format !== "snooker-replay" || replay.version !== 1) {
-    throw new Error(`no replay of version 1: ${replay?.format} ${replay?.version}`);
+  if (replay?.format !== "snooker-replay" || replay.version !== 2) {
+    throw new Error(`no replay of version 2: ${replay?.format} ${replay?.version}`);
   }
   let last = null;
   const strokes = replay.strokes.map(data => (last = new Stroke(data, replay, last)));

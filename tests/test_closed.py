@@ -1,0 +1,51 @@
+"""Does each command end without a word where nobody reads its output on, as in ``... | head``?"""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+import snooker_env as sn
+from snooker_env.advice import Recorded, write_strokes
+
+AT = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+COACH = (
+    "-m",
+    "snooker_env.advice",
+    "coach",
+    "mine.json",
+    "--cue",
+    "real",
+    "--physics",
+    "paper",
+    "--table",
+    "match",
+)
+COMMANDS = {
+    "commands": ("-m", "snooker_env"),
+    "coach": COACH,
+    "advice": ("-m", "snooker_env.advice", "--help"),
+    "benchmark": ("-m", "snooker_env.benchmark", "tasks"),
+    "benchmark_help": ("-m", "snooker_env.benchmark", "--help"),
+    "play": ("-m", "snooker_env.play", "--help"),
+    "watch": ("-m", "snooker_env.watch", "--help"),
+    "agents": ("-m", "agents.report", "--help"),
+    "benchmarks": ("-m", "benchmarks.coach", "--help"),
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_reader_that_leaves_ends_a_command(name, tmp_path):
+    write_strokes(tmp_path / "mine.json", [Recorded(position=AT, ball=21, pocket=4, potted=True)])
+    read, write = os.pipe()
+    os.close(read)
+    path = os.pathsep.join([os.getcwd(), os.environ.get("PYTHONPATH", "")])
+    where = {"cwd": tmp_path, "env": os.environ | {"SNOOKER_ENV_QUIET": "1", "PYTHONPATH": path}}
+    try:
+        done = subprocess.run(
+            [sys.executable, *COMMANDS[name]], stdout=write, stderr=subprocess.PIPE, text=True, **where
+        )
+    finally:
+        os.close(write)
+    assert done.stderr == "" and done.returncode in (0, 1)  # argparse swallows what it cannot write
