@@ -74,7 +74,9 @@ def main():
     rows, found = measure(options.impacts, options.seed), {}
     sure = rows[:, 2] <= DOUBT
     print(f"{len(rows):,d} impacts; of {(~sure).sum()} the truth is in doubt by more than {DOUBT:g}")
-    print("error over the largest incoming speed    impacts  standard: 50 %    99 %   worst   reference: 99 %   worst")
+    print(
+        "error over the largest incoming speed    impacts  standard: 50 %    99 %   worst   reference: 99 %   worst"
+    )
     for rolls, kind in ((1, KINDS[0]), (0, KINDS[1])):
         for name, most in ((f"mu_s below {PLAY}", PLAY), ("any mu_s", 1.0)):
             some = rows[sure & (rows[:, 0] == rolls) & (rows[:, 1] <= most)]
