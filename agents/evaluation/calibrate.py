@@ -33,7 +33,7 @@ with needs("agents.calibrate"):
     from snooker_env.players.weights import learned_worth
 
     from ..cluster.ray_cluster import add_ray, checked_ray, place
-    from ..learning.frame_worth import calibration
+    from ..learning.frame_worth import by_stage, calibration
     from ..learning.learn_worth import FRAME, TABLES
 
 CONDITIONS = "fixed", "drawn"
@@ -190,19 +190,19 @@ def self_played(where, scales, frames, budget, conditions):
 
 
 def chances_of(parts):
-    """The chance to win of who plays each stroke and the share that won, (10, 2), of groups of strokes sorted by the
-    chance, and the mean absolute difference; of the rows of all parts. None if no frame was won."""
+    """Of the rows of all parts: the chance to win of who plays each stroke and the share that won, (10, 2), of groups of
+    strokes sorted by the chance; the mean absolute difference; and the rows of ``by_stage``. None if no frame was won."""
     layers, chance = learned_worth()
-    rows = {
-        name: np.concatenate([part[name] for part in parts])
-        for name in ("seen", "lead", "left", "won", "decided")
-    }
+    names = "seen", "lead", "left", "last", "won", "decided", "frame"
+    rows = {name: np.concatenate([part[name] for part in parts]) for name in names}
+    rows["frame"] += TABLES * np.repeat(np.arange(len(parts)), [len(part["frame"]) for part in parts])
+    rows = {name: part[rows["decided"]] for name, part in rows.items()}
+    if not len(rows["won"]):
+        return None
     worth = worth_of(None if layers is None else Layers(layers, "relu"), rows["seen"]).astype(np.float64)
-    said, ended = (
-        chance(rows["lead"] + worth, rows["left"], rows["lead"], errors_seen(rows["seen"])),
-        rows["decided"],
-    )
-    return calibration(said[ended], rows["won"][ended]) if ended.any() else None
+    stand = rows["lead"], rows["left"], rows["last"]
+    said = chance(stand[0], worth, *stand[1:], errors_seen(rows["seen"]))
+    return *calibration(said, rows["won"]), by_stage(said, rows["won"], *stand, rows["frame"])
 
 
 def draw(table, error, frames, file):
@@ -262,11 +262,14 @@ def main(argv=None):
     title = f"{len(real)} frames of professionals, {args.frames} played of each scale"
     parts, chances = [_table(title, FIGURES, columns), _table("Tactics", TACTICS, tactics)], None
     if won := chances_of([rows for each in played for rows in each]):
-        table, error = won
-        chances = {"groups": table.tolist(), "error": error}
-        rows = [[str(k), f"{100.0 * a:.1f}", f"{100.0 * b:.1f}"] for k, (a, b) in enumerate(table, 1)]
-        said = f"The chance to win before each stroke, all scales: {100.0 * error:.1f} % apart on average"
-        parts.append(TextTable(said, ["group", "chance, %", "won, %"], rows, 1, 1))
+        table, error, stages = won
+        chances = {"groups": table.tolist(), "error": error, "stages": stages}
+        rows = [
+            [words, str(strokes), str(frames), f"{100.0 * a:.1f}", f"{100.0 * b:.1f} ± {100.0 * c:.1f}"]
+            for words, strokes, frames, a, b, c in stages
+        ]
+        said = f"The chance to win of who is ahead, before each stroke; groups of all strokes: {100.0 * error:.1f} % apart"
+        parts.append(TextTable(said, ["", "strokes", "frames", "chance, %", "won, %"], rows, 1, 1))
         if args.picture:
             draw(table, error, args.frames * len(args.scales), args.picture)
     show(parts)

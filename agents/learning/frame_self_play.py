@@ -12,7 +12,7 @@ from snooker_env import Options
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.sides import strikers_own
 from snooker_env.planning import Positions
-from snooker_env.planning.worth import lead_of, left_of
+from snooker_env.planning.worth import last_of, lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
 from snooker_env.players import player as snooker_player
 from snooker_env.players.tactician import Tactician
@@ -73,6 +73,7 @@ def frames(shared, args, threads):
                     "explored": explored,
                     "lead": lead_of(start)[here],
                     "left": left_of(start)[here],
+                    "last": last_of(start)[here],
                     "frame": which,
                     "striker": tables.game[which, columns.STRIKER],
                     "led": tables.lead()[which],

@@ -8,13 +8,13 @@ import torch
 from torch import nn
 
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE
-from snooker_env.planning.worth import SPREAD, Chance
+from snooker_env.planning.worth import FOUL, SPREAD, Chance
 
 WIDTHS = (32, 16)
 BATCH, RATE, DECAY = 512, 2e-3, 1.0
-SNOOKERS, STROKES = 0.3, 40
-"""Standard deviation of the prior of ``Chance.snookers``, for hardly anybody wins who needs some: without it the chance
-would be 0; and strokes of a frame, which count as one observation."""
+SNOOKERS, NEEDS, STROKES = 0.3, 3.0, 40
+"""Standard deviations of the priors of ``Chance.snookers`` and ``needs``, for hardly anybody wins who needs some: without
+them the chance would be 0; and strokes of a frame, which count as one observation."""
 TRACE = 0.4
 """Share of what really followed in a target, beside what the search says of the next position."""
 
@@ -69,29 +69,35 @@ def fitted(seen, wanted, seed, passes):
     return network.layers()
 
 
-def fitted_chance(lead, left, now, spread, won):
-    """The ``Chance`` that is likeliest, of expected final leads, points on the table, leads, errors of direction [rad]
-    and who won: (n,) each."""
-    beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
-    lead, left, beyond, errors, won = (
-        torch.from_numpy(np.asarray(one, np.float64)) for one in (lead, left, beyond, spread / SPREAD, won)
+def fitted_chance(now, worth, left, last, spread, won):
+    """The ``Chance`` that is likeliest, of leads, worths, points on the table, whether only the black is left, errors of
+    direction [rad] and who won: (n,) each. Nothing is fitted with the black alone, and where the lead is
+    what is on the table."""
+    rest = ~last & (np.abs(now) != left)
+    now, worth, left, errors, won = (
+        torch.from_numpy(np.asarray(one, np.float64)[rest])
+        for one in (now, worth, left, spread / SPREAD, won)
     )
-    raw = torch.tensor([1.0, 1.0, -2.0], dtype=torch.float64, requires_grad=True)
+    beyond = now.abs() - left
+    sign = now.sign()
+    gain = sign * (sign * worth).clamp(min=-FOUL)
+    raw = torch.tensor([1.0, -1.0, -2.0, 0.0], dtype=torch.float64, requires_grad=True)
     power = torch.zeros((), dtype=torch.float64, requires_grad=True)
     optimiser = torch.optim.LBFGS([raw, power], max_iter=200, line_search_fn="strong_wolfe")
 
     def loss():
         optimiser.zero_grad()
-        near, far, snookers = nn.functional.softplus(raw)
-        logit = lead / ((near + far * left.sqrt()) * errors**power) + snookers * beyond
+        near, far, snookers, needs = nn.functional.softplus(raw)
+        wide = (near + far * left) * errors**power
+        fouls = sign * (needs + snookers * beyond) + gain / wide
+        logit = torch.where(beyond > 0.0, fouls, (now + worth) / wide)
         value = nn.functional.binary_cross_entropy_with_logits(logit, won)
-        value = value + 0.5 * (snookers / SNOOKERS) ** 2 * STROKES / len(won)
+        value = value + 0.5 * ((snookers / SNOOKERS) ** 2 + (needs / NEEDS) ** 2) * STROKES / len(won)
         value.backward()
         return value
 
     optimiser.step(loss)
-    near, far, snookers = nn.functional.softplus(raw).tolist()
-    return Chance(near, far, snookers, power.item())
+    return Chance(*nn.functional.softplus(raw).tolist(), power.item())
 
 
 def calibration(chance, won, groups=10):
@@ -99,3 +105,34 @@ def calibration(chance, won, groups=10):
     parts = np.array_split(np.argsort(chance, kind="stable"), groups)
     table = np.array([[chance[rows].mean(), won[rows].mean()] for rows in parts])
     return table, float(np.abs(table[:, 0] - table[:, 1]).mean())
+
+
+def stages(now, left, last):
+    """The stages of a frame, in words, and which strokes at the leads ``now`` (n,) are of each."""
+    ahead, beyond = np.abs(now), np.abs(now) - left
+    return {
+        "more than 75 points on the table": ~last & (beyond < 0) & (left > 75),
+        "36 to 75": ~last & (beyond < 0) & (left > 35) & (left <= 75),
+        "14 to 35": ~last & (beyond < 0) & (left > 13) & (left <= 35),
+        "pink and black, or fewer": ~last & (beyond < 0) & (left <= 13),
+        "the lead is what is on the table": ~last & (beyond == 0),
+        "1 to 4 points more": ~last & (beyond > 0) & (beyond <= 4),
+        "5 points more, or beyond": ~last & (beyond > 4),
+        "the black alone, a lead of up to 7": last & (ahead <= 7),
+        "the black alone, a larger lead": last & (ahead > 7),
+    }
+
+
+def by_stage(chance, won, now, left, last, frames):
+    """A row for each of ``stages``: its words, strokes, frames, the mean chance of the player ahead (of the striker, if
+    level), the share of these that won, and its standard error, over frames."""
+    ahead = now >= 0
+    said, made = np.where(ahead, chance, 1.0 - chance), np.where(ahead, won, ~won)
+    rows = []
+    for words, which in stages(now, left, last).items():
+        if which.any():
+            each, of = np.unique(frames[which], return_inverse=True)
+            off = np.bincount(of, made[which] - made[which].mean())
+            error = np.sqrt((off**2).sum()) / which.sum()
+            rows.append((words, int(which.sum()), len(each), said[which].mean(), made[which].mean(), error))
+    return rows

@@ -1,13 +1,14 @@
 """Learn what positions of frames are worth, by self-play: the worth of the ``tactician``.
 
-    python -m agents.learn_worth --out runs/worth [--rounds 2] [--ray local]
+    python -m agents.learn_worth --out runs/worth [--rounds 2] [--chance] [--ray local]
 
 Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds
 before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
 Each position, and what its best strokes may leave, is judged by search (``frame_self_play``). A network is then fitted to
 the last rounds, and the chance to win to their frames between equals. After each round OUT holds its data and its
 weights: the same command goes on from there. The last round's weights are written to OUT/worth.npz, and with --export
-into the package.
+into the package. With --chance the network stays that of the package: all frames are between equals, no position is
+judged, and the chance to win alone is fitted.
 """
 
 import sys
@@ -68,23 +69,35 @@ def played(where, shared, many):
         part["target"] = targets(part)
         part["held"] = (part["frame"] + j) % HELD == 0
         part["unit"] = part.pop("frame") + TABLES * j
-    kept = "seen", "hand", "target", "held", "unit", "striker", "lead", "left", "won", "decided", "equals"
+    kept = (
+        "seen",
+        "hand",
+        "target",
+        "held",
+        "unit",
+        "striker",
+        "lead",
+        "left",
+        "last",
+        "won",
+        "decided",
+        "equals",
+    )
     rows = {name: np.concatenate([part[name] for part in parts]) for name in kept}
     for name in ("seen", "hand"):
         rows[name] = rows[name].astype(np.float16)
     return rows
 
 
-def learned(rounds, seed):
-    """Layers and chance fitted to the rows of some rounds, and figures of the frames kept from the fit."""
+def learned(rounds, seed, layers=None):
+    """Layers, if they are None, and chance fitted to the rows of some rounds, and figures of the frames kept from the fit."""
     both = {name: np.concatenate([one[name] for one in rounds]) for name in rounds[0]}
     used = ~both["held"]
     in_hand = used & (both["seen"] != both["hand"]).any(axis=1)
     seen = np.concatenate([both["seen"][used], both["hand"][in_hand]]).astype(np.float32)
     wanted = np.concatenate([both["target"][used], both["target"][in_hand]])
-    layers = fitted(seen, wanted, seed, PASSES)
+    layers = fitted(seen, wanted, seed, PASSES) if layers is None else layers
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
-    lead = both["lead"] + said.astype(np.float64)
     # a frame that was stopped was won by nobody; nor is it known what follows positions beside the frames, or what an
     # equal would have made of it
     ended, held = both["decided"] & both["equals"], both["held"]
@@ -93,7 +106,7 @@ def learned(rounds, seed):
             raise refuse(
                 "frames", len(np.unique(both["unit"])), f"must be more: of those {what} none has ended"
             )
-    known = lead, both["left"], both["lead"], errors_seen(both["seen"])
+    known = both["lead"], said.astype(np.float64), both["left"], both["last"], errors_seen(both["seen"])
     chance = fitted_chance(*(part[used & ended] for part in (*known, both["won"])))
     wins, won = chance(*known)[held & ended], both["won"][held & ended]
     rmse = lambda worth: float(np.sqrt(np.mean((worth - both["target"])[held] ** 2)))  # noqa: E731
@@ -125,6 +138,7 @@ def main(argv=None):
     p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
     p.add_argument("--seed", type=int, default=0, help="[0]")
     p.add_argument("--export", action="store_true", help="write the weights into the package, too")
+    p.add_argument("--chance", action="store_true", help="fit the chance to win alone")
     add_ray(p)
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
@@ -146,20 +160,23 @@ def main(argv=None):
             p.error(str(error))
 
     snooker_env.warmup()
-    layers, chance, past, rounds = None, None, [], []
-    asked = [args.frames, args.budget, args.seed]
+    layers, chance = learned_worth() if args.chance else (None, None)
+    given, past, rounds = layers, [], []
+    asked = [args.frames, args.budget, args.seed, args.chance]
     with place(args.ray) as where:
         for k in range(args.rounds):
             rows_file, weights_file = args.out / f"round-{k}.npz", args.out / f"worth-{k}.npz"
             shared = {"options": FRAME, "layers": layers, "chance": chance, "explore": EXPLORE}
-            shared, began = shared | {"budget": args.budget, "replies": True}, time.time()
+            shared, began = shared | {"budget": args.budget, "replies": not args.chance}, time.time()
             if rows_file.is_file():
                 rows = kept(rows_file)
-                if rows.pop("asked").tolist() != asked or "equals" not in rows:
+                if rows.pop("asked").tolist() != asked or "last" not in rows:
                     wanted = "must hold rounds of this version with the same --frames, --budget and --seed"
                     p.error(str(refuse("out", str(args.out), wanted)))
             else:
-                rows = played(where, shared, drawn_parts(args.seed, k, args.frames // TABLES, past))
+                parts = drawn_parts(args.seed, k, args.frames // TABLES, past)
+                parts = [one | {"other": None} for one in parts] if args.chance else parts
+                rows = played(where, shared, parts)
                 keep_arrays(rows_file, rows | {"asked": np.array(asked)})
             rounds = [*rounds, rows][-KEEP:]
             if weights_file.is_file():
@@ -167,7 +184,7 @@ def main(argv=None):
                 past.append((layers, chance))
                 continue
             try:
-                layers, chance, figures = learned(rounds, args.seed + k)
+                layers, chance, figures = learned(rounds, args.seed + k, given)
             except ValueError as error:
                 p.error(str(error))
             past.append((layers, chance))
@@ -177,10 +194,8 @@ def main(argv=None):
             spent = (
                 f"{time.time() - began:.0f} s, {(rows['striker'] >= 0).sum() / frames:.0f} strokes a frame"
             )
-            print(
-                f"round {k}: {told}  chance {chance.near:.3g} {chance.far:.3g} {chance.snookers:.3g} {chance.errors:.3g}  {spent}",
-                flush=True,
-            )
+            law = " ".join(f"{number:.3g}" for number in chance)
+            print(f"round {k}: {told}  chance {law}  {spent}", flush=True)
     content = packed(arrays_of(layers, chance))
     write_atomic(args.out / "worth.npz", content)
     if args.export:

@@ -43,8 +43,7 @@ def frames_tried(learned, noise, cue, seeds, other, tried, rng, threads):
             which = np.repeat(np.arange(len(here)), picks.shape[1] * errors)
             trials = np.repeat(looked.strokes[every, picks].reshape(-1, 5), errors, axis=0)
             met = rng.standard_normal((len(which), 5))
-            again = scores.max(axis=1).astype(np.float64)
-            worth = judge.gains(start[here], which, trials, met, again)[:, 1].reshape(*picks.shape, errors)
+            worth = judge.gains(start[here], which, trials, met)[:, 1].reshape(*picks.shape, errors)
             seen = looked.seen[every, picks].astype(np.float16)
             rows.append((seen, worth.mean(axis=2).astype(np.float32), seeds[mine[here]]))
         for k, one in enumerate(compared):

@@ -19,6 +19,7 @@ from .strokes import CueStroke, Suggestion
 
 FOULS = ("foul", "in-off")  # kinds of strokes that are fouls without errors
 RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with
+SELDOM = 0.05  # chance of a pot below which it is no suggestion where there are others
 OFTEN = 0.05  # share of misses from which is said what a missed pot leaves
 
 
@@ -102,7 +103,8 @@ def _trial(
     what, physics = say.what_words(kind, ball, pocket, first, how), practice.options.rules.physics
     played = replace(stroke, side=room.side, top=room.top)  # its spin is that of the tip that is reached
     how_played = (say.stroke_words(played, distance, physics, way) for way in (room, None))
-    words, alike = (", ".join(filter(None, (what, how, lie))) for how in how_played)
+    push = say.push_words(dx, dy, stroke.aim, first) if first >= 0 else ""
+    words, alike = (", ".join(filter(None, (what, how, lie, push))) for how in how_played)
     return Tried(stroke, starts[k : k + 1], kind, ball, pocket, first, words, alike, room)
 
 
@@ -116,18 +118,30 @@ def distinct(strokes: list[Tried]) -> list[Tried]:
 
 
 def fair(practice: Practice, strokes: list[Tried], n: int, **how: int) -> list[Suggestion]:
-    """The first n strokes that are fair without errors and in most samples, the preferred kind first."""
-    waiting, out = [one for one in strokes if one.kind not in FOULS], []
+    """The first n strokes that are fair without errors and in most samples, the preferred kind first.
+
+    Pots that hardly ever go are none of them, unless nothing else is, or in a frame none of the others wins so often."""
+    waiting, out, unlikely = [one for one in strokes if one.kind not in FOULS], [], []
     while waiting and len(out) < n:
         some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
-        out += [one for one in judged(practice, some, **how) if one.foul <= 0.5]
+        for one in judged(practice, some, **how):
+            if one.foul <= 0.5:
+                (unlikely if one.kind == "pot" and one.chance < SELDOM else out).append(one)
+    most = max([one.win for one in out if one.win is not None], default=-1.0)
+    if not out or out[0].win is not None:
+        out += [_needed(one) for one in unlikely if not out or one.win > most][: max(1, n - len(out))]
     if out and out[0].win is not None:
-        out.sort(key=lambda one: -one.figure)
+        out = sorted(out, key=lambda one: -one.figure)[:n]
         pot = out[0].kind == "pot"
         others = [one for one in waiting if (one.kind == "pot") != pot][:RIVALS]
         others = judged(practice, others, **how | {"visits": 0}) if others else []
         return [_compared(out, [one for one in out[1:] + others if one.foul <= 0.5]), *out[1:]]
     return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
+
+
+def _needed(one: Suggestion) -> Suggestion:
+    """A pot that hardly ever goes, with the words why it is suggested."""
+    return replace(one, words=f"{one.words}; hardly ever made, but no better stroke was found")
 
 
 def _compared(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:

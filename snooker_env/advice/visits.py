@@ -5,8 +5,7 @@
 2. The best three meet five noise samples, and the best of them is played.
 3. Where there is no direct pot, so it chooses among strokes at what it sees of the balls on, or escapes.
 
-This is a shallow search, made to play hundreds of visits in a second. From open tables under professional
-noise it scores about 58 points a visit; "planner_500" about 120."""
+This is a shallow search, made to be fast: a stronger player makes more of the same visits."""
 
 import numpy as np
 

@@ -1,8 +1,9 @@
 """How is a stroke described in words? Seen from the baulk end: right is the yellow side (+x)."""
 
 from bisect import bisect_left
-from math import copysign, cos, degrees, sin, sqrt
+from math import copysign, cos, degrees, hypot, sin, sqrt
 
+from ..game.balls import REFEREE_TOUCH
 from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from ..physics.parameters import Physics
 from ..replays.words import ball_name
@@ -18,6 +19,7 @@ _SIDE = 0.05  # tip offsets over R from which side is mentioned
 _FULLNESS = (0.38, 0.62, 0.87)  # offsets over the diameter up to which a hit is three-quarter, half, quarter
 RAISED = 0.05  # elevation [rad] from which a raised cue is mentioned
 TIGHT = 0.05  # largest gap [m] to a ball that the cue ball lies tight behind
+NEARLY = 0.002  # gap [m] below which the tip is still on the cue ball when it meets a ball (docs/physics/limits.md)
 AT_CUSHION = 0.15  # largest gap [m] to the cushion at an end that the cue ball is played to
 
 
@@ -102,6 +104,17 @@ def contact_words(x: float, y: float, aim: float) -> str:
         return "full"
     words = ("three-quarter ball", "half-ball", "quarter-ball", "thin")[bisect_left(_FULLNESS, abs(aside))]
     return f"{words} on the {'right' if aside > 0 else 'left'}"
+
+
+def push_words(x: float, y: float, aim: float, ball: int) -> str:
+    """What a referee would call a hit of a ``ball`` at the offset (x, y) that is nearly touching; "" of other hits.
+
+    A very fine edge may be struck."""
+    gap, far = hypot(x, y) - 2.0 * BALL_RADIUS, x * cos(aim) + y * sin(aim)
+    fine = abs(y * cos(aim) - x * sin(aim)) > _FULLNESS[-1] * 2.0 * BALL_RADIUS
+    if not (REFEREE_TOUCH <= gap < NEARLY) or far <= 0.0 or fine:
+        return ""
+    return f"at a real table a push stroke, a foul: the {ball_name(ball)} is {1000.0 * gap:.1f} mm away"
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:

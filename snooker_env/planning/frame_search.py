@@ -24,7 +24,7 @@ from .proposals import Proposals, at_balls, over_cushions, safeties
 from .prospects import spread_of
 from .stroke_search import Propose, halved, in_turn
 from .strokes import COLUMNS, Dynamics
-from .worth import Chance, Worth, follows, lead_of, left_of, passed
+from .worth import LAST, Chance, Worth, follows, last_of, lead_of, left_of, passed
 
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
 TIE = 2e-4
@@ -112,7 +112,8 @@ class FrameSearch:
         easy, hard = self.plans
         asking: Any = self
         pots = self.propose(asking, at.as_visits(), hard.pots, keys)
-        likely = pots.chances.max(axis=1) >= EASY
+        # who would need snookers at the next visit must see more than pots
+        likely = (pots.chances.max(axis=1) >= EASY) & (lead_of(at) + left_of(passed(at)) >= 0.0)
         for plan, which in ((easy, np.flatnonzero(likely)), (hard, np.flatnonzero(~likely))):
             if len(which):
                 for k, one in zip(which.tolist(), self._rank(at[which], keys[which], plan), strict=True):
@@ -124,32 +125,65 @@ class FrameSearch:
         self.shots += len(rows)
         return self._trials.play(at, rows, strokes, errors)
 
-    def gains(
-        self, at: Positions, rows: Ints, strokes: Floats, errors: Floats, again: Floats | None = None
-    ) -> Floats:
+    def gains(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Floats:
         """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m, 2), the chance to
-        win and the points. ``again`` (n,): what the positions are worth at most, see ``follows``."""
-        after, before = self.outcomes(at, rows, strokes, errors), lead_of(at)[rows]
-        return self.valued(before, after, None if again is None else again[rows])
+        win and the points."""
+        return self.valued(lead_of(at)[rows], self.outcomes(at, rows, strokes, errors))
 
-    def valued(self, before: Floats, after: Positions, again: Floats | None = None) -> Floats:
+    def valued(self, before: Floats, after: Positions) -> Floats:
         """What strokes that were played at the leads ``before`` (m,) and left ``after`` are worth to their strikers:
-        (m, 2), as ``gains``; ``again`` (m,) as in ``follows``."""
-        return self._both(before, follows(self.worth, after, before, self.rules.rule_set.code, again), after)
+        (m, 2), as ``gains``."""
+        points = follows(self.worth, after, before, self.rules.rule_set.code)
+        chance = self.chances(lead_of(after), before + points - lead_of(after), after)
+        over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
+        return np.column_stack([np.where(over, won, chance), points])
 
-    def _both(self, before: Floats, points: Floats, after: Positions, now: Floats | None = None) -> Floats:
-        """Chances to win and points, (m, 2), of strokes that bring and leave ``points`` more than the leads ``before``;
-        ``now`` (m,): the leads then, if they are not those of player 0."""
-        chance = np.zeros(len(points))
-        if self.chance is not None:
-            over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
-            now = lead_of(after) if now is None else now
-            chance = np.where(over, won, self.chance(before + points, left_of(after), now, self.spread))
-        return np.column_stack([chance, points])
+    def chances(self, now: Floats, worth: Floats, at: Positions) -> Floats:
+        """The chances to win, (m,), of who leads by ``now`` and expects ``worth`` more than the other from the balls of
+        ``at``; without a law 0."""
+        if self.chance is None:
+            return np.zeros(len(now))
+        left, clock = left_of(at), self.rules.rule_set.clock
+        if (
+            clock
+        ):  # no stroke begins after it, and none brings more than a black, but for several reds at once
+            strokes = 1 + np.maximum(clock - at.game[:, columns.CLOCK], 0) // self.rules.time_to_play
+            left = np.minimum(left, LAST * strokes)
+            worth = np.clip(worth, -left, left)
+        return self.chance(now, worth, left, last_of(at), self.spread)
 
-    def _score(self, both: Floats) -> Floats:
-        """What strokes are compared by, of (..., 2)."""
+    def _one(self, both: Floats) -> Floats:
+        """What strokes are compared by, of chances and points (..., 2)."""
         return both[..., 1] if self.chance is None else both[..., 0] + TIE * both[..., 1]
+
+    def _score(self, parts: Floats) -> Floats:
+        """What the strokes of each position are compared by, of (n, m, 7), see ``_parts``."""
+        return self._one(self._replayed(parts))
+
+    def _parts(self, at: Positions, rows: Ints, after: Positions) -> Floats:
+        """What strokes on ``at[rows]`` that left ``after`` are worth, (k, 7): chance and points where no miss was called;
+        whether one was, and then chance and points if it is not played again, and what they lose by the penalty."""
+        before, parts = lead_of(at)[rows], np.zeros((len(rows), 7))
+        both, called = self.valued(before, after), after.game[:, columns.MISS_CALLED] != 0
+        parts[~called, :2], parts[called, 3:5], parts[:, 2] = both[~called], both[called], called
+        some = np.flatnonzero(called)
+        if len(some):
+            same = at[rows[some]]
+            worth, now = self.worth(same).astype(np.float64), lead_of(after)[some]
+            parts[some, 5] = self.chances(now, worth, same) - self.chances(before[some], worth, same)
+            parts[some, 6] = now - before[some]
+        return parts
+
+    def _replayed(self, parts: Floats) -> Floats:
+        """Chances and points (n, m, 2) of strokes with these ``_parts`` (n, m, 7) on average: a called miss may be played
+        again, so that it is worth no more than the best of the m strokes, less its penalty."""
+        fair, called, left, less = parts[..., :2], parts[..., 2:3], parts[..., 3:5], parts[..., 5:]
+        out, again = fair + left, fair + less
+        alone = np.where(called < 1.0, again / np.where(called < 1.0, 1.0 - called, 1.0), out)
+        lower = lambda one, other: np.where((self._one(one) <= self._one(other))[..., None], one, other)  # noqa: E731
+        worth = lower(out, alone)
+        best = np.take_along_axis(worth, self._one(worth).argmax(axis=1)[:, None, None], 1)
+        return lower(out, again + called * best)
 
     def _proposed(self, at: Positions, seeds: Ints, plan: Plan) -> tuple[Floats, Floats, Ints]:
         """Strokes (n, m, 5), chances and kinds (n, m)."""
@@ -176,30 +210,33 @@ class FrameSearch:
         rounds = () if self.noise.silent else plan.rounds
         j, c = np.nonzero(some)
         after, before = self.outcomes(at, j, strokes[j, c], np.zeros((len(j), COLUMNS))), lead_of(at)
-        looks = self.valued(before[j], after)
+        # what fouls as intended is played where it wins the frame, or where nothing else was found
+        foul = after.game[:, columns.SCORE_1] > at.game[j, columns.SCORE_1]
+        foul &= (after.game[:, columns.OVER] == 0) | (after.game[:, columns.WINNER] != 0)
+        fair = np.zeros(n, np.bool_)
+        fair[j[~foul]] = True
+        some[j, c] = keep = ~(foul & fair[j])
+        j, c, after = j[keep], c[keep], after[np.flatnonzero(keep)]
+        parts = self._parts(at, j, after)
         if rounds:  # a pot that is missed leaves the balls about as they lie
             left = passed(at)
             points = -self.worth(left).astype(np.float64)
-            missed, made = self._both(before, points, left, before)[j], chances[j, c, None]
-            looks = made * looks + (1.0 - made) * missed
-        # a called miss may be played again: it is worth less than the best of the others, by its penalty
-        called, most = after.game[:, columns.MISS_CALLED] != 0, np.full(n, -np.inf)
-        np.maximum.at(most, j[~called], looks[~called, 1])
-        most[np.isinf(most)] = np.inf  # nothing else was found
-        worse = np.flatnonzero(called)
-        points = np.minimum(looks[worse, 1], lead_of(after)[worse] - before[j[worse]] + most[j[worse]])
-        looks[worse] = self._both(before[j[worse]], points, after[worse])
-        both = np.full((n, m, 2), -np.inf)
-        both[j, c] = looks
-        order = np.argsort(-self._score(both), axis=1, kind="stable")
+            missed = np.column_stack([1.0 - self.chances(-before, -points, left), points])[j]
+            made = chances[j, c, None]
+            parts[:, :2] = made * parts[:, :2] + (1.0 - made) * missed
+        looks = np.zeros((n, m, parts.shape[1]))
+        looks[..., :2] = -np.inf
+        looks[j, c] = parts
+        order = np.argsort(-self._score(looks), axis=1, kind="stable")
         if plan.safeties:  # a look without error flatters: the best of each kind are sampled
             order = in_turn(order, kinds)
             order = np.take_along_axis(order, np.argsort(~some[every, order], axis=1, kind="stable"), 1)
 
         def met(rows: Ints, picks: Ints, errors: Floats) -> Floats:
-            return self.gains(at, rows, strokes[rows, picks], errors, most)
+            return self._parts(at, rows, self.outcomes(at, rows, strokes[rows, picks], errors))
 
-        order, both, tries = halved(both, order, rounds, seeds, met, self._score)
-        parts: Any = [part[every, order] for part in (strokes, both[..., 0], both[..., 1], tries, kinds)]
+        order, values, tries = halved(looks, order, rounds, seeds, met, self._score)
+        both = self._replayed(values)
+        tried: Any = [part[every, order] for part in (strokes, both[..., 0], both[..., 1], tries, kinds)]
         counts = some.sum(axis=1).tolist()
-        return [Tried(*(part[k, :count] for part in parts)) for k, count in enumerate(counts)]
+        return [Tried(*(part[k, :count] for part in tried)) for k, count in enumerate(counts)]

@@ -1,5 +1,5 @@
-"""How does a stroke become an action? The one encoder of strokes, choices of ``action="discrete"`` as
-actions, and the aim solver. A stroke is a row of five numbers in SI, in the columns of ``trials``."""
+"""How does a stroke become an action, and what does a choice of ``action="discrete"`` aim at? Strokes without what is said
+with them, which ``players.Strokes.actions`` encodes, too. A stroke is a row of five numbers in SI: ``COLUMNS``."""
 
 from dataclasses import replace
 from math import pi

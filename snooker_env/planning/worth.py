@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .._jit import entry
 from .._types import Bools, Floats, Ints
 from ..game import frame_columns as columns
-from ..game.balls import CUE, N_BALLS, available
+from ..game.balls import BLACK, CUE, N_BALLS, VALUES, available
 from ..game.sides import swapped
 from ..geometry import BAULK_Y, D_RADIUS
 from ..tasks.stroke import place
@@ -25,6 +25,8 @@ from .positions import Positions
 
 SPREAD, NARROWEST, WIDEST = 1.2e-3, 3.3e-4, 5e-3
 """An error of direction in the middle of those that are learned from [rad]; those beyond the others count as these."""
+LAST, FOUL, SURE = float(VALUES[BLACK]), 4.0, 0.98
+"""Points that the last black, or a foul on it, brings; the least that a foul does; how sure it is at most who gets them."""
 Worth: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 PLACES = np.array(
     [
@@ -97,51 +99,75 @@ def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
     return best, values[np.arange(len(at)), best]
 
 
-def follows(
-    worth: Worth, after: Positions, before: Floats, rules: int = 0, again: Floats | None = None
-) -> Floats:
+def follows(worth: Worth, after: Positions, before: Floats, rules: int = 0) -> Floats:
     """What strokes were worth to those who played them, who are player 0 in ``after``: the points since the leads
-    ``before`` (n,), and the worth of what they leave, of which the other may be the next to play: (n,).
-
-    ``again`` (n,): what the positions that the strokes were played from are worth at most. After a called miss the
-    other may have the balls replaced, so that no such foul is worth more than that, less its penalty."""
+    ``before`` (n,), and the worth of what they leave, of which the other may be the next to play: (n,)."""
     game = after.game
     gains = lead_of(after) - before
     mine = game[:, columns.STRIKER] == 0
     lost = (game[:, columns.OVER] != 0) & (game[:, columns.WINNER] == 1)
     gains -= np.where(lost, left_of(after), 0.0)  # by a third miss, with balls on the table
-    playing, choosing = game[:, columns.PHASE] == columns.STROKE, game[:, columns.PHASE] == columns.CHOICE
+    lot = (game[:, columns.RESPOTTED_BLACK] != 0) & (before != 0.0)  # level now: chance says who begins
+    playing, choosing = (
+        (game[:, columns.PHASE] == columns.STROKE) & ~lot,
+        game[:, columns.PHASE] == columns.CHOICE,
+    )
     rows = np.flatnonzero(playing)
     if len(rows):
         gains[rows] += np.where(mine[rows], 1.0, -1.0) * worth(turned(after[rows]))
     rows = np.flatnonzero(choosing)
     if len(rows):
-        left = np.where(mine[rows], 1.0, -1.0) * decide(worth, turned(after[rows]), rules)[1]
-        if again is not None:
-            called = game[rows, columns.MISS_CALLED] != 0
-            left = np.where(called, np.minimum(left, again[rows]), left)
-        gains[rows] += left
+        gains[rows] += np.where(mine[rows], 1.0, -1.0) * decide(worth, turned(after[rows]), rules)[1]
     return gains
 
 
 class Chance(NamedTuple):
-    """The chance to win a frame, of the lead that is expected at its end: a logistic law, as wide as the luck that
-    is still to come: ``near`` + ``far`` sqrt(points on the table) [points], times the players' errors of direction over
-    ``SPREAD`` to the power ``errors``: who errs less makes more of one visit. Who leads by more than is on the table can
-    lose by fouls alone: each such point adds ``snookers`` to the logit."""
+    """The chance to win a frame. Until only the black is left, a logistic law: of the lead that is expected at its end,
+    beside the luck that is still to come, ``near`` + ``far`` x points on the table [points], times the players' errors of
+    direction over ``SPREAD`` to the power ``errors``: who errs less makes more of one visit. A lead of more than is on the
+    table is lost by fouls alone: it counts ``needs`` in the logit, and ``snookers`` for each point beyond; of what the other
+    is expected to score, no more than a foul brings is of use.
+
+    With the black alone the next points end the frame unless they make it level, so that the rules say who wins by them:
+    only who scores them is not certain."""
 
     near: float
     far: float
     snookers: float
+    needs: float
     errors: float = 0.0
 
-    def __call__(self, lead: Floats, left: Floats, now: Floats, spread: float | Floats) -> Floats:
-        """The chance (n,) of who leads by ``now`` (n,) and is expected to end with ``lead`` (n,) when ``left`` (n,) are
-        on the table, between players whose direction errs by ``spread`` [rad]."""
-        beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
-        wide = (np.clip(spread, NARROWEST, WIDEST) / SPREAD) ** self.errors
-        logit = lead / ((self.near + self.far * np.sqrt(left)) * wide) + self.snookers * beyond
-        return 1.0 / (1.0 + np.exp(-np.clip(logit, -50.0, 50.0)))
+    def __call__(
+        self, now: Floats, worth: Floats, left: Floats, last: Bools, spread: float | Floats
+    ) -> Floats:
+        """The chance (n,) of who leads by ``now`` (n,) and is expected to score ``worth`` (n,) more than the other from
+        here on, when ``left`` (n,) are on the table, ``last``: only the black, between players whose direction errs by
+        ``spread`` [rad]."""
+        sign, beyond = np.sign(now), np.abs(now) - left
+        wide = (self.near + self.far * left) * (np.clip(spread, NARROWEST, WIDEST) / SPREAD) ** self.errors
+        chance = _logistic((now + worth) / wide)
+        # level, at best: all that is on the table, and then the lot and a re-spotted black
+        chance = np.where((beyond == 0.0) & (left > 0.0), 0.5 * chance + 0.5 * (now > 0.0), chance)
+        gain = sign * np.maximum(sign * worth, -FOUL)
+        fouls = _logistic(sign * (self.needs + self.snookers * beyond) + gain / wide)
+        chance = np.where(beyond > 0.0, fouls, chance)
+        black = np.clip(0.5 + worth / (2.0 * LAST), 1.0 - SURE, SURE)
+        ends = black * _ended(now + LAST) + (1.0 - black) * _ended(now - LAST)
+        return np.where(last, ends, chance)
+
+
+def _logistic(logit: Floats) -> Floats:
+    return 1.0 / (1.0 + np.exp(-np.clip(logit, -50.0, 50.0)))
+
+
+def _ended(lead: Floats) -> Floats:
+    """The chance of who leads by ``lead`` (n,) when the black has gone: level, a lot and a re-spotted black decide."""
+    return 0.5 + 0.5 * np.sign(lead)
+
+
+def last_of(at: Positions) -> Bools:
+    """Whether only the black is left, so that the next points end the frame unless they make it level: (n,)."""
+    return (at.game[:, columns.ON_TABLE] == 1 << BLACK) & (at.game[:, columns.BALL_ON] == VALUES[BLACK])
 
 
 def left_of(at: Positions) -> Floats:

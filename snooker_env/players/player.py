@@ -145,7 +145,7 @@ class Strokes:
         return self.values[:, ELEVATION]
 
     def actions(self, options: Options, at: Positions) -> Floats:
-        """Convert to actions of an environment, the one encoder: float64 (n, k) in [-1, 1].
+        """Convert to actions of an environment, with all that is said: float64 (n, k) in [-1, 1].
 
         ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n
         positions, on which the meaning of a place and a nomination depends. ValueError if the environment

@@ -14,7 +14,7 @@ from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
 from ..planning.positions import PositionsLike
-from ..planning.worth import decide, lead_of, left_of
+from ..planning.worth import decide, lead_of
 from ..tasks.options import Options
 from .choices import GhostBall
 from .frame_decisions import FramePlayer
@@ -78,5 +78,5 @@ class Tactician(FramePlayer):
             black.game[:, columns.PHASE] = columns.STROKE
             gains[rows] = np.abs(worth(black))  # it begins, or the other does
         won = at.game[:, columns.WINNER] == 0
-        chances = search.chance(lead_of(at) + gains, left_of(at), lead_of(at), search.spread)
+        chances = search.chances(lead_of(at), gains, at)
         return np.where(over, won, chances)

@@ -104,3 +104,16 @@ def test_a_heading_says_by_what():
         both.order
         == f"Strokes without a pot by how often they are fair, then pots by points expected{ERRORS}"
     )
+
+
+def test_a_pot_that_hardly_ever_goes_is_suggested_only_where_nothing_better_is():
+    """A red that is potted 2 times of 100; another stroke is fair nearly always, and wins more often."""
+    far = sn.Position(cue=(0.3, -1.3), reds=[(0.1, -0.4)], black=(0.0, 1.4605), on="red")
+    pot = CueStroke(speed=3.924964665354218, aim=1.7396937343372483, top=0.17307945551583545)
+    safe = CueStroke(speed=0.9, aim=atan2(0.9, -0.2) + 0.01)
+    for scores, kind in ((None, "contact"), ((0, 0), "safety")):
+        how = {"noise": {"aim_deg": 1.5}, "scores": scores, **QUICK}
+        (alone,) = sn.advise(far, agent=Given(pot), **how)
+        assert alone.kind == "pot" and alone.chance < 0.05
+        assert alone.words.endswith("; hardly ever made, but no better stroke was found")
+        assert [one.kind for one in sn.advise(far, agent=Given(pot, safe), **how)] == [kind]

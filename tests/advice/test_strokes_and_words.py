@@ -4,7 +4,7 @@ from math import atan2, cos, pi, sin
 
 import numpy as np
 import pytest
-from cases import OPEN, played
+from cases import OPEN, Given, played
 from scipy.stats import binomtest
 
 import snooker_env as sn
@@ -150,3 +150,18 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         assert mean == pytest.approx(goes_on.mean() * (1.0 + rest.mean()))
         inside += low <= 0.8 * 11.0 <= high
     assert 0.92 < inside / runs < 0.97
+
+
+def test_a_hit_of_a_ball_that_nearly_touches_is_called_a_push():
+    """Half a millimetre straight ahead; not from 2 mm on, at a fine edge, nor away from it."""
+    ahead = sn.Position(cue=(0.0, 0.9), reds=[(0.0, 0.9 + 0.0525 + 0.0005)], black=(0.0, 1.4605), on="red")
+    for on in (0.0, 0.6):  # from the middle [rad]
+        given = Given(CueStroke(speed=1.5, aim=np.pi / 2 + on))
+        (one,) = sn.advise(ahead, agent=given, noise="none", visits=0)
+        assert ", at a real table a push stroke, a foul: the red is 0.5 mm away, " in one.words
+    say = words.push_words
+    assert say(0.0, 0.0525 + 0.0005, np.pi / 2, 1) == (
+        "at a real table a push stroke, a foul: the red is 0.5 mm away"
+    )
+    for gap, aim in ((0.002, np.pi / 2), (0.0005, -np.pi / 2), (0.0005, np.pi / 2 + 1.2), (1e-6, np.pi / 2)):
+        assert say(0.0, 0.0525 + gap, aim, 1) == ""  # one that touches is judged by the referee here, too

@@ -21,6 +21,7 @@ from snooker_env.planning.worth import (
     passed,
 )
 from snooker_env.planning.worth import SPREAD as MIDDLE
+from snooker_env.players.weights import learned_worth
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.windows import MOST_EDGES, open_windows
 from tests.kernels import from_python
@@ -97,41 +98,77 @@ def test_the_score_is_what_the_stroke_brings_and_leaves():
             assert tried.points[j] == pytest.approx(points, abs=1e-9)
 
 
+LAW = Chance(1.0, 0.2, 0.3, 2.0)
+
+
 def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
-    chance, level = Chance(1.0, 2.0, 0.3), np.zeros(5)
-    leads = np.array([-60.0, -5.0, 0.0, 5.0, 60.0])
-    few, many = (chance(leads, np.full(5, left), level, MIDDLE) for left in (7.0, 140.0))
+    level, open_table = np.zeros(5), np.zeros(5, np.bool_)
+    worths = np.array([-60.0, -5.0, 0.0, 5.0, 60.0])
+    few, many = (LAW(level, worths, np.full(5, left), open_table, MIDDLE) for left in (13.0, 140.0))
     assert many[2] == 0.5 and (np.diff(few) > 0).all() and few[3] > many[3] and few[0] < many[0]
     assert np.allclose(few + few[::-1], 1.0)
-    ten, left = np.full(5, 10.0), np.full(5, 49.0)
-    logits = 10.0 / 15.0 + 0.3 * np.array([-11.0, 0.0, 0.0, 0.0, 2.0])  # points beyond those on the table
-    now = np.array([-60.0, -49.0, 0.0, 49.0, 51.0])
-    assert chance(ten, left, now, MIDDLE) == pytest.approx(1.0 / (1.0 + np.exp(-logits)), rel=1e-12)
+    now, ten, left = np.array([-60.0, -50.0, -48.0, 0.0, 51.0]), np.full(5, 10.0), np.full(5, 49.0)
+    wide = 1.0 + 0.2 * 49.0
+    # fouls alone help the first two, to whom 4 of their 10 points are of use
+    logits = [-2.0 - 0.3 * 11.0 + 4.0 / wide, -2.3 + 4.0 / wide, -38.0 / wide, 10.0 / wide, 2.6 + 10.0 / wide]
+    said = LAW(now, ten, left, open_table, MIDDLE)
+    assert said == pytest.approx(1.0 / (1.0 + np.exp(-np.array(logits))), rel=1e-12)
+    errs = LAW._replace(errors=-0.5)
+    twice = LAW(2.0 * now[2:4], 2.0 * ten[2:4], left[2:4], open_table[2:4], MIDDLE)
+    assert errs(now, ten, left, open_table, 4.0 * MIDDLE)[3] == pytest.approx(twice[1], rel=1e-12)
+    assert np.array_equal(  # none larger was learned from, and none smaller
+        errs(now, ten, left, open_table, 1.0), errs(now, ten, left, open_table, WIDEST)
+    )
+    assert np.array_equal(errs(now, ten, left, open_table, 0.0), errs(now, ten, left, open_table, NARROWEST))
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
-    errs = chance._replace(errors=-0.5)
-    assert errs(ten, left, now, 4.0 * MIDDLE) == pytest.approx(
-        chance(2.0 * ten, left, now, MIDDLE), rel=1e-12
-    )
-    assert np.array_equal(
-        errs(ten, left, now, 1.0), errs(ten, left, now, WIDEST)
-    )  # none larger was learned from
-    assert np.array_equal(errs(ten, left, now, 0.0), errs(ten, left, now, NARROWEST))
-    both = search(chance=chance).gains(
-        at, np.arange(len(at)), np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5))
-    )
+    one, every = search(chance=LAW), np.arange(len(at))
+    both = one.gains(at, every, np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5)))
     assert ((both[:, 0] > 0.0) & (both[:, 0] < 1.0)).all()
     one = search(chance=errs, noise="professional")
-    ahead = one.valued(np.full(len(at), 5.0), at)
-    assert np.array_equal(ahead[:, 0], errs(5.0 + ahead[:, 1], left_of(at), lead_of(at), one.spread))
+    ahead, none = one.valued(np.full(len(at), 5.0), at), np.zeros(len(at), np.bool_)
+    rest = 5.0 + ahead[:, 1] - lead_of(at)
+    assert np.array_equal(ahead[:, 0], errs(lead_of(at), rest, left_of(at), none, one.spread))
     assert not np.array_equal(ahead, search(chance=errs).valued(np.full(len(at), 5.0), at))
-    far, sign = at.copy(), np.where(np.arange(len(at)) % 2, 1, -1)
-    far.game[:, columns.SCORE_0] += (
-        np.maximum(sign, 0) * 200
-    )  # one of both needs snookers, whatever the stroke does
+    far, sign = at.copy(), np.where(every % 2, 1, -1)
+    # one of both needs snookers, whatever the stroke does
+    far.game[:, columns.SCORE_0] += np.maximum(sign, 0) * 200
     far.game[:, columns.SCORE_1] += np.maximum(-sign, 0) * 200
-    for tried, ahead in zip(search(chance=chance).rank(far, np.arange(len(far))), sign > 0, strict=True):
+    for tried, ahead in zip(search(chance=LAW).rank(far, every), sign > 0, strict=True):
         assert (tried.chances > 0.99).all() if ahead else (tried.chances < 0.01).all()
+
+
+def test_with_the_black_alone_the_rules_say_who_wins():
+    """More than 7 ahead is won, 7 may become level and then a lot decides, less is won by the next points."""
+    now = np.arange(-9.0, 10.0)
+    seven, alone = np.full(len(now), 7.0), np.ones(len(now), np.bool_)
+    for worth, black in ((3.5, 0.75), (-3.5, 0.25), (7.5, 0.98), (-9.0, 0.02)):
+        said = LAW(now, np.full(len(now), worth), seven, alone, MIDDLE)
+        wanted = np.where(np.abs(now) < 7.0, black, now > 0.0)
+        wanted[now == 7.0], wanted[now == -7.0] = 0.5 + 0.5 * black, 0.5 * black
+        assert said == pytest.approx(wanted, abs=1e-12)
+        other = LAW(-now, np.full(len(now), -worth), seven, alone, MIDDLE)
+        assert said + other == pytest.approx(1.0, abs=1e-12)
+    two, none = np.full(3, 13.0), np.zeros(3, np.bool_)
+    fitted = learned_worth()[1]
+    behind = fitted(np.array([-12.0, -13.0, -14.0]), np.full(3, 12.0), two, none, MIDDLE)
+    assert (
+        behind[0] == 0.5 and 0.2 < behind[1] < 0.25 and behind[2] < 0.1
+    )  # to win, to be level, to need fouls
+    ahead = fitted(np.array([12.0, 13.0, 14.0]), np.full(3, -12.0), two, none, MIDDLE)
+    assert ahead + behind == pytest.approx(1.0, abs=1e-12)
+
+
+def test_the_time_that_is_left_bounds_what_may_be_scored():
+    """In the Shoot Out: one stroke more, and 20 points ahead."""
+    open_table = Position(cue=(0.3, 0.4), reds=[(0.6, 1.0), (-0.3, 0.2)], black=(0.0, 1.4605), on="red")
+    at = frame_of(open_table, scores=(30, 10))
+    game = OPTIONS | {"game": "shoot_out", "miss": "off"}
+    one = FrameSearch(game, by_rule, at_pots, chance=LAW, threads=1)
+    early, (now, worth) = at.copy(), (lead_of(at), np.zeros(1))
+    at.game[:, columns.CLOCK] = 600_000 - 1
+    assert one.chances(now, worth, early)[0] < 0.99 < one.chances(now, worth, at)[0]
+    assert one.chances(-now, worth, at)[0] < 0.01
 
 
 def test_safeties_meet_a_ball_on_first_and_every_other_one_thinly():
@@ -212,3 +249,10 @@ def test_who_comes_next_decides_the_sign():
     theirs = at.copy()
     theirs.game[:, columns.STRIKER] = 1
     assert follows(lambda some: np.full(len(some), 7.0), theirs, before).tolist() == [-7.0] * len(at)
+
+
+def test_a_lot_decides_who_begins_at_the_black_that_makes_it_level():
+    at = frame_of(Position(cue=(0.377, 1.327), black=(0.0, 1.4605), on="black"), (53, 60))
+    one = FrameSearch(OPTIONS | {"noise": "none"}, lambda some: np.full(len(some), 5.0), at_pots, chance=LAW)
+    (tried,) = one.rank(at, [0])
+    assert tried.kinds[0] == 0 and tried.chances[0] == 0.5 and tried.points[0] == 7.0

@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position, Positions
-from snooker_env.planning.worth import chosen, lead_of, left_of
+from snooker_env.planning.worth import chosen, last_of, lead_of, left_of
 from snooker_env.players.tactician import Tactician
 from snooker_env.players.weights import learned_worth
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
@@ -118,9 +118,8 @@ def test_the_chance_to_win_is_that_of_the_lead_to_come():
     )
     going = np.flatnonzero(~at.over)
     law, worth = player.search.chance, player.search.worth
-    wanted = law(
-        lead_of(at)[going] + worth(at[going]), left_of(at)[going], lead_of(at)[going], player.search.spread
-    )
+    some = at[going]
+    wanted = law(lead_of(some), worth(some), left_of(some), last_of(some), player.search.spread)
     np.testing.assert_allclose(chances[going], wanted, rtol=0, atol=1e-6)
     for k in range(12):
         assert player.chance_to_win(at[[k]])[0] == pytest.approx(chances[k], abs=1e-6)
@@ -131,6 +130,72 @@ def test_the_chance_to_win_is_that_of_the_lead_to_come():
     ]
     assert leads == sorted(leads) and leads[0] < 0.01 and leads[-1] > 0.99
     assert sn.player("tactician_500").at(OPTIONS).chance_to_win(at).tolist() == chances.tolist()
+
+
+EASY_BLACK = Position(cue=(0.377, 1.327), black=(0.0, 1.4605), on="black")
+HARD_BLACK = Position(cue=(-0.8, -1.6), black=(0.0, 1.4605), on="black")
+
+
+def test_what_the_rules_decide_is_certain():
+    """With the black alone, and more than its 7 points between the players; by advice, too."""
+    player = sn.player("tactician_30").at(OPTIONS)
+    for black in (EASY_BLACK, HARD_BLACK):
+        for scores, chance in (((52, 60), 0.0), ((60, 52), 1.0)):
+            assert player.chance_to_win(frame_of(black, scores)).tolist() == [chance]
+            (one, *_) = sn.advise(black, scores=scores, n=1, samples=30, visits=2, options={"cue": "real"})
+            assert one.win == chance and f"win chance {100 * chance:.0f} %" in one.words
+        assert 0.0 < player.chance_to_win(frame_of(black, (53, 60)))[0] <= 0.5
+        assert 0.5 <= player.chance_to_win(frame_of(black, (60, 53)))[0] < 1.0
+        near = [player.chance_to_win(frame_of(black, (60 + lead, 60)))[0] for lead in (-6, -1, 0, 1, 6)]
+        assert len(set(near)) == 1  # the next points decide, whoever leads
+
+
+def test_who_needs_snookers_plays_for_them():
+    """14 behind with pink and black left: the pink, however easy, would lose the frame."""
+    at = frame_of(Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(60, 74))
+    for name in ("tactician", "stroke_value"):
+        player = sn.player(name).at(OPTIONS | {"noise": "professional", "miss": "clear_path"})
+        tried = player.search.rank(at[np.zeros(10, int)], np.arange(10))
+        assert all(one.kinds[0] > 0 for one in tried), name
+        level = frame_of(at[0], scores=(60, 60))
+        assert player.search.rank(level, [0])[0].kinds[0] == 0
+    advice = sn.advise(at, n=40, samples=20, visits=2, options={"cue": "real", "miss": "clear_path"})
+    assert advice[0].kind == "safety" and sum(one.kind == "safety" for one in advice) > 5
+
+
+POOR = Position(
+    cue=(-0.6474, -1.742), reds=[(0.0536, 0.2989), (-0.0726, 0.8236)], black=(0.0, 1.4605), on="red"
+)
+
+
+def test_nobody_fouls_on_purpose():
+    """Where every safety leaves something: as it is intended, each stroke meets a ball on."""
+    search = sn.player("tactician").at(OPTIONS | {"noise": "professional", "miss": "clear_path"}).search
+    at, every = frame_of(POOR, scores=(14, 1))[np.zeros(60, int)], np.arange(60)
+    strokes = np.stack([one.strokes[0] for one in search.rank(at, every)])
+    after = search.outcomes(at, every, strokes, np.zeros((60, 5)))
+    assert (after.game[:, columns.SCORE_1] > 1).sum() == 0
+
+
+def test_a_called_miss_is_worth_no_more_than_the_best_stroke_and_its_penalty():
+    """The best is missed half of the time; one that always is would leave the other nothing."""
+    search = sn.player("tactician_30").at(OPTIONS).search
+    parts = np.zeros((1, 3, 7))
+    parts[0, 0, :2] = 0.5, 6.0
+    parts[0, 1] = 0.3, 5.0, 0.5, 0.45, 40.0, -0.02, -2.0  # as often missed, for 4 points
+    parts[0, 2, 2:] = 1.0, 0.9, 60.0, -0.04, -4.0  # on purpose
+    chances, points = search._replayed(parts)[0].T
+    best = (0.3 - 0.02) / 0.5, (5.0 - 2.0) / 0.5  # the second, played until no miss is called
+    assert (chances[1], points[1]) == pytest.approx(best)
+    assert (chances[2], points[2]) == pytest.approx((best[0] - 0.04, best[1] - 4.0))
+    assert (chances[0], points[0]) == (0.5, 6.0)
+
+
+def test_a_foul_that_wins_the_frame_may_be_played():
+    """8 ahead with the black alone: a foul ends the frame one point ahead. Every stroke wins it."""
+    at = frame_of(HARD_BLACK, scores=(60, 52))
+    (tried,) = sn.player("tactician_30").at(OPTIONS).search.rank(at, [0])
+    assert (tried.chances == 1.0).all()
 
 
 def test_a_frame_that_is_over_is_won_or_lost():

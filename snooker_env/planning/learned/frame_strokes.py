@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..._types import Bools, Floats, Integers, Ints
-from ...game.balls import N_BALLS, VALUES
+from ...game import frame_columns as columns
+from ...game.balls import BLACK, N_BALLS, PINK, VALUES
 from ...tasks.options import Rules
 from ..frame_search import EASY, Tried
 from ..positions import Positions, PositionsLike, check_played, seeds_of
@@ -18,7 +19,7 @@ from ..proposals import safeties
 from ..prospects import in_parts
 from ..sobol import normal_points
 from ..strokes import COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
-from ..worth import SPREAD, Chance, breaks_off, passed
+from ..worth import SPREAD, Chance, breaks_off, lead_of, left_of, passed
 from . import cue_ball_path as path
 from .dense_layers import Layers
 from .learned_worth import LearnedWorth
@@ -38,6 +39,7 @@ POTTED = 0.5
 """Of the safeties that are predicted to pot a ball that is on, about so many do."""
 _NONE = np.empty(0), np.empty(0), np.empty(0, np.int64), np.empty(0, np.int64)
 _SEED = 7  # of the errors, which are the same for all
+_FOULS = SHARED + POT_SIZE + 4  # what is seen of a safety: the share of fouls under the errors
 _CHANCE = 2  # the column of what ``stroke_value`` sees that is the pot's chance
 
 
@@ -80,6 +82,7 @@ class FrameStrokes:
         keys, rows = seeds_of(seeds, len(at)), np.flatnonzero(~breaks_off(at))
         check_played(at.as_visits(), np.arange(len(at)), self.rules.table, self.rules.physics.R)
         strokes, there, seen = self.look(at[rows], keys[rows])
+        there &= self._sensible(at[rows], there, seen)
         scores = np.where(there, self.scores(seen), -np.inf)
         order, counts = np.argsort(-scores, axis=1, kind="stable"), there.sum(axis=1).tolist()
         tried = [Tried(np.empty((0, COLUMNS)), *_NONE)] * len(at)
@@ -88,6 +91,14 @@ class FrameStrokes:
             points, kinds = scores[j, best].astype(np.float64), (best >= LOOKS).astype(np.int64)
             tried[k] = Tried(strokes[j, best], none, points, none.astype(np.int64), kinds)
         return tried
+
+    def _sensible(self, at: Positions, there: Bools, seen: NDArray[np.float32]) -> Bools:
+        """Which strokes do not foul on purpose, nor lose the frame by potting the pink, where there are others: (n, STROKES)."""
+        bad = there & (seen[..., _FOULS] > 0.5)
+        two = at.game[:, columns.ON_TABLE] == (1 << PINK) + (1 << BLACK)
+        lost = two & (at.ball_on == VALUES[PINK]) & (lead_of(at) + left_of(at) < 0.0)
+        bad[:, :LOOKS] |= there[:, :LOOKS] & lost[:, None]
+        return ~bad | ~(there & ~bad).any(axis=1, keepdims=True)
 
     def scores(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
         """What the strokes seen (n, m, SIZE) are worth [points]: float32 (n, m)."""
@@ -108,7 +119,8 @@ class FrameStrokes:
         pots[rows, :, 0] = (self.values.scores(found.seen) - (1.0 - chances) * missed[rows, None]) / POINTS
         pots[:, :, 4] = 1.0
         pots[rows, :, SHARED : SHARED + POT_SIZE] = found.seen
-        hard[rows] = chances.max(axis=1) < EASY
+        short = lead_of(at) + left_of(passed(at)) < 0.0  # it would need snookers at the next visit
+        hard[rows] = (chances.max(axis=1) < EASY) | short[rows]
         others = np.flatnonzero(hard)
         made = safeties(self, visits[others], SAFETIES, seeds[others])
         j, c = np.nonzero(made.chances > 0.0)

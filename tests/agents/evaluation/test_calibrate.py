@@ -70,7 +70,7 @@ def test_breaks_of_frames_played_are_counted():
 
 def test_the_chance_to_win_is_compared_with_who_won(monkeypatch, tmp_path):
     """A worth without a network is the value, the last entry of what is seen; a frame that nobody won does not count."""
-    monkeypatch.setattr(calibrate, "learned_worth", lambda: (None, Chance(80.0, 0.0, 0.0, -0.5)))
+    monkeypatch.setattr(calibrate, "learned_worth", lambda: (None, Chance(80.0, 0.0, 0.0, 0.0, -0.5)))
     n = 400
     seen = np.zeros((n, SIZE + 1), np.float32)
     seen[:, -1] = 1.0  # 40 points
@@ -78,11 +78,15 @@ def test_the_chance_to_win_is_compared_with_who_won(monkeypatch, tmp_path):
     lead = np.where(np.arange(n) % 2 == 0, 0.0, -80.0)  # expected to win by 40, to lose by 40
     won, decided = np.arange(n) % 4 != 1, np.arange(n) < 200
     rows = {"seen": seen, "lead": lead, "left": np.full(n, 100.0), "won": won, "decided": decided}
-    table, error = calibrate.chances_of([rows])
+    rows |= {"last": np.zeros(n, np.bool_), "frame": np.arange(n) // 4}
+    table, error, stages = calibrate.chances_of([rows])
     high = 1.0 / (1.0 + np.exp(-1.0))
     assert table[:5] == pytest.approx(np.array([[1.0 - high, 0.5]] * 5))
     assert table[5:] == pytest.approx(np.array([[high, 1.0]] * 5))
     assert error == pytest.approx(0.5 * (0.5 - (1.0 - high)) + 0.5 * (1.0 - high))
+    ((words, strokes, frames, said, share, _),) = stages  # the player ahead: at level the striker
+    assert (words, strokes, frames) == ("more than 75 points on the table", 200, 50)
+    assert said == pytest.approx(high) and share == 0.75
     assert calibrate.chances_of([rows | {"decided": np.zeros(n, bool)}]) is None
     with saved_figures() as figures:
         calibrate.draw(table, error, 40, tmp_path / "c.png")

@@ -9,13 +9,13 @@ import snooker_env as sn
 from agents.learn_worth import main
 from agents.learning import frame_self_play, learn_worth
 from agents.learning.frame_self_play import frames
-from agents.learning.frame_worth import TRACE, calibration, fitted, fitted_chance, targets
+from agents.learning.frame_worth import TRACE, by_stage, calibration, fitted, fitted_chance, targets
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Positions
 from snooker_env.planning.frame_trials import turned
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
-from snooker_env.planning.worth import SPREAD
+from snooker_env.planning.worth import SPREAD, Chance
 from snooker_env.players import FRAMES
 from snooker_env.players.tactician import Tactician
 
@@ -151,23 +151,34 @@ def test_a_network_learns_what_it_is_told_beside_the_value():
 
 
 def test_the_chance_to_win_is_that_of_the_frames():
-    rng, n = np.random.default_rng(1), 40_000
-    lead, left = rng.normal(0.0, 40.0, n), rng.uniform(1.0, 147.0, n)
-    now = lead - rng.normal(0.0, 10.0, n)
-    beyond = np.sign(now) * np.maximum(np.abs(now) - left, 0.0)
-    spread = SPREAD * rng.choice([0.5, 1.0, 2.0], n)
-    wide = (1.0 + 2.5 * np.sqrt(left)) * np.sqrt(SPREAD / spread)
-    won = rng.random(n) < 1.0 / (1.0 + np.exp(-lead / wide - 0.2 * beyond))
-    chance = fitted_chance(lead, left, now, spread, won)
-    assert chance.far == pytest.approx(2.5, rel=0.1) and chance.snookers == pytest.approx(0.2, rel=0.2)
+    rng, n, law = np.random.default_rng(1), 80_000, Chance(5.0, 0.25, 0.2, 2.0, -0.5)
+    now, left, worth = rng.normal(0.0, 40.0, n).round(), rng.uniform(1.0, 147.0, n), rng.normal(0.0, 15.0, n)
+    spread, last = SPREAD * rng.choice([0.5, 1.0, 2.0], n), rng.random(n) < 0.1
+    said = law(now, worth, left, last, spread)
+    won = rng.random(n) < said
+    chance = fitted_chance(now, worth, left, last, spread, won)
+    assert chance.far == pytest.approx(0.25, rel=0.1) and chance.near == pytest.approx(5.0, rel=0.2)
+    assert chance.needs == pytest.approx(2.0, rel=0.1) and chance.snookers == pytest.approx(0.2, rel=0.2)
     assert chance.errors == pytest.approx(-0.5, abs=0.05)
-    table, error = calibration(chance(lead, left, now, spread), won)
+    table, error = calibration(chance(now, worth, left, last, spread), won)
     assert error < 0.01 and len(table) == 10
-    never = fitted_chance(
-        lead, left, now, spread, np.where(beyond != 0.0, beyond > 0.0, won)
-    )  # needing snookers always loses
-    assert 0.3 < never.snookers < 3.0  # the prior keeps it finite
+    out = np.abs(now) > left
+    never = fitted_chance(now, worth, left, last, spread, np.where(out, now > 0.0, won))
+    assert 2.0 < never.needs < 12.0 and never.snookers < 3.0  # the priors keep them finite
     assert calibration(np.full(n, 0.9), won)[1] > 0.2
+
+
+def test_each_stage_is_compared_with_what_came_of_it():
+    """Seen by the player ahead, and each frame once in the error."""
+    now, left = np.array([10.0, -10.0, 14.0, -9.0, 6.0]), np.array([100.0, 100.0, 13.0, 7.0, 7.0])
+    last, won = np.array([False, False, False, True, True]), np.array([True, True, True, False, True])
+    rows = by_stage(np.array([0.6, 0.3, 0.9, 0.0, 0.7]), won, now, left, last, np.array([1, 2, 2, 2, 2]))
+    told = {words: figures for words, *figures in rows}
+    assert told["more than 75 points on the table"][:2] == [2, 2]
+    assert told["more than 75 points on the table"][2:4] == [pytest.approx(0.65), 0.5]
+    assert told["1 to 4 points more"][2:4] == [0.9, 1.0]
+    assert told["the black alone, a larger lead"][2:4] == [1.0, 1.0]
+    assert told["the black alone, a lead of up to 7"][2:4] == [0.7, 1.0]
 
 
 def test_the_chance_to_win_is_learned_from_frames_between_equals(monkeypatch):
@@ -183,6 +194,7 @@ def test_the_chance_to_win_is_learned_from_frames_between_equals(monkeypatch):
         "striker": np.zeros(n, int),
         "lead": lead,
         "left": np.full(n, 60.0),
+        "last": np.zeros(n, bool),
         "won": lead + rng.normal(0.0, 20.0, n) > 0.0,
         "decided": np.ones(n, bool),
         "equals": rng.random(n) < 0.5,

@@ -100,6 +100,22 @@ def test_what_strokes_seem_to_be_worth_is_about_what_they_are_worth():
     assert said[fouls].mean() < said[~fouls].mean()
 
 
+def test_what_is_predicted_to_foul_is_not_played_where_anything_else_is_there():
+    frame = sn.SnookerVectorEnv(24, layout="opened", **OPTIONS | {"noise": "professional"})
+    frame.reset(seed=3)
+    at, keys = Positions.of(frame), np.arange(24)
+    search = sn.player("stroke_value").at(frame).search
+    looked = search.look(at, keys)
+    fouls = looked.there & (looked.seen[..., SHARED + POT_SIZE + 4] > 0.5)
+    some = 0
+    for k, one in enumerate(search.rank(at, keys)):
+        ranked = {stroke.tobytes() for stroke in one.strokes}
+        poor = [stroke.tobytes() in ranked for stroke in looked.strokes[k, fouls[k]]]
+        some += len(poor)
+        assert not any(poor) or fouls[k].sum() == looked.there[k].sum()
+    assert some > 20
+
+
 def test_a_touching_ball_that_is_on_counts_as_struck_and_a_push_is_a_foul():
     frame = sn.SnookerVectorEnv(1, **OPTIONS)
     frame.reset(seed=0)
