@@ -24,7 +24,7 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "task": (str, False, "id of the task, with its version"),
     "agent.label": (str, False, "the name in tables; 1 to 20 letters, digits or . + - _"),
     "agent.sources": (list, False, "what was given to --agent: one, or a source for each training seed"),
-    "agent.class": (str, False, "model_free, planning or undeclared"),
+    "agent.class": (str, False, "model_free, planning, undeclared or degenerate"),
     "agent.budget": (str, False, "none, 50k, 1M, 5M, open or unknown"),
     "agent.training_shots": (int, True, "all simulated shots of its training; null: not known"),
     "agent.simulated_shots": (NUMBER, True, "simulated shots a decision, mean; null: not known"),
