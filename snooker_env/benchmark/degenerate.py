@@ -28,7 +28,9 @@ def best_constant(task: Task, threads: int | None = None) -> int:
     lines = 1 if task.score == "won" else SIZE // STROKES  # no constant wins a frame
     left, first, episodes = list(range(lines * STROKES)), 0, FIRST_ROUND
     while True:
-        batches = [list(range(k, min(k + BATCH, first + episodes))) for k in range(first, first + episodes, BATCH)]
+        batches = [
+            list(range(k, min(k + BATCH, first + episodes))) for k in range(first, first + episodes, BATCH)
+        ]
         scores = []
         for choice in left:
             rows = [play_episodes(training, Constant(choice), seeds, 0, threads).rows for seeds in batches]
@@ -62,4 +64,6 @@ def winners(some: list[dict[str, Any]]) -> list[str]:
     means = {one["agent"]["label"]: one["figures"]["score"]["value"] for one in some}
     wins = [(one, other) for one in means if one not in ABOVE for other in ABOVE if means[one] > means[other]]
     task = some[0]["task"]
-    return [f"{task}: {one} ({means[one]:.4g}) stands above {other} ({means[other]:.4g})" for one, other in wins]
+    return [
+        f"{task}: {one} ({means[one]:.4g}) stands above {other} ({means[other]:.4g})" for one, other in wins
+    ]

@@ -11,7 +11,12 @@ from .playing import STROKES
 from .tasks import TASKS, Task
 
 WIDTH = 100
-CLASSES = {"model_free": "model-free", "planning": "planning", "undeclared": "undecl.", "degenerate": "degenerate"}
+CLASSES = {
+    "model_free": "model-free",
+    "planning": "planning",
+    "undeclared": "undecl.",
+    "degenerate": "degenerate",
+}
 # The budgets in the order of the table
 TRAINED = {"none": "0", "50k": "50 k", "1M": "1 M", "5M": "5 M", "open": "open", "unknown": "?"}
 Table = tuple[list[str], list[list[str]]]  # heading and rows

@@ -45,7 +45,9 @@ class PlayAgain(GhostBall):
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
         at = Positions.of(positions)
-        return replace(super().play(at, seeds), decision=np.where(at.choice, columns.PLAY_AGAIN, columns.PLAY))
+        return replace(
+            super().play(at, seeds), decision=np.where(at.choice, columns.PLAY_AGAIN, columns.PLAY)
+        )
 
 
 class Constant(ChoicePlayer):

@@ -276,7 +276,9 @@ def finish(which, tables, saved, setting, due, through, replies, played, output)
         fair = played[k] and not out.counts[k, I_FOULS]  # its stroke was no foul
         fair = setting.one_stroke and fair and row[columns.PHASE] != columns.CHOICE
         spent = setting.one_stroke and row[columns.STEPS] >= MOST_STEPS
-        stopped = not row[columns.OVER] and (row[columns.STROKES] >= setting.max_strokes or (spent and not fair))
+        stopped = not row[columns.OVER] and (
+            row[columns.STROKES] >= setting.max_strokes or (spent and not fair)
+        )
         through[k] = fair or spent
         out.terminated[k] = row[columns.OVER] or fair
         out.truncated[k] = stopped or row[columns.STEPS] >= setting.limit

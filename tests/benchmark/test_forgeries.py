@@ -24,7 +24,7 @@ from snooker_env.players import VISITS, Strokes
 from tests.benchmark.records import at, put
 
 OTHER_STROKE = "strokes: run {}, table 1000000: {} begins with another stroke than the file"
-CLUB, BREAK, HARD = (TASKS[f"Snooker{name}-v0"] for name in ("BreakClub", "Break", "PotHard"))
+CLUB, BREAK, HARD = (TASKS[f"Snooker{name}-v0"] for name in ("BreakClub", "Break", "Escape"))
 
 
 class Aims:

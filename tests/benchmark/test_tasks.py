@@ -203,9 +203,9 @@ def _worker(name, queue):
 def test_a_spawned_worker_that_imports_only_gymnasium_makes_it():
     context = multiprocessing.get_context("spawn")
     queue = context.Queue()
-    process = context.Process(target=_worker, args=("SnookerPotHard-v0", queue))
+    process = context.Process(target=_worker, args=("SnookerEscape-v0", queue))
     process.start()
-    assert queue.get(timeout=300) == gymnasium.make("SnookerPotHard-v0").reset(seed=1)[0].tolist()
+    assert queue.get(timeout=300) == gymnasium.make("SnookerEscape-v0").reset(seed=1)[0].tolist()
     process.join(60)
 
 
