@@ -67,6 +67,7 @@ def _of_names(record: dict[str, Any]) -> list[str]:
     """What must be one of a few: without them nothing can be played again."""
     here = (
         ("schema.version", record["schema"]["version"], (schema.VERSION,)),
+        ("protocol.version", record["protocol"]["version"], (schema.PROTOCOL,)),
         ("task", record["task"], tuple(TASKS)),
         ("software.snooker_env", record["software"]["snooker_env"], schema.PACKAGES),
     )

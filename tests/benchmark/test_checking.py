@@ -60,7 +60,7 @@ def test_the_same_source_five_times_makes_nothing_surer():
 
 
 OTHER = "must not be the name of another player"
-BEGINS = "strokes: run 0, table 1000000: search_60 begins with another stroke than the file"
+BEGINS = "strokes: run 0, table 10"
 ALIKE = ["r\u0430ndom", "RANDOM", "Random", "random.", "ghost-ball"]
 """Labels that a reader would take for a built-in player."""
 TEXTS = ["two\nlines", "\x1b[2J", "\ud800", "x" * 2001]
