@@ -1,10 +1,11 @@
-"""Where do the tables of the layout "escape" come from? From the layout "snookered": those on which the plain escape,
-``ghost_ball``'s, fails as often as not. Writes ``game/escape.npz``.
+"""Where do the tables of the layout "escape" come from? From the layout "snookered": those on which constant choices fail.
+Writes ``game/escape.npz``.
 
     python -m benchmarks.make_escape [--tables 1024] [--seed 0] [--json FILE] [--out FOLDER]
 
-Each table meets a professional's execution errors many times, with a real cue. The later half of the tables is held
-out.
+A constant choice is one of ``action="discrete"``, whatever lies on the table. The best third of them, by the share of other
+snookers that each escapes from, is played on each table, with a professional's execution errors and a real cue. The later
+half of the tables is held out.
 """
 
 import io
@@ -13,43 +14,50 @@ import numpy as np
 
 from snooker_env import SnookerVectorEnv
 from snooker_env.game.banks import FOLDER
-from snooker_env.players import VISITS, decided, decision_seeds, player
+from snooker_env.players import decision_seeds
+from snooker_env.tasks import CHOICES
 
 from ._common.command import Command, at_least, run, save_bytes, save_json
 
 FILE = "escape.npz"
 RULES = {"layout": "snookered", "reward": "legal", "one_stroke": True, "noise": "professional", "cue": "real"}
-SIDE_BY_SIDE, MOST = 2000, 0.5
-"""Tables at once, and the largest share of the strokes on one that may be fair."""
-FIRST, TRIALS = 4, 16
-"""Strokes on each table; where one of the first few is none, all of them."""
+SIDE_BY_SIDE, SCREENED = 2000, 200
+"""Tables at once, and those on which the constants are compared."""
+ROUNDS = ((4, 0.75), (16, 0.65), (64, 0.6))
+"""Strokes on each table, all until then, and the largest share of them that may be fair for it to go on."""
 
 
-def fair_share(seeds, trials):
-    """Of tables with these seeds: the tables (n, 22, 2), NaN for balls that are not there, and the share of so many plain
-    escapes that are fair (n,)."""
-    tables, fair = (
-        SnookerVectorEnv(len(seeds), **RULES, **VISITS, autoreset_mode="Disabled"),
-        np.zeros(len(seeds)),
-    )
+def legal(seeds, choices, errors):
+    """The tables (n, 22, 2) with these seeds, NaN for balls that are not there, and which of the choices (n,) are fair on
+    them under errors of the seeds (n,)."""
+    tables = SnookerVectorEnv(len(seeds), **RULES, action="discrete", autoreset_mode="Disabled")
     tables.reset(seed=seeds.tolist())
     dealt = np.where(tables.tables.on_table[:, :, None], tables.tables.positions, np.nan)
-    everywhere, plain = np.ones(len(seeds), bool), player("ghost_ball").at(tables)
-    actions = decided(plain, tables, everywhere, decision_seeds(0, seeds, 0)).astype(np.float32)
-    for trial in range(trials):
-        tables.reset(seed=seeds.tolist())
-        tables.tables.streams[:, 0] = decision_seeds(1, seeds, trial)  # other errors on the same table
-        fair += tables.step(actions)[1]
+    tables.tables.streams[:, 0] = errors
+    fair = tables.step(choices)[1] > 0.0
     tables.close()
-    return dealt, fair / trials
+    return dealt, fair
 
 
-def failed(first):
+def best_third(first):
+    """The best third of the constants, on the tables with seeds from ``first`` on."""
+    seeds = np.tile(np.arange(first, first + SCREENED), CHOICES)
+    choices = np.repeat(np.arange(CHOICES), SCREENED)
+    fair = legal(seeds, choices, decision_seeds(1, seeds, choices))[1].reshape(CHOICES, SCREENED)
+    return np.argsort(-fair.mean(axis=1), kind="stable")[: CHOICES // 3]
+
+
+def kept_of(first, constants):
     """The tables with seeds from ``first`` on that are kept: (k, 22, 2) float32."""
-    seeds = np.arange(first, first + SIDE_BY_SIDE)
-    doubtful = seeds[fair_share(seeds, FIRST)[1] < 1.0]
-    dealt, share = fair_share(doubtful, TRIALS)
-    return dealt[share <= MOST].astype(np.float32)
+    seeds, fair, played = np.arange(first, first + SIDE_BY_SIDE), np.zeros(SIDE_BY_SIDE), 0
+    for strokes, most in ROUNDS:
+        for trial in range(played, strokes):
+            picks = constants[decision_seeds(2, seeds, trial) % len(constants)]
+            dealt, made = legal(seeds, picks, decision_seeds(3, seeds, trial))
+            fair += made
+        few, played = fair <= most * strokes, strokes
+        seeds, fair, dealt = seeds[few], fair[few], dealt[few]
+    return dealt.astype(np.float32)
 
 
 def main():
@@ -58,8 +66,9 @@ def main():
     parser.add_argument("--tables", type=at_least(2), default=1024, help="so many [1024]")
     options = parser.options()
     kept, first = np.empty((0, 22, 2), np.float32), 1_000_000 * options.seed
+    constants = best_third(first + 500_000)
     while len(kept) < options.tables:
-        kept = np.concatenate([kept, failed(first)])
+        kept = np.concatenate([kept, kept_of(first, constants)])
         first += SIDE_BY_SIDE
     packed = io.BytesIO()
     np.savez_compressed(packed, positions=kept[: options.tables])

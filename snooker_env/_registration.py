@@ -7,7 +7,7 @@ ENTRY_POINT = "snooker_env.envs.snooker:SnookerEnv"
 VECTOR_ENTRY_POINT = "snooker_env.envs.vector:SnookerVectorEnv"
 
 _TASKS = "snooker_env.benchmark.environments"
-_NAMES = ("Break", "BreakClub", "PotHard", "Escape", "Safety", "Frame")
+_NAMES = ("Break", "BreakClub", "Escape", "Safety", "Frame")
 FORMS: dict[str, dict[str, Any]] = {  # of Break, for scripts that take an id alone
     "SnookerBreakDiscrete-v0": {"action": "discrete"},
     "SnookerBreakMasked-v0": {"action": "discrete", "observation": "masked"},

@@ -69,7 +69,6 @@ def _visit(agent, layout, at_least, noise="professional", **options):
 FILMS = {
     "break": _visit("stroke_value", "held_out", 20),
     "break_club": _visit("planner", "held_out", 8, noise="club"),
-    "pot_hard": _visit("planner_500", "pots:hard", 1),
     "escape": _visit("planner", "snookered", 0, reward="legal", one_stroke=True),
     "frame": Film(
         "tactician",

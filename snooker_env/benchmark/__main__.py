@@ -1,4 +1,4 @@
-"""How is the benchmark run? The commands tasks, run, text, check, table and profile; rules: docs/benchmark.md."""
+"""How is the benchmark run? Its commands; rules: docs/benchmark.md."""
 
 import argparse
 import shlex
@@ -18,15 +18,19 @@ from .._warmup import warmup
 from ..play.program import AgentError
 from ..players.model_options import add_model_options, options_of_words
 from ..progress import Progress
-from .agents import Agent, seated
+from .agents import Agent, is_known, seated
 from .checking import afresh, faults, replayed
-from .leaderboard import lines, page, profile
+from .degenerate import ABOVE, results, winners
+from .leaderboard import board, lines, page, profile
+from .playing import COLUMNS
 from .results import missing, read_result
 from .run import judge
 from .tasks import FREE, FRESH_SEED, SEEDS_END, TASKS, Task, task_of
 from .text import VISITS, judge_text
 
 NAME = "python -m snooker_env.benchmark"
+NOTHING = 0.02
+"""A share of episodes that bring something, so small that the actions may be read wrongly: ``random`` scores in a third."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -63,6 +67,14 @@ def parser() -> argparse.ArgumentParser:
     help_ = "threads that play the tables (default: one for each core)"
     for one in (run, check):
         one.add_argument("--threads", type=int, help=help_)
+    silly = commands.add_parser(
+        "degenerate", help="do policies that look at nothing win a task? exit code 1 if one does"
+    )
+    silly.add_argument("tasks", nargs="*", metavar="TASK", help="ids of tasks (default: all)")
+    silly.add_argument(
+        "--out", metavar="FOLDER", default="leaderboard", help="folder of result files (default: leaderboard)"
+    )
+    silly.add_argument("--threads", type=int, help=help_)
     table = commands.add_parser("table", help="print the leaderboard of result files")
     table.add_argument("files", nargs="*", metavar="FILE")
     table.add_argument("--markdown", metavar="FILE", help="write it as a page")
@@ -186,10 +198,28 @@ def _told(result: dict[str, Any], task: Task, file: Path) -> int:
         unit = task.measure if task.counts else f"% ({task.measure})"
         where = f"{len(result['rows']):,} episodes, class {agent['class']}, budget {agent['budget']}"
         print(f"{task.id}  {agent['label']}: {score} {unit}, {where}")
+    if suspicious(result, task):
+        print(
+            f"Nearly every episode brought nothing: is that how the actions of {agent['label']} are read? A model that was "
+            "trained with aim=target needs --options aim=target.",
+            file=sys.stderr,
+        )
     if result["rows"]:
         wants = "; ".join(missing(result, task))
         print(f"not official ({wants}): {file}" if wants else f"official: {file}")
     return 0 if why is None else 130 if why.startswith("interrupted") else 1
+
+
+def suspicious(result: dict[str, Any], task: Task) -> bool:
+    """Whether an agent whose actions could be read otherwise scores nothing where any other scores."""
+    scores = [row[COLUMNS.index("score")] for row in result["rows"]]
+    models = not all(map(is_known, result["agent"]["sources"]))
+    return (
+        models
+        and task.score in ("points", "legal")
+        and bool(scores)
+        and np.mean(np.array(scores) > 0) <= NOTHING
+    )
 
 
 def _check(args: Any) -> int:
@@ -234,6 +264,21 @@ def _by_agent(args: Any, result: dict[str, Any]) -> list[str]:
     return wrong
 
 
+def _degenerate(args: Any) -> int:
+    """Play the degenerate policies and compare them."""
+    tasks = [task_of(name) for name in args.tasks] or list(TASKS.values())
+    folder, wrong = Path(args.out), list[str]()
+    folder.mkdir(parents=True, exist_ok=True)
+    warmup()
+    for task in tasks:
+        some = list(results(task, folder, args.threads))
+        head, rows = board(some, task)
+        print("\n".join([f"{task.id}: {task.measure}", "", *text_table(head, rows, 2), ""]), flush=True)
+        wrong += winners(some)
+    print("\n".join(wrong or ["No degenerate policy stands above " + ", ".join(ABOVE) + "."]))
+    return int(bool(wrong))
+
+
 def _sound(files: Sequence[str]) -> list[dict[str, Any]]:
     """The results in these files, each checked."""
     results = []
@@ -265,7 +310,7 @@ def _profile(args: Any) -> int:
     return 0
 
 
-COMMANDS = {call.__name__[1:]: call for call in (_tasks, _run, _text, _check, _table, _profile)}
+COMMANDS = {call.__name__[1:]: call for call in (_tasks, _run, _text, _check, _degenerate, _table, _profile)}
 
 if __name__ == "__main__":
     raise SystemExit(main())

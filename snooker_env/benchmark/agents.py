@@ -11,6 +11,7 @@ from .._check import integer, number, refuse
 from ..play.program import ProgramPlayer
 from ..players import Player
 from ..players import player as player_named
+from ..players.degenerate import is_degenerate
 from ..players.model_options import LEFT_OUT, checked
 from ..players.resolver import PROGRAM, is_name
 from ..players.weights import levels
@@ -145,7 +146,8 @@ def text_of(source: Any) -> str:
 def is_known(text: str) -> bool:
     """Whether that is a player of the package, or of one that is installed, with all that it has learned."""
     name, at, model = text.partition("@")
-    return ":" not in name and is_name(name) and (not at or model in levels())
+    named = ":" not in name and is_name(name) and (not at or model in levels())
+    return named or is_degenerate(text)
 
 
 def is_reserved(label: str, sources: Sequence[str]) -> bool:

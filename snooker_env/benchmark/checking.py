@@ -5,24 +5,29 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse
+from ..players import player as player_named
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
 from . import playing, schema
 from .agents import Agent, is_known, is_reserved, seated
-from .playing import BATCH, COLUMNS, STROKES, Decider, Kept, PlayedEpisodes
+from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic
 from .results import completed, strokes_of
 from .schema import fault, faults_of_fields, shortened
 from .tasks import TASKS, Task
 
-MOST = 12  # faults of rows that are named
+MOST = 12  # faults of rows, and of strokes, that are named
+WORK, SHOTS, TOGETHER = 1e5, 100, 50
+"""How long known players are asked again: decisions, with each so many simulated shots as one more. No player of the package
+takes that long for a whole file, but with large budgets. So many tables are played side by side."""
 SURE = 3.29  # standard errors that a fresh mean may be away: 99.9 %
 
 
-def faults(record: Any, threads: int | None = None) -> list[str]:
+def faults(record: Any, threads: int | None = None, *, asking: bool = True) -> list[str]:
     """Check a result: its fields, and all rows and figures by a replay of its strokes.
 
-    Players known by name are asked again for the first stroke of the first tables of each training seed.
+    Players known by name are asked again for their strokes and decisions: all, or in a random selection of episodes if that
+    would take long.
 
     Parameters
     ----------
@@ -30,6 +35,8 @@ def faults(record: Any, threads: int | None = None) -> list[str]:
         The content of a result file, as ``read_result`` returns it.
     threads : int, optional
         As in ``SnookerVectorEnv``.
+    asking : bool
+        Whether known players are asked again.
 
     Returns
     -------
@@ -51,7 +58,7 @@ def faults(record: Any, threads: int | None = None) -> list[str]:
         strokes = strokes_of(record)
         wrong = _of_runs(record, strokes) or _of_play(record, task, strokes, threads)
         wrong = wrong or _differences(record, completed(record, task))
-        return wrong or _of_decisions(record, task, strokes, threads)
+        return wrong or (_of_decisions(record, task, strokes, threads) if asking else [])
     except (ValueError, SimulationError) as error:  # damaged, no actions, or no shot that can be computed
         return [str(error)]
 
@@ -60,6 +67,7 @@ def _of_names(record: dict[str, Any]) -> list[str]:
     """What must be one of a few: without them nothing can be played again."""
     here = (
         ("schema.version", record["schema"]["version"], (schema.VERSION,)),
+        ("protocol.version", record["protocol"]["version"], (schema.PROTOCOL,)),
         ("task", record["task"], tuple(TASKS)),
         ("software.snooker_env", record["software"]["snooker_env"], schema.PACKAGES),
     )
@@ -161,32 +169,59 @@ def _differences(value: Any, want: Any, name: str = "") -> list[str]:
 
 
 def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
-    """Do known players begin as in the file, and do class, shots and training fit them?"""
-    agent, many, wrong = result["agent"], result["protocol"]["episodes"], []
-    shots, simulated, training = result["timing"]["simulated_shots"], 0, agent["training_shots"]
-    for run, source in enumerate(agent["sources"]):
-        first = min(BATCH, len(strokes) - run * many, many)
-        if first <= 0 or not is_known(source):
-            continue
-        kept, seeds = strokes[run * many : run * many + first], task.seeds(first)
-        tables = playing.tables_for(task, first, threads)
-        tables.reset(seed=list(seeds))
-        decide = Decider(source, tables, seeds, run)
-        actions = decide(np.array([len(one) > 0 for one in kept]), 0)
-        tables.close()
-        other = [k for k, one in enumerate(kept) if len(one) and one[0].tobytes() != actions[k].tobytes()]
-        begins = f"{source} begins with another stroke than the file"
-        wrong += [f"strokes: run {run}, table {seeds[k]}: {begins}" for k in other[:1]]
-        wrong += _of_class(result, shortened(source), decide)
-        its = getattr(decide.player, "training_shots", None)
+    """Do known players play as in the file, and do class, shots and training fit them?
+
+    They play whole episodes again, decisions after fouls included, on tables in an order that nobody knows beforehand: all
+    of them, or as many as ``WORK`` allows."""
+    agent, rows, rng, wrong = result["agent"], result["rows"], np.random.default_rng(), list[str]()
+    known = [(run, source) for run, source in enumerate(agent["sources"]) if is_known(source)]
+    asked = {run: rng.permutation([k for k, row in enumerate(rows) if row[0] == run]) for run, _ in known}
+    rates, simulated, left = list[float](), 0, 0
+    for run, source in known:
+        training, its = agent["training_shots"], getattr(player_named(source), "training_shots", None)
         if training != its and (its is not None or training == 0):
             must = "more than 0: something was learned" if its is None else f"{its}, as {source} says"
             wrong.append(fault("agent.training_shots", training, must))
-        simulated += decide.simulated
-    if shots < simulated:
-        least = f"at least {simulated}, which the first strokes alone take"
-        wrong.append(fault("timing.simulated_shots", shots, least))
-    return _elsewhere(result, wrong)
+        work = 0.0
+        for some in np.split(asked[run], range(TOGETHER, len(asked[run]), TOGETHER)):
+            if work > WORK / len(known) or len(wrong) >= MOST:
+                left += len(some)
+                continue
+            played = playing.play_episodes(task, source, [rows[k][1] for k in some], run, threads)
+            for k, again in zip(some.tolist(), played.strokes, strict=True):
+                differ = [
+                    j
+                    for j, two in enumerate(zip(strokes[k], again, strict=False))
+                    if two[0].tobytes() != two[1].tobytes()
+                ]
+                if differ or len(again) != len(strokes[k]):
+                    which = (
+                        f"{source} plays another stroke than number {min([*differ, len(again)])} of the file"
+                    )
+                    wrong.append(f"strokes: run {run}, table {rows[k][1]}: {which}")
+            wrong += _of_class(result, shortened(source), played)
+            simulated += played.simulated
+            rates += [played.simulated / played.decisions] if played.decisions else []
+            work += played.decisions + played.simulated / SHOTS
+    if not wrong and rates:
+        of_known = sum(len(one) for one, row in zip(strokes, rows, strict=True) if row[0] in asked)
+        few, many = (simulated, simulated) if not left else (min(rates) * of_known, max(rates) * of_known)
+        many = many if len(known) == len(agent["sources"]) else np.inf
+        shots = result["timing"]["simulated_shots"]
+        if not np.floor(few) <= shots <= np.ceil(many):
+            must = (
+                f"{few:.0f}"
+                if few == many
+                else f"from {few:.0f}" + (f" to {many:.0f}" if many < np.inf else " on")
+            )
+            wrong = [
+                fault(
+                    "timing.simulated_shots",
+                    shots,
+                    f"{must}, as known players simulate when they are asked again",
+                )
+            ]
+    return _elsewhere(result, sorted(set(wrong))[:MOST] if len(wrong) > 1 else wrong)
 
 
 def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
@@ -221,7 +256,7 @@ def afresh(
     return mean, error, wrong + _of_class(record, "it", played)
 
 
-def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes | Decider) -> list[str]:
+def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes) -> list[str]:
     """Is it called model-free, and simulates shots?"""
     if record["agent"]["class"] != "model_free" or not played.simulated:
         return []

@@ -39,7 +39,6 @@ def _classes(name: str) -> tuple[type[TaskEnv], type[TaskVectorEnv]]:
 
 BreakEnv, BreakVectorEnv = _classes("Break")
 BreakClubEnv, BreakClubVectorEnv = _classes("BreakClub")
-PotHardEnv, PotHardVectorEnv = _classes("PotHard")
 EscapeEnv, EscapeVectorEnv = _classes("Escape")
 SafetyEnv, SafetyVectorEnv = _classes("Safety")
 FrameEnv, FrameVectorEnv = _classes("Frame")

@@ -10,7 +10,12 @@ from .playing import STROKES
 from .tasks import TASKS, Task
 
 WIDTH = 100
-CLASSES = {"model_free": "model-free", "planning": "planning", "undeclared": "undecl."}
+CLASSES = {
+    "model_free": "model-free",
+    "planning": "planning",
+    "undeclared": "undecl.",
+    "degenerate": "degenerate",
+}
 # The budgets in the order of the table
 TRAINED = {"none": "0", "50k": "50 k", "1M": "1 M", "5M": "5 M", "open": "open", "unknown": "?"}
 Table = tuple[list[str], list[list[str]]]  # heading and rows
@@ -25,8 +30,8 @@ PROVED = (
     "A result is its strokes: its file holds every one, and check plays each episode again from its seed and computes "
     "all figures anew. Players that are known by name are asked again for their first strokes. What strokes cannot prove "
     "is who chose them: that no held-out seed was peeked at, the class and its simulated shots, the budget of training, "
-    "times and machines are the word of whoever made the file. To doubt a row, let its agent play on fresh seeds: check "
-    "FILE --agent AGENT --fresh 500."
+    "times and machines are the word of whoever made the file. To doubt a row, let its agent play on fresh seeds: "
+    "`check FILE --agent AGENT --fresh 500`."
 )
 AWAITED = "Agents whose results are not there yet stand as missing."
 

@@ -141,7 +141,7 @@ def rows_of(task: Task, tables: Any, seeds: list[int], decide: Any, run: int = 0
         else:
             cleared[done] = (scored & ~tables.tables.on_table[:, 1:].any(axis=1))[done]
     tables.close()
-    scores = {"points": sums["points"], "pots": sums["pots"], "legal": 1 - sums["fouls"], "won": won}
+    scores = {"points": sums["points"], "legal": 1 - sums["fouls"], "won": won}
     scores["lead"] = sums["points"] - opponent
     columns = (np.full(n, run), seeds, scores[task.score], *sums.values(), cleared, opponent, ended)
     return np.array(columns).T.astype(int).tolist()

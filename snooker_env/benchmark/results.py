@@ -16,6 +16,7 @@ from .._check import refuse, refuse_what
 from .._files import read_json, with_checksum, write_atomic
 from .._types import Floats
 from ..players import FRAMES, VISITS
+from ..players.degenerate import is_degenerate
 from ..players.resolver import PROGRAM
 from .agents import Agent
 from .playing import COLUMNS, STROKES, Kept, PlayedEpisodes
@@ -100,6 +101,7 @@ def completed(record: dict[str, Any], task: Task) -> dict[str, Any]:
     if by_word := agent["sources"][0].startswith(PROGRAM) or (declared is not None and declared > mean):
         mean = None if declared is None else float(declared)
     name = "undeclared" if mean is None else "planning" if mean > 0 else "model_free"
+    name = "degenerate" if all(map(is_degenerate, agent["sources"])) else name
     made = {"class": name, "simulated_shots": mean, "declared": by_word}
     made["budget"] = budget_of(agent["training_shots"])
     record = record | {

@@ -8,8 +8,8 @@ from typing import Any
 from .provenance import LIBRARIES
 
 NAME, VERSION = "snooker_env.benchmark.result", 3
-PROTOCOL = 1  # Version of the rules: tables, episodes, figures. Only results of one version compare.
-PACKAGES = ("0.3.0.dev0", "1.0.0")  # versions whose results compare by these rules, the present one last
+PROTOCOL = 2  # Version of the rules: tables, episodes, figures. Only results of one version compare.
+PACKAGES = ("1.0.0",)  # versions whose results compare by these rules, the present one last
 BEGUN = "2026-11-21T00:00:00Z"  # no result is older than the project
 DATE = "%Y-%m-%dT%H:%M:%SZ"
 NUMBER = (int, float)
@@ -24,7 +24,7 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "task": (str, False, "id of the task, with its version"),
     "agent.label": (str, False, "the name in tables; 1 to 20 letters, digits or . + - _"),
     "agent.sources": (list, False, "what was given to --agent: one, or a source for each training seed"),
-    "agent.class": (str, False, "model_free, planning or undeclared"),
+    "agent.class": (str, False, "model_free, planning, undeclared or degenerate"),
     "agent.budget": (str, False, "none, 50k, 1M, 5M, open or unknown"),
     "agent.training_shots": (int, True, "all simulated shots of its training; null: not known"),
     "agent.simulated_shots": (NUMBER, True, "simulated shots a decision, mean; null: not known"),

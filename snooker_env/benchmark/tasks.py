@@ -36,7 +36,7 @@ class Task:
     changes, judged_layout : mapping, str
         Options that differ from those of ``Snooker-v0``, and the layout of the judging in place of theirs.
     score, measure : str
-        The score of an episode, "points", "pots", "legal", "lead" or "won", and the name of its mean.
+        The score of an episode, "points", "legal", "lead" or "won", and the name of its mean.
     episodes, thresholds : int, tuple of int
         Episodes of an official result for each training seed, and the scores of its performance profile: the
         share of episodes with at least each of these.
@@ -108,7 +108,7 @@ class Task:
 _USUAL = {f.name: f.default for f in fields(Options) if f.init} | dict.fromkeys(SAYS, False)
 _BREAK = (1, 10, 25, 50, 75, 100, 147)
 _LEAD = (-60, -40, -20, -10, -4, 0, 1)
-_MEASURES = {"points": ("points a visit", 500), "pots": ("share of balls potted", 1000)}
+_MEASURES = {"points": ("points a visit", 500)}
 _MEASURES |= {"legal": ("share of escapes", 500), "won": ("share of frames won", 200)}
 _MEASURES |= {"lead": ("points of lead gained", 500)}  # of each score: the name of its mean, its episodes
 
@@ -129,9 +129,8 @@ _SAFE = {"changes": _FRAME | {"one_stroke": True}, "thresholds": _LEAD}
 _ALL = (
     _task("Break", "build a break on an opened table", "opened", "points", "held_out", thresholds=_BREAK),
     _task("BreakClub", "the same with a club player's errors", "opened", "points", "held_out", **_CLUB),
-    _task("PotHard", "pot one hard ball", "pots:hard", "pots", changes={"reward": "pots"}),
     _task("Escape", "one stroke out of a snooker, no foul", "escape", "legal", "held_out_escape", **_LEGAL),
-    _task("Safety", "one stroke where no pot is on", "safety", "lead", "held_out_safety", **_SAFE),
+    _task("Safety", "one fair stroke where no pot is on", "safety", "lead", "held_out_safety", **_SAFE),
     _task("Frame", "win a frame against planner", "break_off", "won", changes=_FRAME | {"reward": "win"}),
 )
 TASKS: dict[str, Task] = {task.id: task for task in _ALL}

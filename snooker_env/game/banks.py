@@ -3,7 +3,7 @@
 * ``opened.npz``, by ``python -m benchmarks.make_opened``: a break-off and further hard strokes until the pack is
   spread, all 22 balls and some pot on a red.
 * ``safety.npz``, by ``python -m benchmarks.make_safety``: positions of frames in which a red is on, but no pot.
-* ``escape.npz``, by ``python -m benchmarks.make_escape``: snookers from which the plain escape often fails.
+* ``escape.npz``, by ``python -m benchmarks.make_escape``: snookers from which constant choices often fail.
 """
 
 from functools import cache, lru_cache

@@ -12,7 +12,7 @@ from ..planning.strokes import available
 from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.ghost_ball import geometric_strokes
 from ..tasks.options import Options
-from .player import BoundPlayer, Ranked, Strokes, placed, streams_of
+from .player import BoundPlayer, Ranked, Strokes, streams_of
 
 MOST = 100  # most strokes of a ranking
 
@@ -50,33 +50,34 @@ class ChoicePlayer(BoundPlayer):
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
-        visits, places, scores = self._scored(positions, seeds)
+        visits, places, decisions, scores = self._scored(positions, seeds)
         choices = scores.argmax(axis=1)
-        return Strokes(self._planner.strokes_of(visits, np.arange(len(visits)), choices)[0], places)
+        values = self._planner.strokes_of(visits, np.arange(len(visits)), choices)[0]
+        return Strokes(values, places, decision=decisions)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """Rank the choices of each position: at most 100 strokes, highest score first."""
-        visits, places, scores = self._scored(positions, seeds)
+        visits, places, decisions, scores = self._scored(positions, seeds)
         ranked = []
         for k, row in enumerate(scores):
             choices = np.argsort(-row, kind="stable")[: max(1, min(MOST, int(np.isfinite(row).sum())))]
             values = self._planner.strokes_of(visits, np.full(len(choices), k), choices)[0]
-            strokes = Strokes(values, np.repeat(places[k : k + 1], len(choices), 0))
+            where, what = (np.repeat(part[k : k + 1], len(choices), 0) for part in (places, decisions))
+            strokes = Strokes(values, where, decision=what)
             ranked.append(Ranked(strokes, self.figures(row[choices])))
         return ranked
 
-    def _scored(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Floats]:
-        """The visits with placed cue balls, their places, and the scores."""
-        _ = self.options  # it must be bound
+    def _scored(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Ints, Floats]:
+        """The visits with placed cue balls, their places, the decisions after fouls, and the scores."""
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))
-        visits, places = placed(at, keys)
+        visits, places, decisions = self.started(at, keys)
         scores = self.scores(visits, keys)
         if np.shape(scores) != (len(at), SIZE):
             allowed = f"must have shape ({len(at)}, {SIZE}): a score for each choice of each position"
             what = f"array of shape {np.shape(scores)}"
             raise refuse_what(f"{type(self).__qualname__}.scores", what, allowed)
-        return visits, places, scores
+        return visits, places, decisions, scores
 
 
 def shares(scores: Floats) -> Floats:

@@ -19,7 +19,9 @@ from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..planning.planner import options_in
 from ..planning.positions import Positions, PositionsLike, seeds_of
+from ..planning.prospects import prospects_of, spread_of
 from ..planning.strokes import AIM, ELEVATION, NAMES, SIDE, SPEED, TOP
+from ..planning.worth import chosen, decide
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.ghost_ball import put_in_hand
@@ -275,12 +277,35 @@ class BoundPlayer:
     def _bind(self, options: Options) -> None:
         """What a player makes once for where it plays."""
 
+    def worth(self, at: Positions) -> Floats:
+        """What positions of frames are worth to their strikers, for decisions after fouls: float64 (n,).
+
+        Here by the likeliest pot: who pots more often than not gains by having the next stroke."""
+        rules, (visits, _) = self.options.rules, placed(at, np.zeros(len(at), np.int64))
+        spread = spread_of(rules.noise, rules.physics)
+        return 2.0 * prospects_of(visits, spread, most=_POTS, rails=rules.rails)[1].max(axis=1) - 1.0
+
+    def started(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Ints]:
+        """From where it plays in n positions: visits after its decisions, with placed cue balls; their places (n, 2), else
+        NaN; and the decisions (n,), the best by ``worth``."""
+        at, code = Positions.of(positions), self.options.rules.rule_set.code
+        decisions, rows = np.full(len(at), PLAY), np.flatnonzero(at.choice)
+        if len(rows):
+            decisions[rows] = decide(self.worth, at[rows].known_to(self.options.rules), code)[0]
+            anywhere = rows[decisions[rows] == PLACE_ANYWHERE]
+            at = at.copy()
+            at.game[anywhere] = chosen(at[anywhere], PLACE_ANYWHERE).game
+        return *placed(at, seeds), decisions
+
     @property
     def options(self) -> Options:
         """Where the player plays; ValueError before ``at``."""
         if self._options is None:
             raise refuse("player", self.name, "must be bound first: player.at(options)")
         return self._options
+
+
+_POTS = 16  # the most direct pots of a position that are looked at, the widest first
 
 
 def streams_of(seeds: Any) -> np.ndarray:

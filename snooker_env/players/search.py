@@ -3,19 +3,23 @@
 * ``search`` judges positions by the rule of thumb and looks at strokes spread evenly over the pots.
 * ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It takes
   the weights of the level of execution errors that it plays under.
-* ``best_pot`` plays the likeliest pot without regard to what follows."""
+* ``best_pot`` plays the likeliest pot without regard to what follows.
+
+After a foul in a frame a planner decides by the learned worth, the others by the likeliest pot (``BoundPlayer.worth``)."""
 
 from typing import Any
 
 import numpy as np
 
 from .._check import integer
+from .._types import Floats, Ints
 from ..planning import Positions, StrokeSearch
 from ..planning.learned.learned_value import LearnedValue
+from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
 from ..tasks.options import Options
-from .player import BoundPlayer, Ranked, Strokes, placed
-from .weights import Learned, learned_at, level_for
+from .player import BoundPlayer, Ranked, Strokes
+from .weights import Learned, learned_at, learned_worth, level_for
 
 BUDGET = 120  # simulated shots of a decision where the name does not say how many
 KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")  # the last two: half a planner
@@ -33,33 +37,40 @@ class SearchPlayer(BoundPlayer):
         self.budget = integer("budget", budget, LEAST, MOST)
         self._learned, self.training_shots = learned, None if kind.startswith("planner") else 0
         self.search: Any = None  # the ``StrokeSearch`` where it is bound; None before
+        self._worth: LearnedWorth | None = None
 
     def _bind(self, options: Options) -> None:
         self.search = search = StrokeSearch(options, self.budget, pots_only=self.kind == "best_pot")
         if self.kind.startswith("planner"):
             learned = self._learned or learned_at(level_for(search.noise))
+            value = LearnedValue(learned.value, search.spread, search.planner.threads)
+            self._worth = LearnedWorth(value, learned_worth()[0])
             if self.kind != "planner_policy":
-                search.value = LearnedValue(learned.value, search.spread, search.planner.threads)
+                search.value = value
             if self.kind != "planner_value":
                 search.propose = PolicyProposals(learned.policy)
 
+    def worth(self, at: Positions) -> Floats:
+        """See ``BoundPlayer.worth``."""
+        return super().worth(at) if self._worth is None else self._worth(at).astype(np.float64)
+
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
-        ranked, places = self._ranked(positions, seeds)
-        return Strokes(ranked.strokes[:, 0], places)
+        ranked, places, decisions = self._ranked(positions, seeds)
+        return Strokes(ranked.strokes[:, 0], places, decision=decisions)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their scores [points]."""
-        ranked, places = self._ranked(positions, seeds)
+        ranked, places, decisions = self._ranked(positions, seeds)
         met = (ranked.samples > 0).sum(axis=1)
         most = np.minimum(np.where(met > 0, met, ranked.samples.shape[1]), RANKED)
-        return [
-            Ranked(Strokes(ranked.strokes[k, :m], np.repeat(places[k : k + 1], m, 0)), ranked.scores[k, :m])
-            for k, m in enumerate(most.tolist())
-        ]
+        made = []
+        for k, m in enumerate(most.tolist()):
+            where, what = (np.repeat(part[k : k + 1], m, 0) for part in (places, decisions))
+            made.append(Ranked(Strokes(ranked.strokes[k, :m], where, decision=what), ranked.scores[k, :m]))
+        return made
 
-    def _ranked(self, positions: Any, seeds: Any) -> tuple[Any, np.ndarray]:
-        """The ranking of the search, and the places of cue balls in hand; NaN elsewhere."""
-        _ = self.options  # it must be bound
-        visits, places = placed(Positions.of(positions), seeds)
-        return self.search.rank(visits, seeds), places
+    def _ranked(self, positions: Any, seeds: Any) -> tuple[Any, Floats, Ints]:
+        """The ranking of the search, the places of cue balls in hand, NaN elsewhere, and the decisions after fouls."""
+        visits, places, decisions = self.started(positions, seeds)
+        return self.search.rank(visits, seeds), places, decisions

@@ -7,17 +7,21 @@ import numpy as np
 
 from .._types import Floats
 from ..planning import Positions, spread_of
-from ..planning.learned.frame_strokes import FrameStrokes
+from ..planning.learned.frame_strokes import FOULS, FrameStrokes
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.stroke_value import LOOKS, Candidates, StrokeValue
 from ..planning.positions import seeds_of
+from ..planning.proposals import over_cushions
 from ..planning.strokes import COLUMNS, Dynamics
 from ..tasks.options import Options
 from .choices import GhostBall
 from .frame_decisions import FramePlayer
 from .player import Ranked, Strokes, placed
+from .seen import begun
 from .weights import StrokeLayers, learned_at, learned_strokes, learned_worth, level_for
+
+LIKELY = 0.75  # share of the predicted errors under which a stroke at a ball must be fair to be preferred
 
 
 class StrokeValuePlayer(FramePlayer):
@@ -43,6 +47,8 @@ class StrokeValuePlayer(FramePlayer):
         at = Positions.of(positions)
         if at.of_frames:
             return self.decided(at, seeds).strokes
+        if self.options.rules.reward == "legal":
+            return self._fairest(at, seeds)
         at, places, found, scores = self._scored(at, seeds)
         values = np.zeros((len(at), COLUMNS))
         values[found.rows] = found.strokes[np.arange(len(scores)), scores.argmax(axis=1)]
@@ -53,10 +59,13 @@ class StrokeValuePlayer(FramePlayer):
         return Strokes(values, places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """Its strokes, best first, with what they are worth [points]."""
+        """Its strokes, best first, with what they are worth [points]; the one that need only be fair alone."""
         at = Positions.of(positions)
         if at.of_frames:
             return self._considered(at, seeds)
+        if self.options.rules.reward == "legal":
+            strokes = self._fairest(at, seeds)
+            return [Ranked(strokes[k : k + 1], None) for k in range(len(at))]
         at, places, found, scores = self._scored(at, seeds)
         made: list[Ranked] = self._plain.rank(at, seeds)
         for j, k in enumerate(found.rows.tolist()):
@@ -64,6 +73,21 @@ class StrokeValuePlayer(FramePlayer):
             where = np.repeat(places[k : k + 1], len(order), axis=0)
             made[k] = Ranked(Strokes(found.strokes[j, order], where), scores[j, order].astype(np.float64))
         return made
+
+    def _fairest(self, positions: Positions, seeds: Any) -> Strokes:
+        """Strokes that need only be fair: at a ball that is seen, if it is likely to be struck, else over cushions; where
+        there is neither those of ``ghost_ball``."""
+        at, keys = positions.known_to(self.options.rules), seeds_of(seeds, len(positions))
+        plain, (visits, places) = self._plain.play(at, keys).values, placed(at, keys)
+        every, (strokes, there, seen) = np.arange(len(at)), self.search.look(begun(visits), keys)
+        fair = np.where(there, 1.0 - seen[..., FOULS], 0.0)[:, LOOKS:]
+        best = (fair + 1e-3 * self.search.scores(seen)[:, LOOKS:]).argmax(
+            axis=1
+        )  # of those alike the worthiest
+        fair, found = fair[every, best, None], strokes[every, LOOKS + best]
+        over, some = over_cushions(self.search, visits, 1, keys)
+        values = np.where(some > 0.0, over[:, 0], np.where(fair > 0.0, found, plain))
+        return Strokes(np.where(fair >= LIKELY, found, values), places)
 
     def _scored(self, at: Positions, seeds: Any) -> tuple[Positions, Floats, Candidates, Any]:
         """Positions of visits, the places of cue balls in hand, the strokes that are looked at, and their values."""

@@ -7,7 +7,8 @@ turns of the opponent, player 1, up to the agent's next one. A match is played t
 With ``opponent="none"`` the table returns to the agent whenever it would go to the opponent. Penalties still
 go to the opponent's score; after a foul the agent plays on from where the balls lie, without a free ball.
 
-With ``one_stroke`` the agent begins, and its first step is the episode.
+With ``one_stroke`` the agent begins, and the episode ends with its first stroke that is no foul: when it is
+its turn again, without a choice to make. Who fouls goes on, and who is sent back to the table plays again.
 
 A frame that ends in the opponent's first visit is shown by that reset; the next step plays nothing, reports
 the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once, so that it can be seen: on
@@ -99,6 +100,7 @@ class Frames(Tables):
     """(n,) The colour that the striker has nominated after a red or as its free ball, 0 for a free ball
     declined; AUTO, as always between two strokes: the colour first struck. Unchecked."""
     due: Bools  # (n,) which episodes have ended in a reset, so that the next step reports their end
+    through: Bools  # (n,) which episodes of one stroke have ended
     seats: tuple[Seat, ...]  # the agent's, and the other's if it does not play alone; no player: by ``turn``
     packs: tuple[Any, ...]  # ``packed`` of each seat
 
@@ -111,7 +113,7 @@ class Frames(Tables):
         self._saved_positions = np.zeros((n, N_BALLS, 2))
         self._saved_on_table = np.zeros((n, N_BALLS), np.bool_)
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
-        self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
+        self.nominated, (self.due, self.through) = np.full(n, AUTO, np.int64), np.zeros((2, n), np.bool_)
         self.SIZE += REPLACED_SIZE if rules.misses else 0
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         game, won = rules.rule_set, rules.frames // 2 + 1
@@ -165,7 +167,7 @@ class Frames(Tables):
         self.packed = self.packs[AGENT]
 
     def _columns(self) -> tuple[str, ...]:
-        more = ("_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due")
+        more = ("_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due", "through")
         return super()._columns() + more
 
     def frame(self, k: int) -> Frame:
@@ -186,8 +188,7 @@ class Frames(Tables):
         return self.game[:, columns.STROKES] >= self.rules.max_strokes
 
     def ended(self) -> Bools:
-        ended = super().ended() | self.stopped()
-        return ended | (self.game[:, columns.STEPS] > 0) if self.rules.one_stroke else ended
+        return super().ended() | self.stopped() | self.through
 
     def finished(self) -> Bools:
         return self.ended() & ~self.due
@@ -315,7 +316,7 @@ class Frames(Tables):
         crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _finish(self, which, out):
-        counted = self.due, self._replies, self._played
+        counted = self.due, self.through, self._replies, self._played
         frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, *counted, out.arrays)
         self.show_conditions(which, out)
 
@@ -361,7 +362,8 @@ class Frames(Tables):
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, usual) if breakers is None else breakers
         frame_kernels.begin(which, drawn, breakers, plan.in_hand, self.on_table, self.game, self.streams)
-        self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
+        self.begun[which], self.nominated[which] = True, AUTO
+        self.due[which] = self.through[which] = False
         self.draw_conditions(which)
 
     def _show(self, which, out, *, fresh):
@@ -444,6 +446,7 @@ class Frames(Tables):
         self.game[k, columns.PAID] = self._worth(k) - state.unpaid
         self._set_state(k, state)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
+        self.through[k] = False
 
     def standing(self, k: int) -> dict[str, Any]:
         frame = self.frame(k)
@@ -459,7 +462,8 @@ class Frames(Tables):
         frame = Frame(on_table=balls, rack=balls, miss=rules.miss, rules=rules.game, **on)
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
-        self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO
+        self._replies[k], self.begun[k], self.nominated[k] = 0, True, AUTO
+        self.due[k] = self.through[k] = False
 
     def text(self, k: int) -> str:
         frame = self.frame(k)

@@ -23,7 +23,7 @@ from . import declarations, stroke
 from .arrays import OutputArrays, PlayedArrays, TableArrays
 from .observations import FRAME_SIZE, REPLACED_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earned, frame_reward_of
-from .tables import COUNTS, I_BREAK, REALS, Tables, keep_last, write_empty_info, write_stroke_info
+from .tables import COUNTS, I_BREAK, I_FOULS, REALS, Tables, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
 _OK, _BALL_BALL = int(Status.OK), int(EventKind.BALL_BALL)
@@ -44,7 +44,7 @@ class Setting(NamedTuple):
     reward: int  # its code
     limit: int  # steps after which an episode is truncated
     max_strokes: int  # strokes after which a frame is stopped
-    one_stroke: bool  # whether an episode ends after its first step
+    one_stroke: bool  # whether an episode ends with its first stroke that is no foul
     frames: int  # frames that win a match
     clock: int  # time of a frame [ms]; 0: no clock
     options: Floats  # packed, of the action space
@@ -254,9 +254,14 @@ def _worth(row, reward):
     return earned(reward, columns.lead_of(row, AGENT), frames_lead)
 
 
+MOST_STEPS = 20
+"""Steps of an episode of one stroke at most: who fouls, or is sent back to the table, plays again."""
+
+
 @entry(what="the steps of frames", seconds=1)
-def finish(which, tables, saved, setting, due, replies, played, output):
-    """Write a step's results; ``played`` (n,): whether the agent had a stroke. No end stays ``due``."""
+def finish(which, tables, saved, setting, due, through, replies, played, output):
+    """Write a step's results; ``played`` (n,): whether the agent had a stroke. No end stays ``due``; ``through``: which
+    episodes of one stroke have ended."""
     tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
@@ -267,11 +272,17 @@ def finish(which, tables, saved, setting, due, replies, played, output):
         winner = row[columns.WINNER] if row[columns.OVER] else -1
         out.rewards[k] = frame_reward_of(setting.reward, worth - row[columns.PAID], winner, AGENT)
         row[columns.PAID], due[k] = worth, False
-        stopped = not row[columns.OVER] and row[columns.STROKES] >= setting.max_strokes
-        out.terminated[k] = row[columns.OVER] or setting.one_stroke
-        out.truncated[k] = stopped or row[columns.STEPS] >= setting.limit
         if not played[k]:
             write_empty_info(k, out, row[columns.BALL_ON])
+        fair = played[k] and not out.counts[k, I_FOULS]  # its stroke was no foul
+        fair = setting.one_stroke and fair and row[columns.PHASE] != columns.CHOICE
+        spent = setting.one_stroke and row[columns.STEPS] >= MOST_STEPS
+        stopped = not row[columns.OVER] and (
+            row[columns.STROKES] >= setting.max_strokes or (spent and not fair)
+        )
+        through[k] = fair or spent
+        out.terminated[k] = row[columns.OVER] or fair
+        out.truncated[k] = stopped or row[columns.STEPS] >= setting.limit
         _write_frame_info(k, row, AGENT, replies[k], out)
         observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
 

@@ -63,7 +63,7 @@ class Rules:
     observation: ObservationKind
     miss: MissRule = "off"  # of a frame, as all below but one: the rule for a foul and a miss
     max_strokes: int = NEVER  # strokes of both players after which it is stopped
-    one_stroke: bool = False  # whether an episode ends after its first step
+    one_stroke: bool = False  # whether an episode ends with its first stroke
     frames: int = 0  # in a match: of how many frames at most; 0 for a single frame, which is no match
     game: RulesName = "snooker"  # the rule set
     time_to_play: int = 0  # with a clock: from the rest of the balls to the next stroke [ms]
@@ -175,8 +175,9 @@ class Options:
     max_strokes : int or None, optional
         In a frame: strokes of both after which the referee stops it and its match; default 1000, None: never.
     one_stroke : bool, optional
-        Whether an episode ends with its first step: a stroke, and in a frame what the opponent makes of it until
-        it is the agent's turn again; the agent then begins. Not of a match. Default False.
+        Whether an episode ends with its first stroke; in a frame, where the agent then begins, with its first one that
+        is no foul, when it is its turn again without a choice to make, after 20 steps at most. Not of a match.
+        Default False.
     trust : bool, optional
         In a frame: whether code in an opponent's ``.zip`` may run. Default False.
     says : sequence of str, optional

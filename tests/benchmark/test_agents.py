@@ -18,7 +18,7 @@ from snooker_env.players import VISITS, Strokes, decided
 from tests.processes import ROOT
 
 EXAMPLE = f"program:{sys.executable} {ROOT / 'examples/program_player.py'}"
-HARD = TASKS["SnookerPotHard-v0"]
+HARD = TASKS["SnookerEscape-v0"]
 
 
 def test_the_example_of_a_class_plays(tmp_path, capsys, monkeypatch):
@@ -162,7 +162,7 @@ def test_ctrl_c_keeps_what_was_played_and_it_can_be_resumed(tmp_path, capsys):
     Interrupted.asked = 0
     out = tmp_path / "one.json"
     many = 2 * BATCH + 30
-    command = f"run SnookerPotHard-v0 --agent {__name__}:Interrupted --training-shots 0 --episodes {many}"
+    command = f"run SnookerEscape-v0 --agent {__name__}:Interrupted --training-shots 0 --episodes {many}"
     arguments = [*command.split(), "--out", str(out)]
     assert main(arguments) == 130
     assert f"interrupted after {2 * BATCH} of {many} episodes" in capsys.readouterr().err
@@ -187,13 +187,13 @@ def test_ctrl_c_keeps_what_was_played_and_it_can_be_resumed(tmp_path, capsys):
         assert why in capsys.readouterr().err and read_result(out) == other
     write_result(out, whole)
     assert main([*arguments, "--resume", "--label", "other"]) == 2
-    assert "must be a result of other on SnookerPotHard-v0" in capsys.readouterr().err
+    assert "must be a result of other on SnookerEscape-v0" in capsys.readouterr().err
 
 
 def test_an_existing_file_is_refused_before_any_player_is_made(tmp_path, capsys):
     out = tmp_path / "one.json"
     out.write_text("{}")
-    assert main(["run", "SnookerPotHard-v0", "--agent", "nobody.there:Player", "--out", str(out)]) == 2
+    assert main(["run", "SnookerEscape-v0", "--agent", "nobody.there:Player", "--out", str(out)]) == 2
     assert "must be a new file" in capsys.readouterr().err and out.read_text() == "{}"
 
 
@@ -255,7 +255,7 @@ def model(tmp_path_factory):
     from snooker_env.sb3 import SnookerVecEnv
 
     made = {}
-    for name in ("SnookerPotHard-v0", "SnookerFrame-v0"):
+    for name in ("SnookerEscape-v0", "SnookerFrame-v0"):
         tables = SnookerVecEnv(2, options=TASKS[name].options(aim="target"), seed=1)
         made[name] = tmp_path_factory.mktemp("models") / f"{name}.zip"
         ppo = sb3.PPO("MlpPolicy", tables, n_steps=8, batch_size=16, n_epochs=1, seed=0, device="cpu")
@@ -265,9 +265,9 @@ def model(tmp_path_factory):
 
 def test_a_model_of_stable_baselines_plays_with_consent(model, tmp_path, capsys):
     """Only with --trust, only where its actions fit, and a model of frames plays frames."""
-    visit, frame = (str(model[name]) for name in ("SnookerPotHard-v0", "SnookerFrame-v0"))
+    visit, frame = (str(model[name]) for name in ("SnookerEscape-v0", "SnookerFrame-v0"))
     one, two = tmp_path / "one.json", tmp_path / "two.json"
-    run = f"run SnookerPotHard-v0 --agent {visit} --episodes 8 --out {one} --label ppo".split()
+    run = f"run SnookerEscape-v0 --agent {visit} --episodes 8 --out {one} --label ppo".split()
     assert main([*run, "--options", "aim=target"]) == 2 and "trust" in capsys.readouterr().err
     assert main([*run, "--trust", "--options", "aim=target", "placement=True"]) == 2
     assert "options of its training" in capsys.readouterr().err
@@ -280,13 +280,13 @@ def test_a_model_of_stable_baselines_plays_with_consent(model, tmp_path, capsys)
     result = read_result(two)
     assert faults(result) == [] and len(result["rows"]) == 4
     assert [row[1:] for row in result["rows"][:2]] == [row[1:] for row in result["rows"][2:]]
-    run = f"run SnookerPotHard-v0 --agent {frame} --episodes 2 --trust --options aim=target".split()
+    run = f"run SnookerEscape-v0 --agent {frame} --episodes 2 --trust --options aim=target".split()
     assert main(run) == 2 and "must see visits to play them" in capsys.readouterr().err
 
 
 def test_without_the_libraries_one_line_says_which_to_install(model, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "stable_baselines3", None)
-    arguments = ["run", "SnookerPotHard-v0", "--agent", str(model["SnookerPotHard-v0"]), "--trust"]
+    arguments = ["run", "SnookerEscape-v0", "--agent", str(model["SnookerEscape-v0"]), "--trust"]
     assert main([*arguments, "--options", "aim=target"]) == 1
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and "needs stable_baselines3" in error

@@ -87,4 +87,4 @@ def test_the_examples_on_the_page_run(tmp_path, monkeypatch):
     words = command.replace("\\\n", " ").split()
     assert words[:3] == ["python", "-m", "snooker_env.benchmark"]
     assert main([*words[3:], "--episodes", "10"]) == 0
-    assert faults(read_result(tmp_path / "SnookerPotHard-v0.model.json")) == []
+    assert faults(read_result(tmp_path / "SnookerEscape-v0.model.json")) == []

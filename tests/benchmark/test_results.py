@@ -155,7 +155,7 @@ def test_simulated_shots_are_counted():
             return Strokes(np.column_stack([still + 2.0, still, still, rng.uniform(-3, 3, len(at)), still]))
 
     agent = Agent(label="thinks", sources=(Thinks(),), training_shots=40_000)
-    record = judge(TASKS["SnookerPotHard-v0"], agent, episodes=9)
+    record = judge(TASKS["SnookerEscape-v0"], agent, episodes=9)
     assert sum(row[3] for row in record["rows"]) == 9 and record["timing"]["simulated_shots"] == 9 * 15
     wanted = {"simulated_shots": 15.0, "class": "planning", "budget": "50k"}
     assert {name: record["agent"][name] for name in wanted} == wanted

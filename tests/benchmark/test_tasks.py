@@ -137,7 +137,7 @@ def test_a_safety_is_judged_by_what_the_other_makes_of_it():
     rows = [
         dict(zip(COLUMNS, row, strict=True)) for row in play_episodes(task, "random", task.seeds(40)).rows
     ]
-    assert all(row["strokes"] == row["ended"] == 1 for row in rows)
+    assert all(row["ended"] and row["strokes"] > row["fouls"] for row in rows)  # until one is fair
     assert all(row["score"] == row["points"] - row["opponent_points"] <= task.most for row in rows)
     assert any(row["opponent_points"] > 10 for row in rows) and any(row["points"] for row in rows)
     figures = figures_of(task, "random", [list(row.values()) for row in rows])
@@ -203,9 +203,9 @@ def _worker(name, queue):
 def test_a_spawned_worker_that_imports_only_gymnasium_makes_it():
     context = multiprocessing.get_context("spawn")
     queue = context.Queue()
-    process = context.Process(target=_worker, args=("SnookerPotHard-v0", queue))
+    process = context.Process(target=_worker, args=("SnookerEscape-v0", queue))
     process.start()
-    assert queue.get(timeout=300) == gymnasium.make("SnookerPotHard-v0").reset(seed=1)[0].tolist()
+    assert queue.get(timeout=300) == gymnasium.make("SnookerEscape-v0").reset(seed=1)[0].tolist()
     process.join(60)
 
 

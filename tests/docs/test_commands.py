@@ -22,7 +22,6 @@ SHORT = {
     "benchmarks.make_opened": "--tables 2 --out {tmp}",
     "benchmarks.make_safety": "--tables 2 --player tactician_30 --out {tmp}",
     "benchmarks.make_escape": "--tables 2 --out {tmp}",
-    "benchmarks.constants": "--tasks SnookerEscape-v0 --players random search_30 --episodes 4 --screened 1",
     "benchmarks.execution": "--strokes 40 --visits 4 --levels professional robot",
     "benchmarks.fair": "--tables 2 --kinds snookered",
     "benchmarks.frames": "--frames 2 --jobs 1",

@@ -1,10 +1,11 @@
-"""Is an episode of one stroke in a frame that stroke, what the opponent makes of it, and no more?"""
+"""Does an episode of one stroke in a frame end with the first one that is no foul, and what the opponent makes of it?"""
 
 import gymnasium
 import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env.tasks.frame_kernels import MOST_STEPS
 from tests.tables import begun
 
 FRAME = {"task": "frame", "aim": "target", "layout": "opened", "opponent": "ghost_ball", "noise": "club"}
@@ -24,8 +25,11 @@ def test_its_step_is_the_first_one_of_a_frame(seed, reward):
     env, one = played(seed, **ONE, reward=reward)
     whole, first = played(seed, **FRAME, reward=reward)
     assert np.array_equal(one[0], first[0]) and one[1] == first[1] and one[4] == first[4]
-    assert one[2] is True and first[2] is False and one[3] is first[3] is False
-    assert env.over and not whole.over
+    fair = not one[4]["foul"] and not one[4]["choice"]
+    assert one[2] is fair and first[2] is False and one[3] is first[3] is False
+    assert env.over is fair and not whole.over
+    if not fair:
+        return
     with pytest.raises(gymnasium.error.ResetNeeded, match="the frame is over"):
         env.step(ACTION)
 
@@ -34,7 +38,8 @@ def test_its_reward_is_the_growth_of_the_lead_until_it_is_the_agents_turn_again(
     tables = sn.SnookerVectorEnv(200, **ONE, autoreset_mode="Disabled")
     tables.reset(seed=1)
     _, rewards, terminated, truncated, info = tables.step(np.tile(ACTION, (200, 1)))
-    assert terminated.all() and not truncated.any()
+    fair = ~info["foul"] & ~info["choice"].astype(bool)
+    assert 0 < fair.sum() < 200 and np.array_equal(terminated, fair) and not truncated.any()
     assert np.array_equal(rewards, info["score"] - info["opponent_score"])
     potted, visited = info["points"] > 0, info["opponent_strokes"] > 0
     assert 0 < potted.sum() < 200 and not (potted & visited).any()  # who pots has the next turn
@@ -46,8 +51,7 @@ def test_the_agent_begins_unless_it_is_said_otherwise():
     assert not tables.reset(seed=1)[1]["opponent_strokes"].any()
     info = tables.reset(seed=1, options={"breaker": 1})[1]
     assert info["opponent_strokes"].all()
-    _, rewards, terminated, _, info = tables.step(np.tile(ACTION, (40, 1)))
-    assert terminated.all()  # the opponent's first visit is paid, too
+    _, rewards, _, _, info = tables.step(np.tile(ACTION, (40, 1)))  # the opponent's first visit is paid, too
     assert np.array_equal(rewards, info["score"] - info["opponent_score"])
 
 
@@ -55,15 +59,28 @@ def test_the_agent_begins_unless_it_is_said_otherwise():
 def test_many_tables_begin_anew_as_one_does(mode):
     tables, one = sn.SnookerVectorEnv(3, **ONE, autoreset_mode=mode), begun(sn.SnookerEnv(**ONE), 5)
     observations, _ = tables.reset(seed=5)
-    for _ in range(3):
+    for _ in range(6):
         assert np.array_equal(observations[0], one.tables.observe(np.zeros(1, int))[0])
         observations, rewards, terminated, *_ = tables.step(np.tile(ACTION, (3, 1)))
         out = one.step(ACTION)
-        assert terminated.all() and rewards[0] == out[1]
-        one.reset()
-        if mode == "NextStep":
-            observations, rewards, terminated, *_ = tables.step(np.tile(ACTION, (3, 1)))
-            assert not terminated.any() and not rewards.any()
+        assert terminated[0] == out[2] and rewards[0] == out[1]
+        if out[2]:
+            one.reset()
+            if mode == "NextStep":
+                observations, rewards, terminated, *_ = tables.step(np.tile(ACTION, (3, 1)))
+                assert not terminated[0] and not rewards[0]
+
+
+def test_who_fouls_is_sent_back_until_the_stroke_is_fair():
+    """The softest stroke straight up the table from the D strikes no ball; 20 steps are the most."""
+    options = ONE | {"layout": "break_off", "aim": "absolute", "miss": "clear_path"}
+    env = begun(sn.SnookerEnv(**options | {"opponent": "none"}), 3)
+    fouls = 0
+    for step in range(MOST_STEPS):
+        _, reward, terminated, truncated, info = env.step([-1.0, 0.0, 0.0, -0.5])
+        fouls += info["foul"]
+        assert not terminated and truncated is (step == MOST_STEPS - 1) and reward == -4.0
+    assert fouls == MOST_STEPS and env.over
 
 
 def test_a_state_of_it_has_its_stroke_to_come():

@@ -5,11 +5,13 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import play_visits, summary
+from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Planner, Positions
 from snooker_env.planning.learned.learned_value import LearnedValue
 from snooker_env.planning.learned.policy_proposals import PolicyProposals
 from snooker_env.planning.stroke_search import schedule
-from snooker_env.players import weights
+from snooker_env.players import FRAMES, weights
+from snooker_env.players.degenerate import SILLY
 from snooker_env.players.search import BUDGET, KINDS
 from snooker_env.tasks import LEVELS, Noise
 from tests.positions import tables
@@ -88,3 +90,19 @@ def test_planner_search_best_pot_and_ghost_ball_make_points_in_this_order():
 def test_without_errors_search_clears_tables():
     cleared = summary(play_visits(sn.player("search_600"), 3, noise="none"))
     assert cleared["clearances"] >= 2 / 3 and cleared["longest_break"] > 100
+
+
+@pytest.mark.parametrize("name", ["planner_30", "search_30", "best_pot_30"])
+def test_after_a_foul_each_choice_is_compared(name):
+    """Of a foul that leaves nothing the other plays again, or from where it was a miss; of one that leaves a pot not."""
+    twins = sn.MatchVectorEnv(40, **FRAMES, layout="safety", miss="clear_path", noise="professional")
+    twins.reset(seed=1, options={"breaker": 0})
+    at = sn.Positions.of(twins)
+    twins.step(SILLY["softest_away"]().at(twins).play(at, np.arange(40)).actions(twins.options, at))
+    at = sn.Positions.of(twins)
+    fouled = at[np.flatnonzero(at.choice)]
+    assert len(fouled) > 20
+    made = sn.player(name).at(twins).play(fouled, np.arange(len(fouled)))
+    kinds = set(made.decision.tolist())
+    assert columns.PLAY_AGAIN in kinds and columns.REPLACE in kinds, kinds
+    assert not (made.decision[~fouled.miss_called] == columns.REPLACE).any()

@@ -76,7 +76,7 @@ def page():
 
 def benchmark():
     assert "SnookerBreak-v0" in run("-m", "snooker_env.benchmark", "tasks")
-    words = ["SnookerPotHard-v0", "--agent", "ghost_ball", "--episodes", "3", "--out", "result.json"]
+    words = ["SnookerEscape-v0", "--agent", "ghost_ball", "--episodes", "3", "--out", "result.json"]
     run("-m", "snooker_env.benchmark", "run", *words)
     assert "sound" in run("-m", "snooker_env.benchmark", "check", "result.json")
     assert json.loads(Path("result.json").read_text("utf-8"))["agent"]["label"] == "ghost_ball"

@@ -33,6 +33,7 @@ SHARED, SAFE_SIZE = 5, 24
 SIZE = SHARED + POT_SIZE + SAFE_SIZE
 """What is seen of a stroke: what it seems to be worth, what the balls as they lie are worth to the other and to the striker,
 reds, whether it is a pot; what ``stroke_value`` sees of a pot; what is predicted of a safety."""
+FOULS = SHARED + POT_SIZE + 4  # the column of how many of the errors make a foul of a safety
 FOUL = 8.0
 """What a predicted foul costs beside what the balls as they lie bring the other [points]."""
 POTTED = 0.5

@@ -1,0 +1,89 @@
+"""Which policies look at nothing, and must win no task? Strokes that are silly on any table, and one choice for all tables.
+
+They are no players to play with. ``sn.player`` knows them as ``snooker_env.players.degenerate:softest`` and so on, and as
+``...:constant_67`` a choice of ``action="discrete"``, of which the aim alone is solved."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from .._types import Floats, Ints
+from ..game import frame_columns as columns
+from ..planning import Positions
+from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
+from ..tasks.discrete_actions import SIZE
+from .choices import ChoicePlayer, GhostBall
+from .player import BoundPlayer, Strokes
+
+
+class Straight(BoundPlayer):
+    """One speed [m/s], straight at the nearest ball that is on, or straight away from the nearest ball."""
+
+    training_shots = 0
+
+    def __init__(self, speed: float, away: bool):
+        self.speed, self.away = speed, away
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``."""
+        at = Positions.of(positions)
+        x, y = np.moveaxis(at.positions - at.positions[:, :1], -1, 0)
+        balls = at.on_table.copy() if self.away else at.balls_on
+        balls[:, 0] = False
+        nearest = np.arange(len(at)), np.where(balls, np.hypot(x, y), np.inf).argmin(axis=1)
+        values = np.zeros((len(at), 5))
+        values[:, 0], values[:, 3] = self.speed, np.arctan2(y, x)[nearest] + np.pi * self.away
+        return Strokes(values)
+
+
+class PlayAgain(GhostBall):
+    """``ghost_ball``, who has the other play again after every foul."""
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``."""
+        at = Positions.of(positions)
+        return replace(
+            super().play(at, seeds), decision=np.where(at.choice, columns.PLAY_AGAIN, columns.PLAY)
+        )
+
+
+class Constant(ChoicePlayer):
+    """One choice of ``action="discrete"`` on every table; after fouls it decides as others do that score choices."""
+
+    training_shots = 0
+
+    def __init__(self, choice: int):
+        self.choice = choice
+
+    def scores(self, at: Positions, seeds: Ints) -> Floats:
+        """The choice above all others."""
+        return np.tile(np.arange(SIZE) == self.choice, (len(at), 1)).astype(float)
+
+
+SILLY: dict[str, Callable[[], Any]] = {
+    "softest": partial(Straight, MIN_SPEED, away=False),
+    "softest_away": partial(Straight, MIN_SPEED, away=True),
+    "away": partial(Straight, 2.0, away=True),
+    "hardest": partial(Straight, MAX_SPEED, away=False),
+    "play_again": PlayAgain,
+}
+MODULE = f"{__name__}:"
+_CONSTANTS = {f"constant_{choice}": choice for choice in range(SIZE)}
+
+
+def is_degenerate(text: str) -> bool:
+    """Whether that names one of them."""
+    name = text.removeprefix(MODULE)
+    return name != text and (name in SILLY or name in _CONSTANTS)
+
+
+def __getattr__(name: str) -> Callable[[], Any]:
+    """What makes the one with a name, for ``sn.player``."""
+    if name in _CONSTANTS:
+        return partial(Constant, _CONSTANTS[name])
+    if name in SILLY:
+        return SILLY[name]
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
