@@ -29,7 +29,7 @@ with needs("agents.learn_worth"):
     from snooker_env.planning.learned.dense_layers import Layers
     from snooker_env.planning.learned.frame_features import errors_seen
     from snooker_env.planning.learned.learned_worth import worth_of
-    from snooker_env.players.weights import FOLDER, WORTH, worth_in
+    from snooker_env.players.weights import FOLDER, WORTH, learned_worth, worth_in
 
     from .frame_worth import calibration, fitted, fitted_chance, targets
 
