@@ -5,10 +5,35 @@ import json
 import tempfile
 
 from snooker_env import _files
-from snooker_env._files import UNFINISHED, write_atomic
+from snooker_env._files import (
+    MOST_NPZ,
+    UNFINISHED,
+    arrays_in,
+    read_bytes,
+    strict_json,
+    with_checksum,
+    without_checksum,
+    write_atomic,
+)
+from snooker_env._seal import sealed, unsealed
 from snooker_env.checks import refuse
 
-__all__ = ["UNFINISHED", "read_json", "save_figure", "writable", "write_atomic", "write_json"]
+__all__ = [
+    "MOST_NPZ",
+    "UNFINISHED",
+    "arrays_in",
+    "read_bytes",
+    "read_json",
+    "save_figure",
+    "sealed",
+    "strict_json",
+    "unsealed",
+    "with_checksum",
+    "without_checksum",
+    "writable",
+    "write_atomic",
+    "write_json",
+]
 
 
 def writable(name, file):

@@ -30,8 +30,7 @@ from stable_baselines3.common.utils import LinearSchedule
 
 import snooker_env
 from agents.learning.networks import TablePolicy, TableReader
-from commands.files import write_atomic, write_json
-from snooker_env._seal import sealed, unsealed
+from commands.files import sealed, unsealed, write_atomic, write_json
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning.learned.pot_view import with_pots
 from snooker_env.progress import Progress

@@ -11,10 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from commands.files import write_atomic
+from commands.files import (
+    arrays_in,
+    sealed,
+    strict_json,
+    unsealed,
+    with_checksum,
+    without_checksum,
+    write_atomic,
+)
 from commands.lock import Lock
-from snooker_env._files import arrays_in, strict_json, with_checksum, without_checksum
-from snooker_env._seal import sealed, unsealed
 from snooker_env.checks import refuse
 
 KEPT = Path("runs/kept")

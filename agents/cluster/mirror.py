@@ -11,8 +11,7 @@ import platform
 import time
 import uuid
 
-from commands.files import read_json, write_atomic, write_json
-from snooker_env._files import with_checksum
+from commands.files import read_json, with_checksum, write_atomic, write_json
 from snooker_env.checks import refuse
 
 from .job import ClusterError

@@ -19,9 +19,8 @@ import torch
 from torch import nn
 
 import snooker_env as sn
-from commands.files import read_json, write_atomic, write_json
+from commands.files import read_json, strict_json, with_checksum, write_atomic, write_json
 from commands.noise_option import noise_option
-from snooker_env._files import strict_json, with_checksum
 from snooker_env.benchmark import simulated
 from snooker_env.checks import choice, integer, refuse
 from snooker_env.planning import Planner, Positions, processors

@@ -9,11 +9,10 @@ import numpy as np
 import torch
 from stable_baselines3.common.save_util import load_from_zip_file
 
-from commands.files import UNFINISHED, write_atomic
+from commands.files import UNFINISHED, sealed, unsealed, write_atomic
 from commands.lifecycle import python
 from commands.lock import NAME as LOCK
 from commands.lock import Lock
-from snooker_env._seal import sealed, unsealed
 from snooker_env.checks import refuse
 
 from ..cluster.mirror import copied

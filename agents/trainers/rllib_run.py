@@ -37,12 +37,10 @@ with needs("agents.train_rllib"):
         logging.getLogger(part).setLevel(logging.ERROR)
 
     import snooker_env
-    from commands.files import read_json, write_json
+    from commands.files import read_json, sealed, with_checksum, write_json
     from commands.lock import NAME as LOCK
     from commands.lock import Lock
     from snooker_env import Options
-    from snooker_env._files import with_checksum
-    from snooker_env._seal import sealed
     from snooker_env.benchmark import play_visits, summary
     from snooker_env.benchmark.provenance import software
     from snooker_env.benchmark.tasks import tables_of

@@ -14,6 +14,7 @@ from ..players import player as player_named
 from ..players.degenerate import is_degenerate
 from ..players.model_options import LEFT_OUT, checked
 from ..players.resolver import PROGRAM, is_name
+from ..players.seen import SeenPlayer
 from ..players.weights import levels
 from .playing import BATCH
 from .schema import LABEL
@@ -118,7 +119,7 @@ class Agent:
         if self.program and isinstance(source, str):
             return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)
         made = player_named(source, trust=self.trust, options=self.options)
-        if getattr(made, "frames", False) and not task.frame:
+        if isinstance(made, SeenPlayer) and made.frames and not task.frame:
             raise refuse("player", source, "must see visits to play them: it sees frames")
         made.at(task.judged())
         return made

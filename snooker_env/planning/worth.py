@@ -157,7 +157,7 @@ class Chance(NamedTuple):
 
 
 def _logistic(logit: Floats) -> Floats:
-    return 1.0 / (1.0 + np.exp(-np.clip(logit, -50.0, 50.0)))
+    return 1.0 / (1.0 + np.exp(-np.clip(logit, -30.0, 30.0)))  # never 1.0 by rounding
 
 
 def _ended(lead: Floats) -> Floats:

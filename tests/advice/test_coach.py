@@ -24,7 +24,7 @@ def test_there_are_twenty_and_no_pot_is_on_in_any():
         hidden = not sn.planning.clear_paths(case.position).any_part[0]
         assert hidden == name.startswith("snookered"), name
         assert sn.advise(
-            case.position, scores=case.scores, options=OPTIONS, agent="random", n=1, samples=1, visits=0
+            case.position, scores=case.scores, options=OPTIONS, agent="stroke_value", n=1, samples=1, visits=0
         )
 
 

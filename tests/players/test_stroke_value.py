@@ -161,7 +161,7 @@ def test_a_folder_of_a_training_is_resumed_as_it_was_or_refused(tmp_path, capsys
     (out / learn_strokes.SETTINGS).write_text('{"seed": 1')
     for words, said in (
         (["--agent", "stroke_value"], "--resume continues it"),
-        (["--resume"], "must hold a complete stroke_value.json"),
+        (["--resume"], "must be a complete file of settings"),
         (["--resume", "--seed", "2"], "--seed and --set must be left out with --resume"),
     ):
         with pytest.raises(SystemExit):

@@ -14,6 +14,7 @@ import pytest
 
 from agents.learning.policy_files import read_policy
 from agents.players.trained import load_player
+from commands.files import with_checksum
 from tests.trainers import needed
 
 ray = needed("ray")
@@ -171,7 +172,9 @@ def test_folders_that_do_not_fit_are_refused(tmp_path, refused):
     (tmp_path / "state.json").write_text("{}")
     assert "must be the folder of a run with a checkpoint" in refused(*here, "--resume")
     progress = {"shots": 5, "updates": 1, "seconds": 1.0, "parts": 1, "checkpoint": "checkpoint-000001"}
-    (tmp_path / "state.json").write_text(json.dumps({"settings": {"envs": 16}, "progress": progress}))
+    (tmp_path / "state.json").write_text(
+        json.dumps(with_checksum({"settings": {"envs": 16}, "progress": progress}))
+    )
     assert "checkpoint-000001 is missing" in refused(*here, "--resume")
     (tmp_path / "checkpoint-000001").mkdir()
     assert "envs = 32: must be 16, as in the run in" in refused(*here, "--resume", "--envs", "32")
