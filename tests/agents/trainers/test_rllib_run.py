@@ -172,9 +172,11 @@ def test_folders_that_do_not_fit_are_refused(tmp_path, refused):
     (tmp_path / "state.json").write_text("{}")
     assert "must be the folder of a run with a checkpoint" in refused(*here, "--resume")
     progress = {"shots": 5, "updates": 1, "seconds": 1.0, "parts": 1, "checkpoint": "checkpoint-000001"}
-    (tmp_path / "state.json").write_text(
-        json.dumps(with_checksum({"settings": {"envs": 16}, "progress": progress}))
-    )
+    kept = {"settings": {"envs": 16}, "progress": progress}
+    (tmp_path / "state.json").write_text(json.dumps(with_checksum(kept)))
     assert "checkpoint-000001 is missing" in refused(*here, "--resume")
     (tmp_path / "checkpoint-000001").mkdir()
+    (tmp_path / "checkpoint-000001" / "part").write_text("RLlib's")
+    progress["digest"] = run.digest_of(tmp_path / "checkpoint-000001")
+    (tmp_path / "state.json").write_text(json.dumps(with_checksum(kept)))
     assert "envs = 32: must be 16, as in the run in" in refused(*here, "--resume", "--envs", "32")
