@@ -179,10 +179,11 @@ class FrameSearch:
         again, so that it is worth no more than the best of the m strokes, less its penalty."""
         fair, called, left, less = parts[..., :2], parts[..., 2:3], parts[..., 3:5], parts[..., 5:]
         out, again = fair + left, fair + less
-        alone = np.where(called < 1.0, again / np.where(called < 1.0, 1.0 - called, 1.0), out)
+        alone = np.where(called < 1.0, again / np.where(called < 1.0, 1.0 - called, 1.0), -np.inf)
         lower = lambda one, other: np.where((self._one(one) <= self._one(other))[..., None], one, other)  # noqa: E731
         worth = lower(out, alone)
         best = np.take_along_axis(worth, self._one(worth).argmax(axis=1)[:, None, None], 1)
+        best = np.where(np.isfinite(best), best, 1e9)  # nothing but called misses: they are not bounded
         return lower(out, again + called * best)
 
     def _proposed(self, at: Positions, seeds: Ints, plan: Plan) -> tuple[Floats, Floats, Ints]:
