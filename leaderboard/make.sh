@@ -47,19 +47,22 @@ judge random 0
 judge ghost_ball 0
 judge best_pot 0
 judge search 0
-# What train.py learns for each level of errors: 153,600 positions x 64 simulated shots, 147,200 x 48 judged choices, PPO.
-judge planner 18403328
-# To those of planner, two rounds of 384 frames against itself and others: 205,141 positions, each with 120 shots of search and 8 that judge,
-# and some 12,000 strokes of the others, 120 shots each.
+# What train.py learns for each level of errors: 153,600 positions x 64 simulated shots, 147,200 x 48 judged choices, PPO: 18,403,328. To these
+# the worth of positions, by which it decides after a foul: two rounds of 384 frames of tactician against itself and others: 205,141 positions,
+# each with 120 shots of search and 8 that judge, and some 12,000 strokes of the others, 120 shots each.
+judge planner 46101376
 judge tactician 46101376
 # The values of three levels, the worth of the tactician, and 13 million shots of its own: strokes that are tried, play, and who plays against it.
 judge stroke_value 96000000
 judge ppo_value 18403328
 # planner and ppo_value from five training seeds, all with a professional's errors: those of planner above are the task's.
-judge_seeds planner_seeds 18403328 planner@professional planner@
+judge_seeds planner_seeds 46101376 planner@professional planner@
 judge_seeds ppo_value_seeds 18403328 ppo_value ""
 
 # Plain PPO, five training seeds.
 judge_each ppo_50k 49152
+
+# What looks at nothing, beside them: it must win no task.
+[ -n "$wanted" ] || $bench degenerate --out leaderboard || exit 1
 
 $bench table leaderboard/*.json --markdown docs/leaderboard.md --awaited "${labels[@]}"

@@ -28,7 +28,7 @@ LEGEND = (
 )
 PROVED = (
     "A result is its strokes: its file holds every one, and check plays each episode again from its seed and computes "
-    "all figures anew. Players that are known by name are asked again for their first strokes. What strokes cannot prove "
+    "all figures anew. Players that are known by name are asked again for their strokes. What strokes cannot prove "
     "is who chose them: that no held-out seed was peeked at, the class and its simulated shots, the budget of training, "
     "times and machines are the word of whoever made the file. To doubt a row, let its agent play on fresh seeds: "
     "`check FILE --agent AGENT --fresh 500`."
