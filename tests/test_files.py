@@ -128,7 +128,7 @@ def test_numbers_of_json_are_as_they_were():
 
 def test_no_flipped_bit_of_json_that_a_command_goes_on_with_is_used(tmp_path):
     result, track, run = tmp_path / "result.json", tmp_path / "track.json", tmp_path / "run"
-    made = judge(TASKS["SnookerPotHard-v0"], Agent.of("random"), episodes=2, out=result)
+    made = judge(TASKS["SnookerEscape-v0"], Agent.of("random"), episodes=2, out=result)
     head, rows = (
         {"track": "text", "visits": 2},
         [{"table": text.TASK.seeds(2)[0], **dict.fromkeys(text.COUNTS, 1)}],
