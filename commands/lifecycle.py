@@ -13,8 +13,6 @@ import sys
 import threading
 from pathlib import Path
 
-from snooker_env._closed import until_closed
-
 EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "rllib"}
 """The extra of pyproject.toml that brings a package which is not in [train]."""
 OUR_OWN = ("agents", "commands", "snooker_env", "train", "benchmarks")
@@ -100,6 +98,8 @@ def command(name):
             any_terminal()
             before, threading.excepthook = threading.excepthook, _of_thread
             try:
+                from snooker_env._closed import until_closed  # here: what it needs may be missing
+
                 with until_closed():
                     return main(argv)
             except ImportError as error:
