@@ -98,9 +98,7 @@ def command(name):
             any_terminal()
             before, threading.excepthook = threading.excepthook, _of_thread
             try:
-                from snooker_env._closed import (
-                    until_closed,  # here: it loads libraries, which can be interrupted
-                )
+                from snooker_env._closed import until_closed  # here: what it needs may be missing
 
                 with until_closed():
                     return main(argv)
