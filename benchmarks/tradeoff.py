@@ -65,14 +65,15 @@ def impact_errors(found, truth):
     return dict(zip(names, map(spread, (*errors, object_angle)), strict=True))
 
 
-def play_impacts(n, seed):
+def play_impacts(n, physics, seed):
     """Figures of every fidelity on the set of impacts."""
     x, normals = impacts(n, seed)
-    phys, truth, rows = sn.Physics.preset("paper").packed_for((1, 0)), results(x, normals, "reference"), {}
+    phys, rows = sn.Physics.preset(physics).packed_for((1, 0)), {}
+    truth = results(x, normals, "reference", physics)
     for fidelity in IMPACTS:
         code, steps = contact.parse_fidelity(fidelity)
         guess = median_impact(x[:50], normals[:50], phys, code, steps, 2)
-        errors = impact_errors(results(x, normals, fidelity), truth)
+        errors = impact_errors(results(x, normals, fidelity, physics), truth)
         rows[fidelity] = {
             "us": median_impact(x, normals, phys, code, steps, max(2, int(30 / guess))),
             **errors,
@@ -330,7 +331,7 @@ def main():
     parser.add_argument(
         "--repeats", type=at_least(1), default=3, help="timed runs of every shot; the best counts"
     )
-    parser.add_argument("--physics", default="paper", help="of the shots: paper or match [paper]")
+    parser.add_argument("--physics", default="paper", help="of impacts and shots: paper or match [paper]")
     options = parser.options()
     if options.figures is None:
         options.figures = measure(options)
@@ -342,7 +343,7 @@ def main():
 def measure(options):
     """Measure and print everything; the figures."""
     print(provenance.line())
-    impact_rows = play_impacts(options.impacts, options.seed)
+    impact_rows = play_impacts(options.impacts, options.physics, options.seed)
     print(
         f"\n{options.impacts} impacts: median us; then median, 99 %, worst of: direction [deg], speed [m/s]; once both roll: the same"
     )

@@ -81,9 +81,9 @@ def median_impact(x, normals, phys, code, n_steps, times):
     return float(np.median(best))
 
 
-def results(x, normals, fidelity):
+def results(x, normals, fidelity, physics="paper"):
     """(n, 12) velocities and R * spins after each impact."""
-    physics = sn.Physics.preset("paper")
+    physics = sn.Physics.preset(physics)
     out = np.zeros((len(x), 12))
     for k in range(len(x)):
         args = (*x[k, :2], 0.0), x[k, 2:], (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (*normals[k], 0.0)
