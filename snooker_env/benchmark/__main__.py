@@ -198,7 +198,7 @@ def _told(result: dict[str, Any], task: Task, file: Path) -> int:
         unit = task.measure if task.counts else f"% ({task.measure})"
         where = f"{len(result['rows']):,} episodes, class {agent['class']}, budget {agent['budget']}"
         print(f"{task.id}  {agent['label']}: {score} {unit}, {where}")
-    if suspicious(result, task):
+    if why is None and suspicious(result, task):
         print(
             f"Nearly every episode brought nothing: is that how the actions of {agent['label']} are read? A model that was "
             "trained with aim=target needs --options aim=target.",

@@ -10,8 +10,8 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, write_result
-from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.playing import BATCH
+from snooker_env.benchmark.__main__ import main, suspicious
+from snooker_env.benchmark.playing import BATCH, COLUMNS
 from snooker_env.benchmark.results import strokes_of
 from snooker_env.play.program import AgentError, ProgramPlayer
 from snooker_env.players import VISITS, Strokes, decided
@@ -314,3 +314,20 @@ def test_what_is_kept_is_what_was_played():
     tables.reset(seed=[seed])
     exact = decided(player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([seed]), 0))
     assert np.array_equal(kept[0], exact.astype(np.float32)) and not np.array_equal(kept[0], exact)
+
+
+@pytest.mark.parametrize(
+    ("source", "task", "scored", "said"),
+    [
+        ("mine.zip", "SnookerBreak-v0", 0, True),
+        ("mine.zip", "SnookerBreak-v0", 1, True),
+        ("mine.zip", "SnookerBreak-v0", 5, False),
+        ("random", "SnookerBreak-v0", 0, False),
+        ("mine.zip", "SnookerFrame-v0", 0, False),
+    ],
+)
+def test_a_model_that_scores_nothing_may_be_read_wrongly(source, task, scored, said):
+    """--options aim=target forgotten: nearly no points in 100 visits. No frame won is nothing odd."""
+    score = COLUMNS.index("score")
+    rows = [[4 * (k < scored) if c == score else 0 for c in range(len(COLUMNS))] for k in range(100)]
+    assert suspicious({"rows": rows, "agent": {"sources": [source]}}, TASKS[task]) == said

@@ -115,7 +115,7 @@ OTHER = HELD_OUT_SEED + 999
         ("rows.2", [1, 2], "rows[2] = [1, 2]: must be 10 whole numbers"),
         ("rows.2.6", 2, "rows[2].fouls = 2: must be "),
         ("protocol.episodes", 25, "rows: must be 25 episodes, 25 for each training seed, not 24"),
-        ("protocol.version", 7, "protocol.version = 7: must be 1"),
+        ("protocol.version", 7, "protocol.version = 7: must be 2"),
         ("protocol.official", True, "protocol.official = True: must be False by the other fields"),
         ("task", "SnookerBreak-v1", "task = 'SnookerBreak-v1': must be one of SnookerBreak-v0"),
         ("agent.class", "planning", "agent.class = 'planning': must be 'model_free'"),

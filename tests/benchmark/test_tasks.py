@@ -151,7 +151,8 @@ def test_who_searches_escapes_and_the_plain_stroke_does_not():
     share = {}
     for name in ("ghost_ball", "search_60", "tactician_60"):
         share[name] = np.mean([row[2] for row in play_episodes(task, name, task.seeds(100)).rows])
-    assert share["ghost_ball"] < 0.55 and min(share["search_60"], share["tactician_60"]) > 0.9
+    best = min(share["search_60"], share["tactician_60"])
+    assert best > 0.9 and share["ghost_ball"] < best - 0.15
 
 
 def test_a_search_for_legal_strokes_cares_for_nothing_else():
