@@ -160,3 +160,19 @@ def test_a_smooth_nose_and_a_cloth_that_holds_return_a_rolling_ball_rolling(fide
     speed = R * np.linalg.norm(w)
     assert np.abs(np.array(v2) - (v[0], -e * v[1], 0.0)).max() < 1e-7 * speed
     assert R * np.abs(np.array(w2) - (-e * w[0], w[1], w[2])).max() < 1e-7 * speed
+
+
+def test_standard_at_a_cushion_with_constants_far_from_play_errs_as_the_page_says():
+    """The worst that is known, a ball that rolls; docs/validation/extremes.md states it."""
+    far = {"mu_s": 0.4841072631725974, "mu_c": 0.22534344454120891}
+    far |= {"sin_theta": 0.5431815648211034, "e_c": 0.5113282592391228}
+    v = np.array([7.413376224227434, 0.30643224216283643, 0.0])
+    w = np.array([-11.673609225250912, 282.4143323515213, 251.78361233604636])
+    tiny = {"R": R, "e": far["e_c"], "mu_w": far["mu_c"], "mu_s": far["mu_s"], "sin_theta": far["sin_theta"]}
+    after, _ = extrapolated(lambda steps: moreau_cushion(v, w, (1, 0, 0), **tiny, steps=steps), 20_000)
+    unit, errors = R * np.linalg.norm(w), {}
+    for fidelity in ("standard", "reference"):
+        a, b = sn.collide_cushion(v, w, (1, 0, 0), sn.Physics(R=R, tables=False, **far), fidelity)
+        errors[fidelity] = np.abs(np.concatenate([a, R * b]) - after).max() / unit
+    assert errors["reference"] < 1e-7
+    assert errors["standard"] == pytest.approx(1.6e-4, rel=0.02)
