@@ -256,9 +256,11 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
         raise refuse("path", str(path), f"must be a file of strokes or a replay ({error})") from None
     form = kept.get("format") if isinstance(kept, dict) else None
     readers = {FORMAT: _from_strokes, "snooker-replay": _from_replay}
-    if not isinstance(form, str) or form not in readers or not isinstance(kept.get("strokes"), list):
+    if not isinstance(form, str) or form not in readers:
         allowed = f"must be a file of strokes ({FORMAT!r}) or a replay ('snooker-replay')"
         raise refuse("path", str(path), allowed)
+    if not isinstance(kept.get("strokes"), list):
+        raise refuse_what(f"strokes of {path}", f"a {type(kept.get('strokes')).__name__}", "must be a list")
     if kept.get("version") not in VERSIONS[form] or kept["version"] is True:
         allowed = f"must be {' or '.join(map(str, VERSIONS[form]))}"
         raise refuse(f"version of {path}", kept.get("version"), allowed)
@@ -335,7 +337,7 @@ def _from_replay(
     for k, one in enumerate(kept["strokes"]):
         if one["player"] is None or one["cue"] is None or one["n"] != N_BALLS:
             raise refuse_what(f"strokes[{k}]", "a bare shot", "must be of a visit or a frame, with a referee")
-        who, scores = one["player"], before
+        who, scores = integer(f"strokes[{k}].player", one["player"], 0, 1), before
         before = tuple((*one["score"], 0)[:2])
         if player is None or who == player:
             try:

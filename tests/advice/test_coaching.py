@@ -173,6 +173,14 @@ def test_a_replay_says_where_it_was_played(tmp_path):
         "match",
     )
     assert {(one["cue_kind"], one["noise"]) for one in kept["strokes"]} == {("real", "club")}
+    kept["strokes"][0]["player"] = 7
+    (tmp_path / "odd.json").write_text(json.dumps(kept))
+    refused(
+        partial(read_strokes, tmp_path / "odd.json", player=0),
+        f"{tmp_path / 'odd.json'}: strokes[0].player",
+        "7",
+        "",
+    )
     mine = read_strokes(tmp_path / "new.json", player=0)
     where = {"cue": "real", "physics": sn.Physics(mu_r=0.012), "table": sn.Table.preset("match")}
     assert all({name: getattr(one, name) for name in where} == where for one in mine)
