@@ -218,7 +218,7 @@ def suspicious(result: dict[str, Any], task: Task) -> bool:
         models
         and task.score in ("points", "legal")
         and bool(scores)
-        and np.mean(np.array(scores) > 0) <= NOTHING
+        and bool(np.mean(np.array(scores) > 0) <= NOTHING)
     )
 
 

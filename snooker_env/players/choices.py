@@ -62,7 +62,7 @@ class ChoicePlayer(BoundPlayer):
         for k, row in enumerate(scores):
             choices = np.argsort(-row, kind="stable")[: max(1, min(MOST, int(np.isfinite(row).sum())))]
             values = self._planner.strokes_of(visits, np.full(len(choices), k), choices)[0]
-            where, what = (np.repeat(part[k : k + 1], len(choices), 0) for part in (places, decisions))
+            where, what = np.repeat(places[k : k + 1], len(choices), 0), np.full(len(choices), decisions[k])
             strokes = Strokes(values, where, decision=what)
             ranked.append(Ranked(strokes, self.figures(row[choices])))
         return ranked

@@ -66,7 +66,7 @@ class SearchPlayer(BoundPlayer):
         most = np.minimum(np.where(met > 0, met, ranked.samples.shape[1]), RANKED)
         made = []
         for k, m in enumerate(most.tolist()):
-            where, what = (np.repeat(part[k : k + 1], m, 0) for part in (places, decisions))
+            where, what = np.repeat(places[k : k + 1], m, 0), np.full(m, decisions[k])
             made.append(Ranked(Strokes(ranked.strokes[k, :m], where, decision=what), ranked.scores[k, :m]))
         return made
 
