@@ -173,8 +173,8 @@ def test_a_replay_says_where_it_was_played(tmp_path):
         "match",
     )
     assert {(one["cue_kind"], one["noise"]) for one in kept["strokes"]} == {("real", "club")}
-    kept["strokes"][0]["player"] = 7
-    (tmp_path / "odd.json").write_text(json.dumps(kept))
+    odd = kept | {"strokes": [kept["strokes"][0] | {"player": 7}, *kept["strokes"][1:]]}
+    (tmp_path / "odd.json").write_text(json.dumps(odd))
     refused(
         partial(read_strokes, tmp_path / "odd.json", player=0),
         f"{tmp_path / 'odd.json'}: strokes[0].player",
