@@ -1,5 +1,6 @@
 """Is a submitted result what it says? Its strokes are played again; all that follows must be equal to the bit."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from .results import completed, strokes_of
 from .schema import fault, faults_of_fields, shortened
 from .tasks import TASKS, Task
 
+_BUDGET = re.compile(r"_\d+(?=@|$)")
 MOST = 12  # faults of rows, and of strokes, that are named
 WORK, SHOTS, TOGETHER = 1e5, 100, 50
 """How long known players are asked again: decisions, with each so many simulated shots as one more. No player of the package
@@ -84,12 +86,19 @@ def _of_sources(agent: dict[str, Any]) -> list[str]:
     texts = all(isinstance(one, str) and one and form.fullmatch(one) for one in sources)
     if not 0 < len(sources) <= schema.MOST_SOURCES or not texts:
         return ["agent.sources: must be texts, one for each training seed"]
-    if len(set(sources)) < len(sources):
+    if len(set(map(_player_of, sources))) < len(sources):
         return ["agent.sources: must be different: the same one twice makes nothing surer"]
     if is_reserved(agent["label"], sources):
         must = "must not be the name of another player than agent.sources"
         return [f"agent.label = {agent['label']!r}: {must}"]
     return []
+
+
+def _player_of(source: str) -> tuple[str, int | None]:
+    """A source, but of a known player without its budget, and that: search, search_120 and search_0120 are one."""
+    if not is_known(source):
+        return source, None
+    return _BUDGET.sub("", source), getattr(player_named(source), "budget", None)
 
 
 def _of_rows(result: dict[str, Any], task: Task) -> list[str]:

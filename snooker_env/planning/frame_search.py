@@ -24,7 +24,7 @@ from .proposals import Proposals, at_balls, over_cushions, safeties
 from .prospects import spread_of
 from .stroke_search import Propose, halved, in_turn
 from .strokes import COLUMNS, Dynamics
-from .worth import LAST, Chance, Worth, follows, last_of, lead_of, left_of, passed
+from .worth import LAST, Chance, Worth, follows, in_one_stroke, last_of, lead_of, left_of, passed
 
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
 TIE = 2e-4
@@ -144,13 +144,16 @@ class FrameSearch:
         if self.chance is None:
             return np.zeros(len(now))
         left, clock = left_of(at), self.rules.rule_set.clock
-        if (
-            clock
-        ):  # no stroke begins after it, and none brings more than a black, but for several reds at once
-            strokes = 1 + np.maximum(clock - at.game[:, columns.CLOCK], 0) // self.rules.time_to_play
-            left = np.minimum(left, LAST * strokes)
-            worth = np.clip(worth, -left, left)
-        return self.chance(now, worth, left, last_of(at), self.spread)
+        if not clock:
+            return self.chance(now, worth, left, last_of(at), self.spread)
+        # a stroke is played while there is time for one more, and takes at least the time to play it
+        strokes = np.maximum(1, -((at.game[:, columns.CLOCK] - clock) // self.rules.time_to_play) - 1)
+        each = np.maximum(LAST, at.on_table[:, 1:16].sum(axis=1))  # several reds at once
+        left = np.minimum(left, each * strokes)
+        worth = np.clip(worth, -left, left)
+        chances = self.chance(now, worth, left, last_of(at), self.spread)
+        ends = in_one_stroke(now, worth, each, at.game[:, columns.STRIKER] == 0)
+        return np.where((strokes == 1) & (at.game[:, columns.RESPOTTED_BLACK] == 0), ends, chances)
 
     def _one(self, both: Floats) -> Floats:
         """What strokes are compared by, of chances and points (..., 2)."""

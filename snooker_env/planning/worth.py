@@ -165,6 +165,16 @@ def _ended(lead: Floats) -> Floats:
     return 0.5 + 0.5 * np.sign(lead)
 
 
+def in_one_stroke(now: Floats, worth: Floats, most: Floats, mine: Bools) -> Floats:
+    """The chance (n,) of who leads by ``now`` and expects ``worth`` more, where time allows one stroke, ``mine`` or the
+    other's, of at most ``most`` points: who is ahead wins, unless they change it."""
+    sign = np.where(mine, 1.0, -1.0)
+    scores = np.clip(0.5 + sign * worth / (2.0 * LAST), 1.0 - SURE, SURE)
+    striker = scores * _ended(sign * now + LAST) + (1.0 - scores) * _ended(sign * now)
+    chance = np.clip(np.where(mine, striker, 1.0 - striker), 1.0 - SURE, SURE)
+    return np.where(np.abs(now) > most, now > 0.0, chance)
+
+
 def last_of(at: Positions) -> Bools:
     """Whether only the black is left, so that the next points end the frame unless they make it level: (n,)."""
     return (at.game[:, columns.ON_TABLE] == 1 << BLACK) & (at.game[:, columns.BALL_ON] == VALUES[BLACK])

@@ -54,6 +54,10 @@ def test_the_same_source_five_times_makes_nothing_surer():
     record["strokes"] = packed(strokes * 5)
     record["figures"] = figures_of(TASKS[record["task"]], "any", record["rows"])
     assert faults(record) == ["agent.sources: must be different: the same one twice makes nothing surer"]
+    for alike in (["search", "search_120"], ["planner_30@club", "planner_030@club"]):
+        assert faults(record | {"agent": record["agent"] | {"sources": [*alike, "a", "b", "c"]}}) == faults(
+            record
+        )
     record["agent"]["sources"] = [f"{k}.zip" for k in range(5)]
     equal = "agent.sources: 0 and 1 must be different training seeds: their strokes are equal"
     assert faults(record) == [equal]

@@ -17,7 +17,7 @@ from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
 from snooker_env.planning.learned.stroke_value import LOOKS, SIZE
 from snooker_env.players import VISITS
 from snooker_env.players.stroke_value import StrokeValuePlayer
-from snooker_env.players.weights import StrokeLayers, learned_strokes
+from snooker_env.players.weights import FOLDER, STROKES, StrokeLayers, learned_strokes
 from snooker_env.progress import Progress
 
 
@@ -254,6 +254,27 @@ def test_it_plays_frames_under_all_options(options):
         frame.step(strokes.actions(frame.options, at))
     assert met["in_hand"] > 0
     assert (met["anywhere"] > 0) == (options.get("game") == "shoot_out")
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda weight: weight * np.nan,
+        lambda weight: weight[..., :-1],
+        lambda weight: weight[: len(weight) // 2],
+        lambda weight: weight.astype(np.int8),
+        lambda weight: weight.astype(np.complex64),
+        lambda weight: np.float32(1.0),
+        lambda weight: np.array(["x"]),
+    ],
+)
+def test_networks_that_are_none_are_refused(tmp_path, damage):
+    with np.load(FOLDER / STROKES) as kept:
+        arrays = dict(kept)
+    arrays["visits/0/weight"] = damage(arrays["visits/0/weight"])
+    np.savez(tmp_path / "mine.npz", **arrays)
+    with pytest.raises(ValueError, match=r"mine\.npz.*visits/0 = "):
+        sn.player(f"stroke_value@{tmp_path / 'mine.npz'}")
 
 
 def test_a_network_of_frames_changes_what_is_played_in_frames_alone():

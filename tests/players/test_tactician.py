@@ -150,6 +150,26 @@ def test_what_the_rules_decide_is_certain():
         assert len(set(near)) == 1  # the next points decide, whoever leads
 
 
+def test_what_time_decides_is_certain():
+    """The Shoot Out: time for one stroke, which brings at most 7 points, by a foul to the other."""
+    rules = {"task": "frame", "game": "shoot_out", "noise": "none", "opponent": "none"}
+    env, player = sn.SnookerEnv(**rules), sn.player("tactician_30")
+    two = Position(cue=(0.3, 1.0), pink=(0.0, 0.885), black=(0.0, 1.4605), on="pink")
+    hard = Position(cue=(0.0, -1.7), black=(-0.5, 1.7))
+
+    def chance(position, scores, clock):
+        env.reset(options={"position": position})
+        state = env.get_state()
+        state["frame"] |= {"scores": list(scores), "clock": clock}
+        env.set_state(state)
+        return player.at(env).chance_to_win(sn.Positions.of(env))[0]
+
+    assert [chance(two, scores, 590_000) for scores in ((50, 62), (50, 58), (58, 50))] == [0.0, 0.0, 1.0]
+    assert 0.0 < chance(two, (50, 51), 590_000) <= chance(two, (51, 50), 590_000) < 1.0
+    assert chance(two, (50, 62), 300_000) > 0.0 and chance(two, (58, 50), 300_000) < 1.0
+    assert 0.0 < chance(hard, (50, 51), 590_000) < 0.5 < chance(hard, (51, 50), 590_000) < 1.0
+
+
 def test_who_needs_snookers_plays_for_them():
     """14 behind with pink and black left: the pink, however easy, would lose the frame."""
     at = frame_of(Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(60, 74))

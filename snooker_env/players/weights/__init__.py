@@ -39,8 +39,12 @@ class StrokeLayers(NamedTuple):
 
 
 def layers_of(arrays: Mapping[str, Singles], of: str) -> list[tuple[Singles, Singles]]:
-    """Weight and bias of each layer of a network in the arrays of a file."""
-    return [(arrays[f"{of}/{k}/weight"], arrays[f"{of}/{k}/bias"]) for k in range(LAYERS_EACH)]
+    """Weight and bias of each layer of a network in the arrays of a file; ValueError for numbers that are none."""
+    layers = [(arrays[f"{of}/{k}/weight"], arrays[f"{of}/{k}/bias"]) for k in range(LAYERS_EACH)]
+    for k, pair in enumerate(layers):
+        if not all(part.dtype == np.float32 and np.isfinite(part).all() for part in pair):
+            raise refuse(f"{of}/{k}", f"{pair[0].dtype}", "must be finite float32 numbers")
+    return layers
 
 
 def learned_of(arrays: Mapping[str, Singles]) -> Learned:
@@ -75,7 +79,14 @@ def learned_worth() -> tuple[list[tuple[Singles, Singles]], Chance]:
 def learned_strokes(path: Path = FOLDER / STROKES) -> StrokeLayers:
     """The layers of the networks of ``stroke_value``; by default the package's."""
     arrays = read_npz(path)
-    return StrokeLayers(*(layers_of(arrays, of) for of in StrokeLayers._fields))
+    learned = StrokeLayers(*(layers_of(arrays, of) for of in StrokeLayers._fields))
+    if path != FOLDER / STROKES:
+        for of, mine, package in zip(StrokeLayers._fields, learned, learned_strokes(), strict=True):
+            for k in range(LAYERS_EACH):
+                shapes, wanted = ([part.shape for part in one[k]] for one in (mine, package))
+                if shapes != wanted:
+                    raise refuse(f"{of}/{k}", str(shapes), f"must have the shapes {wanted}")
+    return learned
 
 
 def levels() -> list[str]:
