@@ -67,8 +67,8 @@ def impact_errors(found, truth):
 
 def play_impacts(n, physics, seed):
     """Figures of every fidelity on the set of impacts."""
-    x, normals = impacts(n, seed)
-    phys, rows = sn.Physics.preset(physics).packed_for((1, 0)), {}
+    (x, normals), physics = impacts(n, seed), sn.Physics.preset(physics)
+    phys, rows = physics.packed_for((1, 0)), {}
     truth = results(x, normals, "reference", physics)
     for fidelity in IMPACTS:
         code, steps = contact.parse_fidelity(fidelity)

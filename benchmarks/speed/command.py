@@ -81,9 +81,8 @@ def median_impact(x, normals, phys, code, n_steps, times):
     return float(np.median(best))
 
 
-def results(x, normals, fidelity, physics="paper"):
+def results(x, normals, fidelity, physics):
     """(n, 12) velocities and R * spins after each impact."""
-    physics = sn.Physics.preset(physics)
     out = np.zeros((len(x), 12))
     for k in range(len(x)):
         args = (*x[k, :2], 0.0), x[k, 2:], (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (*normals[k], 0.0)
@@ -154,9 +153,10 @@ def print_goals(name, us):
 
 def measure_impacts(n, repeats, seed=0):
     """Table of impacts."""
-    phys = sn.Physics.preset("paper").packed_for((1, 0))
+    physics = sn.Physics.preset("paper")
+    phys = physics.packed_for((1, 0))
     x, normals = impacts(n, seed)
-    truth, found = results(x, normals, "reference"), {}
+    truth, found = results(x, normals, "reference", physics), {}
     print(
         f"\n{n} impacts, us: median (lowest, highest of {repeats} passes), 5 %, 95 %, set; error: median, 99 %, worst"
     )
@@ -167,7 +167,7 @@ def measure_impacts(n, repeats, seed=0):
             row: dict = summary(clock.time_impacts(x, normals, phys, fidelity, repeats))
         else:
             row = {"median": median_impact(x, normals, phys, code, n_steps, max(2, int(50 / whole)))}
-        error = np.abs(results(x, normals, fidelity) - truth).max(1) / x[:, 0]
+        error = np.abs(results(x, normals, fidelity, physics) - truth).max(1) / x[:, 0]
         row |= {"set": whole, "error": np.quantile(error, [0.5, 0.99, 1.0]).tolist()}
         found[fidelity] = row
         spread = (

@@ -8,6 +8,8 @@ error of the first order is taken out by a second solution with half as many ste
 third, with twice as many, is the doubt of the truth: impacts where it is more than ``DOUBT`` are left out and counted.
 """
 
+from typing import Any
+
 import numpy as np
 
 import snooker_env as sn
@@ -43,7 +45,7 @@ def measure(n, seed):
     """Rows: rolls, mu_s, doubt, error of standard, error of reference; over the largest incoming speed."""
     rng, rows = np.random.default_rng(seed), []
     for k in range(n):
-        constants = {
+        constants: dict[str, Any] = {
             "mu_s": rng.uniform(0.0, 1.0),
             "mu_c": rng.uniform(0.0, 1.0),
             "e_c": rng.uniform(0.0, 1.0),
