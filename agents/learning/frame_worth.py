@@ -97,7 +97,8 @@ def fitted_chance(now, worth, left, last, spread, won):
         return value
 
     optimiser.step(loss)
-    return Chance(*nn.functional.softplus(raw).tolist(), power.item())
+    near, far, snookers, needs = nn.functional.softplus(raw).tolist()
+    return Chance(near, far, snookers, needs, power.item())
 
 
 def calibration(chance, won, groups=10):
