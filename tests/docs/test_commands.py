@@ -16,7 +16,7 @@ SHORT = {
     "benchmarks.pockets": "--quick --out {tmp}",
     "benchmarks.rack": "--shots 2 --orders 2 --racks 2 --out {tmp}",
     "benchmarks.stability": "--fuzz 2000 --out {tmp}",
-    "benchmarks.stability.cushions": "--impacts 32",
+    "benchmarks.stability.cushions": "--impacts 60",
     "benchmarks.speed": "--shots 20 --repeats 1 --parts impacts shots growth --largest-batch 64 --out {tmp}",
     "benchmarks.fit_cushion": "--steps 200",
     "benchmarks.nap": "",

@@ -162,8 +162,8 @@ def test_a_smooth_nose_and_a_cloth_that_holds_return_a_rolling_ball_rolling(fide
     assert R * np.abs(np.array(w2) - (-e * w[0], w[1], w[2])).max() < 1e-7 * speed
 
 
-def test_standard_at_a_cushion_with_constants_far_from_play_errs_as_the_page_says():
-    """The worst that is known, a ball that rolls; docs/validation/extremes.md states it."""
+def test_standard_at_a_cushion_with_constants_far_from_play():
+    """A ball that rolls; the errors of all such impacts are in docs/validation/extremes.md."""
     far = {"mu_s": 0.4841072631725974, "mu_c": 0.22534344454120891}
     far |= {"sin_theta": 0.5431815648211034, "e_c": 0.5113282592391228}
     v = np.array([7.413376224227434, 0.30643224216283643, 0.0])
