@@ -13,7 +13,7 @@ from .agents import Agent
 from .playing import BATCH, COLUMNS, play_episodes
 from .results import read_result
 from .run import judge
-from .tasks import Task
+from .tasks import TASKS, Task
 
 ABOVE = ("planner", "search", "stroke_value", "tactician")
 """Who must stand above every degenerate policy, on every task."""
@@ -37,7 +37,7 @@ def best_constant(task: Task, threads: int | None = None) -> int:
             rows = [play_episodes(training, Constant(choice), seeds, 0, threads).rows for seeds in batches]
             scores.append(np.mean([row[_SCORE] for some in rows for row in some]))
         order = np.argsort(-np.array(scores), kind="stable")
-        if len(left) == FINALISTS or np.ptp(scores) == 0.0:  # no constant wins a frame
+        if len(left) == FINALISTS:
             return left[order[0]]
         left = [left[k] for k in order[: max(FINALISTS, len(left) // 3)]]
         first, episodes = first + episodes, 2 * episodes
@@ -46,11 +46,14 @@ def best_constant(task: Task, threads: int | None = None) -> int:
 def results(task: Task, folder: Path, threads: int | None = None) -> Iterator[dict[str, Any]]:
     """The results of a task: of all degenerate policies, kept in the folder as ``TASK.NAME.json``, and of ``random`` and
     ``ABOVE``, who play where the folder does not hold theirs. What is there is not played again."""
-    file = folder / f"{task.id}.constant.json"
+    like = (
+        TASKS["SnookerBreak-v0"] if task.score == "won" else task
+    )  # no constant wins a frame: that of its visits
+    file = folder / f"{like.id}.constant.json"
     if file.exists():
         (found,) = read_result(file)["agent"]["sources"]
     else:
-        found = f"{MODULE}constant_{best_constant(task, threads)}"
+        found = f"{MODULE}constant_{best_constant(like, threads)}"
     for label, source in {"constant": found, **{name: MODULE + name for name in SILLY}}.items():
         if task.frame or label != "play_again":  # in a visit nobody has that choice
             agent, out = Agent.of(source, label=label), folder / f"{task.id}.{label}.json"
