@@ -96,9 +96,8 @@ def _of_sources(agent: dict[str, Any]) -> list[str]:
 
 def _player_of(source: str) -> tuple[str, int | None]:
     """A source, but of a known player without its budget, and that: search, search_120 and search_0120 are one."""
-    if not is_known(source):
-        return source, None
-    return _BUDGET.sub("", source), getattr(player_named(source), "budget", None)
+    budget = getattr(player_named(source), "budget", None) if is_known(source) else None
+    return (source if budget is None else _BUDGET.sub("", source)), budget
 
 
 def _of_rows(result: dict[str, Any], task: Task) -> list[str]:
@@ -198,15 +197,10 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
                 continue
             played = playing.play_episodes(task, source, [rows[k][1] for k in some], run, threads)
             for k, again in zip(some.tolist(), played.strokes, strict=True):
-                differ = [
-                    j
-                    for j, two in enumerate(zip(strokes[k], again, strict=False))
-                    if two[0].tobytes() != two[1].tobytes()
-                ]
-                if differ or len(again) != len(strokes[k]):
-                    which = (
-                        f"{source} plays another stroke than number {min([*differ, len(again)])} of the file"
-                    )
+                if again.tobytes() != strokes[k].tobytes():
+                    pairs = zip(strokes[k], again, strict=False)
+                    n = next((n for n, (a, b) in enumerate(pairs) if a.tobytes() != b.tobytes()), len(again))
+                    which = f"{source} plays another stroke than number {n} of the file"
                     wrong.append(f"strokes: run {run}, table {rows[k][1]}: {which}")
             wrong += _of_class(result, shortened(source), played)
             simulated += played.simulated
@@ -218,18 +212,9 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
         many = many if len(known) == len(agent["sources"]) else np.inf
         shots = result["timing"]["simulated_shots"]
         if not np.floor(few) <= shots <= np.ceil(many):
-            must = (
-                f"{few:.0f}"
-                if few == many
-                else f"from {few:.0f}" + (f" to {many:.0f}" if many < np.inf else " on")
-            )
-            wrong = [
-                fault(
-                    "timing.simulated_shots",
-                    shots,
-                    f"{must}, as known players simulate when they are asked again",
-                )
-            ]
+            must = f"{few:.0f}" if few == many else f"from {few:.0f} to {many:.0f}"
+            must += ", as known players simulate when they are asked again"
+            wrong = [fault("timing.simulated_shots", shots, must)]
     return _elsewhere(result, sorted(set(wrong))[:MOST] if len(wrong) > 1 else wrong)
 
 

@@ -46,9 +46,8 @@ def best_constant(task: Task, threads: int | None = None) -> int:
 def results(task: Task, folder: Path, threads: int | None = None) -> Iterator[dict[str, Any]]:
     """The results of a task: of all degenerate policies, kept in the folder as ``TASK.NAME.json``, and of ``random`` and
     ``ABOVE``, who play where the folder does not hold theirs. What is there is not played again."""
-    like = (
-        TASKS["SnookerBreak-v0"] if task.score == "won" else task
-    )  # no constant wins a frame: that of its visits
+    # no constant wins a frame: there it is that of visits
+    like = TASKS["SnookerBreak-v0"] if task.score == "won" else task
     file = folder / f"{like.id}.constant.json"
     if file.exists():
         (found,) = read_result(file)["agent"]["sources"]

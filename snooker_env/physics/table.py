@@ -134,11 +134,8 @@ class Table:
         """
         length = number("table.length", length, 0, 100, open_low=True)
         width = number("table.width", width, 0, 100, open_low=True)
-        if (
-            isinstance(pockets, bool)
-            or not isinstance(pockets, (int, np.integer))
-            or pockets not in (6, 4, 0)
-        ):
+        whole = isinstance(pockets, int | np.integer) and not isinstance(pockets, bool)
+        if not whole or pockets not in (6, 4, 0):
             raise refuse("table.pockets", pockets, "must be 6, 4 or 0")
         shapes = []
         kinds = ("corner", corner, False, pockets > 0), ("middle", middle, True, pockets == 6)

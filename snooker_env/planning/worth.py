@@ -108,10 +108,8 @@ def follows(worth: Worth, after: Positions, before: Floats, rules: int = 0) -> F
     lost = (game[:, columns.OVER] != 0) & (game[:, columns.WINNER] == 1)
     gains -= np.where(lost, left_of(after), 0.0)  # by a third miss, with balls on the table
     lot = (game[:, columns.RESPOTTED_BLACK] != 0) & (before != 0.0)  # level now: chance says who begins
-    playing, choosing = (
-        (game[:, columns.PHASE] == columns.STROKE) & ~lot,
-        game[:, columns.PHASE] == columns.CHOICE,
-    )
+    playing = (game[:, columns.PHASE] == columns.STROKE) & ~lot
+    choosing = game[:, columns.PHASE] == columns.CHOICE
     rows = np.flatnonzero(playing)
     if len(rows):
         gains[rows] += np.where(mine[rows], 1.0, -1.0) * worth(turned(after[rows]))
@@ -151,13 +149,18 @@ class Chance(NamedTuple):
         gain = sign * np.maximum(sign * worth, -FOUL)
         fouls = _logistic(sign * (self.needs + self.snookers * beyond) + gain / wide)
         chance = np.where(beyond > 0.0, fouls, chance)
-        black = np.clip(0.5 + worth / (2.0 * LAST), 1.0 - SURE, SURE)
+        black = _scores(worth)
         ends = black * _ended(now + LAST) + (1.0 - black) * _ended(now - LAST)
         return np.where(last, ends, chance)
 
 
 def _logistic(logit: Floats) -> Floats:
     return 1.0 / (1.0 + np.exp(-np.clip(logit, -30.0, 30.0)))  # never 1.0 by rounding
+
+
+def _scores(worth: Floats) -> Floats:
+    """How sure it is that who expects ``worth`` (n,) more than the other makes the next points, if a black brings them."""
+    return np.clip(0.5 + worth / (2.0 * LAST), 1.0 - SURE, SURE)
 
 
 def _ended(lead: Floats) -> Floats:
@@ -169,7 +172,7 @@ def in_one_stroke(now: Floats, worth: Floats, most: Floats, mine: Bools) -> Floa
     """The chance (n,) of who leads by ``now`` and expects ``worth`` more, where time allows one stroke, ``mine`` or the
     other's, of at most ``most`` points: who is ahead wins, unless they change it."""
     sign = np.where(mine, 1.0, -1.0)
-    scores = np.clip(0.5 + sign * worth / (2.0 * LAST), 1.0 - SURE, SURE)
+    scores = _scores(sign * worth)
     striker = scores * _ended(sign * now + LAST) + (1.0 - scores) * _ended(sign * now)
     chance = np.clip(np.where(mine, striker, 1.0 - striker), 1.0 - SURE, SURE)
     return np.where(np.abs(now) > most, now > 0.0, chance)

@@ -31,9 +31,8 @@ FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_HEAD = 16_384
 MOST_BODY = 131_072  # largest head and body of a request [bytes]; a replay has about 200 for each stroke
-MOST_AT_ONCE = (
-    32  # largest number of connections; a browser keeps six. One that waits gives way to a further one
-)
+MOST_AT_ONCE = 32
+"""Largest number of connections; a browser keeps six. One that waits gives way to a further one."""
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
 _HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"
 FULL = b"%sContent-Length: %d\r\n\r\n%s" % (_HEAD, len(_FULL), _FULL)  # the answer to further connections

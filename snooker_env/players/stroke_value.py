@@ -81,9 +81,8 @@ class StrokeValuePlayer(FramePlayer):
         plain, (visits, places) = self._plain.play(at, keys).values, placed(at, keys)
         every, (strokes, there, seen) = np.arange(len(at)), self.search.look(begun(visits), keys)
         fair = np.where(there, 1.0 - seen[..., FOULS], 0.0)[:, LOOKS:]
-        best = (fair + 1e-3 * self.search.scores(seen)[:, LOOKS:]).argmax(
-            axis=1
-        )  # of those alike the worthiest
+        worth = self.search.scores(seen)[:, LOOKS:]
+        best = (fair + 1e-3 * worth).argmax(axis=1)  # of those that are alike the worthiest
         fair, found = fair[every, best, None], strokes[every, LOOKS + best]
         over, some = over_cushions(self.search, visits, 1, keys)
         values = np.where(some > 0.0, over[:, 0], np.where(fair > 0.0, found, plain))

@@ -126,9 +126,8 @@ class Replay:
         if self._data is None:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
             physics, *others = (shot.physics for shot in self.shots)
-            same = all(
-                one == physics for one in others
-            )  # shots of several kinds of balls and cloth may be shown
+            # shots of several kinds of balls and cloth may be shown
+            same = all(one == physics for one in others)
             self._data = {"format": FORMAT, "version": VERSION, "title": self.title}
             self._data |= {"players": list(self.players), "scene": scene_data(self.table)}
             self._data |= {

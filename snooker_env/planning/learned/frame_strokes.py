@@ -33,14 +33,13 @@ SHARED, SAFE_SIZE = 5, 24
 SIZE = SHARED + POT_SIZE + SAFE_SIZE
 """What is seen of a stroke: what it seems to be worth, what the balls as they lie are worth to the other and to the striker,
 reds, whether it is a pot; what ``stroke_value`` sees of a pot; what is predicted of a safety."""
-FOULS = SHARED + POT_SIZE + 4  # the column of how many of the errors make a foul of a safety
+FOULS = SHARED + POT_SIZE + 4  # the column of the share of errors under which a safety is a foul
 FOUL = 8.0
 """What a predicted foul costs beside what the balls as they lie bring the other [points]."""
 POTTED = 0.5
 """Of the safeties that are predicted to pot a ball that is on, about so many do."""
 _NONE = np.empty(0), np.empty(0), np.empty(0, np.int64), np.empty(0, np.int64)
 _SEED = 7  # of the errors, which are the same for all
-_FOULS = SHARED + POT_SIZE + 4  # what is seen of a safety: the share of fouls under the errors
 _CHANCE = 2  # the column of what ``stroke_value`` sees that is the pot's chance
 
 
@@ -95,7 +94,7 @@ class FrameStrokes:
 
     def _sensible(self, at: Positions, there: Bools, seen: NDArray[np.float32]) -> Bools:
         """Which strokes do not foul on purpose, nor lose the frame by potting the pink, where there are others: (n, STROKES)."""
-        bad = there & (seen[..., _FOULS] > 0.5)
+        bad = there & (seen[..., FOULS] > 0.5)
         two = at.game[:, columns.ON_TABLE] == (1 << PINK) + (1 << BLACK)
         lost = two & (at.ball_on == VALUES[PINK]) & (lead_of(at) + left_of(at) < 0.0)
         bad[:, :LOOKS] |= there[:, :LOOKS] & lost[:, None]
