@@ -26,7 +26,7 @@ from snooker_env.advice.practice import practice_of
 from snooker_env.advice.recorded import _from_replay, agreed
 from snooker_env.planning import Planner, pot_aim, pots
 from snooker_env.players import VISITS
-from snooker_env.tasks import LEVELS
+from snooker_env.tasks import LEVELS, Noise
 from tests.refusals import refused
 
 AT = sn.Position(cue=(0.1, 0.2), reds=[(-0.3, 1.0)], black=(0.0, 1.4605), on="red")
@@ -259,6 +259,16 @@ def test_growth_with_the_speed_is_estimated(g):
     ratio = np.array([one.direction.value / true for one, true in zip(found, truth, strict=True)])
     assert abs(ratio.mean() - 1.0) < 0.07
     assert found[0].noise.direction_deg(speed=found[0].at) == pytest.approx(found[0].direction.value)
+
+
+def test_an_error_grows_as_strokes_under_that_noise_do():
+    """By the law of ``Noise`` itself, which is stated as a professional's at the speed that the error is of."""
+    speeds = np.array([0.5, 2.0, 6.0])
+    for g, each in zip(estimating.GROWTHS, estimating.grown(speeds, 2.0), strict=True):
+        noise = Noise(aim_deg=1.0, growth=float(g))
+        law = np.array([noise.direction_deg(speed=v) for v in speeds.tolist()])
+        assert each / each[1] == pytest.approx(law / law[1], rel=1e-9)
+        assert each[1] == pytest.approx(np.hypot(1.0, LEVELS["professional"].growth * 2.0), rel=1e-12)
 
 
 def test_side_takes_nothing_from_the_errors_of_direction():

@@ -320,8 +320,8 @@ def test_what_is_kept_is_what_was_played():
     ("source", "task", "scored", "said"),
     [
         ("mine.zip", "SnookerBreak-v0", 0, True),
-        ("mine.zip", "SnookerBreak-v0", 1, True),
-        ("mine.zip", "SnookerBreak-v0", 5, False),
+        ("mine.zip", "SnookerBreak-v0", 2, True),
+        ("mine.zip", "SnookerBreak-v0", 3, False),
         ("random", "SnookerBreak-v0", 0, False),
         ("mine.zip", "SnookerFrame-v0", 0, False),
     ],

@@ -113,6 +113,11 @@ def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
     logits = [-2.0 - 0.3 * 11.0 + 4.0 / wide, -2.3 + 4.0 / wide, -38.0 / wide, 10.0 / wide, 2.6 + 10.0 / wide]
     said = LAW(now, ten, left, open_table, MIDDLE)
     assert said == pytest.approx(1.0 / (1.0 + np.exp(-np.array(logits))), rel=1e-12)
+    # all that is left would make it level, and a lot and the black decide: half of the chance, and the leader's half
+    edge, worth = np.array([-49.0, 49.0]), np.array([40.0, -40.0])
+    half = 0.5 / (1.0 + np.exp(9.0 / wide))
+    halves = LAW(edge, worth, np.full(2, 49.0), open_table[:2], MIDDLE)
+    assert halves == pytest.approx([half, 1.0 - half], rel=1e-12)
     errs = LAW._replace(errors=-0.5)
     twice = LAW(2.0 * now[2:4], 2.0 * ten[2:4], left[2:4], open_table[2:4], MIDDLE)
     assert errs(now, ten, left, open_table, 4.0 * MIDDLE)[3] == pytest.approx(twice[1], rel=1e-12)
