@@ -15,11 +15,11 @@ import os
 import time
 
 import numpy as np
+from agents.learning.self_play import positions_given
 
 import snooker_env as sn
 from agents.cluster.job import Here
 from agents.cluster.ray_cluster import connected, ray_of
-from agents.learning.self_play import positions_given
 from snooker_env.planning import Positions, StrokeSearch
 
 from ._common.command import Command, at_least, run, save_json

@@ -11,7 +11,7 @@ from pathlib import Path
 from commands.files import write_atomic
 from snooker_env.players.resolver import is_name
 
-from ..cluster.job import ClusterError
+from ..cluster import ClusterError
 from .entrants import Entrant
 
 
