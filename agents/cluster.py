@@ -7,10 +7,11 @@ or node died.
 
 import hashlib
 import json
+import logging
 import os
 import re
 import socket
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
@@ -125,7 +126,7 @@ def place(address, threads=None):
         if ":" in address:  # ray.init would wait for minutes
             host, _, port = address.rpartition(":")
             socket.create_connection((host, int(port)), 10.0).close()
-        ray.init(address, log_to_driver=False, logging_level="ERROR")
+        ray.init(address, log_to_driver=False, logging_level=logging.ERROR)
     except (RuntimeError, OSError, ValueError, AssertionError) as error:
         wanted = f"must be the head of a Ray cluster that runs ({' '.join(str(error).split())[:300]})"
         raise ClusterError(str(refuse("ray", address, wanted))) from None
@@ -135,39 +136,29 @@ def place(address, threads=None):
         ray.shutdown()
 
 
+def kept_at(task, parts):
+    """The folder of a job, whose name is a digest of all that its results depend on."""
+    shared = {id(one): digest_of(one) for one, _ in parts}
+    same = [source(), task.__module__, task.__name__]
+    return KEPT / digest_of([*same, *([shared[id(one)], args] for one, args in parts)])
+
+
 def ended(task, parts, where):
-    """Yield number and result of each part: those that an interrupted command has kept, then the others. A cluster's are
-    kept, each a file, until ``forget``."""
+    """Yield number and result of each part. Those of a cluster are kept, each a file, until the job's folder is removed: the
+    same job goes on with what an interrupted one has kept."""
     if isinstance(where, Here):
         yield from where.played(task, parts)
         return
-    files, left = files_of(task, parts), []
-    for k, file in enumerate(files):
-        result = None
-        if file.is_file():
-            with suppress(ValueError):  # damaged: it is played again
-                result = kept_arrays(file)
-        if result is None:
+    folder, left = kept_at(task, parts), []
+    folder.mkdir(parents=True, exist_ok=True)
+    for k in range(len(parts)):
+        try:
+            yield k, kept_arrays(folder / f"{k}.npz")
+        except (OSError, ValueError):  # it is missing, or damaged
             left.append(k)
-        else:
-            yield k, result
-    KEPT.mkdir(parents=True, exist_ok=True)
     for n, result in where.played(task, [parts[k] for k in left]):
-        keep_arrays(files[left[n]], result)
+        keep_arrays(folder / f"{left[n]}.npz", result)
         yield left[n], result
-
-
-def files_of(task, parts):
-    """The file of each part: its name is a digest of all that the result depends on."""
-    shared = {id(one): digest_of(one) for one, _ in parts}
-    same = [source(), task.__module__, task.__name__]
-    return [KEPT / f"{digest_of([*same, shared[id(one)], args])}.npz" for one, args in parts]
-
-
-def forget(task, parts):
-    """Remove what ``ended`` has kept of these parts: the command has written its results."""
-    for file in files_of(task, parts):
-        file.unlink(missing_ok=True)
 
 
 def in_order(numbered):

@@ -1,10 +1,10 @@
 """How fast do agents learn? A chart of the points a visit over the time and the shots of training.
 
-    python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--out runs/curves.png]
+    python -m agents.curves "ppo_value=runs/value-?" "targets=runs/target-?" [--out runs/curves.png]
 
 Read from the ``results.json`` of finished runs (train.py). Thin lines: one training seed each, points a visit
 of the last 1,000 visits on the tables of training, exploring. Discs, and the line of ``ghost_ball``: held-out
-tables, a run at its end, without exploration, with two standard errors. A run that imitated first starts its
+tables, a run at its end, without exploration, with two standard errors. A run with expert iteration starts its
 line where it begins to play; what a run with --start brought along is not counted. Shots are taken to be
 spread evenly over the time, and the machine was shared: minutes say a factor, not a percentage.
 """
@@ -31,7 +31,10 @@ LEVELS = ("trained", "ghost_ball")
 """Whose score on held-out visits is drawn: the run's own at its end, and that of the rule-based player."""
 LEAST = 0.1
 """Points a visit; the scale is logarithmic, lines below it are not drawn, discs are drawn there."""
-PANELS = (("minutes", "minutes of training, imitation included"), ("shots", "shots played in training"))
+PANELS = (
+    ("minutes", "minutes of training, expert iteration included"),
+    ("shots", "shots played in training"),
+)
 
 
 def run_of(path):

@@ -1,8 +1,8 @@
 """How well do agents play, and is it positional play? A research tool: held-out tables, all noise levels,
 several training seeds.
 
-    python -m agents.evaluate --agent ghost_ball runs/ppo_mask-0
-    python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against "pots only" \\
+    python -m agents.evaluate --agent ghost_ball runs/ppo_value-0
+    python -m agents.evaluate --agent "ppo=runs/ppo_value-*" "targets=runs/target-*" --against targets \\
         --json agents/results/main.json --markdown agents/results/main.md --picture
     python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/ref-*" --fidelity fast reference
     python -m agents.evaluate --agent search_2000 --visits 50 --noise professional
@@ -24,6 +24,7 @@ ones, --options, for example aim=target. Intervals are 95 % bootstrap intervals 
 
 import os
 import shlex
+import shutil
 import sys
 from itertools import islice, product
 from pathlib import Path
@@ -48,7 +49,7 @@ with needs("agents.evaluate"):
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 
-    from .cluster import KEPT, ClusterError, Here, add_ray, checked_ray, ended, forget, in_order, place
+    from .cluster import KEPT, ClusterError, Here, add_ray, checked_ray, ended, in_order, kept_at, place
     from .evaluation.entrants import Entrant, entrants_of
     from .evaluation.metrics import AXES, PICTURE, EntrantMetrics, main_condition
     from .evaluation.travel import sent
@@ -236,7 +237,7 @@ def main(argv=None):
     if report["results"]:
         write(report, shown, args)
     if args.ray and not code:
-        forget(play, job)
+        shutil.rmtree(kept_at(play, job))
     return code
 
 

@@ -89,6 +89,7 @@ def judge_strokes(training, loop):
     results = {
         "steps": sum(part.tried for part in training.parts),
         "simulated_shots": sum(part.simulated for part in training.parts),
+        "without": "those of the planner and the tactician that it learned from",
         "curve": {part.name: part.curve for part in training.parts},
     }
     return learned, figures, results, best, noise
@@ -108,7 +109,8 @@ def report(training, learned, figures, results, best, noise):
     watch = shlex.join([python(), "-m", "snooker_env.watch", *words])
     shots = results["simulated_shots"]
     known = "not known" if shots is None else f"{shots:,}"
-    print(f"{learned}\nAll simulated shots of the training: {known}.")
+    without = f", without {results['without']}" if "without" in results else ""
+    print(f"{learned}\nAll simulated shots of the training{without}: {known}.")
     print(f"Figures: {out / 'results.json'}\nWatch a break:  {watch}")
     if (out / "tb").is_dir():
         print(f"Curves: tensorboard --logdir {out / 'tb'}")

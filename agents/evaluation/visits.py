@@ -4,6 +4,8 @@ A player's strokes depend on positions and seeds alone, the seeds on the table a
 together are what one machine plays at once.
 """
 
+from typing import Any
+
 import numpy as np
 
 from commands.physics_option import physics_option
@@ -16,7 +18,7 @@ SIZE = 100
 COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance")
 
 
-def parts_of(sent, k, condition, seeds, rekey):
+def parts_of(sent, k, condition, seeds, rekey) -> list[tuple[dict, dict[str, Any]]]:
     """The parts of the run ``k`` of an agent, of ``travel.sent``, under a condition."""
     same = {"k": k, "condition": condition, "rekey": rekey}
     return [(sent, same | {"seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]

@@ -169,25 +169,9 @@ class StrokeSettings:
         return made
 
 
-_VERSION = (
-    LOOKS,
-    SAMPLES,
-    SIZE,
-    frame_strokes.SIZE,
-    STROKES_EACH,
-    PARTS,
-    SCALES,
-    BEST,
-    OTHERS,
-    ERRORS,
-    EXPLORE,
-    AMONG,
-    AGAINST,
-    frame_strokes.SAFETIES,
-    frame_strokes.SAMPLES,
-    frame_strokes.FOUL,
-    frame_strokes.POTTED,
-)
+_FRAMES = frame_strokes.SAFETIES, frame_strokes.SAMPLES, frame_strokes.FOUL, frame_strokes.POTTED
+_VISITS = LOOKS, SAMPLES, SIZE, frame_strokes.SIZE, STROKES_EACH, PARTS, SCALES
+_VERSION = *_VISITS, BEST, OTHERS, ERRORS, EXPLORE, AMONG, AGAINST, *_FRAMES
 """What the data of rounds depend on beside the settings: rounds of other ones are not resumed."""
 
 

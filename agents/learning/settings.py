@@ -10,6 +10,8 @@ from snooker_env.game import HELD_OUT
 from .hyperparameters import names
 from .learn_strokes import AGENT
 
+AGENTS, CONDITIONS = (*names(), AGENT), ("", "fixed", "drawn")
+
 
 def option(default, text, **more):
     """A dataclass field that is also a command-line option."""
@@ -21,42 +23,32 @@ class Settings:
     """The settings of a run."""
 
     agent: str = option(
-        "ppo_value",
-        f"the agent to train: a file of agents/hyperparams, or {AGENT}",
-        choices=(*names(), AGENT),
+        "ppo_value", "the agent: a file of agents/hyperparams, or stroke_value", choices=AGENTS
     )
     steps: int = option(0, "total number of shots, rounded up to whole rollouts; 0: the recipe's")
     envs: int = option(0, "number of parallel tables; 0: the recipe's")
     parallel: str = option(
-        "auto",
-        "threads for the tables: auto is one for each processor; results do not depend on it",
-        choices=("auto", "one"),
+        "auto", "threads: auto is one for each processor; no result depends on it", choices=("auto", "one")
     )
     seed: int = option(0, "random seed of tables, weights and exploration")
     layout: str = option("", "layout of the training tables [the recipe's]")
     noise: str = option(
-        "", "execution noise: none, professional, amateur, club, robot or olympiad [the recipe's]"
+        "", "execution noise: none, professional, amateur, club, robot, olympiad [the recipe's]"
     )
     fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
     physics: str = option(
         "", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]"
     )
     conditions: str = option(
-        "",
-        "fixed, or drawn: each episode has a table of its own [the recipe's]",
-        choices=("", "fixed", "drawn"),
+        "", "fixed, or drawn: a table of its own for each episode [the recipe's]", choices=CONDITIONS
     )
-    observe_conditions: bool = option(
-        False, "let the agent observe the constants of its table; with --conditions drawn"
-    )
+    observe_conditions: bool = option(False, "observe the constants of the table; with --conditions drawn")
     imitate: int = option(-1, "positions of expert iteration before PPO; -1: the recipe's number")
     start: str = option(
         "", "initial weights: a model with the same network, its .zip or run folder (read as plain data)"
     )
     set: tuple = option((), "change hyperparameters, for example gamma=0", nargs="+")
-    eval_visits: int = option(
-        500, f"visits of the final evaluation, each on a held-out table of its own, at most {HELD_OUT}"
-    )
+    eval_visits: int = option(500, f"visits of the final evaluation, on held-out tables, at most {HELD_OUT}")
 
     @property
     def command(self):

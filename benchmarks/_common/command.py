@@ -141,7 +141,7 @@ def run(main):
             signal.signal(signal.SIGINT, before)
         return code
 
-    sys.exit(copied())
+    sys.exit(copied(None))
 
 
 def _interrupt(_number, _frame):

@@ -10,8 +10,8 @@ import pytest
 
 import snooker_env.players.resolver as resolver
 import train
-from agents.evaluation import tournament
-from agents.evaluation.protocol import parser
+from agents import tournament
+from agents.evaluate import parser
 from snooker_env.players.weights import levels
 from tests.processes import ROOT
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from scipy import stats
 
-from agents.evaluation import report
+from agents import report
 from agents.evaluation.training_summary import conclusion
 from commands.tables import WIDTH, TextTable
 from snooker_env.benchmark.statistics import unseen

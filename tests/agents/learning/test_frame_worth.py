@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from agents import learn_worth
 from agents.learn_worth import main
-from agents.learning import frame_self_play, learn_worth
+from agents.learning import frame_self_play
 from agents.learning.frame_self_play import frames
 from agents.learning.frame_worth import TRACE, by_stage, calibration, fitted, fitted_chance, targets
 from snooker_env.game import frame_columns as columns

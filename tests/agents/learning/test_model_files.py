@@ -18,7 +18,7 @@ from sb3_contrib import MaskablePPO
 from stable_baselines3 import SAC
 
 import train
-from agents.evaluation import protocol, publish
+from agents import evaluate
 from agents.evaluation.entrants import Entrant
 from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe, names
@@ -86,7 +86,7 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
 
 @pytest.mark.parametrize("weights", [False, True])
 def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
-    """Evaluation, --start and publication, of our and another's model, with and without a sound policy.pth."""
+    """Evaluation and --start, of our and another's model, with and without a sound policy.pth."""
     (tmp_path / "run").mkdir()
     ours, foreign, mark = tmp_path / "run" / "model.zip", tmp_path / "foreign.zip", tmp_path / "mark"
     bombed(mask, ours, mark, weights)
@@ -99,7 +99,6 @@ def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
     for arguments in ([foreign], [ours, "--agent", "ppo_value"]):
         new = ["--out", tmp_path / "new", "--envs", "2", "--no-progress"]
         assert "start = " in refused(train.main, "--start", *arguments, *new)
-    refused(publish.main, tmp_path / "run", "--limits", "none")
     assert not mark.exists()
 
 
@@ -310,7 +309,7 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused
     both = "must name a model with policy and value: none, professional, amateur, club or its file"
     for path in (file, tmp_path):
         name = f"planner@{path}"
-        error = refused(protocol.main, *QUICK, "--agent", name)
+        error = refused(evaluate.main, *QUICK, "--agent", name)
         assert error.endswith(f"error: player = {name!r}: {both}")
         error = refused(train.main, "--start", path, "--out", tmp_path / "run")
         assert error.endswith(f"error: start = {str(file)!r}: {whole}")
@@ -318,7 +317,7 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused
 
 def test_the_help_of_evaluations_names_it(capsys):
     with pytest.raises(SystemExit):
-        protocol.main(["--help"])
+        evaluate.main(["--help"])
     printed = " ".join(capsys.readouterr().out.split())
     assert "MODEL (a .zip, an .npz of plain weights, or a run's folder)" in printed
 
@@ -330,7 +329,7 @@ def test_it_is_evaluated_like_any_other_agent(tmp_path):
     write_policy(folder / POLICY, WEIGHTS, **ABOUT)
     assert load_player(folder).model.num_timesteps == 12
     more = [*QUICK, "--json", str(tmp_path / "r.json")]
-    assert protocol.main(["--agent", str(folder), f"same={folder / POLICY}", *more]) == 0
+    assert evaluate.main(["--agent", str(folder), f"same={folder / POLICY}", *more]) == 0
     report = json.loads((tmp_path / "r.json").read_text())
     (run,) = report["agents"][0]["runs"]
     wanted = {"recipe": "mine", "shots": 12, "seed": 3, "gamma": 0.9, "noise": "club", "physics": "paper"}

@@ -6,7 +6,7 @@ import sys
 import pytest
 import yaml
 
-from agents.evaluation import protocol
+from agents import evaluate
 from agents.learning.hyperparameters import ENV_ID, FOLDER
 from tests.trainers import needed
 
@@ -40,4 +40,4 @@ def test_it_trains_and_its_model_is_evaluated(tmp_path, name, more):
     assert ran.returncode == 0, ran.stderr[-2000:]
     model = tmp_path / algorithm / "Snooker-v0_1" / "Snooker-v0.zip"
     visits = "--options aim=target --visits 4 --layouts held_out --noise professional --resamples 100"
-    assert protocol.main(["--agent", str(model), "--trust", *visits.split()]) == 0
+    assert evaluate.main(["--agent", str(model), "--trust", *visits.split()]) == 0
