@@ -37,7 +37,7 @@ def models(tmp_path_factory):
     tables = training_tables(2, action="discrete")
     for seed in (0, 1):
         (folder / f"m-{seed}").mkdir()
-        model = Recipe.of("ppo_mask").new_model(tables, seed)
+        model = Recipe.of("ppo_value").new_model(tables, seed)
         model.imitated = 300 * seed
         model.save(folder / f"m-{seed}" / "model.zip")
     (folder / "m-0" / "results.json").write_text('{"seconds": 2.0}')
@@ -57,7 +57,7 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
     first, second = found["agents"][0]["runs"]
     assert (first["seconds"], first["imitated"], second["seconds"], second["imitated"]) == (2.0, 0, None, 300)
-    assert first["layout"] == "opened" and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
+    assert first["layout"] == "opened" and first["recipe"] == "ppo_value" and first["gamma"] == 0
     assert len(found["results"]) == 3 * 2 * 2
     names = "agent layout noise fidelity physics cue visits runs figures ratios counted longest_break by_run"
     for row in found["results"]:
