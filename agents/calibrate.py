@@ -1,6 +1,281 @@
-"""The command ``python -m agents.calibrate``; see ``agents/evaluation/calibrate.py``."""
+"""How large are a professional's errors, judged by whole frames? Two copies of the ``tactician`` play frames under
+errors of several sizes, and the frames are compared with those of professionals.
 
-from .evaluation.calibrate import main
+    python -m agents.calibrate FILE [--scales 0.9 1.0 1.1] [--frames 400] [--picture FILE] [--json FILE]
+
+FILE: frames of professionals, a line for each: VISITS/VISITS/MINUTES:SECONDS. VISITS are the points of a player's
+scoring visits, and F4 for 4 points from the other's foul. Before the frames of a match a line M A B may say how many
+seconds both players take for a stroke, 0 where it is not known; lines with # are comments. A scale is a factor of the
+errors of ``noise="professional"`` (``commands.noise_option``). A visit scores if it pots a ball; its points are its
+break. Frames that are lost are conceded, as in matches. Standard errors are over frames. The chance to win that the
+``tactician`` sees before each stroke is compared with who won.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+from commands.lifecycle import command, needs, parser_of
+
+with needs("agents.calibrate"):
+    import numpy as np
+
+    import snooker_env
+    from commands import picture_style
+    from commands.files import writable, write_json
+    from commands.provenance import provenance
+    from commands.tables import TextTable, show
+    from snooker_env.checks import choice, integer, number, refuse
+    from snooker_env.planning.frame_search import LEAST
+    from snooker_env.planning.learned.dense_layers import Layers
+    from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, errors_seen
+    from snooker_env.planning.learned.learned_worth import worth_of
+    from snooker_env.players.weights import learned_worth
+
+    from .learning.frame_self_play import FRAME, TABLES, frames
+    from .learning.frame_worth import by_stage, calibration
+
+CONDITIONS = "fixed", "drawn"
+FIRST_SEED = 900_000_000  # of frames that no training has played
+FIGURES = {
+    "visits": "scoring visits a frame",
+    "strokes": "strokes a frame",
+    "fouls": "fouls a frame",
+    "break": "mean break of a scoring visit",
+    "breaks_50": "breaks of 50 and more, %",
+    "breaks_100": "breaks of 100 and more, %",
+    "frames_50": "frames with a 50, %",
+    "frames_100": "frames with a century, %",
+    "winner": "points of the winner",
+    "loser": "points of the loser",
+}
+
+
+def frames_of(text):
+    """The frames of a file: a dict for each, "breaks" (of both players), "fouls", "points" (2,), "strokes"."""
+    frames, shot = [], 0.0
+    for line in text.splitlines():
+        if not line or line.startswith("#"):
+            continue
+        if re.fullmatch(r"M( \d+(\.\d+)?){2}\s*", line):
+            times = [float(part) for part in line.split()[1:]]
+            shot = float(np.mean(times)) if all(times) else 0.0
+            continue
+        parts = line.split("/")
+        if not re.fullmatch(r"[F\d ]*/[F\d ]*/\d+:\d\d\s*", line):
+            raise refuse("file", line, "must hold lines VISITS/VISITS/MINUTES:SECONDS")
+        breaks, fouls, points = [], 0, np.zeros(2)
+        for side, visits in enumerate(parts[:2]):
+            for visit in visits.split():
+                if visit.startswith("F"):
+                    fouls += 1
+                    points[side] += int(visit[1:])
+                else:
+                    breaks.append(int(visit))
+                    points[side] += int(visit)
+        minutes, seconds = map(int, parts[2].split(":"))
+        strokes = (60 * minutes + seconds) / shot if shot else np.nan
+        frames.append({"breaks": breaks, "fouls": fouls, "points": points, "strokes": strokes})
+    if len(frames) < 2 or not any(one["breaks"] for one in frames):
+        raise refuse("file", f"{len(frames)} frames", "must hold two frames and a scoring visit at least")
+    return frames
+
+
+def frames_played(rows):
+    """The same of frames played, of the rows of ``frame_self_play.frames``."""
+    frames = []
+    for k in np.unique(rows["frame"]).tolist():
+        which = np.flatnonzero(rows["frame"] == k)
+        breaks, points, running, at = [], np.zeros(2), 0.0, -1
+        for swing, striker in zip(rows["swing"][which], rows["striker"][which], strict=True):
+            points[striker if swing > 0 else 1 - striker] += abs(swing)
+            if striker != at or swing <= 0:
+                breaks.append(running)
+                running = 0.0
+            running, at = running + max(0.0, swing), striker
+        breaks = [one for one in [*breaks, running] if one > 0]
+        fouls = int((rows["swing"][which] < 0).sum())
+        frames.append({"breaks": breaks, "fouls": fouls, "points": points, "strokes": float(len(which))})
+    return frames
+
+
+TACTICS = {
+    "easy": "visits ended by a stroke: the other has a pot with a chance over 0.9, %",
+    "easy_no_pot": "the same where no direct pot was on, %",
+    "break_off": "points that the other makes next after a break-off",
+    "escapes": "fouls of snookered strikers, %",
+}
+
+
+def tactics_of(parts):
+    """Mean, standard error and number of each of ``TACTICS``, of the rows of all parts of a scale."""
+    found = {name: [] for name in TACTICS}
+    for rows in parts:
+        after, likely, hidden = rows["next"], rows["seen"][:, LIKELY], rows["seen"][:, HIDDEN] > 0.5
+        fouls = rows["swing"] < 0
+        ends = (after >= 0) & (rows["same"] < 0) & ~fouls
+        easy = likely[after] > 0.9
+        found["easy"].append(easy[ends])
+        found["easy_no_pot"].append(easy[ends & (likely < 0.01)])
+        found["escapes"].append(fouls[hidden])
+        first = np.unique(rows["frame"], return_index=True)[1]
+        found["break_off"].append([_next_visit(rows, k) for k in first.tolist()])
+    out = {}
+    for name, values in found.items():
+        every = np.concatenate(values).astype(float) * (1.0 if name == "break_off" else 100.0)
+        many = len(every)
+        out[name] = [float(every.mean()), float(every.std() / np.sqrt(many)), many] if many else None
+    return out
+
+
+def _next_visit(rows, k):
+    """Points of the visit that begins after stroke k, if it is the other player's."""
+    at, points, other = rows["next"][k], 0.0, 1 - rows["striker"][k]
+    while at >= 0 and rows["striker"][at] == other and rows["swing"][at] > 0:
+        points += rows["swing"][at]
+        at = rows["next"][at]
+    return points
+
+
+def figures_of(frames):
+    """Mean and standard error of each of ``FIGURES``."""
+    breaks = [np.array(one["breaks"]) for one in frames]
+    many = np.array([len(one) for one in breaks], float)
+    best = np.array([one.max(initial=0) for one in breaks])
+    points = np.array([sorted(one["points"]) for one in frames])
+    every = {
+        "visits": many,
+        "strokes": np.array([one["strokes"] for one in frames]),
+        "fouls": np.array([one["fouls"] for one in frames], float),
+        "frames_50": 100.0 * (best >= 50),
+        "frames_100": 100.0 * (best >= 100),
+        "winner": points[:, 1],
+        "loser": points[:, 0],
+    }
+    out = {}
+    for name, values in every.items():
+        values = values[np.isfinite(values)]
+        out[name] = (
+            [float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))]
+            if len(values) > 1
+            else None
+        )
+    ratios = {
+        "break": np.array([one.sum() for one in breaks]),
+        "breaks_50": np.array([100.0 * (one >= 50).sum() for one in breaks]),
+        "breaks_100": np.array([100.0 * (one >= 100).sum() for one in breaks]),
+    }
+    for name, sums in ratios.items():
+        mean = sums.sum() / many.sum()
+        out[name] = [float(mean), float(np.sqrt(((sums - mean * many) ** 2).sum()) / many.sum())]
+    return {name: out[name] for name in FIGURES}
+
+
+def self_played(scales, many, budget, conditions):
+    """What two copies of the ``tactician`` play under each scale: a list of the rows of its parts for each."""
+    layers, chance = learned_worth()
+    options = FRAME | {"says": ["decision", "concede"], "conditions": conditions}
+    shared = {"options": options, "layers": layers, "chance": chance}
+    shared |= {"budget": budget, "explore": 0.0, "replies": False}
+    return [
+        [
+            frames(
+                shared,
+                {"scale": scale, "seed": FIRST_SEED + k, "many": min(TABLES, many - k), "other": None},
+                None,
+            )
+            for k in range(0, many, TABLES)
+        ]
+        for scale in scales
+    ]
+
+
+def chances_of(parts):
+    """Of the rows of all parts: the chance to win of who plays each stroke and the share that won, (10, 2), of groups of
+    strokes sorted by the chance; the mean absolute difference; and the rows of ``by_stage``. None if no frame was won."""
+    layers, chance = learned_worth()
+    names = "seen", "lead", "left", "last", "won", "decided", "frame"
+    rows = {name: np.concatenate([part[name] for part in parts]) for name in names}
+    rows["frame"] += TABLES * np.repeat(np.arange(len(parts)), [len(part["frame"]) for part in parts])
+    rows = {name: part[rows["decided"]] for name, part in rows.items()}
+    if not len(rows["won"]):
+        return None
+    worth = worth_of(None if layers is None else Layers(layers, "relu"), rows["seen"]).astype(np.float64)
+    stand = rows["lead"], rows["left"], rows["last"]
+    said = chance(stand[0], worth, *stand[1:], errors_seen(rows["seen"]))
+    return *calibration(said, rows["won"]), by_stage(said, rows["won"], *stand, rows["frame"])
+
+
+def draw(table, error, frames, file):
+    """The diagram of ``chances_of``."""
+    with picture_style.drawing() as plt:
+        figure, axes = picture_style.page(plt, 5.0, "The chance to win, and who won", columns=1)
+        axes.plot([0, 100], [0, 100], color=picture_style.GREY, linewidth=1)
+        axes.plot(*(100.0 * table.T), "o-", color=picture_style.BLUE)
+        axes.set(xlabel="chance to win that the tactician sees before a stroke [%]", ylabel="won [%]")
+        axes.set_title(
+            f"{frames} frames, groups of equally many strokes: {100.0 * error:.1f} % apart on average"
+        )
+        picture_style.save(figure, file)
+
+
+def _table(title, words, columns):
+    """Figures as a table: a row for each of ``words``, a column for each of ``columns``."""
+    cell = lambda one: f"{one[0]:.2f} ± {one[1]:.2f}" if one else "-"  # noqa: E731
+    rows = [[text, *(cell(one[name]) for one in columns.values())] for name, text in words.items()]
+    return TextTable(title, ["", *columns], rows, 1, 1)
+
+
+@command("agents.calibrate")
+def main(argv=None):
+    """Play, compare. Exit code 0."""
+    p = parser_of("python -m agents.calibrate", __doc__)
+    p.add_argument("file", type=Path, help="frames of professionals")
+    p.add_argument("--scales", type=float, nargs="+", default=[0.9, 1.0, 1.1], help="[0.9 1.0 1.1]")
+    p.add_argument("--frames", type=int, default=400, help="frames of each scale [400]")
+    p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
+    what = "fixed, or drawn: each frame on a table whose constants the players do not know [fixed]"
+    p.add_argument("--conditions", default="fixed", help=what)
+    p.add_argument("--picture", type=Path, metavar="FILE", help="draw the chance to win and who won here")
+    p.add_argument("--json", type=Path, metavar="FILE", help="write every figure here")
+    args = p.parse_args(sys.argv[1:] if argv is None else argv)
+    try:
+        integer("frames", args.frames, 2, 10**6)
+        integer("budget", args.budget, LEAST, 10**6)
+        choice("conditions", args.conditions, CONDITIONS)
+        for scale in args.scales:
+            number("scales", scale, 0.01, 10.0)
+        for name in ("picture", "json"):
+            writable(name, getattr(args, name))
+        real = frames_of(args.file.read_text(encoding="utf-8"))
+    except (ValueError, OSError) as error:
+        p.error(str(error))
+    snooker_env.warmup()
+    played = self_played(args.scales, args.frames, args.budget, args.conditions)
+    names = [f"scale {scale:g}" for scale in args.scales]
+    columns = {"professionals": figures_of(real)}
+    for name, parts in zip(names, played, strict=True):
+        columns[name] = figures_of([one for rows in parts for one in frames_played(rows)])
+    tactics = dict(zip(names, map(tactics_of, played), strict=True))
+    title = f"{len(real)} frames of professionals, {args.frames} played of each scale"
+    parts, chances = [_table(title, FIGURES, columns), _table("Tactics", TACTICS, tactics)], None
+    if won := chances_of([rows for each in played for rows in each]):
+        table, error, stages = won
+        chances = {"groups": table.tolist(), "error": error, "stages": stages}
+        rows = [
+            [words, str(strokes), str(frames), f"{100.0 * a:.1f}", f"{100.0 * b:.1f} ± {100.0 * c:.1f}"]
+            for words, strokes, frames, a, b, c in stages
+        ]
+        said = f"The chance to win of who is ahead, before each stroke; groups of all strokes: {100.0 * error:.1f} % apart"
+        parts.append(TextTable(said, ["", "strokes", "frames", "chance, %", "won, %"], rows, 1, 1))
+        if args.picture:
+            draw(table, error, args.frames * len(args.scales), args.picture)
+    show(parts)
+    if args.json:
+        report = {"figures": columns, "tactics": tactics, "chances": chances, "frames": args.frames}
+        write_json(args.json, report | provenance())
+    return 0
+
 
 if __name__ == "__main__":
     raise SystemExit(main())

@@ -1,6 +1,281 @@
-"""The command ``python -m agents.evaluate``; see ``agents/evaluation/protocol.py``."""
+"""How well do agents play, and is it positional play? A research tool: held-out tables, all noise levels,
+several training seeds.
 
-from .evaluation.protocol import main
+    python -m agents.evaluate --agent ghost_ball runs/ppo_value-0
+    python -m agents.evaluate --agent "ppo=runs/ppo_value-*" "targets=runs/target-*" --against targets \\
+        --json agents/results/main.json --markdown agents/results/main.md --picture
+    python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/ref-*" --fidelity fast reference
+    python -m agents.evaluate --agent search_2000 --visits 50 --noise professional
+
+Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that
+are never used in training, no two of them equal or mirrored; --layouts names others. Every agent plays under
+every value of --noise, --fidelity, --physics and --cue, so agents that were trained under A and B make a table
+of A against B. (The aim of a discrete choice is solved with the physics that is played.) Results for the
+leaderboard are made by ``python -m snooker_env.benchmark`` instead.
+
+An agent is a ``NAME`` (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH,PATH,... with
+one PATH for each training seed (a PATH may be a pattern), or MODULE:CLASS for a player of your own, whose
+module is imported. Models of train.py and agents/pretrained are read as plain data. Any other model of
+Stable-Baselines3 or sb3-contrib that was trained on a visit with the environment's own observation holds
+pickled Python code, which runs when it is loaded: it needs --trust and, if its actions are not the default
+ones, --options, for example aim=target. Intervals are 95 % bootstrap intervals over training seeds and visits
+(snooker_env/benchmark/statistics.py); the ratios are paired: same tables above and below.
+"""
+
+import os
+import shlex
+import shutil
+import sys
+from itertools import islice, product
+from pathlib import Path
+
+from commands.lifecycle import INTERRUPTED, command, needs, parser_of
+
+with needs("agents.evaluate"):
+    import numpy as np
+
+    import snooker_env
+    from commands.files import writable, write_atomic, write_json
+    from commands.physics_option import physics_option
+    from commands.provenance import provenance
+    from commands.tables import show
+    from snooker_env.benchmark import HELD_OUT_SEED, play_visits
+    from snooker_env.benchmark.rollouts import counts
+    from snooker_env.benchmark.statistics import RESAMPLES
+    from snooker_env.benchmark.tasks import tables_of
+    from snooker_env.checks import choice, integer, parse_fidelity, refuse
+    from snooker_env.game.layouts import plan_of
+    from snooker_env.players.model_options import add_model_options
+    from snooker_env.progress import Progress
+    from snooker_env.tasks import Noise
+
+    from .cluster import KEPT, ClusterError, Here, add_ray, checked_ray, ended, in_order, kept_at, place
+    from .evaluation.entrants import Entrant, entrants_of
+    from .evaluation.metrics import AXES, PICTURE, EntrantMetrics, main_condition
+    from .evaluation.travel import sent
+    from .evaluation.visits import joined, parts_of, play
+    from .report import markdown, parts, verdict
+
+LAYOUT, VISITS, OTHERS = "held_out", 2000, 500
+"""The layout of an evaluation and its visits, and the visits on others that are asked for."""
+NOISES = ("none", "professional", "amateur", "club")
+REFERENCE = "ghost_ball"
+
+
+def parts_of_agent(agent, condition, seeds, rekey):
+    """The parts of an agent under a condition, a list for each of its runs."""
+    return [parts_of(sent(agent, k), k, condition, seeds, rekey) for k in range(len(agent.runs))]
+
+
+def play_agent(agent, condition, seeds, resamples, rekey=False, results=None):
+    """``EntrantMetrics`` by every run of the agent on the tables with these seeds.
+
+    ``results``: those of its parts, the next of an iterator; by default they are played here.
+    """
+    each = parts_of_agent(agent, condition, seeds, rekey)
+    if results is None:
+        results = in_order(Here().played(play, [part for run in each for part in run]))
+    runs = [joined(list(islice(results, len(run))), len(seeds)) for run in each]
+    counted = [counts(strokes) for strokes in runs]
+    columns = {name: np.stack([one[name] for one in counted]) for name in counted[0]}
+    return EntrantMetrics(agent, columns, runs, resamples)
+
+
+def _conditions(report, seeds):
+    """Every layout under every noise, fidelity and physics."""
+    for layout, *at in product(seeds, *(report["protocol"][axis] for axis in AXES)):
+        yield {"layout": layout, **dict(zip(AXES, at, strict=True))}
+
+
+def all_parts(report, agents, seeds):
+    """The parts of all that the report's protocol says, in the order in which ``evaluate`` takes them."""
+    p = report["protocol"]
+    return [
+        part
+        for condition in _conditions(report, seeds)
+        for agent in agents
+        for run in parts_of_agent(agent, condition, seeds[condition["layout"]], p["rekey"])
+        for part in run
+    ]
+
+
+def parser():
+    p = parser_of("python -m agents.evaluate", __doc__)
+    add = p.add_argument
+    what = "NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... "
+    what += f"or MODULE:CLASS; NAME: {', '.join(snooker_env.players())}"
+    add("--agent", nargs="+", required=True, metavar="AGENT", help=what)
+    add_model_options(p)
+    what = f"agents to compare the others with [{REFERENCE}]"
+    add("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=what)
+    what = f"LAYOUT or LAYOUT=VISITS [{LAYOUT}={VISITS}; others {OTHERS} visits]"
+    add("--layouts", nargs="+", default=[LAYOUT], metavar="LAYOUT", help=what)
+    add("--visits", type=int, help="so many on every layout, for a quick trial or a slow player")
+    add("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
+    what = "fast, standard, reference or euler:N [standard]"
+    add("--fidelity", nargs="+", default=["standard"], help=what)
+    what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
+    add("--physics", nargs="+", default=["paper"], help=what)
+    add(
+        "--cue",
+        nargs="+",
+        default=["real"],
+        choices=("free", "real"),
+        help="whether rails and balls are in its way [real]",
+    )
+    what = "new execution errors after every decision: a control that no agent has seen them beforehand"
+    add("--rekey", action="store_true", help=what)
+    add_ray(p)
+    add("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
+    add("--json", type=Path, help="write every figure here")
+    add("--markdown", type=Path, help="write the tables here")
+    what = "draw where the cue ball goes, for the first three agents [agents/pictures/destinations.png]"
+    add("--picture", type=Path, nargs="?", const=PICTURE, help=what)
+    return p
+
+
+def checked(args):
+    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError."""
+    agents = entrants_of(args.agent, args, "agent")
+    labels = [agent.label for agent in agents]
+    for label in args.against:
+        if label == REFERENCE and label not in labels:
+            agents.append(Entrant(REFERENCE, (REFERENCE,)))
+        elif label not in labels:
+            raise refuse("against", label, f"must be one of {', '.join(labels)}, {REFERENCE}")
+    sizes = {}
+    for text in args.layouts:
+        name, _, n = text.partition("=")
+        plan_of(name)
+        visits = args.visits if args.visits is not None else n or (VISITS if name == LAYOUT else OTHERS)
+        if isinstance(visits, str) and not visits.isdecimal():
+            raise refuse("layouts", text, "must be LAYOUT or LAYOUT=VISITS")
+        sizes[name] = integer("visits", int(visits), 2, 2**20)
+    checks = ((Noise.of, args.noise), (parse_fidelity, args.fidelity), (physics_option, args.physics))
+    for check, values in checks:
+        for value in values:
+            check(value)
+    integer("resamples", args.resamples, 100, 10**6)
+    if args.picture and LAYOUT not in sizes:
+        raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
+    checked_ray(args.ray)
+    for name in ("json", "markdown", "picture"):
+        writable(name, getattr(args, name))
+    seeds = {name: tables_of(name, visits) for name, visits in sizes.items()}
+    return agents, list(dict.fromkeys(args.against)), seeds
+
+
+def evaluate(report, agents, seeds, shown, results):
+    """Add the figures of all that the report's protocol says to it, a whole condition at a time.
+
+    ``shown`` becomes the strokes of the main condition, by label; ``results``: those of ``all_parts``.
+    """
+    p = report["protocol"]
+    for condition in _conditions(report, seeds):
+        layout, metrics = condition["layout"], {}
+        for agent in agents:
+            played = play_agent(agent, condition, seeds[layout], p["resamples"], p["rekey"], results)
+            metrics[agent.label] = played
+        rows = []
+        for agent in agents:
+            mine = metrics[agent.label]
+            others = [metrics[label] for label in p["against"] if label != agent.label]
+            played = {"visits": len(seeds[layout]), "runs": len(agent.runs)}
+            rows.append({"agent": agent.label, **condition, **played, **mine.result(others)})
+        report["results"] += rows
+        if condition == main_condition(report):
+            shown |= {label: one.strokes for label, one in metrics.items()}
+
+
+@command("agents.evaluate")
+def main(argv=None):
+    """Check, play, report. Exit code 0; 130 if it was interrupted: what was complete is kept."""
+    p = parser()
+    argv = sys.argv[1:] if argv is None else argv
+    args = p.parse_args(argv)
+    try:
+        if args.picture:
+            from .evaluation.destinations import formats
+
+            choice("picture", args.picture.suffix, formats())
+        agents, references, seeds = checked(args)
+    except ValueError as error:
+        p.error(str(error))
+    snooker_env.warmup()
+    for agent in agents:  # compiled before the clock runs
+        play_visits(agent.player(0), 2)
+    protocol = {"layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED}
+    protocol |= {"against": references} | {axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}
+    report = {"command": f"python -m agents.evaluate {shlex.join(argv)}", **provenance()}
+    report |= {"protocol": protocol | {"resamples": args.resamples, "rekey": args.rekey}}
+    report |= {"agents": [{"label": agent.label, "runs": agent.origins()} for agent in agents], "results": []}
+    shown, why, code = {}, "", 0
+    job = all_parts(report, agents, seeds)
+    try:
+        total = sum(len(args["seeds"]) for _, args in job)
+        with place(args.ray) as where, Progress("evaluation", total, "visits") as progress:
+
+            def counted():
+                for k, result in ended(play, job, where):
+                    part = job[k][1]
+                    layout = part["condition"]["layout"] + where.says
+                    progress.at(progress.done + len(part["seeds"]), layout)
+                    yield k, result
+
+            evaluate(report, agents, seeds, shown, in_order(counted()))
+    except KeyboardInterrupt:
+        why, code = "interrupted", INTERRUPTED
+    except ClusterError as error:
+        why, code = str(error), 1
+    if code:
+        complete, conditions = len(report["results"]) // len(agents), list(_conditions(report, seeds))
+        kept = f"what was played is kept in {KEPT}, the same command goes on" if args.ray else ""
+        kept = kept or ("the others are lost" if complete else "nothing is kept")
+        many = f"{complete} of {len(conditions)} parts (layouts under one noise)"
+        report["incomplete"] = f"{why} when {many} were complete: {kept}"
+        print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
+    if report["results"]:
+        write(report, shown, args)
+    if args.ray and not code:
+        shutil.rmtree(kept_at(play, job))
+    return code
+
+
+def write(report, shown, args):
+    """Write what was asked for and print the tables; files that cannot be written are named at the end."""
+    files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
+    if "incomplete" in report:
+        # beside a file that is there already, for that may be whole
+        beside = lambda file: file.with_name(f"{file.stem}.incomplete{file.suffix}")  # noqa: E731
+        files = {name: beside(file) if file and file.exists() else file for name, file in files.items()}
+    if not shown:
+        files["picture"] = None
+
+    def picture(file):
+        from .evaluation.destinations import draw
+
+        draw(report, shown, file)
+
+    def text(file):
+        drawn = files["picture"] and Path(os.path.relpath(files["picture"], file.parent)).as_posix()
+        write_atomic(file, markdown(report, drawn))
+
+    writers = {"json": lambda file: write_json(file, report), "markdown": text, "picture": picture}
+    for name, file in files.items():
+        try:
+            if file:
+                writers[name](file)
+        except OSError as error:
+            failed.append(f"{file} cannot be written: {error.strerror or error}")
+            files[name] = None
+    show(parts(report))  # last: whoever reads it may leave, as head does
+    for name, file in files.items():
+        if file:
+            print(f"{name}: {file}")
+    show(verdict(report))
+    if failed:
+        raise SystemExit(f"agents.evaluate: {'; '.join(failed)}")
+
 
 if __name__ == "__main__":
     raise SystemExit(main())

@@ -5,7 +5,7 @@
 #
 # Make the tables again from the stored figures, without playing: python -m agents.report agents/results/*.json
 # Some of the runs only, without the comparison: ONLY='ppo_value_' bash agents/experiments.sh. List the commands: LIST=1 bash ...
-# On a Ray cluster (docs/scale.md): RAY=HEAD:6379 bash agents/experiments.sh, or RAY=local; the figures are the same.
+# The evaluation on a Ray cluster (docs/scale.md): RAY=HEAD:6379 bash agents/experiments.sh, or RAY=local; the figures are the same.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-runs/experiments} jobs=${2:-2}
@@ -22,7 +22,7 @@ train() {
     shift
     [[ -f $folder/$name/results.json ]] && return
     rm -rf "${folder:?}/$name"
-    python train.py "$@" ${RAY:+--ray "$RAY"} --parallel one --no-progress --out "$folder/$name" > "$folder/$name.txt" 2>&1 ||
+    python train.py "$@" --parallel one --no-progress --out "$folder/$name" > "$folder/$name.txt" 2>&1 ||
         { echo "$name failed: see $folder/$name.txt" >&2; return 1; }
     echo "$(date +%H:%M) $name"
 }

@@ -5,12 +5,11 @@ Value and policy of the pre-trained ``ppo_value`` models as plain arrays, see ``
 
 import numpy as np
 
-from commands.files import write_atomic
+from commands.files import packed_arrays, write_atomic
 from snooker_env.planning.learned.stroke_policy import LAYERS
 from snooker_env.players.weights import FOLDER
 from snooker_env.tasks import LEVELS
 
-from .cluster.keep import packed
 from .learning.models import PRETRAINED, load_trained
 
 LEARNED = "ppo_value"
@@ -37,7 +36,7 @@ def main():
         model = PRETRAINED / f"{LEARNED if level == 'professional' else f'{LEARNED}_{level}'}.zip"
         if model.is_file():
             path = FOLDER / f"{level}.npz"
-            write_atomic(path, packed(arrays_of(load_trained(model, "agent").policy)))
+            write_atomic(path, packed_arrays(arrays_of(load_trained(model, "agent").policy)))
             print(f"{path}  {path.stat().st_size / 1e6:.2f} MB")
 
 

@@ -1,6 +1,187 @@
-"""The command ``python -m agents.learn_worth``; see ``agents/learning/learn_worth.py``."""
+"""Learn what positions of frames are worth, by self-play: the worth of the ``tactician``.
 
-from .learning.learn_worth import main
+    python -m agents.learn_worth --out runs/worth [--rounds 2] [--chance] [--ray local]
+
+Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds
+before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
+Each position, and what its best strokes may leave, is judged by search (``frame_self_play``). A network is then fitted to
+the last rounds, and the chance to win to their frames between equals. After each round OUT holds its data and its
+weights: the same command goes on from there. The last round's weights are written to OUT/worth.npz, and with --export
+into the package. With --chance the network stays that of the package: all frames are between equals, no position is
+judged, and the chance to win alone is fitted.
+"""
+
+import sys
+from pathlib import Path
+
+from commands.lifecycle import command, needs, parser_of
+
+with needs("agents.learn_worth"):
+    import numpy as np
+
+    import snooker_env
+    from commands.files import packed_arrays, writable, write_atomic
+    from snooker_env.checks import integer, refuse
+    from snooker_env.planning.frame_search import LEAST
+    from snooker_env.planning.learned.dense_layers import Layers
+    from snooker_env.planning.learned.frame_features import errors_seen
+    from snooker_env.planning.learned.learned_worth import worth_of
+    from snooker_env.players.weights import FOLDER, WORTH, learned_worth, worth_in
+
+    from .cluster import add_ray, checked_ray, in_order, place
+    from .learning.frame_self_play import FRAME, TABLES, frames
+    from .learning.frame_worth import calibration, fitted, fitted_chance, targets
+    from .learning.loop import Loop
+    from .learning.rounds import Rounds, arrays_of, shares_of_parts
+
+SCALES = 0.6, 4.5
+"""Errors of the frames played, times those of a professional, evenly spread in the logarithm."""
+EXPLORE = 0.08
+"""Share of strokes that are not the best ones found, so that positions after worse ones are seen, too."""
+KEEP, PASSES = 4, 15
+"""Rounds whose positions a network is fitted to, and passes over them."""
+VISITORS = ("planner",)
+"""Players of the league that are no past selves."""
+HELD = 8
+"""One frame in so many is kept from the fit, to say how good it is."""
+LEARNED_FROM = [
+    "seen",
+    "hand",
+    "target",
+    "held",
+    "unit",
+    "striker",
+    "lead",
+    "left",
+    "last",
+    "won",
+    "decided",
+    "equals",
+]
+"""Of the rows of ``frame_self_play.frames``, with their targets."""
+
+
+class WorthRounds(Rounds):
+    """The frames, played at ``where``; ``chance_alone``: the network stays that of the package."""
+
+    what, unit, now = "frames of self-play", "frames", "these frames"
+
+    def __init__(self, out, rounds, many, budget, seed, chance_alone, where):
+        asked = many, budget, seed, chance_alone
+        super().__init__(out, "worth", rounds, many, many // TABLES, asked)
+        self._budget, self._seed, self._chance_alone, self._where = budget, seed, chance_alone, where
+        self.layers, self.chance = learned_worth() if chance_alone else (None, None)
+        self._past = []
+
+    @property
+    def figures(self):
+        return "  ".join(f"{name} {value:.4g}" for name, value in (self.curve or [{}])[-1].items())
+
+    def parts_of(self, k):
+        shared = {"options": FRAME, "layers": self.layers, "chance": self.chance, "explore": EXPLORE}
+        shared |= {"budget": self._budget, "replies": not self._chance_alone}
+        parts = [(shared, part) for part in self._drawn(k)]
+        for j, part in enumerate(in_order(self._where.played(frames, parts))):
+            part["target"] = targets(part)
+            part["held"] = (part["frame"] + j) % HELD == 0
+            part["unit"] = part["frame"] + TABLES * j
+            part |= {name: part[name].astype(np.float16) for name in ("seen", "hand")}
+            yield {name: part[name] for name in LEARNED_FROM}
+
+    def _drawn(self, k):
+        """The arguments of the parts of round k."""
+        rng, parts = np.random.default_rng([self._seed, k]), self.parts
+        scales = SCALES[0] * (SCALES[1] / SCALES[0]) ** shares_of_parts(rng, parts)
+        first, league = 10_000_000 * (self._seed + 1) + 100_000 * k, [*self._past, *VISITORS]
+        others = [league[rng.integers(len(league))] if i % 2 else None for i in range(parts)]
+        for i, (scale, other) in enumerate(zip(scales, others, strict=True)):
+            other = None if self._chance_alone else other
+            yield {"scale": float(scale), "seed": first + TABLES * i, "many": TABLES, "other": other}
+
+    def fit(self):
+        given = self.layers if self._chance_alone else None
+        layers, chance, figures = learned(self.rounds[-KEEP:], self._seed + len(self.rounds) - 1, given)
+        return arrays_of("worth", layers) | {"chance": np.array(chance)}, figures
+
+    def take(self, arrays):
+        self.layers, self.chance = worth_in(arrays)
+        self._past.append((self.layers, self.chance))
+
+    def packed(self):
+        """The file of weights."""
+        return packed_arrays(arrays_of("worth", self.layers) | {"chance": np.array(self.chance)})
+
+
+def learned(rounds, seed, layers=None):
+    """Layers, if they are None, and chance fitted to the rows of some rounds, and figures of the frames kept from the fit."""
+    both = {name: np.concatenate([one[name] for one in rounds]) for name in rounds[0]}
+    used = ~both["held"]
+    in_hand = used & (both["seen"] != both["hand"]).any(axis=1)
+    seen = np.concatenate([both["seen"][used], both["hand"][in_hand]]).astype(np.float32)
+    wanted = np.concatenate([both["target"][used], both["target"][in_hand]])
+    layers = fitted(seen, wanted, seed, PASSES) if layers is None else layers
+    said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
+    # a frame that was stopped was won by nobody; nor is it known what follows positions beside the frames, or what an
+    # equal would have made of it
+    ended, held = both["decided"] & both["equals"], both["held"]
+    for some, what in ((used & ended, "fitted"), (held & ended, "kept from the fit")):
+        if not some.any():
+            raise refuse(
+                "frames", len(np.unique(both["unit"])), f"must be more: of those {what} none has ended"
+            )
+    known = both["lead"], said.astype(np.float64), both["left"], both["last"], errors_seen(both["seen"])
+    chance = fitted_chance(*(part[used & ended] for part in (*known, both["won"])))
+    wins, won = chance(*known)[held & ended], both["won"][held & ended]
+    rmse = lambda worth: float(np.sqrt(np.mean((worth - both["target"])[held] ** 2)))  # noqa: E731
+    figures = {
+        "positions": len(wanted),
+        "rmse": rmse(said),
+        "rmse_of_value": rmse(worth_of(None, both["seen"].astype(np.float32))),
+        "correlation": float(np.corrcoef(said[held], both["target"][held])[0, 1]),
+        "chance_error": calibration(wins, won)[1],
+        "stopped": float(1.0 - both["decided"][both["striker"] >= 0].mean()),
+    }
+    return layers, chance, figures
+
+
+@command("agents.learn_worth")
+def main(argv=None):
+    """Play, fit, write. Exit code 0, or 128 + the signal that stopped it."""
+    p = parser_of("python -m agents.learn_worth", __doc__)
+    p.add_argument("--out", type=Path, required=True, help="folder of rounds and weights")
+    p.add_argument("--rounds", type=int, default=2, help="[2]")
+    p.add_argument("--frames", type=int, default=384, help=f"frames of a round, a multiple of {TABLES} [384]")
+    p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
+    p.add_argument("--seed", type=int, default=0, help="[0]")
+    p.add_argument("--export", action="store_true", help="write the weights into the package, too")
+    p.add_argument("--chance", action="store_true", help="fit the chance to win alone")
+    add_ray(p)
+    args = p.parse_args(sys.argv[1:] if argv is None else argv)
+    try:
+        integer("rounds", args.rounds, 1, 90)
+        integer("frames", args.frames, TABLES, 100_000)
+        integer("seed", args.seed, 0, 80)  # more would meet the tables of agents.calibrate
+        integer("budget", args.budget, LEAST, 10**6)
+        if args.frames % TABLES:
+            raise refuse("frames", args.frames, f"must be a multiple of {TABLES}")
+        checked_ray(args.ray)
+        writable("out", args.out / WORTH)
+        snooker_env.warmup()
+        with place(args.ray) as where:
+            asked = args.frames, args.budget, args.seed, args.chance
+            rounds = WorthRounds(args.out, args.rounds, *asked, where)
+            rounds.restore()
+            again = "the same command goes on with the rounds in its folder"
+            if (number := Loop("agents.learn_worth", [rounds], lambda: None, again).run()) is not None:
+                return 128 + number
+    except ValueError as error:
+        p.error(str(error))
+    for file in (args.out / WORTH, *([FOLDER / WORTH] if args.export else [])):
+        write_atomic(file, rounds.packed())
+    for k, figures in enumerate(rounds.curve):
+        print(f"round {k}: " + "  ".join(f"{name} {value:.4g}" for name, value in figures.items()))
+    return 0
+
 
 if __name__ == "__main__":
     raise SystemExit(main())

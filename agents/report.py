@@ -1,6 +1,336 @@
-"""The command ``python -m agents.report``; see ``agents/evaluation/report.py``."""
+"""How is an evaluation reported? Tables and sentences for a terminal and as Markdown, all from its figures.
 
-from .evaluation.report import main
+    python -m agents.report agents/results/*.json
+
+writes ``agents/results/*.md`` again from what agents.evaluate keeps as JSON, without playing;
+--show prints the tables instead.
+"""
+
+import os
+import re
+import shlex
+from functools import partial
+from itertools import product
+from pathlib import Path
+
+from commands.lifecycle import command, needs, parser_of
+
+with needs("agents.report"):
+    from commands.files import read_json, write_atomic
+    from commands.tables import TextTable, page, show, shown
+    from snooker_env.benchmark import CENTURY, FIGURES, MAXIMUM
+    from snooker_env.benchmark.tasks import most_points
+    from snooker_env.checks import refuse
+
+    from .evaluation import tournament_report
+    from .evaluation.metrics import AXES, PICTURE, USUAL, bounded, main_condition
+
+SEEDS = 5
+"""Fewer training seeds than that are pointed out."""
+SAME = 0.1
+"""Times that differ by less than this share are called equal."""
+_pm = partial(shown, form="{:.2f}")
+
+
+def _trials(row, below):
+    """How often a run could have done it: the entry ``below`` of ``benchmark.counts``; None: not kept."""
+    f, visits = row["figures"], row["visits"]
+    known = {"visits": visits, "strokes": row["strokes"] / row["runs"]}
+    if f["pots_a_visit"]["value"] is not None and f["clearances"]["value"] is not None:
+        known["goes_on"] = visits * (f["pots_a_visit"]["value"] - f["clearances"]["value"])
+    return (known | row.get("counted", {})).get(below)
+
+
+_MEANS = "points_a_visit", "pots_a_visit", "colour_value"
+SHARES = {name: below for name, (_, below) in FIGURES.items() if name not in _MEANS}
+"""Figures that are shares, and of what. A visit ends with its first foul: those a visit are a share, too."""
+
+
+def _share(row, name, form="{:.1f}", scale=100.0):
+    """A share with its interval; where it was never so, or always, with the exact bound of that."""
+    return shown(bounded(row["figures"][name], _trials(row, SHARES[name])), scale, form)
+
+
+def _between(values, form="{:,.0f}"):
+    """One number, or the least and the most of several."""
+    known = [v for v in values if v is not None]
+    if not known:
+        return ""
+    low, high = form.format(min(known)), form.format(max(known))
+    return low if low == high else f"{low} to {high}"
+
+
+def _picked(report, **condition):
+    return [r for r in report["results"] if all(r[key] == value for key, value in condition.items())]
+
+
+def verdict(report):
+    """The points of each agent in the main condition, as one sentence; none if that was not played."""
+    at = main_condition(report)
+    made = [f"{row['agent']} {_pm(row['figures']['points_a_visit'])}" for row in _picked(report, **at)]
+    return [f"Points a visit on {at['layout']}, noise {at['noise']}: {', '.join(made)}."] if made else []
+
+
+def _listed(words):
+    """Words as a sentence lists them."""
+    *others, last = map(str, words)
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def title(report):
+    """What is compared: an axis of training and of play, or agents and where they play; or who met."""
+    if tournament_report.is_tournament(report):
+        return tournament_report.title(report)
+    p, layouts = report["protocol"], _listed(report["protocol"]["layouts"])
+    for axis in AXES:
+        runs = [run for agent in report["agents"] for run in agent["runs"] if axis in run]
+        if len({str(run[axis]) for run in runs}) > 1 and len(p[axis]) > 1:
+            who = "planners" if all(run["from"].startswith("planner") for run in runs) else "agents"
+            return f"How {who} trained under one {axis} play under another, on {layouts}: {_listed(p[axis])}"
+    under = "" if len(p["noise"]) > 1 or p["noise"] == [USUAL["noise"]] else f", noise {p['noise'][0]}"
+    return f"How {_listed(agent['label'] for agent in report['agents'])} play on {layouts}{under}"
+
+
+def agents_tables(report):
+    """Who plays, how each was trained, and how long."""
+    trained, long = [], []
+    for agent in report["agents"]:
+        runs, label = agent["runs"], agent["label"]
+        if "recipe" not in runs[0]:
+            by_noise = re.fullmatch(
+                r"(planner(_value|_policy)?|tactician)(_\d+)?|stroke_value", runs[0]["from"]
+            )
+            how = "pre-trained, by the noise played" if by_noise else "not trained"
+            trained.append([label, how, *[""] * (len(AXES) + 1)])
+            continue
+        keys = ("recipe", *AXES)
+        words = [", ".join(sorted({str(run[key]) for run in runs})) for key in keys]
+        rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]
+        numbers = [_between([run[key] for run in runs]) for key in ("imitated", "shots", "seconds")]
+        gammas = ", ".join(sorted({f"{run['gamma']:g}" for run in runs}))
+        trained.append([label, *words, gammas])
+        long.append([label, str(_seeds(runs)), *numbers, _between(rates)])
+    how = ["agent", "recipe", "trained: noise", *AXES[1:], "gamma"]
+    how_long = ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
+    long_table = TextTable("How long they were trained", how_long, long, 1, 1)
+    return [TextTable("The agents", how, trained, 1, len(how) - 1), long_table]
+
+
+def _seeds(runs):
+    """Training seeds of these runs: a model given twice is one."""
+    return len({run["seed"] for run in runs})
+
+
+_SECONDS = "seconds", "seconds of training", SAME
+COSTS = (("imitated", "positions imitated", 0.0), ("shots", "shots", 0.0), _SECONDS)
+"""What a training costs: its key, its name, and by what share it may differ to be called equal."""
+
+
+def fairness(report):
+    """Sentences: were the trained agents given the same, and are the tables new to them?"""
+    trained, sentences = [agent for agent in report["agents"] if "recipe" in agent["runs"][0]], []
+    for agent in trained:
+        label, n = agent["label"], _seeds(agent["runs"])
+        if n == 1:
+            sentences.append(f"{label} has 1 training seed: its intervals say nothing about other seeds.")
+        elif n < SEEDS:
+            sentences.append(f"{label} has {n} training seeds, fewer than {SEEDS}.")
+        known = {run["layout"] for run in agent["runs"]} & {*report["protocol"]["layouts"], USUAL["layout"]}
+        told = "was trained on layout"
+        sentences += [f"{label} {told} {layout}: its tables are not new to it." for layout in sorted(known)]
+    for key, name, share in COSTS if len(trained) > 1 else ():
+        costs = {agent["label"]: [run[key] for run in agent["runs"]] for agent in trained}
+        unknown = ", ".join(label for label, values in costs.items() if None in values)
+        if unknown:
+            whether = f"Whether the trained agents had equal {name} is not known"
+            sentences.append(f"{whether}: no record for {unknown}.")
+            continue
+        values = [value for some in costs.values() for value in some]
+        same = "equal" if max(values) <= (1 + share) * min(values) else "unequal"
+        sentences.append(f"The trained agents had {same} {name} ({_between(values)}).")
+    return sentences
+
+
+AGAIN = {
+    "next_pot_after_a_pot": "after a pot it pots again:",
+    "easy_pot_left_by_a_pot": "an easy pot is left:",
+    "high_colour_after_a_red": "after a red it pots pink or black:",
+}
+
+
+def comparison(report):
+    """Sentences: each agent against those it is compared with."""
+    at, sentences, done = main_condition(report), [], set()
+    rows = {r["agent"]: r for r in _picked(report, **at)}
+    for name, row in rows.items():
+        for other, ratios in row["ratios"].items():
+            if (other, name) in done:  # the other way round
+                continue
+            done.add((name, other))
+            ratio, mine, its = ratios["points_a_visit"], row["figures"], rows[other]["figures"]
+            if ratio["value"] is None or ratio["low"] is None:
+                continue
+            clauses = [f"{name} makes {_pm(ratio)} times the points of {other}"]
+            if ratio["low"] <= 1 <= ratio["high"]:
+                clauses[0] += f", a difference that {row['visits']:,} visits do not show"
+            for key, words in AGAIN.items():
+                one, two = mine[key]["value"], its[key]["value"]
+                if one is not None and two is not None:
+                    clauses.append(f"{words} {100 * one:.1f} against {100 * two:.1f} %")
+            sentences.append(f"{'; '.join(clauses)}.")
+    where = ", ".join(f"{key} {value}" for key, value in at.items())
+    return [f"On {where}:", *sentences] if sentences else []
+
+
+def crossed(report):
+    """Points a visit of every agent under every value of an axis that has more than one."""
+    p, tables = report["protocol"], []
+    at = main_condition(report)
+    for layout in p["layouts"]:
+        for axis in AXES:
+            if len(p[axis]) < 2:
+                continue
+            rest = {key: at[key] for key in AXES if key != axis} | {"layout": layout}
+            rows = []
+            for agent in report["agents"]:
+                made = ", ".join(sorted({str(run[axis]) for run in agent["runs"] if axis in run}))
+                played = [_picked(report, agent=agent["label"], **rest, **{axis: value}) for value in p[axis]]
+                points = (_pm(some[0]["figures"]["points_a_visit"]) if some else "" for some in played)
+                rows.append([agent["label"], made, *points])
+            under = ", ".join(f"{key} {value}" for key, value in rest.items() if key != "layout")
+            title = f"{layout}: points a visit, played under {axis} ..., {under}"
+            tables.append(TextTable(title, ["agent", "trained under", *p[axis]], rows, 2, 2))
+    return tables
+
+
+def conditions(report):
+    """Tables of every layout and condition: what was scored, and how the cue ball was placed."""
+    p, tables = report["protocol"], []
+    for layout, visits in p["layouts"].items():
+        for physics, fidelity, cue in product(p["physics"], p["fidelity"], p["cue"]):
+            rows = _picked(report, layout=layout, physics=physics, fidelity=fidelity, cue=cue)
+            where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}, {cue} cue"
+            for name, columns in _columns(p["against"], most_points(layout)).items():
+                cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
+                tables.append(TextTable(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True))
+    return tables
+
+
+def _columns(against, most):
+    """The tables of a condition: name -> {heading: cell of a result}; no breaks above ``most`` points."""
+
+    def figure(name):
+        return lambda r: _pm(r["figures"][name])
+
+    def share(name, *more):
+        return lambda r: _share(r, name, *more)
+
+    def times(other):
+        return lambda r: _pm(r["ratios"][other]["points_a_visit"]) if other in r["ratios"] else ""
+
+    breaks = {"centuries %": ("centuries", CENTURY), "147s %": ("maximums", MAXIMUM)}
+    breaks["clearances %"] = ("clearances", 0)
+    points = {"points a visit": figure("points_a_visit"), "IQM": figure("points_a_visit_iqm")}
+    return {
+        "points": points | {"best": lambda r: str(r["longest_break"])},
+        "points against others": {f"times {other}": times(other) for other in against},
+        "pots": {"pots a visit": figure("pots_a_visit"), "IQM": figure("pots_a_visit_iqm")},
+        "breaks": {heading: share(name) for heading, (name, least) in breaks.items() if least <= most},
+        "potting and position": {
+            "pot rate %": share("pot_rate"),
+            "next pot %": share("next_pot_after_a_pot"),
+            "easy left %": share("easy_pot_left_by_a_pot"),
+        },
+        "fouls and time": {
+            "fouls a visit": share("fouls_a_visit", "{:.2f}", 1.0),
+            "ms": lambda r: f"{r['ms_a_decision']:.2f}",
+        },
+        "colours": {
+            "colour's value": figure("colour_value"),
+            "high colours %": share("high_colours"),
+            "high after red %": share("high_colour_after_a_red"),
+        },
+    }
+
+
+LEGEND = (
+    "[low, high]: 95 % bootstrap interval over training seeds and visits. Where a thing was never seen, or always, it is the exact "
+    "one-sided 95 % bound instead (0 of 30 visits: at most 9.5 %): over tables and execution errors, for equally likely trials; "
+    "runs of several seeds on the same tables count once, and other seeds may differ. IQM: inter-quartile mean, that of the middle "
+    "half of all visits. times X: points over those of X on the same tables, paired. next pot: pots that left a ball and were "
+    'followed by another. easy left: of these, those that left a pot whose line may err by 4 mrad, as on "pots:easy". high: pink or '
+    "black, of all colours potted, and after all reds potted. ms: a decision's time, all tables played at once. What cannot occur "
+    "on a layout, and rows and columns without a figure, are left out."
+)
+
+
+def parts(report):
+    """Everything in order: ``TextTable`` (none wider than ``WIDTH``) or str."""
+    if tournament_report.is_tournament(report):
+        yield from tournament_report.parts(report)
+        return
+    if "incomplete" in report:
+        yield f"INCOMPLETE: {report['incomplete']}."
+    for made in (agents_tables, fairness, comparison, crossed, conditions):
+        for part in made(report):
+            yield from [part] if isinstance(part, str) else part.tidy().narrow()
+    yield LEGEND
+
+
+def markdown(report, picture=None):
+    """The same as a Markdown page."""
+    if tournament_report.is_tournament(report):
+        return tournament_report.markdown(report)
+    version = report.get("version", "of an unknown version")
+    where = f"commit {report['commit']} on {report['machine']}, Python {report['python']}"
+    made = f"snooker_env {version}, at {where}"
+    drawn = [f"![where the cue ball stops after a red, and what follows]({picture})"] if picture else []
+    return page(title(report), report["command"], made, [*drawn, *parts(report)])
+
+
+def picture_of(report, folder):
+    """The picture that the report's command drew, as seen from ``folder``; None if it drew none."""
+    words = shlex.split(report["command"])
+    if "--picture" not in words:
+        return None
+    named = words[words.index("--picture") + 1 :][:1]
+    file = Path(named[0]) if named and not named[0].startswith("--") else PICTURE
+    return Path(os.path.relpath(file, folder)).as_posix()
+
+
+def read(file):
+    """The report in a JSON file. Raises ValueError."""
+    wanted = "must be what agents.evaluate writes with --json, or agents.tournament with --out"
+    report = read_json("file", file, wanted)
+    try:
+        list(parts(report))
+        title(report)
+    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RuntimeError):
+        raise refuse("file", str(file), wanted) from None
+    return report
+
+
+@command("agents.report")
+def main(argv=None):
+    """Make the Markdown again from kept figures, or print them. Exit code 0."""
+    p = parser_of("python -m agents.report", __doc__)
+    what = "what agents.evaluate wrote with --json, or agents.tournament with --out"
+    p.add_argument("files", nargs="+", type=Path, metavar="FILE.json", help=what)
+    p.add_argument("--show", action="store_true", help="print the tables, write nothing")
+    args = p.parse_args(argv)
+    try:
+        reports = {file: read(file) for file in args.files}
+    except ValueError as error:
+        p.error(str(error))
+    for file, report in reports.items():
+        if args.show:
+            show(parts(report))
+            continue
+        target = file.with_suffix(".md")
+        write_atomic(target, markdown(report, picture_of(report, target.parent)))
+        print(target)
+    return 0
+
 
 if __name__ == "__main__":
     raise SystemExit(main())

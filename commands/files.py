@@ -3,6 +3,9 @@
 import io
 import json
 import tempfile
+from typing import Any
+
+import numpy as np
 
 from snooker_env import _files
 from snooker_env._files import (
@@ -22,6 +25,9 @@ __all__ = [
     "MOST_NPZ",
     "UNFINISHED",
     "arrays_in",
+    "keep_arrays",
+    "kept_arrays",
+    "packed_arrays",
     "read_bytes",
     "read_json",
     "save_figure",
@@ -61,6 +67,28 @@ def read_json(name, file, wanted, checked=False):
 def write_json(file, content):
     """Write what JSON knows, completely or not at all."""
     write_atomic(file, json.dumps(content, indent=1) + "\n")
+
+
+def packed_arrays(arrays):
+    """A dict of arrays and numbers as the bytes of an ``.npz``."""
+    file = io.BytesIO()
+    made: Any = {name: np.asarray(value) for name, value in arrays.items()}
+    np.savez(file, **made)
+    return file.getvalue()
+
+
+def keep_arrays(file, arrays):
+    """Write a dict of arrays and numbers, from which the same command goes on."""
+    write_atomic(file, sealed(packed_arrays(arrays), file.name))
+
+
+def kept_arrays(file):
+    """What ``keep_arrays`` wrote; numbers come back as arrays of no dimension. ValueError if it is damaged."""
+    try:
+        return arrays_in(unsealed(file.read_bytes(), file.name))
+    except ValueError as error:
+        wanted = f"must be as it was written ({error}): remove it, and the same command plays it again"
+        raise refuse("out", str(file), wanted) from None
 
 
 def save_figure(figure, file, **options):

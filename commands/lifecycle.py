@@ -5,19 +5,21 @@ Only the standard library is imported here: missing packages are reported before
 """
 
 import argparse
-import errno
+import contextlib
 import functools
 import io
+import os
 import shutil
 import sys
 import threading
+import traceback
 from pathlib import Path
 
+INTERRUPTED = 130
+"""The exit code after Ctrl-C, as shells have it."""
 EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "rllib"}
 """The extra of pyproject.toml that brings a package which is not in [train]."""
 OUR_OWN = ("agents", "commands", "snooker_env", "train", "benchmarks")
-DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
-"""Error numbers of a full or failing disk."""
 
 
 def installs(extra):
@@ -57,7 +59,7 @@ class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import tor
         if isinstance(error, ImportError):
             raise SystemExit(f"{self._name}: {what_is_missing(error)}") from None
         if isinstance(error, KeyboardInterrupt):
-            raise SystemExit(130) from None
+            raise SystemExit(INTERRUPTED) from None
 
 
 def parser_of(name, doc):
@@ -74,23 +76,14 @@ def any_terminal():
             stream.reconfigure(errors="replace")
 
 
-def of_disk(error, file="the output"):
-    """The error of a full or failing disk in words; any other ``OSError`` is raised again. ``file``: used if
-    the error names none."""
-    if error.errno not in DISK:
-        raise error
-    return f"{error.filename or file} cannot be written: {error.strerror}"
-
-
 def _of_thread(uncaught):
     """Hide a disk error of TensorBoard's writer thread: the main thread raises the same error again."""
-    if not isinstance(uncaught.exc_value, OSError) or uncaught.exc_value.errno not in DISK:
+    if not isinstance(uncaught.exc_value, OSError):
         threading.__excepthook__(uncaught)
 
 
 def command(name):
-    """A decorator for ``main(argv)`` of the command ``name``: outside causes end it with one line and an exit
-    code other than 0."""
+    """A decorator for ``main(argv)`` of the command ``name``: it ends as ``snooker_env._command.exit_code`` says."""
 
     def made(main):
         @functools.wraps(main)
@@ -98,20 +91,28 @@ def command(name):
             any_terminal()
             before, threading.excepthook = threading.excepthook, _of_thread
             try:
-                from snooker_env._closed import until_closed  # here: what it needs may be missing
+                from snooker_env._command import exit_code  # here: what it needs may be missing
 
-                with until_closed():
-                    return main(argv)
+                return exit_code(name, lambda: main(argv), what_is_missing)
             except ImportError as error:
                 raise SystemExit(f"{name}: {what_is_missing(error)}") from None
-            except OSError as error:
-                raise SystemExit(f"{name}: {of_disk(error)}") from None
-            except KeyboardInterrupt:
-                print(f"{name}: interrupted", file=sys.stderr)
-                return 130
             finally:
                 threading.excepthook = before
 
         return run
 
     return made
+
+
+def in_one_line(kind, error, trace):
+    """``sys.excepthook`` while a command is loaded: Ctrl-C and a missing library are one line."""
+    if isinstance(error, KeyboardInterrupt | ImportError):
+        with contextlib.suppress(
+            ImportError
+        ):  # a mistake in a module of this repository is no missing library
+            stopped = isinstance(error, KeyboardInterrupt)
+            print("interrupted" if stopped else what_is_missing(error), file=sys.stderr, flush=True)
+            os._exit(
+                INTERRUPTED if stopped else 1
+            )  # Python itself would end an interrupted process by a signal
+    traceback.print_exception(kind, error, trace)

@@ -1,6 +1,6 @@
 """``python -m snooker_env``: which commands are there?"""
 
-from ._closed import until_closed
+from ._command import until_closed
 
 COMMANDS = {
     "watch": "watch a player's visit or frame in the browser, or keep it as a page or a film",

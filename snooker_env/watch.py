@@ -5,7 +5,6 @@ the seeds one after the other, as ``benchmark.play_visits`` does; --at-least tak
 points, else the longest. With --frame: a frame against --opponent, with the miss rule "clear_path"."""
 
 import argparse
-import sys
 import tempfile
 import webbrowser
 from collections.abc import Iterator, Sequence
@@ -15,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ._check import integer, number, refuse
-from ._closed import until_closed
+from ._command import exit_code
 from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
 from .planning import Positions
@@ -169,22 +168,16 @@ def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     """Play, print, write. Exit code 0; 1: failed; 2: wrong arguments; 130: Ctrl-C."""
     p = parser()
-    try:
-        with until_closed():
-            args = p.parse_args(argv)
+
+    def play() -> int:
+        args = p.parse_args(argv)
+        try:
             watched(args, _checked(args))
-    except ValueError as error:
-        p.error(str(error))
-    except (ImportError, OSError) as error:
-        why = str(error)
-        if isinstance(error, OSError) and error.strerror:
-            why = f"{error.filename or 'the output'} cannot be written: {error.strerror}"
-        print(f"{NAME}: {why}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        print(f"{NAME}: interrupted", file=sys.stderr)
-        return 130
-    return 0
+        except ValueError as error:
+            p.error(str(error))
+        return 0
+
+    return exit_code(NAME, play)
 
 
 if __name__ == "__main__":

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from agents.cluster.keep import Store, kept_arrays
-from agents.evaluation import learning_curves, publish, report, tournament_file
-from agents.learning.learn_strokes import SETTINGS, StrokeSettings
+from agents import curves, report
+from agents.evaluation import tournament_file
 from agents.learning.policy_files import read_policy
+from agents.learning.run_folder import SETTINGS, keep_settings, kept_settings
+from agents.learning.settings import Settings
 from agents.players.trained import load_player
-from commands.files import read_json
+from commands.files import kept_arrays, read_json
 from snooker_env._files import MOST_JSON, MOST_NPZ, read_npz, strict_json, with_checksum
 from snooker_env.advice import read_strokes
 from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, text
@@ -78,10 +79,8 @@ READERS = {
     "a track of texts": lambda file: text._rows_in(file, {"track": "text", "visits": 2}),
     "a report": report.read,
     "a tournament": lambda file: tournament_file.kept(file, {}, {}, []),
-    "figures of a run": in_folder("results.json", publish.results_of),
-    "curves": in_folder("results.json", learning_curves.run_of),
-    "settings of a run": in_folder(SETTINGS, StrokeSettings.read),
-    "a job": in_folder("job.json", lambda folder: Store(folder).join({})),
+    "curves": in_folder("results.json", curves.run_of),
+    "settings of a run": in_folder(SETTINGS, lambda folder: kept_settings(folder, Settings)),
     "a model": zipped,
 }
 
@@ -135,17 +134,17 @@ def test_no_flipped_bit_of_json_that_a_command_goes_on_with_is_used(tmp_path):
     )
     track.write_text(json.dumps(with_checksum(head | {"rows": rows})))
     run.mkdir()
-    StrokeSettings(3).save(run)
+    keep_settings(run, Settings(seed=3))
     for file, read in (
         (result, lambda: result_of(result)),
         (track, lambda: text._rows_in(track, head)),
-        (run / SETTINGS, lambda: StrokeSettings.read(run)),
+        (run / SETTINGS, lambda: kept_settings(run, Settings)),
     ):
         for _ in flipped(file):
             with pytest.raises(ValueError, match=str(file)):
                 read()
     assert read_result(result) == json.loads(json.dumps(made))
-    assert text._rows_in(track, head) == rows and StrokeSettings.read(run).seed == 3
+    assert text._rows_in(track, head) == rows and kept_settings(run, Settings).seed == 3
 
 
 # Arrays

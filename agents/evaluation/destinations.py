@@ -17,7 +17,7 @@ from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from snooker_env.render import BAULK_LINE, COLOURS, CUSHION, D_ARC, SPOT_MARKS, outline
 from snooker_env.render.diagrams import bandwidth_of, density_of, level_of
 
-from .report import main_condition
+from .metrics import main_condition
 
 MOST = 3
 """Agents side by side."""

@@ -2,6 +2,7 @@
 
 import zlib
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -12,8 +13,27 @@ from .entrants import Entrant
 
 BELOW = sorted({below for _, below in FIGURES.values()})
 """What figures are a share or a mean of: how often there was any, a run, is kept with them."""
+AXES = ("noise", "fidelity", "physics", "cue")
+PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
+USUAL = {
+    "layout": "held_out",
+    "noise": "professional",
+    "fidelity": "standard",
+    "physics": "paper",
+    "cue": "real",
+}
+"""What is shown first, of all conditions that were played."""
 SCORES = ("points", "pots")
 """Of these there are inter-quartile means and ratios to other agents, too."""
+
+
+def main_condition(report):
+    """Where comparison and picture are taken: the usual of all that was played, else its first value."""
+    p = report["protocol"]
+    return {
+        name: USUAL[name] if USUAL[name] in p[key] else next(iter(p[key]))
+        for name, key in (("layout", "layouts"), *zip(AXES, AXES, strict=True))
+    }
 
 
 def _quotient(above, below):

@@ -14,12 +14,12 @@ from ..learning.hyperparameters import SHOT_OPTIONS
 from ..players.trained import player_of_model
 
 
-def evaluate(recipe, model, visits, part_of):
+def evaluate(recipe, model, visits, loop):
     """Figures of held-out visits of agent, ``ghost_ball`` and ``random``, under the training's noise and physics.
 
     The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also
     those of the planner with it and of the search by the rule of thumb (``search``). The tables are the first
-    of ``agents.evaluate``; ValueError if there are too few. ``part_of(total)``: the ``Progress`` of visits.
+    of ``agents.evaluate``; ValueError if there are too few. ``loop``: that of the training.
     """
     trained = player_of_model(model)
     players = {"trained": trained, "ghost_ball": player("ghost_ball"), "random": player("random")}
@@ -30,14 +30,14 @@ def evaluate(recipe, model, visits, part_of):
     # some learn on "fast" to save time, and are meant to play on the usual fidelity
     if not recipe.fidelity_given:
         shared.pop("fidelity", None)
-    return held_out(players, visits, part_of, **shared)
+    return held_out(players, visits, loop, **shared)
 
 
-def held_out(players, visits, part_of, **shared):
-    """Figures of held-out visits of players {name: player} under environment options."""
+def held_out(players, visits, loop, **shared):
+    """Figures of held-out visits of players {name: player} under environment options; the loop's last part."""
     seeds = tables_of("held_out", visits)
     figures = {}
-    with part_of(visits * len(players)) as progress:
+    with loop.last("evaluation", visits * len(players), "visits") as progress:
         for k, (name, one) in enumerate(players.items()):
 
             def each(going, done=(k + 1) * visits, name=name):
@@ -55,7 +55,7 @@ def _better(a, b):
 def conclusion(agent, steps, imitated, figures, start=None):
     """The result in a sentence, and one on the planner; differences are claimed from two standard errors on.
 
-    ``imitated``: positions of imitation; ``start``: origin of its weights (``models.load_weights``) or None.
+    ``imitated``: positions of expert iteration; ``start``: origin of its weights (``models.load_weights``) or None.
     """
     return _of_the_agent(agent, steps, imitated, figures, start) + _of_the_planner(figures)
 
@@ -66,8 +66,7 @@ def _of_the_agent(agent, steps, imitated, figures, start):
     def made(player):
         return f"{player['pots_a_visit']:.2f} pots and {player['points_a_visit']:.2f} points a visit"
 
-    what = "expert iteration" if "planner" in figures else "imitation"
-    begun = f" after {imitated:,} positions of {what}" if imitated else ""
+    begun = f" after {imitated:,} positions of expert iteration" if imitated else ""
     if start:
         begun = f" on top of the {start['shots']:,} of {start['model']}"
     after, visits = f"With {steps:,} shots of training{begun}, {agent}", f"{trained['visits']} visits"

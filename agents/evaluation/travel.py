@@ -1,8 +1,7 @@
-"""How does a player travel to another machine? By name, with its model's bytes or its module's digest."""
+"""How does a player travel to another machine? By name, with its model's bytes; a module of one's own must be there."""
 
 import atexit
 import hashlib
-import importlib.util
 import shutil
 import tempfile
 from functools import cache
@@ -11,7 +10,6 @@ from pathlib import Path
 from commands.files import write_atomic
 from snooker_env.players.resolver import is_name
 
-from ..cluster.job import ClusterError
 from .entrants import Entrant
 
 
@@ -26,16 +24,12 @@ def sent(entrant, k):
     elif not is_name(run):
         file, run = file_of(Path(run), "agent"), ""
     made = {"run": run, "model": file and file.read_bytes(), "suffix": file and file.suffix}
-    made |= {"trust": entrant.trust, "options": [list(pair) for pair in entrant.options]}
-    return made | {"module": _module_digest(run) if ":" in run else ""}
+    return made | {"trust": entrant.trust, "options": [list(pair) for pair in entrant.options]}
 
 
 def arrived(agent):
     """The player of what ``sent`` made."""
     run = agent["run"]
-    if ":" in run and _module_digest(run) != agent["module"]:
-        differs = f"the module of {run} on this node is another than on the machine that sent it"
-        raise ClusterError(f"{differs}: copy the same to every node")
     if agent["model"] is not None:
         run += _unpacked(agent["model"], agent["suffix"])
     one_thread(run)
@@ -65,12 +59,3 @@ def _unpacked(model, suffix):
     file = _folder() / f"{hashlib.sha256(model).hexdigest()[:32]}{suffix}"
     write_atomic(file, model)
     return str(file)
-
-
-def _module_digest(run):
-    """Digest of the file of the module of MODULE:CLASS; of what it imports it says nothing."""
-    name = run.partition(":")[0]
-    spec = importlib.util.find_spec(name)
-    if spec is None or not spec.origin or not Path(spec.origin).is_file():
-        raise ModuleNotFoundError(f"no module of {run}", name=name)
-    return hashlib.sha256(Path(spec.origin).read_bytes()).hexdigest()

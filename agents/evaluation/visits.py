@@ -4,12 +4,13 @@ A player's strokes depend on positions and seeds alone, the seeds on the table a
 together are what one machine plays at once.
 """
 
+from typing import Any
+
 import numpy as np
 
 from commands.physics_option import physics_option
 from snooker_env.benchmark import Strokes, play_visits
 
-from ..cluster.job import Part
 from .travel import arrived
 
 SIZE = 100
@@ -17,13 +18,10 @@ SIZE = 100
 COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance")
 
 
-def parts_of(shared, k, condition, seeds, rekey):
-    """The parts of the run ``k`` of an agent, whose data are named ``shared``, under a condition."""
+def parts_of(sent, k, condition, seeds, rekey) -> list[tuple[dict, dict[str, Any]]]:
+    """The parts of the run ``k`` of an agent, of ``travel.sent``, under a condition."""
     same = {"k": k, "condition": condition, "rekey": rekey}
-    return [
-        Part(f"{__name__}:play", shared, same | {"seeds": list(seeds[n : n + SIZE])})
-        for n in range(0, len(seeds), SIZE)
-    ]
+    return [(sent, same | {"seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]
 
 
 def play(shared, args, threads):

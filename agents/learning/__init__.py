@@ -1,1 +1,1 @@
-"""How do agents learn? Hyperparameters, networks, imitation of the search, runs that resume, model files."""
+"""How do agents learn? Hyperparameters, networks, the training loop and what runs in it, model files."""

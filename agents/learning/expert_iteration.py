@@ -2,26 +2,24 @@
 
 Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy; at
 first by the rule of thumb. The value learns by a backup from every position (``value_learning``), and the
-policy the values of choices, each simulated once and judged by the value (``judged_choices``). Simulations,
-two thirds of the time, are played in slices by ``where``: this process or a cluster.
+policy the values of choices, each simulated once and judged by the value (``judged_choices``).
 
 PPO then improves the policy further, with the value as reward-to-go: ``judge_rewards``.
 """
 
-import time
-import uuid
 from typing import Any
 
 import numpy as np
 
 from snooker_env import SnookerVectorEnv
+from snooker_env.benchmark import simulated
 from snooker_env.planning import Positions, StrokeSearch, spread_of
+from snooker_env.planning.learned.policy_proposals import PolicyProposals
+from snooker_env.planning.learned.value_features import SIZE, value_features
 
-from ..cluster.job import Here
 from .hyperparameters import SHOT_OPTIONS
-from .imitation import round_of
 from .judged_choices import JudgedChoices
-from .self_play import in_slices, policy_for, positions_given
+from .loop import Part
 from .value_learning import ValueLearning
 from .value_network import value_of
 
@@ -64,67 +62,76 @@ class Starts:
         return Positions(**joined)
 
 
-class ExpertIteration:
-    """Expert iteration in ``states`` positions; it has the interface of ``imitation.Imitation``.
+class ExpertIteration(Part):
+    """Expert iteration in ``total`` positions; ``before``: of ``get_state``, with the model as it was then.
 
-    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit for
-    bit. ``where``: who plays the slices, ``Here`` or a ``Cluster``; the result does not depend on it.
+    No result depends on the number of ``threads``.
     """
 
-    def __init__(self, model, venv, states, seed, threads, before=None, where=None):
+    what, unit, now = "expert iteration", "positions", "this round of positions"
+    _at: Positions
+
+    def __init__(self, model, venv, total, seed, threads, before=None):
+        self._model, self._venv, self.total, self._seed, self._threads = model, venv, total, seed, threads
+        self._n, self._before = venv.num_envs, before
+        self._done, self.curve, self._spent, self._shots = (
+            (before[name] for name in ("done", "curve", "seconds", "shots")) if before else (0, [], 0.0, 0)
+        )
+
+    @property
+    def done(self):
+        return self._done
+
+    @property
+    def shots(self):
+        """Simulated so far."""
+        return self._shots + self._choices.shots
+
+    def begin(self):
+        n, threads, before, venv = self._n, self._threads, self._before, self._venv
+        rng = self._rng = np.random.default_rng((self._seed, 19))
         tables = venv.unwrapped.tables
         options = {name: getattr(tables.options, name) for name in SHOT_OPTIONS}
-        self.states, self._n, self._rng = states, venv.num_envs, np.random.default_rng((seed, 19))
-        self._model, self._where = model, where or Here(threads)
-        self._sent = {"run": uuid.uuid4().hex, "options": options, "budget": BUDGET, "fresh": FRESH}
-        self._sent |= {"value": None, "policy": None}  # the rule of thumb, even proposals
-        search = StrokeSearch(options, BUDGET)
-        self._looks = search.strokes_tried
-        self._starts = Starts(seed, tables.options.layout, options)
-        self._value = ValueLearning(model.policy.position_value, search.spread, self._n, self._rng)
-        self._choices = JudgedChoices(model.policy, options, threads, self._n, self._rng, self._where)
-        self.done, self.curve, self._seconds, self._shots = 0, [], 0.0, 0
+        self._search = StrokeSearch(options, BUDGET, threads=threads)  # by the rule of thumb, even proposals
+        self._starts = Starts(self._seed, tables.options.layout, options)
+        self._value = ValueLearning(self._model.policy.position_value, self._search.spread, n, rng)
+        self._choices = JudgedChoices(self._model.policy, options, threads, n, rng)
         if before is None:
-            venv.seed(seed)
+            venv.seed(self._seed)
         venv.reset()  # the tables wait for PPO; of a resumed run this takes the state that they were given
         if before is None:
-            self._at = self._starts.draw(self._n, self._rng)
+            self._at = self._starts.draw(n, rng)
         else:
-            self._rng.bit_generator.state = before["rng"]
+            rng.bit_generator.state = before["rng"]
             self._at = Positions(*before["at"])
             self._value.set_state(before["value"])
             self._choices.set_state(before["choices"])
-            self.done, self.curve, self._seconds = (before[name] for name in ("done", "curve", "seconds"))
-            self._shots = before["shots"]
-        self._began = time.perf_counter()
-
-    @property
-    def seconds(self):
-        """Duration so far [s]."""
-        return self._seconds + time.perf_counter() - self._began
 
     def get_state(self):
         """The state, beside the model and the process's random generators; most of it are positions."""
-        made = {name: getattr(self, name) for name in ("done", "curve", "seconds")}
-        made |= {"rng": self._rng.bit_generator.state, "at": positions_given(self._at), "shots": self._shots}
+        made = {name: getattr(self, name) for name in ("done", "curve", "seconds")} | {"shots": self._shots}
+        if self.done >= self.total:
+            return made
+        at = self._at
+        made |= {"rng": self._rng.bit_generator.state}
+        made |= {"at": (at.positions, at.on_table, at.game, None, at.conditions)}
         return made | {"value": self._value.get_state(), "choices": self._choices.get_state()}
 
     def round(self):
         """Play a stroke from every position and learn; each twentieth of all is an entry of ``curve``."""
-        hand, even = min(HAND, self.states // 8), min(EVEN, self.states // 5)
-        remaining = 1.0 - self.done / self.states
-        learned = self.done > hand
-        if learned:
-            self._sent["value"] = self._value.value()
-            self._choices.round(self._at, self._sent["value"], remaining)
+        hand, even = min(HAND, self.total // 8), min(EVEN, self.total // 5)
+        remaining = 1.0 - self.done / self.total
+        if self.done > hand:
+            self._search.value = self._value.value()
+            self._choices.round(self._at, self._search.value, remaining)
         if self.done >= even:
-            self._sent["policy"] = policy_for(self._model, self._where)
+            self._search.propose = PolicyProposals(self._model.policy.fused)
         self._play()
-        self.done += self._n
+        self._done += self._n
         if self.done > hand:
             self._value.fit(remaining)
-        if self.done * 20 // self.states > len(self.curve):
-            so_far = {"states": self.done, "simulated_shots": self._shots + self._choices.shots}
+        if self.done * 20 // self.total > len(self.curve):
+            so_far = {"states": self.done, "simulated_shots": self.shots}
             self.curve.append({**so_far, "seconds": round(self.seconds, 1), **self._figures()})
 
     def _figures(self):
@@ -140,27 +147,30 @@ class ExpertIteration:
         words = {"loss": "loss {:.1f}", "value_loss": "value loss {:.2f}", "value": "{:.1f} points expected"}
         known = {name: value for name, value in self._figures().items() if value is not None}
         known_words = [words[name].format(value) for name, value in known.items()]
-        return ", ".join([round_of(self.done, self.states, self._n), *known_words])
+        rounds = f"round {-(-self.done // self._n):,} of {-(-self.total // self._n):,}"
+        return ", ".join([rounds, *known_words])
 
     def _play(self):
         """Choose a stroke for each position, keep what its samples lead to, and go on with one of them."""
-        n, rng, at = self._n, self._rng, self._at
+        n, rng, at, search, every = self._n, self._rng, self._at, self._search, np.arange(self._n)
         seeds, explored = rng.integers(2**32, size=n), rng.random(n) < EXPLORED
-        pick = rng.integers(min(AMONG, self._looks), size=n)
-        errors = rng.standard_normal((n * (FRESH + 1), 5))
-        errors = np.concatenate([errors[: n * FRESH].reshape(n, FRESH, 5), errors[n * FRESH :, None]], axis=1)
-        drawn = {"seeds": seeds, "explored": explored, "pick": pick, "errors": errors}
-        slices = [
-            {"at": positions_given(at[k]), **{name: one[k] for name, one in drawn.items()}}
-            for k in in_slices(n)
-        ]
-        played = self._where.map("agents.learning.self_play:strokes", self._sent, slices)
-        made = {name: np.concatenate([one[name] for one in played]) for name in played[0]}
-        self._shots += int(made["simulated"].sum())
-        follows = made["follows"]
-        self._value.add(made["seen"], made["after"], made["points"], made["goes_on"], follows & ~explored)
+        pick = rng.integers(min(AMONG, search.strokes_tried), size=n)
+        errors, before = rng.standard_normal((n * (FRESH + 1), 5)), simulated()
+        ranked = search.rank(at, seeds)
+        best, picked = ranked.strokes[:, 0], ranked.strokes[every, pick]
+        rows = np.concatenate([np.repeat(every, FRESH), every])
+        out = search.outcomes(at, rows, np.concatenate([np.repeat(best, FRESH, axis=0), picked]), errors)
+        self._shots += simulated() - before
+        goes_on = out.goes_on[: n * FRESH]
+        after = np.zeros((n * FRESH, SIZE), np.float16)
+        after[goes_on] = self._features(out.afterstates[np.flatnonzero(goes_on)])
+        played = np.where(explored, n * FRESH + every, FRESH * every)
+        follows, left = out.goes_on[played], out.afterstates[played]
+        points, goes_on = out.points[: n * FRESH].reshape(n, FRESH), goes_on.reshape(n, FRESH)
+        seen = self._features(at).astype(np.float16)
+        self._value.add(seen, after.reshape(n, FRESH, SIZE), points, goes_on, follows & ~explored)
         # a visit keeps its table
-        self._at = Positions(made["positions"], made["on_table"], made["game"], None, at.conditions)
+        self._at = Positions(left.positions, left.on_table, left.game, None, at.conditions)
         ended = np.flatnonzero(~follows)
         if len(ended):
             fresh = self._starts.draw(len(ended), rng)
@@ -168,6 +178,9 @@ class ExpertIteration:
                 if getattr(fresh, name) is not None:
                     getattr(self._at, name)[ended] = getattr(fresh, name)
         self._at.game[:, 2] = 0  # points of the visit so far: no break may exceed what a table allows
+
+    def _features(self, at):
+        return value_features(at, self._search.spread, self._threads)
 
 
 def judge_rewards(venv, policy, threads):

@@ -21,6 +21,10 @@ from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.frame import Frames, Seat
 from snooker_env.tasks.threads import Threads
 
+FRAME = {"cue": "real", "miss": "clear_path", "max_strokes": 200}
+"""Options of the frames."""
+TABLES = 16
+"""Frames that one part plays side by side."""
 FRESH = 8
 """Noise samples that judge the best stroke of a position."""
 REPLIES, FINALISTS = (1, 6), 6

@@ -1,8 +1,6 @@
 """How is the worth of a position of a frame learned? Rounds of self-play, each judged by search; a network is fitted
 to what the last rounds said, and the next round searches with it."""
 
-from itertools import pairwise
-
 import numpy as np
 import torch
 from torch import nn
@@ -10,8 +8,10 @@ from torch import nn
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE
 from snooker_env.planning.worth import FOUL, SPREAD, Chance
 
+from .rounds import Perceptron, descend
+
 WIDTHS = (32, 16)
-BATCH, RATE, DECAY = 512, 2e-3, 1.0
+BATCH, DECAY = 512, 1.0
 SNOOKERS, NEEDS, STROKES = 0.3, 3.0, 40
 """Standard deviations of the priors of ``Chance.snookers`` and ``needs``, for hardly anybody wins who needs some: without
 them the chance would be 0; and strokes of a frame, which count as one observation."""
@@ -31,42 +31,21 @@ def targets(rows):
     return target
 
 
-class WorthNetwork(nn.Sequential):
-    """What is seen (n, SIZE) -> worth beside the value of the visit (n, 1), in units of ``POINTS``."""
-
-    def __init__(self):
-        sizes = (SIZE, *WIDTHS, 1)
-        parts = [nn.Linear(a, b) for a, b in pairwise(sizes)]
-        super().__init__(*[part for one in parts for part in (one, nn.ReLU())][:-1])
-        with torch.no_grad():  # at first the value is all
-            parts[-1].weight.mul_(0.1)
-
-    def layers(self):
-        """Weight (out, in) and bias (out,) of each layer: float32 arrays."""
-        linear = [one for one in self if isinstance(one, nn.Linear)]
-        return [(one.weight.detach().numpy().copy(), one.bias.detach().numpy().copy()) for one in linear]
-
-
 def fitted(seen, wanted, seed, passes):
-    """The layers of a network fitted to ``wanted`` (n,) points at ``seen`` (n, SIZE), from nothing: going on from those of
-    the round before, it overfits."""
+    """The layers of a network fitted to ``wanted`` (n,) points, over ``POINTS``, beside the value of the visit at ``seen``
+    (n, SIZE), from nothing: going on from those of the round before, it overfits."""
     torch.manual_seed(seed)
-    network, rng = WorthNetwork(), np.random.default_rng(seed)
+    network, rng = Perceptron(SIZE, *WIDTHS, 1), np.random.default_rng(seed)
+    with torch.no_grad():  # at first the value is all
+        last: nn.Linear = network[-1]  # type: ignore[assignment]
+        last.weight.mul_(0.1)
     x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS - seen[:, -1]).astype(np.float32))
-    batch = min(BATCH, len(x))
-    steps = max(20, passes * (len(x) // batch))  # of 10, OneCycleLR's warm-up of a tenth ends where it begins
-    optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=DECAY)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=steps, pct_start=0.1)
-    for _ in range(passes):
-        order = torch.from_numpy(rng.permutation(len(x)))
-        for k in range(0, batch * (len(x) // batch), batch):
-            rows = order[k : k + batch]
-            loss = ((network(x[rows])[:, 0] - y[rows]) ** 2).mean()
-            optimiser.zero_grad()
-            loss.backward()
-            optimiser.step()
-            schedule.step()
-    return network.layers()
+
+    def loss_of(rows):
+        return ((network(x[rows])[:, 0] - y[rows]) ** 2).mean()
+
+    descend(network, loss_of, np.arange(len(x)), rng, passes, BATCH, DECAY, pct_start=0.1)
+    return network.arrays()
 
 
 def fitted_chance(now, worth, left, last, spread, won):

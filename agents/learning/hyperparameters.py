@@ -1,7 +1,7 @@
 """How is an agent defined? By its ``hyperparams/NAME.yml``, in RL Baselines3 Zoo's format, for SB3.
 
-Additional keys: ``algo`` (the algorithm), ``imitation`` (positions of pre-training), ``expert`` (true: expert
-iteration in its place) and ``first_aim_std`` (of the aim at the start). They may stand under ``agent``
+Additional keys: ``algo`` (the algorithm), ``expert`` (true: expert iteration comes first), ``imitation`` (its positions)
+and ``first_aim_std`` (of the aim at the start). They may stand under ``agent``
 instead: the Zoo itself then trains with the same file, if the policy is one of SB3's own.
 ``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
@@ -47,9 +47,9 @@ MOST = 10**9
 KINDS = {
     "n_timesteps": (integer, 1, 10**12),
     "n_envs": (integer, 1, 2**24),
-    **dict.fromkeys(("imitation", "learning_starts"), (integer, 0, MOST)),
+    "imitation": (integer, 0, MOST),
     **dict.fromkeys(("n_steps", "batch_size"), (integer, 2, MOST)),
-    **dict.fromkeys(("n_epochs", "buffer_size", "train_freq", "gradient_steps"), (integer, 1, MOST)),
+    "n_epochs": (integer, 1, MOST),
     **dict.fromkeys(("gamma", "gae_lambda", "ent_coef"), (number, 0, 1)),
     "vf_coef": (number, 0, 10),
     "learning_rate": (rate, 0, 1),
@@ -101,8 +101,8 @@ class Recipe:
             if keys.get(key) is not None:
                 keys[key] = check(key, keys[key], low, high)
         keys["env_kwargs"] = _options(keys["env_kwargs"], env_kwargs, usual, keys["policy"])
-        if keys["env_kwargs"].get("observe_conditions") and keys["expert"]:
-            why = "its planner reads policy and value without the constants of the table"
+        if keys["env_kwargs"].get("observe_conditions") and keys["algo"] == "ppo_mask":
+            why = "its networks read the table without its constants"
             raise refuse("observe_conditions", True, f"must be left out for {name}: {why}")
         asked = "fidelity" in env_kwargs or "fidelity" in changed.get("env_kwargs", {})
         mine = {f.name: keys.pop(f.name) for f in fields(cls) if f.name in keys}
@@ -112,11 +112,6 @@ class Recipe:
     def method(self):
         """The name of the algorithm, as PPO."""
         return self.algo.partition("_")[0].upper()
-
-    @property
-    def pretraining(self):
-        """The name of what precedes it."""
-        return "expert iteration" if self.expert else "imitation"
 
     def new_model(self, tables, seed):
         """The untrained agent on these tables."""
@@ -128,8 +123,8 @@ class Recipe:
         rate = settings["learning_rate"]
         if isinstance(rate, str) and rate.startswith("lin_"):
             settings["learning_rate"] = LinearSchedule(float(rate[4:]), 1e-5, 1.0)
-        if "n_steps" in settings:  # few tables give small rollouts
-            settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
+        # few tables give small rollouts
+        settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
         if self.algo == "ppo_mask":
             settings["rollout_buffer_class"] = BoolMasks
         settings |= {"seed": seed, "device": "cpu", "stats_window_size": 1000}
@@ -138,7 +133,7 @@ class Recipe:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
         # SB3 saves and restores additional attributes, too
         model.recipe, model.env_options = self.name, dict(self.env_kwargs)
-        # origin of its weights, see ``models.load_weights``; positions of imitation
+        # origin of its weights, see ``models.load_weights``; positions of expert iteration
         model.start, model.imitated = None, 0
         return model
 
@@ -197,13 +192,11 @@ def not_held_out(layout):
 
 def algorithm_class(name):
     """The SB3 class of that name."""
-    import sb3_contrib
-    import stable_baselines3
+    from stable_baselines3 import PPO
 
     from .fast_ppo import FastPPO
 
-    classes = {"ppo": stable_baselines3.PPO, "ppo_mask": FastPPO}
-    classes |= {"sac": stable_baselines3.SAC, "tqc": sb3_contrib.TQC}
+    classes = {"ppo": PPO, "ppo_mask": FastPPO}
     return classes[choice("algo", name, classes)]
 
 

@@ -1,18 +1,24 @@
-"""How does a policy learn the values of choices from a judge? As in ``imitation``, on others' positions."""
+"""How does a policy learn the values of choices? Some in each position are simulated once and judged, and it is fitted to them.
 
-import uuid
+A choice is worth its points and, if the visit goes on, the value of what it leaves. State value + TEMPERATURE *
+(log-probability - its mean) is fitted to that by least squares: the policy becomes the softmax of the values of its
+choices, and the critic their mean under it. Half of the choices tried are its own best ones (DAgger, Ross et al. 2011).
+"""
+
 from collections import deque
 
 import numpy as np
 import torch
 
-from snooker_env.planning import action_masks
+from snooker_env import Options
+from snooker_env.benchmark import simulated
+from snooker_env.planning import Planner, action_masks
 from snooker_env.planning.learned.pot_view import with_pots
 
-from ..cluster.job import Here
-from .imitation import fit_values, to_try
-from .self_play import judged
-
+TRIES = 48
+"""Trials in each position: half the learner's best choices, half random; if they are few, each twice."""
+TEMPERATURE = 1.0
+"""The difference in points that makes a choice e times as likely."""
 KEPT = 50_000
 """Positions that gradient steps are drawn from."""
 BATCH, EACH, RATE = 512, 32, 2e-3
@@ -22,13 +28,12 @@ _PARTS = 4
 
 
 class JudgedChoices:
-    """Fits ``policy`` to values of choices in rounds of n positions; ``where`` simulates each choice once.
+    """Fits ``policy`` to values of choices in rounds of n positions. ``shots``: simulated so far."""
 
-    ``shots``: simulated so far."""
-
-    def __init__(self, policy, options, threads, n, rng, where=None):
-        self._policy, self._rng, self._n, self._where = policy, rng, n, where or Here(threads)
-        self._sent, self._cue = {"run": uuid.uuid4().hex, "options": options}, options.get("cue", "free")
+    def __init__(self, policy, options, threads, n, rng):
+        self._policy, self._rng, self._n = policy, rng, n
+        self._planner = Planner(Options(action="discrete", **options), threads=threads)
+        self._cue = options.get("cue", "free")
         learned = [p for name, p in policy.named_parameters() if not name.startswith("position_value.")]
         self._optimizer, self._rounds = torch.optim.Adam(learned, RATE), []
         self.losses, self.shots = deque(maxlen=100), 0
@@ -42,9 +47,7 @@ class JudgedChoices:
         row, column = np.nonzero(valid)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         worths = np.zeros(picks.shape, np.float32)
-        sent = self._sent | {"value": value}
-        worths[row, column], shots = judged(self._where, sent, at, row, picks[row, column], keys)
-        self.shots += shots
+        worths[row, column] = self._gains(at, value, row, picks[row, column], keys)
         kept = seen, np.packbits(masks, axis=1), picks.astype(np.int16), valid, worths
         # sums depend on the layout, and a saved array comes back in this one
         self._rounds.append(tuple(map(np.ascontiguousarray, kept)))
@@ -53,6 +56,15 @@ class JudgedChoices:
             group["lr"] = RATE * max(0.02, remaining)
         for _ in range(max(1, self._n // EACH)):
             self.losses.append(fit_values(self._policy, self._optimizer, *self._batch(masks.shape[1])))
+
+    def _gains(self, at, value, rows, picks, keys):
+        """Points of choices (k,) and the value of what they leave, each simulated once."""
+        before = simulated()
+        played = self._planner.play(at, rows, picks, keys)
+        gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
+        gains[on] += value(played.afterstates[on])
+        self.shots += simulated() - before
+        return gains
 
     def _batch(self, choices):
         """Positions of several rounds: seen, masks, picks, valid, worths."""
@@ -74,3 +86,32 @@ class JudgedChoices:
         self._rounds, self.shots = list(state["rounds"]), state["shots"]
         self.losses.extend(state["losses"])
         self._optimizer.load_state_dict(state["optimizer"])
+
+
+def to_try(scores, masks, rng):
+    """``TRIES`` choices of each row of masks (n, SIZE), half the best, half random; which are valid.
+
+    A choice can be in both halves; of fewer valid choices than half of ``TRIES``, all are in both.
+    """
+    half = TRIES // 2
+    best = np.argpartition(np.where(masks, -scores, np.inf), half, axis=1)[:, :half]
+    lots, rest = np.where(masks, rng.random(masks.shape), np.inf), TRIES - half
+    picks = np.concatenate([best, np.argpartition(lots, rest, axis=1)[:, :rest]], axis=1)
+    return picks, np.take_along_axis(masks, picks, axis=1)
+
+
+def fit_values(policy, optimizer, seen, masks, picks, valid, worths):
+    """One gradient step towards the values ``worths`` of choices (n, k); the mean square error [points^2]."""
+    features = policy.extract_features(torch.as_tensor(seen))
+    distribution = policy._get_action_dist_from_latent(features)
+    distribution.apply_masking(masks)
+    logits = distribution.distribution.logits
+    mean = (logits.exp() * logits.clamp(min=-1e3)).sum(1, keepdim=True)
+    fitted = policy.value_net(features) + TEMPERATURE * (logits.gather(1, torch.as_tensor(picks)) - mean)
+    weight = torch.as_tensor(valid).float()
+    loss = ((fitted - torch.as_tensor(worths)).square() * weight).sum() / weight.sum()
+    optimizer.zero_grad()
+    loss.backward()
+    torch.nn.utils.clip_grad_norm_([p for group in optimizer.param_groups for p in group["params"]], 10.0)
+    optimizer.step()
+    return loss.item()

@@ -10,16 +10,14 @@ beside what they seem to be worth. After each round the run's folder holds its d
 from there.
 """
 
-import json
 from dataclasses import asdict, astuple, dataclass, fields
-from itertools import pairwise
 
 import numpy as np
 import torch
 from torch import nn
 
 import snooker_env as sn
-from commands.files import read_json, strict_json, with_checksum, write_atomic, write_json
+from commands.files import packed_arrays, write_atomic
 from commands.noise_option import noise_option
 from snooker_env.benchmark import simulated
 from snooker_env.checks import choice, integer, refuse
@@ -32,12 +30,11 @@ from snooker_env.players.search import SearchPlayer
 from snooker_env.players.stroke_value import StrokeValuePlayer
 from snooker_env.players.weights import STROKES, StrokeLayers, layers_of
 
-from ..cluster.keep import keep_arrays, kept_arrays, packed
 from .hyperparameters import changes_of
+from .rounds import Perceptron, Rounds, arrays_of, descend, shares_of_parts
 from .stroke_frames import frames_tried
 
-SETTINGS = "stroke_value.json"
-"""The file of a run's settings."""
+AGENT = "stroke_value"
 STROKES_EACH, PARTS = 8, 8
 """Strokes that are played on each table of a round, and parts of the tables with errors of their own."""
 SCALES = 0.7, 4.5
@@ -46,7 +43,7 @@ BEST, OTHERS, ERRORS = 10, 10, 4
 """Strokes of a position that are tried: those that seem best, others at random; and execution errors of each."""
 EXPLORE, AMONG = 0.1, 8
 """Share of strokes that are not the one that seems best, but one of the ``AMONG`` best."""
-WIDTHS, BATCH, RATE, DECAY = (128, 64), 512, 2e-3, 1e-4
+WIDTHS, BATCH, DECAY = (128, 64), 512, 1e-4
 PASSES, LAST_PASSES = 15, {"visits": 60, "frames": 20}
 """Over the positions after each round, and after the last one."""
 AGAINST = None, None, "best_pot", "tactician_60"
@@ -59,23 +56,6 @@ FIRST_SEED = 30_000_000
 """The seed of the first table."""
 
 
-class StrokeNetwork(nn.Sequential):
-    """What is seen of strokes (..., size) -> what they are worth (..., 1), in units of ``POINTS``."""
-
-    def __init__(self, size):
-        parts = [nn.Linear(a, b) for a, b in pairwise((size, *WIDTHS, 1))]
-        super().__init__(*[part for one in parts for part in (one, nn.ReLU())][:-1])
-
-    def layers(self, mean, deviation):
-        """Weight (out, in) and bias (out,) of each layer for what is seen as it is; it was trained on what is seen less
-        ``mean``, over ``deviation``."""
-        linear = [one for one in self if isinstance(one, nn.Linear)]
-        made = [(one.weight.detach().numpy().copy(), one.bias.detach().numpy().copy()) for one in linear]
-        weight, bias = made[0]
-        made[0] = weight / deviation, bias - (weight / deviation) @ mean
-        return made
-
-
 def fitted(seen, worth, table, seed, passes, seems=None):
     """The layers of a network fitted to ``worth`` (n, k) points of strokes seen as (n, k, SIZE) on the tables with these
     seeds (n,), and figures of the tables kept from the fit. ``seems`` (n, k): the network adds to these points, and errors
@@ -84,7 +64,7 @@ def fitted(seen, worth, table, seed, passes, seems=None):
     rng, held = np.random.default_rng(seed), table % HELD == HELD - 1
     mean, deviation = seen[~held].mean((0, 1), np.float64), seen[~held].std((0, 1), np.float64) + 1e-3
     scaled = torch.from_numpy(((seen - mean) / deviation).astype(np.float32))
-    network, lossy = StrokeNetwork(seen.shape[-1]), nn.functional.mse_loss
+    network, lossy = Perceptron(seen.shape[-1], *WIDTHS, 1), nn.functional.mse_loss
     if seems is None:
         plain, base = seen[..., 0], np.zeros_like(worth)  # what the policy says
     else:
@@ -94,21 +74,13 @@ def fitted(seen, worth, table, seed, passes, seems=None):
             last.weight.mul_(0.1)
             last.bias.zero_()
     wanted = torch.from_numpy(((worth - base) / POINTS).astype(np.float32))
-    used = np.flatnonzero(~held)
-    batch = min(BATCH, len(used))
-    optimiser = torch.optim.AdamW(network.parameters(), RATE, weight_decay=DECAY)
-    steps = max(20, passes * (len(used) // batch))
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=steps)
-    for _ in range(passes):
-        order = torch.from_numpy(rng.permutation(used))
-        for k in range(0, batch * (len(used) // batch), batch):
-            off = network(scaled[order[k : k + batch]])[..., 0] - wanted[order[k : k + batch]]
-            compared = off - off.mean(dim=1, keepdim=True)
-            loss = lossy(off, torch.zeros_like(off)) + COMPARED * lossy(compared, torch.zeros_like(off))
-            optimiser.zero_grad()
-            loss.backward()
-            optimiser.step()
-            schedule.step()
+
+    def loss_of(rows):
+        off = network(scaled[rows])[..., 0] - wanted[rows]
+        compared = off - off.mean(dim=1, keepdim=True)
+        return lossy(off, torch.zeros_like(off)) + COMPARED * lossy(compared, torch.zeros_like(off))
+
+    descend(network, loss_of, np.flatnonzero(~held), rng, passes, BATCH, DECAY)
     with torch.no_grad():
         said = network(scaled[held])[..., 0].numpy() + base[held] / POINTS
     true = worth[held] / POINTS
@@ -122,7 +94,10 @@ def fitted(seen, worth, table, seed, passes, seems=None):
         "worth_chosen": POINTS * float(chosen.mean()),
         "worth_chosen_unlearned": POINTS * float(before.mean()),
     }
-    return network.layers(mean, deviation), figures
+    layers = network.arrays()
+    weight, bias = layers[0]  # for what is seen as it is
+    layers[0] = weight / deviation, bias - (weight / deviation) @ mean
+    return layers, figures
 
 
 def visits_tried(layers, noise, cue, seeds, rng):
@@ -168,12 +143,6 @@ def visits_tried(layers, noise, cue, seeds, rng):
     return tuple(map(np.concatenate, (kept_seen, kept_worth, kept_table)))
 
 
-def arrays_of(of, layers):
-    """The arrays of the network of "visits" or "frames" in a file that ``weights.learned_strokes`` reads."""
-    made = {f"{of}/{k}/weight": weight.astype(np.float32) for k, (weight, _) in enumerate(layers)}
-    return made | {f"{of}/{k}/bias": bias.astype(np.float32) for k, (_, bias) in enumerate(layers)}
-
-
 @dataclass(frozen=True)
 class StrokeSettings:
     """Of a run: what its rounds are made of."""
@@ -199,75 +168,19 @@ class StrokeSettings:
         choice("cue", made.cue, ("real", "free"))
         return made
 
-    def save(self, out):
-        """Into the run's folder."""
-        write_json(out / SETTINGS, with_checksum(asdict(self)))
 
-    @classmethod
-    def read(cls, out):
-        """Of the run in that folder. Raises ValueError."""
-        try:
-            return cls(
-                **read_json("out", out / SETTINGS, "must be a complete file of settings", checked=True)
-            )
-        except TypeError:
-            raise refuse("out", str(out / SETTINGS), "must be a complete file of settings") from None
-
-    def words(self):
-        """The options of ``train.py`` that repeat the run."""
-        changed = [
-            f"{f.name}={getattr(self, f.name)}"
-            for f in fields(self)
-            if f.name != "seed" and getattr(self, f.name) != f.default
-        ]
-        return [
-            "--agent",
-            "stroke_value",
-            "--seed",
-            str(self.seed),
-            *(["--set", *changed] if changed else []),
-        ]
-
-
-_VERSION = (
-    LOOKS,
-    SAMPLES,
-    SIZE,
-    frame_strokes.SIZE,
-    STROKES_EACH,
-    PARTS,
-    SCALES,
-    BEST,
-    OTHERS,
-    ERRORS,
-    EXPLORE,
-    AMONG,
-    AGAINST,
-    frame_strokes.SAFETIES,
-    frame_strokes.SAMPLES,
-    frame_strokes.FOUL,
-    frame_strokes.POTTED,
-)
+_FRAMES = frame_strokes.SAFETIES, frame_strokes.SAMPLES, frame_strokes.FOUL, frame_strokes.POTTED
+_VISITS = LOOKS, SAMPLES, SIZE, frame_strokes.SIZE, STROKES_EACH, PARTS, SCALES
+_VERSION = *_VISITS, BEST, OTHERS, ERRORS, EXPLORE, AMONG, AGAINST, *_FRAMES
 """What the data of rounds depend on beside the settings: rounds of other ones are not resumed."""
 
 
-class Rounds:
-    """Rounds of "visits" or "frames", ``of``, of a run in the folder ``out``; those that it holds already are read.
+class StrokeRounds(Rounds):
+    """Rounds of visits or frames, on tables from the seed ``first`` on."""
 
-    ``many`` rounds on so many ``tables`` each, from ``first`` on."""
-
-    def __init__(self, out, settings, of, many, tables, first):
-        self.out, self.settings, self.of, self.many, self.tables = out, settings, of, many, tables
-        self.first, self.rounds, self.curve, self.layers = first, [], [], ()
-        self._asked = [*map(str, (*astuple(settings), *_VERSION))]
-        while len(self.rounds) < many and self._file().is_file():
-            rows = kept_arrays(self._file())
-            if rows.pop("asked").tolist() != self._asked:
-                raise refuse("out", str(out), "must hold rounds of this version and of the same settings")
-            self._learn(rows)
-
-    def _file(self, what=""):
-        return self.out / f"{self.of}-{len(self.rounds)}{what}.npz"
+    def __init__(self, out, settings, name, many, tables, first):
+        super().__init__(out, name, many, tables, PARTS, (*astuple(settings), *_VERSION))
+        self.what, self.settings, self.first, self.layers = f"its own {name}", settings, first, ()
 
     @property
     def tried(self):
@@ -277,101 +190,88 @@ class Rounds:
     @property
     def simulated(self):
         """All shots that the rounds simulated, play and the decisions of other players too."""
-        return sum(int(one["shots"]) for one in self.rounds)
-
-    @property
-    def total(self):
-        """Tables of all rounds."""
-        return self.many * self.tables
-
-    @property
-    def done(self):
-        """Tables of the rounds that are complete."""
-        return len(self.rounds) * self.tables
-
-    @property
-    def complete(self):
-        """Whether all rounds are."""
-        return len(self.rounds) == self.many
-
-    def run(self, play, progress, stop):
-        """Play the rounds that are left and learn from each, until ``stop`` notes a signal. ``play(layers, noise, k, seeds,
-        rng)`` plays the tables ``seeds`` of a round's part k and returns what ``visits_tried`` does."""
-        while not self.complete and stop.signal is None:
-            self._round(play, progress, stop)
-
-    def _round(self, play, progress, stop):
-        k, parts, played_on, before = len(self.rounds), [], self.done, simulated()
-        first, rng = self.first + 100_000 * k, np.random.default_rng([self.settings.seed, k])
-        shares = (np.arange(PARTS) + rng.random(PARTS)) / PARTS
-        split = np.array_split(np.arange(first, first + self.tables), PARTS)
-        for part, (share, seeds) in enumerate(zip(shares, split, strict=True)):
-            scale = SCALES[0] * (SCALES[1] / SCALES[0]) ** share
-            parts.append(play(self.layers, noise_option(f"professional*{scale}"), part, seeds, rng))
-            progress.at(played_on := played_on + len(seeds), self.figures)
-            if stop.signal is not None and part + 1 < PARTS:
-                return
-        seen, worth, table = map(np.concatenate, zip(*parts, strict=True))
-        rows = {"seen": seen, "worth": worth, "table": table, "shots": np.array(simulated() - before)}
-        keep_arrays(self._file(), rows | {"asked": np.array(self._asked)})
-        self._learn(rows)
+        return sum(int(one["shots"].sum()) for one in self.rounds)
 
     @property
     def figures(self):
-        """Those of the last fit, in words."""
-        said = f"round {len(self.rounds) + 1} of {self.many}"
-        return said + (
-            f", {self.curve[-1]['explained']:.0%} of the differences explained" if self.curve else ""
-        )
+        said = f"round {min(len(self.rounds) + 1, self.many)} of {self.many}"
+        explained = f", {self.curve[-1]['explained']:.0%} of the differences explained" if self.curve else ""
+        return said + explained
 
-    def _learn(self, rows):
-        weights, k, of = self._file("-weights"), len(self.rounds), self.of
-        self.rounds.append(rows)
-        if weights.is_file():
-            arrays = kept_arrays(weights)
-            self.layers = layers_of(arrays, of)
-            self.curve.append(strict_json(str(arrays["figures"])))
-            return
-        seed, passes = (0, LAST_PASSES[of]) if self.complete else (k, PASSES)
-        seen, worth, table = (
-            np.concatenate([one[name] for one in self.rounds]) for name in ("seen", "worth", "table")
-        )
+    def tried_on(self, noise, part, seeds, rng):
+        """What is seen of the strokes tried on these tables, what they are worth, and the tables' seeds."""
+        raise NotImplementedError
+
+    def parts_of(self, k):
+        first, rng = self.first + 100_000 * k, np.random.default_rng([self.settings.seed, k])
+        shares = shares_of_parts(rng, PARTS)
+        split = np.array_split(np.arange(first, first + self.tables), PARTS)
+        for part, (share, seeds) in enumerate(zip(shares, split, strict=True)):
+            scale, before = SCALES[0] * (SCALES[1] / SCALES[0]) ** share, simulated()
+            played = self.tried_on(noise_option(f"professional*{scale}"), part, seeds, rng)
+            shots = np.array([simulated() - before])
+            yield dict(zip(("seen", "worth", "table", "shots"), (*played, shots), strict=True))
+
+    def seems(self, seen):
+        """What the strokes seem to be worth before anything is learned [points]; None: nothing."""
+
+    def fit(self):
+        k = len(self.rounds)
+        seed, passes = (0, LAST_PASSES[self.name]) if k == self.many else (k - 1, PASSES)
+        names = ("seen", "worth", "table")
+        seen, worth, table = (np.concatenate([one[name] for one in self.rounds]) for name in names)
         seen = seen.astype(np.float32)
-        seems = POINTS * seen[..., 0] if of == "frames" else None
-        self.layers, figures = fitted(seen, worth, table, self.settings.seed + seed, passes, seems)
-        self.curve.append(figures)
-        keep_arrays(weights, arrays_of(of, self.layers) | {"figures": np.array(json.dumps(figures))})
+        layers, figures = fitted(seen, worth, table, self.settings.seed + seed, passes, self.seems(seen))
+        return arrays_of(self.name, layers), figures
+
+    def take(self, arrays):
+        self.layers = layers_of(arrays, self.name)
+
+
+class VisitRounds(StrokeRounds):
+    """The visits of ``stroke_value``."""
+
+    def tried_on(self, noise, part, seeds, rng):
+        return visits_tried(self.layers, noise, self.settings.cue, seeds, rng)
+
+
+class FrameRounds(StrokeRounds):
+    """The frames of ``stroke_value``, when those of visits are complete."""
+
+    visits: VisitRounds
+
+    def tried_on(self, noise, part, seeds, rng):
+        learned, other = StrokeLayers(self.visits.layers, self.layers), AGAINST[part % len(AGAINST)]
+        tried = BEST, OTHERS, ERRORS, EXPLORE, AMONG
+        return frames_tried(learned, noise, self.settings.cue, seeds, other, tried, rng, processors())
+
+    def seems(self, seen):
+        return POINTS * seen[..., 0]
 
 
 class StrokeTraining:
-    """A run in the folder ``out``: rounds of visits, then of frames."""
+    """A run of these settings, of which seed and changes count, in the folder ``out``. Raises ValueError."""
 
-    def __init__(self, out, settings):
-        self.out, self.settings, first = out, settings, FIRST_SEED + 10_000_000 * settings.seed
-        self.visits = Rounds(out, settings, "visits", settings.rounds, settings.tables, first)
-        self.frames = Rounds(
-            out, settings, "frames", settings.frame_rounds, settings.frames, first + 5_000_000
-        )
-
-    def play_visits(self, progress, stop):
-        """Play the rounds of visits that are left."""
-
-        def play(layers, noise, _part, seeds, rng):
-            return visits_tried(layers, noise, self.settings.cue, seeds, rng)
-
-        self.visits.run(play, progress, stop)
-
-    def play_frames(self, progress, stop):
-        """Play the rounds of frames that are left, when those of visits are complete."""
-        tried, threads = (BEST, OTHERS, ERRORS, EXPLORE, AMONG), processors()
-
-        def play(layers, noise, part, seeds, rng):
-            learned, other = StrokeLayers(self.visits.layers, layers), AGAINST[part % len(AGAINST)]
-            return frames_tried(learned, noise, self.settings.cue, seeds, other, tried, rng, threads)
-
-        self.frames.run(play, progress, stop)
+    def __init__(self, settings, out, resume):
+        for name, usual in asdict(type(settings)()).items():
+            if getattr(settings, name) != usual and name not in ("agent", "seed", "set", "eval_visits"):
+                raise refuse(name, getattr(settings, name), f"must be left out for {AGENT}")
+        self.settings, self.out, self.strokes = settings, out, StrokeSettings.of(settings.seed, settings.set)
+        mine, first = self.strokes, FIRST_SEED + 10_000_000 * settings.seed
+        self.visits = VisitRounds(out, mine, "visits", mine.rounds, mine.tables, first)
+        self.frames = FrameRounds(out, mine, "frames", mine.frame_rounds, mine.frames, first + 5_000_000)
+        self.frames.visits, self.parts = self.visits, [self.visits, self.frames]
+        for part in self.parts if resume else ():
+            part.restore()
 
     def save(self):
-        """Both networks, into ``STROKES`` of the folder."""
-        both = arrays_of("visits", self.visits.layers) | arrays_of("frames", self.frames.layers)
-        write_atomic(self.out / STROKES, packed(both))
+        """Nothing: each round is kept."""
+
+    def close(self):
+        """Nothing is open."""
+
+    def write(self):
+        """Write both networks into ``STROKES`` of the folder; returns its path."""
+        both = [arrays_of(part.name, part.layers) for part in self.parts]
+        write_atomic(self.out / STROKES, packed_arrays(both[0] | both[1]))
+        return self.out / STROKES

@@ -48,7 +48,7 @@ def load_trained(path, field):
 def load_weights(model, path):
     """Load the weights of another model with this network and actions; ``model.start`` says from where.
 
-    The other's network may have more, as ppo_value's holds that of ppo_mask. Raises ValueError.
+    Raises ValueError.
     """
     other = load_trained(path, "start")
     if not isinstance(other.policy, type(model.policy)):

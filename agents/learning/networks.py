@@ -34,21 +34,16 @@ def mlp(*sizes):
 
 
 class TableReader(BaseFeaturesExtractor):
-    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, -1 if mirrored, else 1.
-
-    What follows the first ``SHOWN`` numbers, the constants of the table, goes into the context."""
+    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, -1 if mirrored, else 1."""
 
     def __init__(self, observation_space, width=32):
         super().__init__(observation_space, CONTEXT + POTS * POT + 1)
-        constants = max(
-            0, observation_space.shape[0] - SHOWN
-        )  # readers of frames see other numbers, and no constants
         self.ball = mlp(5 + 2, width, BALL)
         self.pot = mlp(POT_ENTRIES, 2 * width, POT)
-        self.context = mlp(3 * BALL + POT + _STATE + 3 + constants, CONTEXT, CONTEXT)
+        self.context = mlp(3 * BALL + POT + _STATE + 3, CONTEXT, CONTEXT)
         # one layer from both; the context's part is shared
         self.joint = nn.ModuleList([nn.Linear(CONTEXT, POT), nn.Linear(POT, POT)])
-        flips = torch.zeros(SHOWN + constants, dtype=torch.bool)
+        flips = torch.zeros(SHOWN, dtype=torch.bool)
         flips[torch.arange(N_BALLS) * 5 + BALL_X] = True
         for entry in (*POT_X, CUT):
             flips[OBSERVATION_SIZE + torch.arange(POTS) * POT_ENTRIES + entry] = True
@@ -61,7 +56,7 @@ class TableReader(BaseFeaturesExtractor):
         seen = torch.where(self.flips, seen * side, seen)
         balls = seen[:, : 5 * N_BALLS].reshape(n, N_BALLS, 5)
         state = seen[:, 5 * N_BALLS : OBSERVATION_SIZE]
-        pots = seen[:, OBSERVATION_SIZE:SHOWN].reshape(n, POTS, POT_ENTRIES)
+        pots = seen[:, OBSERVATION_SIZE:].reshape(n, POTS, POT_ENTRIES)
         cue = balls[:, 0, :2]
         here = (balls[:, 1:, 2:3] > 0.0).float()
         on = (balls[:, 1:, 4:5] > 0.0).float() * here
@@ -69,7 +64,7 @@ class TableReader(BaseFeaturesExtractor):
         offered = pots[:, :, :1]
         each = self.pot(pots) * offered
         sums = [(codes * on).sum(1) / 5.0, codes[:, :_N_REDS].sum(1) / 5.0, codes[:, _N_REDS:].sum(1) / 5.0]
-        context = self.context(torch.cat([*sums, each.sum(1), state, cue, side, seen[:, SHOWN:]], 1))
+        context = self.context(torch.cat([*sums, each.sum(1), state, cue, side], 1))
         joint = torch.relu(self.joint[0](context)[:, None] + self.joint[1](each)) * offered
         return torch.cat([context, joint.reshape(n, -1), side], 1)
 
@@ -123,9 +118,8 @@ class TablePolicy(MaskableActorCriticPolicy):
 
     @property
     def has_fused(self):
-        """Whether there are fused passes: not for a subclass with another reader, nor for one that observes the
-        constants of the table."""
-        return self.observation_space.shape == (SHOWN,) and self.reader is TableReader
+        """Whether there are fused passes: not for a subclass with another reader."""
+        return self.reader is TableReader
 
     @property
     def fused(self):

@@ -1,47 +1,48 @@
-"""How is a run resumed from its folder? The checkpoint, the lock, and the checks of a folder before use."""
+"""How does a run go on from its folder? Its settings, its lock, the checkpoint of an agent, and the checks before their use."""
 
 import io
 import pickle
-import shlex
 from dataclasses import asdict
 
 import numpy as np
 import torch
 from stable_baselines3.common.save_util import load_from_zip_file
 
-from commands.files import UNFINISHED, sealed, unsealed, write_atomic
-from commands.lifecycle import python
+from commands.files import UNFINISHED, read_json, sealed, unsealed, with_checksum, write_atomic, write_json
 from commands.lock import NAME as LOCK
 from commands.lock import Lock
 from snooker_env.checks import refuse
 
-from ..cluster.mirror import copied
 from .hyperparameters import algorithm_class
 from .models import CHECKPOINT, zipped
 
+SETTINGS = "settings.json"
+"""What the run was asked for: a folder that holds it is that of a run."""
 
-def claimed(out, resume, checkpoint=CHECKPOINT):
-    """The ``Lock`` on the folder of a new run (made here) or of one to resume, which holds the file ``checkpoint``.
-    ValueError if it is unfit."""
+
+def claimed(out, resume):
+    """The ``Lock`` on the folder of a new run (made here) or of one to resume. ValueError if it is unfit."""
     if not (out / LOCK).exists():
-        _check(out, resume, checkpoint)
+        _check(out, resume)
     out.mkdir(parents=True, exist_ok=True)
     lock = Lock(out)
     try:
         for file in out.iterdir():
             if UNFINISHED.fullmatch(file.name):
                 file.unlink()
-        _check(out, resume, checkpoint)  # again: from now on no other run changes it
+        _check(out, resume)  # again: from now on no other run changes it
     except BaseException:
         lock.release()
         raise
     return lock
 
 
-def _check(out, resume, checkpoint):
+def _check(out, resume):
     if resume:
-        if not (out / checkpoint).is_file():
-            raise refuse("out", str(out), "holds no checkpoint: start the run without --resume")
+        if not (out / SETTINGS).is_file():
+            raise refuse(
+                "out", str(out), f"must be the folder of a run, with its {SETTINGS}: leave out --resume"
+            )
         return
     if out.exists() and not out.is_dir():
         raise refuse("out", str(out), "must be a folder, new or empty")
@@ -52,87 +53,65 @@ def _check(out, resume, checkpoint):
         raise refuse("out", str(out), f"{others}: --resume continues it, --out names another folder")
 
 
-def go_on(out):
-    """The command that continues the run saved there, as a sentence."""
-    return f"Continue with:  {shlex.join([python(), 'train.py', '--resume', '--out', str(out)])}"
+def keep_settings(out, settings):
+    """Write the settings of a run, a dataclass."""
+    write_json(out / SETTINGS, with_checksum(asdict(settings)))
 
 
-def kept(out):
-    """What was saved of a run that was interrupted, in one sentence."""
-    if (out / CHECKPOINT).is_file():
-        return f"The last checkpoint is complete. {go_on(out)}"
-    return "Nothing was saved yet: start the run again."
+def kept_settings(out, kind):
+    """The settings of the run in a folder, of this class. Raises ValueError."""
+    wanted = "must be whole, as the current train.py writes it"
+    try:
+        read = read_json("out", out / SETTINGS, wanted, checked=True)
+        return kind(**{name: tuple(one) if isinstance(one, list) else one for name, one in read.items()})
+    except TypeError:
+        raise refuse("out", str(out / SETTINGS), wanted) from None
 
 
-def save_checkpoint(out, settings, model, seconds, curve, imitation, imitating=None):
-    """Save the state of training, tables and random generators: a resumed run equals an uninterrupted one.
-
-    ``imitating``: of ``Imitation.get_state`` while the agent imitates the search, else None.
-    """
+def save_checkpoint(out, model, parts):
+    """Save the state of parts, model, tables and random generators: a resumed run equals an uninterrupted one."""
     tables = model.get_env()
-    state = {"settings": asdict(settings), "seconds": seconds, "curve": curve}
-    state |= {"imitation": imitation, "imitating": imitating}
-    state |= {"model": zipped(model), "replay": getattr(model, "replay_buffer", None)}
+    state = {"parts": [part.get_state() for part in parts], "model": zipped(model)}
     state |= {"tables": tables.env_method("get_state"), "running": tables.running}
     # SB3 draws from the global generator
     state["random"] = np.random.get_state(), torch.get_rng_state(), model.action_space  # noqa: NPY002
-    data = sealed(pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL), CHECKPOINT)
-    write_atomic(out / CHECKPOINT, data)
-    copied(out, data)
+    write_atomic(out / CHECKPOINT, sealed(pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL), CHECKPOINT))
 
 
-def stale(out):
+def _stale(out):
     """The ValueError for a checkpoint that cannot be used."""
     wanted = "must be a complete checkpoint of the current train.py"
-    damaged = "this one is damaged or older, start the run again"
-    return refuse("resume", str(out / CHECKPOINT), f"{wanted}: {damaged}")
+    return refuse(
+        "resume", str(out / CHECKPOINT), f"{wanted}: this one is damaged or older, start the run again"
+    )
 
 
-def read_checkpoint(out, settings):
-    """The checkpoint and the settings in it, made by the class ``settings``. Raises ValueError."""
+def read_checkpoint(out):
+    """The checkpoint of a run, and the options of its tables: its recipe may have others by now. None if nothing was saved
+    yet. Raises ValueError."""
+    if not (out / CHECKPOINT).is_file():
+        return None
     try:
         state = pickle.loads(unsealed((out / CHECKPOINT).read_bytes(), CHECKPOINT))
-        was = settings(**state["settings"])
-        wanted = {
-            "model",
-            "tables",
-            "random",
-            "replay",
-            "running",
-            "imitation",
-            "imitating",
-            "curve",
-            "seconds",
-        }
-        if not state.keys() >= wanted or "shots" not in (state["imitating"] or {"shots": 0}):
-            raise KeyError
-    except Exception:  # any error of pickle on a file of another kind
-        raise stale(out) from None
-    return state, was
-
-
-def options_of(out, state):
-    """The options of the tables of a checkpoint: its recipe may have others by now. Raises ValueError."""
-    try:
         data, *_ = load_from_zip_file(io.BytesIO(state["model"]), device="cpu")
-        return dict(data or {})["env_options"]
-    except Exception:
-        raise stale(out) from None
+        if not state.keys() >= {"parts", "tables", "running", "random"}:
+            raise KeyError
+        return state | {"options": dict(data or {})["env_options"]}
+    except Exception:  # any error of pickle on a file of another kind
+        raise _stale(out) from None
 
 
-def load_model(out, state, algo, envs):
+def load_model(out, state, algo, envs, seed):
     """The agent of a checkpoint, its tables and random generators as they were. Raises ValueError."""
     try:
         # a seed here would reseed the tables
         model = algorithm_class(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)
-        model.seed = state["settings"]["seed"]
-        if state["replay"] is not None:
-            model.replay_buffer = state["replay"]
+        model.seed = seed
         numpy_state, torch_state, model.action_space = state["random"]
         np.random.set_state(numpy_state)  # noqa: NPY002
         torch.set_rng_state(torch_state)
-        # for the reset at the beginning of learning or imitation
+        # for the reset at the beginning of learning or expert iteration
         envs.set_options([{"state": table} for table in state["tables"]])
     except Exception:  # of an older network, or with a part missing
-        raise stale(out) from None
+        raise _stale(out) from None
     return model

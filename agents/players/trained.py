@@ -8,7 +8,6 @@ from snooker_env.planning import action_masks
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.players import ChoicePlayer, SeenPlayer
 from snooker_env.players.choices import shares
-from snooker_env.players.seen import conditions_seen
 from snooker_env.players.weights import learned_of
 from snooker_env.tasks.saved_models import by_train, entries, one_thread
 
@@ -34,36 +33,13 @@ class PolicyPlayer(ChoicePlayer):
 
     def scores(self, at, seeds):
         """The policy's logits, whose softmax are its probabilities."""
-        policy, masks, observations = (
-            self.model.policy,
-            action_masks(at, cue=self.options.cue),
-            at.observations(),
-        )
-        if isinstance(policy, Layers):
-            return np.where(masks, policy(observations), -np.inf)
-        if self.model.env_options.get("observe_conditions"):
-            observations = np.concatenate([observations, conditions_seen(at, self.options.rules)], 1)
-        seen = seen_of(observations)
-        fused = getattr(policy, "has_fused", False)
-        scores = policy.fused.scores(seen, masks) if fused else _logits(policy, seen, masks)
-        return np.where(masks, scores, -np.inf)
+        policy, masks, seen = self.model.policy, action_masks(at, cue=self.options.cue), at.observations()
+        plain = isinstance(policy, Layers)
+        return np.where(masks, policy(seen) if plain else policy.fused.scores(seen_of(seen), masks), -np.inf)
 
     def figures(self, scores):
         """The probabilities."""
         return shares(scores)
-
-
-def _logits(policy, seen, masks):
-    """The logits of a policy of PyTorch, a table at a time: a batch rounds otherwise than one row."""
-    import torch
-
-    logits = np.empty(masks.shape)
-    with one_thread(), torch.no_grad():
-        for k in range(len(seen)):
-            row = policy.obs_to_tensor(seen[k : k + 1])[0]
-            distribution = policy.get_distribution(row, action_masks=masks[k : k + 1]).distribution
-            logits[k] = distribution.logits[0].numpy()
-    return logits
 
 
 class BoxModel:

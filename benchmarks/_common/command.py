@@ -10,10 +10,7 @@ import sys
 from pathlib import Path
 
 from commands import files
-from commands.lifecycle import any_terminal
-from snooker_env._closed import until_closed
-
-from .stops import WRITTEN, explained
+from commands.lifecycle import command
 
 PICTURES, FIGURES = (Path(__file__).parents[1] / name for name in ("pictures", "figures"))
 _transcripts = []
@@ -127,23 +124,24 @@ class _Copied(io.StringIO):
 
 
 def run(main):
-    """Run a command's ``main`` and exit with what it returns. Ctrl-C and a library that is missing are said
-    in one line."""
-    any_terminal()
-    before = signal.signal(signal.SIGINT, _interrupt)
-    printed = _Copied(sys.stdout)
+    """Run a command's ``main`` and exit with what it returns; what is printed is kept in the file for it."""
+    loaded = sys.modules["__main__"].__spec__
     _transcripts.clear()
-    try:
-        with until_closed(), contextlib.redirect_stdout(printed):
-            code = main()
-        for file in _transcripts:
-            save_text(file, printed.getvalue())
-    except (KeyboardInterrupt, ImportError) as error:
-        _alarm(0.0)
-        code = explained(error)
-    finally:
-        signal.signal(signal.SIGINT, before)
-    sys.exit(code)
+
+    @command(loaded.name.removesuffix(".__main__") if loaded else sys.argv[0])
+    def copied(_argv):
+        before, printed = signal.signal(signal.SIGINT, _interrupt), _Copied(sys.stdout)
+        try:
+            with contextlib.redirect_stdout(printed):
+                code = main()
+            for file in _transcripts:
+                save_text(file, printed.getvalue())
+        finally:
+            _alarm(0.0)
+            signal.signal(signal.SIGINT, before)
+        return code
+
+    sys.exit(copied(None))
 
 
 def _interrupt(_number, _frame):
@@ -161,21 +159,10 @@ def _alarm(seconds):
         signal.setitimer(signal.ITIMER_REAL, seconds)
 
 
-@contextlib.contextmanager
-def _writing(file):
-    """Around the writing of a file: SystemExit in one line where it fails."""
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        yield
-    except OSError as error:
-        raise SystemExit(f"{file} could not be written: {error.strerror or error}") from None
-    WRITTEN.append(file)
-
-
 def save_bytes(file, data):
     """Write a file whole or not at all."""
-    with _writing(file):
-        files.write_atomic(file, data)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    files.write_atomic(file, data)
 
 
 def save_text(file, text):
@@ -186,14 +173,14 @@ def save_text(file, text):
 def save_json(file, figures):
     """Write every figure into ``file``; nothing if that is None."""
     if file is not None:
-        with _writing(file):
-            files.write_json(file, figures)
+        file.parent.mkdir(parents=True, exist_ok=True)
+        files.write_json(file, figures)
 
 
 def save_figure(figure, file, **options):
     """Write a matplotlib figure, in the format of the file's suffix, and close it."""
-    with _writing(file):
-        files.save_figure(figure, file, **options)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    files.save_figure(figure, file, **options)
     pyplot().close(figure)
 
 

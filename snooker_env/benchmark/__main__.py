@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .._check import integer, refuse
-from .._closed import until_closed
+from .._command import exit_code
 from .._files import write_atomic
 from .._tables import shown, text_table
 from .._warmup import warmup
@@ -97,22 +97,17 @@ def _agent(p: argparse.ArgumentParser, required: bool) -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command. Exit code 0; 1: wrong file or failed agent; 2: wrong arguments; 130: Ctrl-C."""
     words = list(sys.argv[1:] if argv is None else argv)
-    try:
-        with until_closed():
-            args = parser().parse_args(words)
-            args.line = f"{NAME} {shlex.join(words)}"
+
+    def play() -> int:
+        args = parser().parse_args(words)
+        args.line = f"{NAME} {shlex.join(words)}"
+        try:
             return COMMANDS[args.command](args)
-    except (ValueError, TypeError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except (AgentError, ImportError) as error:
-        print(f"error: {error}", file=sys.stderr)
-    except OSError as error:
-        print(f"error: {error.filename or 'the output'}: {error.strerror}", file=sys.stderr)
-    except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return 130
-    return 1
+        except (ValueError, TypeError, AgentError) as error:
+            print(f"error: {error}", file=sys.stderr)
+            return 1 if isinstance(error, AgentError) else 2
+
+    return exit_code("error", play)
 
 
 def _tasks(args: Any) -> int:

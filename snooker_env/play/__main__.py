@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .._check import integer, refuse_what
-from .._closed import until_closed
+from .._command import until_closed
 from .._files import read_json
 from ..players.model_options import add_model_options, options_of_words
 from ..tasks.noise import LEVELS

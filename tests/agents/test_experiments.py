@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 import snooker_env.players.resolver as resolver
-import train
-from agents.evaluation import tournament
-from agents.evaluation.protocol import parser
+from agents import tournament
+from agents.evaluate import parser
+from agents.learning.agent_training import recipe_of
+from agents.learning.settings import Settings, parse
 from snooker_env.players.weights import levels
 from tests.processes import ROOT
 
@@ -37,7 +38,7 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     )
     assert len(runs) == 8 and len(comparisons) == 1 and len(curves) == 1 and len(runs) + 3 == len(lines)
     assert all(agent.partition("=")[2].startswith(f"{tmp_path}/") for agent in curves[0])
-    recipes = {train.recipe_of(train.Settings(**train.parse(run)[1])).name for run in runs}
+    recipes = {recipe_of(Settings(**parse(run)[1])).name for run in runs}
     assert recipes == {"ppo_value"}
     for comparison in comparisons:
         parsed = parser().parse_args(comparison)

@@ -1,18 +1,14 @@
 """Does ``train.py`` train by expert iteration, judge what it learned honestly, and resume at any moment?"""
 
-import pickle
-import shutil
-import signal
-
 import numpy as np
 import pytest
 
 import snooker_env as sn
 import train
-from agents.learning import callback, expert_iteration
+from agents.learning import agent_training, loop
 from snooker_env.benchmark import play_visits, simulated, summary
 from tests.agents import training
-from tests.agents.training import results, resume, weights
+from tests.agents.training import results, weights
 
 EXPERT = ["--agent", "ppo_value", "--envs", "4", "--imitate", "64"]
 
@@ -24,16 +20,15 @@ def run(out, *options):
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     """The folder of an uninterrupted run; its file ``counted`` holds the shots that the engine counted."""
-    out, trained, counted = tmp_path_factory.mktemp("expert") / "run", train.train, []
+    out, original, counted = tmp_path_factory.mktemp("expert") / "run", loop.Loop.run, []
 
-    def train_and_count(*arguments, **options):
+    def run_and_count(self):
         before = simulated()
-        made = trained(*arguments, **options)
+        original(self)
         counted.append(simulated() - before)
-        return made
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(train, "train", train_and_count)
+        patch.setattr(loop.Loop, "run", run_and_count)
         assert run(out) == 0
     (out / "counted").write_text(str(*counted))
     return out
@@ -58,46 +53,15 @@ def test_the_run_says_what_the_planner_gains(finished):
         assert again == found["evaluation"][name.partition("@")[0]]
 
 
-@pytest.mark.parametrize("at", [8, 40])
-def test_a_signal_in_expert_iteration_loses_nothing(finished, tmp_path, monkeypatch, capsys, at, refused):
-    """Before and after the value has begun to learn."""
-    original = expert_iteration.ExpertIteration.round
-
-    def interrupted(self):
-        original(self)
-        if self.done == at:
-            signal.raise_signal(signal.SIGTERM)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(expert_iteration.ExpertIteration, "round", interrupted)
-        assert run(tmp_path) == 128 + signal.SIGTERM
-    assert f"Saved at {at} of 64 positions" in capsys.readouterr().out
-    uncounted = shutil.copytree(tmp_path, tmp_path / "uncounted") / "checkpoint.pkl"
-    state = pickle.loads(uncounted.read_bytes())
-    del state["imitating"]["shots"]  # as in an older version
-    uncounted.write_bytes(pickle.dumps(state))
-    assert "start the run again" in refused(train.main, "--resume", "--out", uncounted.parent)
-    assert resume(tmp_path) == 0
-    assert np.array_equal(weights(tmp_path), weights(finished))
-    shots = results(finished)["simulated_shots"]
-    assert results(tmp_path)["simulated_shots"] == shots
-    assert f"All simulated shots of the training: {shots:,}." in capsys.readouterr().out
-
-
-def test_a_signal_in_ppo_loses_nothing_and_the_rewards_stay_judged(finished, tmp_path, monkeypatch):
-    original, judged = callback.RunCallback._on_step, []
-
-    def interrupted(self):
-        judged.append(self.training_env.judge is not None)
-        if self.num_timesteps == 260:
-            signal.raise_signal(signal.SIGINT)
-        return original(self)
-
-    monkeypatch.setattr(callback.RunCallback, "_on_step", interrupted)
-    assert run(tmp_path) == 128 + signal.SIGINT and resume(tmp_path) == 0
-    assert judged and all(judged)
-    assert np.array_equal(weights(tmp_path), weights(finished))
-    assert results(tmp_path)["simulated_shots"] == results(finished)["simulated_shots"]
+def test_rewards_stay_judged_after_a_resume(finished, tmp_path, monkeypatch):
+    judged, step = [], agent_training._Between._on_step
+    monkeypatch.setattr(
+        agent_training._Between,
+        "_on_step",
+        lambda self: judged.append(self.training_env.judge is not None) or step(self),
+    )
+    assert run(tmp_path, "--steps", "256") == 0 and training.resume(tmp_path, "--steps", "512") == 0
+    assert len(judged) == 128 and all(judged)
 
 
 def test_ppo_without_a_learned_value_is_refused(tmp_path, refused):

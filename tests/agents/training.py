@@ -7,9 +7,7 @@ import numpy as np
 import train
 from agents.learning.models import load_trained
 
-TINY = str.split(
-    "--agent ppo_mask --envs 2 --eval-visits 4 --no-progress --parallel one --steps 512 --imitate 0"
-)
+TINY = str.split("--agent ppo_target --envs 2 --eval-visits 4 --no-progress --parallel one --steps 512")
 
 
 def run(out, *options):

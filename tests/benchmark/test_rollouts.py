@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from agents.evaluation import protocol
+from agents import evaluate
 from snooker_env.benchmark import HELD_OUT_SEED, play_visits, rollouts
 from snooker_env.benchmark.rollouts import FIGURES, Strokes, counts, summary
 from snooker_env.benchmark.tasks import tables_of
@@ -124,7 +124,7 @@ def test_an_agent_is_played_under_its_condition(change):
     """Stroke by stroke as ``play_visits`` plays it there; and what is changed changes the play."""
     condition, seeds = USUAL | change, list(range(change.get("seeds", 3), 33))[:20]
     condition.pop("seeds", None)
-    outcome = protocol.play_agent(protocol.Entrant("a", ("ghost_ball",)), condition, seeds, 100)
+    outcome = evaluate.play_agent(evaluate.Entrant("a", ("ghost_ball",)), condition, seeds, 100)
     wanted = play_visits("ghost_ball", 20, first_seed=seeds, **condition)
     usual = play_visits("ghost_ball", 20, first_seed=list(range(3, 23)), **USUAL)
     (strokes,) = outcome.strokes

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from snooker_env.players.search import SearchPlayer
-
 
 def note(decision, n):
     """Note this process and its decision for n tables in the file of $NOTED, and take the time of $SLOW for it.
@@ -56,19 +54,6 @@ class Noted:
         return np.full(len(seeds), 20)
 
 
-class Thinking(SearchPlayer):
-    """Searches, slowly, and notes each decision."""
-
-    def __init__(self):
-        super().__init__("search", 30)
-        self._decisions = 0
-
-    def rank(self, positions, seeds):
-        note(self._decisions, len(seeds))
-        self._decisions += 1
-        return super().rank(positions, seeds)
-
-
 class Failing(Noted):
     """Has an error of its own."""
 
@@ -76,22 +61,8 @@ class Failing(Noted):
         raise RuntimeError("a fault of mine")
 
 
-class Greedy(Noted):
-    """Its memory is at an end."""
-
-    def act(self, observations, masks, seeds):
-        raise MemoryError
-
-
 class Deadly(Noted):
     """Ends its process, as the kernel does with one that takes too much memory."""
 
     def act(self, observations, masks, seeds):
         os.kill(os.getpid(), 9)
-
-
-class Full(Noted):
-    """Finds the disk full."""
-
-    def act(self, observations, masks, seeds):
-        raise OSError(28, "No space left on device", "/scratch/x")

@@ -2,7 +2,6 @@
 
 import json
 import shlex
-import shutil
 
 import numpy as np
 import pytest
@@ -11,6 +10,8 @@ import snooker_env as sn
 import train
 from agents import tournament
 from agents.learning import learn_strokes
+from agents.learning.run_folder import keep_settings
+from agents.learning.settings import Settings
 from snooker_env.benchmark import play_visits, simulated, summary
 from snooker_env.planning import Position, Positions
 from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
@@ -18,7 +19,6 @@ from snooker_env.planning.learned.stroke_value import LOOKS, SIZE
 from snooker_env.players import VISITS
 from snooker_env.players.stroke_value import StrokeValuePlayer
 from snooker_env.players.weights import FOLDER, STROKES, StrokeLayers, learned_strokes
-from snooker_env.progress import Progress
 
 
 def opened(n, **options):
@@ -58,8 +58,8 @@ def test_it_makes_more_than_players_that_see_no_position():
 
 
 @pytest.mark.parametrize("frame_rounds", [1, pytest.param(2, marks=pytest.mark.slow)])
-def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, capsys, frame_rounds):
-    whole, parts = tmp_path / "whole", tmp_path / "parts"
+def test_a_network_is_learned(tmp_path, capsys, frame_rounds):
+    whole = tmp_path / "whole"
     short = [
         "--agent",
         "stroke_value",
@@ -87,17 +87,6 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
     settings = ["rounds=2", "tables=16", f"frame_rounds={frame_rounds}", "frames=10"]
     repeated = ["--agent", "stroke_value", "--seed", "3", "--set", *settings]
     assert shlex.split(results["command"]) == ["python", "train.py", *repeated]
-    shutil.copytree(whole, parts)
-    for name in ("results.json", "strokes.npz", "frames-0-weights.npz"):
-        (parts / name).unlink()  # as if it had been interrupted between the first round of frames and its fit
-    for k in range(1, frame_rounds):
-        (parts / f"frames-{k}.npz").unlink()
-        (parts / f"frames-{k}-weights.npz").unlink()
-    (parts / "visits-1-weights.npz").unlink()
-    assert train.main(["--resume", "--out", str(parts), "--eval-visits", "20", "--no-progress"]) == 0
-    assert (whole / "strokes.npz").read_bytes() == (parts / "strokes.npz").read_bytes()
-    again = json.loads((parts / "results.json").read_text())
-    assert all(again[name] == results[name] for name in ("curve", "simulated_shots"))
     learned = learned_strokes(whole / "strokes.npz")
     at = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     named = sn.player(f"stroke_value@{whole / 'strokes.npz'}").at({}).play(at, [3]).values
@@ -108,38 +97,10 @@ def test_a_network_is_learned_and_an_interrupted_training_goes_on(tmp_path, caps
     assert len(StrokeValuePlayer(learned).at(tables).play(tables, np.arange(8))) == 8
 
 
-class After:
-    """A ``Stop`` that notes a signal after it was asked so many times."""
-
-    def __init__(self, many):
-        self.left = many
-
-    @property
-    def signal(self):
-        self.left -= 1
-        return None if self.left >= 0 else 2
-
-
-def test_a_signal_stops_a_training_between_its_parts(tmp_path):
-    training = learn_strokes.StrokeTraining(tmp_path, learn_strokes.StrokeSettings(tables=16, frames=16))
-    for rounds, play in (
-        (training.visits, training.play_visits),
-        (training.frames, training.play_frames),
-    ):
-        with Progress("a test", rounds.total, "tables", quiet=True) as progress:
-            play(progress, After(1))
-            assert progress.done == 2
-        assert rounds.done == 0 and not list(tmp_path.iterdir())
-    with Progress("a test", training.visits.total, "tables", quiet=True) as progress:
-        training.play_visits(progress, After(1 + learn_strokes.PARTS - 1))  # the last part completes a round
-    assert training.visits.done == 16 and (tmp_path / "visits-0-weights.npz").is_file()
-
-
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--envs", "64"], "--envs must be left out for stroke_value"),
-        (["--mirror", "there"], "--mirror must be left out for stroke_value"),
+        (["--envs", "64"], "envs = 64: must be left out for stroke_value"),
         (["--set", "tables=3"], "tables = 3"),
         (["--set", "frames=9"], "frames = 9"),
         (
@@ -158,11 +119,10 @@ def test_wrong_options_of_a_training_are_refused(tmp_path, words, said, capsys):
 def test_a_folder_of_a_training_is_resumed_as_it_was_or_refused(tmp_path, capsys):
     out = tmp_path / "run"
     out.mkdir()
-    (out / learn_strokes.SETTINGS).write_text('{"seed": 1')
+    keep_settings(out, Settings("stroke_value", seed=1))
     for words, said in (
         (["--agent", "stroke_value"], "--resume continues it"),
-        (["--resume"], "must be a complete file of settings"),
-        (["--resume", "--seed", "2"], "--seed and --set must be left out with --resume"),
+        (["--resume", "--seed", "2"], "--seed is 2 but the run in"),
     ):
         with pytest.raises(SystemExit):
             train.main([*words, "--out", str(out)])

@@ -6,7 +6,7 @@ import importlib.util
 import matplotlib as mpl
 import pytest
 
-from agents.evaluation import protocol
+from agents import evaluate
 from benchmarks import layouts_picture, pictures
 from commands import picture_style
 from tests.pictures import saved_figures, unreadable
@@ -46,7 +46,7 @@ def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch
 def test_destinations_can_be_read(tmp_path):
     few = str.split("--visits 60 --layouts held_out --noise professional --resamples 100")
     with saved_figures() as figures:
-        protocol.main(
+        evaluate.main(
             [
                 "--agent",
                 *str.split("best_pot_30 ghost_ball random"),

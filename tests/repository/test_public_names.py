@@ -81,7 +81,7 @@ def test_agents_commands_and_examples_use_public_names_only(path):
     """But for what ``commands`` passes on, and for the rooms that ``agents`` trains for."""
     passed_on = {
         "commands/files.py": ("snooker_env._files", "snooker_env._seal", "snooker_env: _files"),
-        "commands/lifecycle.py": ("snooker_env._closed",),
+        "commands/lifecycle.py": ("snooker_env._command",),
         "commands/tables.py": ("snooker_env._tables",),
     }
     known = (*TRAINED_FOR, *passed_on.get(path.relative_to(ROOT).as_posix(), ()))

@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from agents.evaluation import calibrate
-from agents.evaluation.calibrate import figures_of, frames_of, frames_played, main, tactics_of
+from agents import calibrate
+from agents.calibrate import figures_of, frames_of, frames_played, main, tactics_of
 from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, SIZE
 from snooker_env.planning.worth import Chance
 from tests.pictures import saved_figures, unreadable

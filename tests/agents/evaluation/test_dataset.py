@@ -8,7 +8,7 @@ import pytest
 import torch
 import yaml
 
-from agents.evaluation import dataset
+from agents import dataset
 from agents.players.trained import load_player
 from snooker_env.benchmark import HELD_OUT_SEED, TASKS
 from snooker_env.planning import Planner, Positions

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agents.evaluation import protocol, report
+from agents import evaluate, report
 from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe
 from commands.physics_option import physics_option, physics_text
@@ -37,7 +37,7 @@ def models(tmp_path_factory):
     tables = training_tables(2, action="discrete")
     for seed in (0, 1):
         (folder / f"m-{seed}").mkdir()
-        model = Recipe.of("ppo_mask").new_model(tables, seed)
+        model = Recipe.of("ppo_value").new_model(tables, seed)
         model.imitated = 300 * seed
         model.save(folder / f"m-{seed}" / "model.zip")
     (folder / "m-0" / "results.json").write_text('{"seconds": 2.0}')
@@ -49,7 +49,7 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     options = "--visits 12 --layouts held_out=20 colours --noise none club --resamples 200 --physics"
     agents = ["--agent", f"model={models / 'm-*'}", "random", "--against", "ghost_ball", "random"]
     files = outputs(tmp_path / "new")
-    assert protocol.main([*agents, *options.split(), "paper,mu_bb=marlow", *files]) == 0
+    assert evaluate.main([*agents, *options.split(), "paper,mu_bb=marlow", *files]) == 0
     found = read(tmp_path / "new" / "r.json")
     names = "command version commit machine python numpy protocol agents results"
     assert sorted(found) == sorted(names.split())
@@ -57,7 +57,7 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
     first, second = found["agents"][0]["runs"]
     assert (first["seconds"], first["imitated"], second["seconds"], second["imitated"]) == (2.0, 0, None, 300)
-    assert first["layout"] == "opened" and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
+    assert first["layout"] == "opened" and first["recipe"] == "ppo_value" and first["gamma"] == 0
     assert len(found["results"]) == 3 * 2 * 2
     names = "agent layout noise fidelity physics cue visits runs figures ratios counted longest_break by_run"
     for row in found["results"]:
@@ -89,12 +89,12 @@ def test_held_out_tables_alone_are_played_unless_others_are_named():
         (["--visits", "30"], {"held_out": 30}),
         (["--layouts", "colours", "held_out"], {"colours": 500, "held_out": 2000}),
     ):
-        _, _, seeds = protocol.checked(protocol.parser().parse_args(["--agent", "random", *words]))
+        _, _, seeds = evaluate.checked(evaluate.parser().parse_args(["--agent", "random", *words]))
         assert {name: len(its) for name, its in seeds.items()} == sizes
 
 
 def test_the_last_words_are_the_points_of_each_agent(capsys, tmp_path):
-    assert protocol.main(["--agent", "random", *QUICK, "--json", str(tmp_path / "r.json")]) == 0
+    assert evaluate.main(["--agent", "random", *QUICK, "--json", str(tmp_path / "r.json")]) == 0
     _, _, last = " ".join(capsys.readouterr().out.split()).rpartition("Points a visit on held_out, ")
     rows = read(tmp_path / "r.json")["results"]
     made = [f"{row['agent']} {report._pm(row['figures']['points_a_visit'])}" for row in rows]
@@ -106,7 +106,7 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
     for company in ([], ["random", f"other={models / 'm-0'}"]):
         file = tmp_path / f"{len(company)}.json"
         agents = [*company, f"m={models / 'm-0'},{models / 'm-1'}"]
-        protocol.main(["--agent", *agents, *QUICK, "--json", str(file)])
+        evaluate.main(["--agent", *agents, *QUICK, "--json", str(file)])
         same = [row for row in read(file)["results"] if row["agent"] in ("m", "ghost_ball")]
         rows.append([{key: row[key] for key in row if key != "ms_a_decision"} for row in same])
     assert rows[0] == rows[1] and len(rows[0]) == 2
@@ -142,13 +142,13 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
     ],
 )
 def test_bad_input_ends_with_one_clear_line(options, says, refused):
-    assert re.search(says, refused(protocol.main, "--agent", *options.split()))
+    assert re.search(says, refused(evaluate.main, "--agent", *options.split()))
 
 
 def test_a_player_of_ones_own_is_compared(tmp_path):
     file, users = tmp_path / "r.json", "tests.agents.user_players"
     agents = ["--agent", f"{users}:Softly", f"me={users}:Softly"]
-    assert protocol.main([*agents, *QUICK, "--json", str(file)]) == 0
+    assert evaluate.main([*agents, *QUICK, "--json", str(file)]) == 0
     rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in read(file)["results"]}
     assert rows.keys() == {"Softly", "me", "ghost_ball"}
     assert rows["Softly"] == rows["me"] != rows["ghost_ball"]
@@ -161,17 +161,17 @@ def test_a_player_of_ones_own_is_compared(tmp_path):
         ("nothere:Soft", "player = 'nothere:Soft': .*ModuleNotFoundError"),
     ):
         with pytest.raises(ValueError, match=why):
-            protocol.Entrant.of(name).trained()
+            evaluate.Entrant.of(name).trained()
 
 
 def test_a_path_with_a_colon_is_a_path(models, tmp_path):
     (tmp_path / "10:00").symlink_to(models)
-    assert len(protocol.Entrant.of(f"x={tmp_path}/10:00/m-?").runs) == 2
+    assert len(evaluate.Entrant.of(f"x={tmp_path}/10:00/m-?").runs) == 2
     for path, why in ((r"C:\runs\m-0\model.zip", "it is missing"), ("a/b:c", "or name existing models")):
         with pytest.raises(ValueError, match=why):
-            protocol.Entrant.of(f"x={path}")
+            evaluate.Entrant.of(f"x={path}")
     with pytest.raises(ValueError, match="or name existing models"):
-        protocol.Entrant.of("x=10:00")
+        evaluate.Entrant.of("x=10:00")
 
 
 FOREIGN = "agent = '.*': must be a model saved by Stable-Baselines3"
@@ -180,7 +180,7 @@ FOREIGN = "agent = '.*': must be a model saved by Stable-Baselines3"
 @pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},tests.agents.user_players:Softly"])
 def test_players_and_models_under_one_label_are_refused(which, models):
     with pytest.raises(ValueError, match=r"agent = 'x=.*: must be players or trained models, not both"):
-        protocol.Entrant.of(which.format(models / "m-0"))
+        evaluate.Entrant.of(which.format(models / "m-0"))
 
 
 @pytest.mark.parametrize(
@@ -203,7 +203,7 @@ def test_a_broken_file_is_named(file, text, says, models, tmp_path):
     else:
         (tmp_path / file).write_text(text)
     with pytest.raises(ValueError, match=says):
-        protocol.Entrant.of(str(tmp_path / "model.zip" if file == "model.json" else tmp_path)).trained()
+        evaluate.Entrant.of(str(tmp_path / "model.zip" if file == "model.json" else tmp_path)).trained()
 
 
 def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
@@ -212,7 +212,7 @@ def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
 
     monkeypatch.setattr("agents.evaluation.destinations.draw", draw)
     with pytest.raises(RuntimeError, match="no ink"):
-        protocol.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
+        evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
     assert read(tmp_path / "r.json")["results"] and (tmp_path / "r.md").read_text()
 
 
@@ -222,8 +222,8 @@ BOTH = ["--agent", "random", *QUICK, "--layouts", "held_out", "colours"]
 def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     """And spares a file that is there already."""
     (tmp_path / "r.md").write_text("whole")
-    interrupted_at(monkeypatch, protocol, "play_agent", 4)
-    assert protocol.main([*BOTH, *outputs(tmp_path)]) == 130
+    interrupted_at(monkeypatch, evaluate, "play_agent", 4)
+    assert evaluate.main([*BOTH, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
     assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}"
@@ -238,8 +238,8 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
 
 
 def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatch, capsys):
-    interrupted_at(monkeypatch, protocol, "play_agent", 2)
-    assert protocol.main([*BOTH, *outputs(tmp_path)]) == 130
+    interrupted_at(monkeypatch, evaluate, "play_agent", 2)
+    assert evaluate.main([*BOTH, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 0 of 2 parts (layouts under one noise) were complete: nothing is kept"
     assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}" and not printed.out
@@ -247,8 +247,8 @@ def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatc
 
 
 def test_ctrl_c_before_play_is_one_line(monkeypatch, capsys):
-    interrupted_at(monkeypatch, protocol.snooker_env, "warmup", 1)
-    assert protocol.main(["--agent", "random", *QUICK]) == 130
+    interrupted_at(monkeypatch, evaluate.snooker_env, "warmup", 1)
+    assert evaluate.main(["--agent", "random", *QUICK]) == 130
     assert capsys.readouterr().err == "agents.evaluate: interrupted\n"
 
 
@@ -263,7 +263,7 @@ def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys, full):
 
     monkeypatch.setattr(os, "replace", replace)
     with pytest.raises(SystemExit) as stop:
-        protocol.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
+        evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
     assert stop.value.code == f"agents.evaluate: {tmp_path / full} cannot be written: No space left on device"
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"} - {full}
     printed = capsys.readouterr().out
@@ -274,9 +274,9 @@ def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
     def gone(report):
         raise SystemExit(1)  # as rich does
 
-    monkeypatch.setattr(protocol, "show", gone)
+    monkeypatch.setattr(evaluate, "show", gone)
     with pytest.raises(SystemExit):
-        protocol.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
+        evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"}
 
 

@@ -12,7 +12,7 @@ import pytest
 from sb3_contrib import TQC, MaskablePPO, RecurrentPPO
 from stable_baselines3 import A2C, DQN, PPO, SAC
 
-from agents.evaluation import protocol
+from agents import evaluate
 from agents.evaluation.entrants import Entrant
 from agents.learning.models import PRETRAINED
 from snooker_env.envs.snooker import SnookerEnv
@@ -107,7 +107,7 @@ def test_a_foreign_model_is_compared_with_consent(foreign, tmp_path, capsys):
         "--options",
         "aim=target",
     ]
-    assert protocol.main([*agents, *QUICK, "--json", str(tmp_path / "r.json")]) == 0
+    assert evaluate.main([*agents, *QUICK, "--json", str(tmp_path / "r.json")]) == 0
     (run,) = json.loads((tmp_path / "r.json").read_text())["agents"][0]["runs"]
     its = {"from": str(foreign / "ppo.zip"), "recipe": "PPO", "shots": 0, "seed": 4, "gamma": 0.99}
     under = dict.fromkeys(("layout", "noise", "fidelity", "physics", "cue"), "unknown")
@@ -137,7 +137,7 @@ def test_nothing_of_a_foreign_model_runs_without_consent_or_if_it_does_not_fit(
     foreign, tmp_path, name, options, says, refused
 ):
     file = bombed(foreign / f"{name}.zip", tmp_path / "model.zip", tmp_path / "mark")
-    error = refused(protocol.main, "--agent", file, *options, *QUICK)
+    error = refused(evaluate.main, "--agent", file, *options, *QUICK)
     assert f"agent = {str(file)!r}: {says}" in error and not (tmp_path / "mark").exists()
 
 
@@ -169,5 +169,5 @@ KEYS = ": must be KEY=VALUE, KEY once each of action, aim, elevation, placement,
 )
 def test_options_are_checked_before_anything_is_played(options, says, refused):
     for agent in ("ppo_value", PRETRAINED / "ppo_value.zip", "random"):
-        error = refused(protocol.main, "--agent", agent, "--trust", "--options", *options, *QUICK)
+        error = refused(evaluate.main, "--agent", agent, "--trust", "--options", *options, *QUICK)
         assert error.endswith(says)

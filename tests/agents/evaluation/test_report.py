@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from scipy import stats
 
-from agents.evaluation import report
+from agents import report
 from agents.evaluation.training_summary import conclusion
 from commands.tables import WIDTH, TextTable
 from snooker_env.benchmark.statistics import unseen
@@ -281,7 +281,7 @@ def concluded(*players):
     for name, (points, se, *share) in zip(("trained", "ghost_ball", "random"), players, strict=True):
         means = {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se}
         figures[name] = means | {"visits": 100, "next_pot_after_a_pot": share[0] if share else 0.9}
-    return conclusion("ppo_mask", 1000, 0, figures)
+    return conclusion("ppo_value", 1000, 0, figures)
 
 
 POOR = (0.5, 0.1)
@@ -297,7 +297,7 @@ WORSE = "0.03 pots and 0.10 points a visit against 0.67 pots"
         ((3.0, 0.3), (2.9, 0.3), POOR, f"{ALIKE} ghost_ball"),
         ((2.8, 0.3), (2.9, 0.3), POOR, f"{ALIKE} ghost_ball"),
         ((2.0, 0.1), (9.0, 0.3), POOR, "better than random strokes but worse than ghost_ball"),
-        ((9.0, 0.3), (2.9, 0.3), POOR, "ppo_mask is better than ghost_ball"),
+        ((9.0, 0.3), (2.9, 0.3), POOR, "ppo_value is better than ghost_ball"),
         # each player's own share of next pots, whichever is greater
         ((9.0, 0.3, 0.6), (2.9, 0.3, 0.661), POOR, "follows in 60.0 % against 66.1 %."),
         ((9.0, 0.3, 0.898), (2.9, 0.3, 0.661), POOR, "follows in 89.8 % against 66.1 %."),
@@ -310,4 +310,4 @@ def test_the_conclusion_claims_only_what_the_figures_show(trained, ghost, random
 @pytest.mark.parametrize("shares", [(None, 0.6), (0.6, None)])
 def test_a_share_of_next_pots_that_is_not_known_is_not_given(shares):
     sentence = concluded((9.0, 0.3, shares[0]), (2.9, 0.3, shares[1]), POOR)
-    assert "ppo_mask is better than ghost_ball" in sentence and "%" not in sentence
+    assert "ppo_value is better than ghost_ball" in sentence and "%" not in sentence

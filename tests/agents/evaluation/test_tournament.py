@@ -5,7 +5,8 @@ import re
 
 import pytest
 
-from agents.evaluation import tournament, tournament_play
+from agents import tournament
+from agents.evaluation import tournament_play
 from agents.evaluation.tournament_figures import COLUMNS, figures_of
 from agents.evaluation.tournament_file import FIELDS, PLAYER, faults
 from snooker_env.benchmark import read_result

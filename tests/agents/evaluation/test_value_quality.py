@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from agents.evaluation import value_quality
+from agents import value_quality
 from snooker_env.benchmark import play_visits
 from snooker_env.benchmark.tasks import tables_of
 

@@ -13,7 +13,6 @@ from agents.learning.expert_iteration import FRESH, STARTS, ExpertIteration, Sta
 from agents.learning.hyperparameters import Recipe
 from agents.learning.model_files import packed, read
 from agents.learning.models import zipped
-from agents.learning.self_play import search_of
 from agents.learning.value_network import value_of
 from snooker_env import player
 from snooker_env.planning import Positions, spread_of
@@ -63,6 +62,12 @@ def plain(x):
     return [plain(one) for one in x] if isinstance(x, list | tuple) else x
 
 
+def begun(model, venv, states, seed, threads, before=None):
+    run = ExpertIteration(model, venv, states, seed, threads, before)
+    run.begin()
+    return run
+
+
 def run_to(run, done):
     while run.done < done:
         run.round()
@@ -71,7 +76,7 @@ def run_to(run, done):
 
 def a_run(seed=5, threads=1):
     model, venv = model_and_tables(seed)
-    return model, run_to(ExpertIteration(model, venv, STATES, seed, threads), STATES)
+    return model, run_to(begun(model, venv, STATES, seed, threads), STATES)
 
 
 def test_a_stopped_run_ends_where_an_uninterrupted_one_does():
@@ -81,7 +86,7 @@ def test_a_stopped_run_ends_where_an_uninterrupted_one_does():
     assert whole.done == STATES and whole.curve[-1]["states"] == STATES
     for k in (1, 2, 5):
         model, venv = model_and_tables()
-        first = run_to(ExpertIteration(model, venv, STATES, 5, 1), k * N)
+        first = run_to(begun(model, venv, STATES, 5, 1), k * N)
         saved = pickle.dumps((first.get_state(), weights(model), torch.get_rng_state()))
         state, kept, generator = pickle.loads(saved)
         torch.rand(3)
@@ -89,7 +94,7 @@ def test_a_stopped_run_ends_where_an_uninterrupted_one_does():
         again.policy.load_state_dict(kept)
         torch.set_rng_state(generator)
         # also on another number of threads
-        second = run_to(ExpertIteration(again, venv, STATES, 5, 2, state), STATES)
+        second = run_to(begun(again, venv, STATES, 5, 2, state), STATES)
         assert timeless(second.get_state()) == expected, k
         assert all(torch.equal(tensor, ended[name]) for name, tensor in weights(again).items()), k
 
@@ -97,7 +102,7 @@ def test_a_stopped_run_ends_where_an_uninterrupted_one_does():
 def test_both_networks_learn_and_the_seed_matters():
     model, venv = model_and_tables()
     before = weights(model)
-    run = run_to(ExpertIteration(model, venv, STATES, 5, 1), STATES)
+    run = run_to(begun(model, venv, STATES, 5, 1), STATES)
     after = weights(model)
     moved = {name for name in after if not torch.equal(before[name], after[name])}
     assert any(name.startswith("position_value.") for name in moved)
@@ -114,20 +119,20 @@ def test_both_networks_learn_and_the_seed_matters():
 def test_the_rule_and_even_proposals_come_first():
     """To the round: an eighth of all positions by the rule of thumb, a fifth with even proposals."""
     model, venv = model_and_tables()
-    run = ExpertIteration(model, venv, 320, 5, 1)
+    run = begun(model, venv, 320, 5, 1)
     for done in range(0, 80, N):
         assert run.done == done
         run.round()
-        assert isinstance(run._sent["value"], LearnedValue) == (done > 40)
-        assert (run._sent["policy"] is not None) == (done >= 64)
+        assert isinstance(run._search.value, LearnedValue) == (done > 40)
+        assert isinstance(run._search.propose, PolicyProposals) == (done >= 64)
         assert bool(run._value.losses) == (done >= 40)  # the value is fitted
 
 
 def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
     """Features before and after, points, ends; the next position is what the played stroke left."""
     model, venv = model_and_tables()
-    run, added, played = ExpertIteration(model, venv, STATES, 5, 1), [], []
-    search = search_of(run._sent, 1)
+    run, added, played = begun(model, venv, STATES, 5, 1), [], []
+    search = run._search
     spread, outcomes = search.spread, search.outcomes
     monkeypatch.setattr(run._value, "add", lambda *one: added.append(one))
 
@@ -242,7 +247,7 @@ def test_ppo_leaves_the_value_of_positions_alone():
 
 
 def test_policy_and_value_are_saved_and_read_together(tmp_path):
-    """From the zip of train.py and from that of agents.publish; what is read plays as what was written."""
+    """From the zip of train.py and from that of agents/pretrained; what is read plays as what was written."""
     model, _ = model_and_tables(seed=9)
     with torch.no_grad():
         for p in model.policy.position_value.parameters():

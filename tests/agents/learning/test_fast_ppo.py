@@ -15,10 +15,10 @@ from agents.learning.hyperparameters import Recipe
 TABLES = 8
 
 
-def made(agent="ppo_mask", seed=0, **changes):
+def made(seed=0, **changes):
     """An untrained agent on a few tables."""
     changes = {"n_steps": 16, "n_epochs": 2, "batch_size": 64} | changes
-    recipe = Recipe.of(agent, [f"{key}={value}" for key, value in changes.items()], n_envs=TABLES)
+    recipe = Recipe.of("ppo_value", [f"{key}={value}" for key, value in changes.items()], n_envs=TABLES)
     return recipe.new_model(training_tables(TABLES, threads=1, **recipe.env_kwargs), seed)
 
 
@@ -33,15 +33,14 @@ def weights(model):
     return torch.cat([p.detach().flatten() for p in model.policy.parameters()])
 
 
-@pytest.mark.parametrize("agent", ["ppo_mask", "ppo_value"])
-def test_an_update_is_that_of_sb3(agent):
+def test_an_update_is_that_of_sb3():
     """Of one rollout in one minibatch, by gradient descent: Adam would enlarge rounding errors.
 
     Gradients of single strokes are up to a hundred times their mean, so its rounding in float32 is up to 1e-4 of the
     largest movement, by the order of the sums (the number of threads); an error of the formula of 1 % is fifty times that."""
     found, before, said = [], None, []
     for train in (FastPPO.train, MaskablePPO.train):
-        model = with_rollout(made(agent, batch_size=16 * TABLES, learning_rate=0.3, vf_coef=0.5))
+        model = with_rollout(made(batch_size=16 * TABLES, learning_rate=0.3, vf_coef=0.5))
         learned = [p for n, p in model.policy.named_parameters() if not n.startswith("position_value.")]
         model.policy.optimizer = torch.optim.SGD(learned)
         before = weights(model)
@@ -134,9 +133,8 @@ def test_same_seed_same_weights():
     assert torch.equal(found[0], found[1]) and not torch.equal(found[0], found[2])
 
 
-@pytest.mark.parametrize("agent", ["ppo_mask", "ppo_value"])
-def test_its_files_are_read_by_sb3_and_learning_goes_on(agent):
-    model = made(agent, n_steps=2, batch_size=16).learn(16)
+def test_its_files_are_read_by_sb3_and_learning_goes_on():
+    model = made(n_steps=2, batch_size=16).learn(16)
     file = io.BytesIO()
     model.save(file)
     for read in (MaskablePPO, FastPPO):

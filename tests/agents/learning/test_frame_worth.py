@@ -1,13 +1,12 @@
 """Is the worth of frames learned from what its targets say, and does an interrupted training go on?"""
 
-import shutil
-
 import numpy as np
 import pytest
 
 import snooker_env as sn
+from agents import learn_worth
 from agents.learn_worth import main
-from agents.learning import frame_self_play, learn_worth
+from agents.learning import frame_self_play
 from agents.learning.frame_self_play import frames
 from agents.learning.frame_worth import TRACE, by_stage, calibration, fitted, fitted_chance, targets
 from snooker_env.game import frame_columns as columns
@@ -134,11 +133,15 @@ def test_of_a_frame_against_another_only_ones_own_strokes_are_learned_from(other
     assert rows["worth"][first][0] == alone["worth"][mine][0]
 
 
-def test_the_league_is_past_selves_and_the_planner():
-    parts = learn_worth.drawn_parts(0, 1, 40, ["first", "second"])
-    assert [part["other"] for part in parts[::2]] == [None] * 20
-    assert {part["other"] for part in parts[1::2]} == {"first", "second", "planner"}
-    assert {part["other"] for part in learn_worth.drawn_parts(0, 0, 4, [])} == {None, "planner"}
+def test_the_league_is_past_selves_and_the_planner(tmp_path):
+    def others(k, *past):
+        rounds = learn_worth.WorthRounds(tmp_path, 2, 40 * learn_worth.TABLES, 30, 0, False, None)
+        rounds._past.extend(past)
+        return [part["other"] for part in rounds._drawn(k)]
+
+    assert others(1, "first", "second")[::2] == [None] * 20
+    assert set(others(1, "first", "second")[1::2]) == {"first", "second", "planner"}
+    assert set(others(0)) == {None, "planner"}
 
 
 def test_a_network_learns_what_it_is_told_beside_the_value():
@@ -212,27 +215,16 @@ LINE = ["--rounds", "2", "--frames", "16", "--budget", "30", "--out"]
 
 
 @pytest.mark.slow
-def test_an_interrupted_training_goes_on_to_the_same_weights(tmp_path, monkeypatch, capsys):
+def test_each_round_is_kept_and_what_was_learned_is_finite(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(learn_worth, "FRAME", SHORT)
     monkeypatch.setattr(learn_worth, "PASSES", 2)
-    assert main([*LINE, str(tmp_path / "whole")]) == 0
+    assert main([*LINE, str(tmp_path)]) == 0
     assert "round 0: positions" in capsys.readouterr().out
-    shutil.copytree(tmp_path / "whole", tmp_path / "parts")
-    for name in ("worth-0.npz", "round-1.npz", "worth-1.npz", "worth.npz"):
-        (tmp_path / "parts" / name).unlink()  # cut off between the first round and its fit
-    assert main([*LINE, str(tmp_path / "parts")]) == 0
-    for name in ("worth.npz", "round-1.npz"):
-        with np.load(tmp_path / "whole" / name) as one, np.load(tmp_path / "parts" / name) as other:
-            assert all(np.array_equal(one[key], other[key]) for key in one.files)
-    with (
-        np.load(tmp_path / "whole" / "worth-0.npz") as one,
-        np.load(tmp_path / "whole" / "worth.npz") as other,
-    ):
+    with np.load(tmp_path / "worth-0-weights.npz") as one, np.load(tmp_path / "worth.npz") as other:
         assert not np.array_equal(one["worth/0/weight"], other["worth/0/weight"])
-    with np.load(tmp_path / "whole" / "worth.npz") as arrays:
-        assert all(np.isfinite(arrays[name]).all() for name in arrays.files)
+        assert all(np.isfinite(other[name]).all() for name in other.files)
     with pytest.raises(SystemExit):
-        main([*LINE[:4], "--budget", "40", "--out", str(tmp_path / "whole")])
+        main([*LINE[:4], "--budget", "40", "--out", str(tmp_path)])
 
 
 def test_what_cannot_be_learned_is_refused(tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ from snooker_env.tasks.observations import SIZE
 
 
 def test_a_recipe_with_a_wrong_value_is_refused(tmp_path, monkeypatch):
-    text = (hyperparameters.FOLDER / "ppo_mask.yml").read_text().replace("gamma: 0.95", "gamma: 1.5")
+    text = (hyperparameters.FOLDER / "ppo_value.yml").read_text().replace("gamma: 0 ", "gamma: 1.5 ")
     (tmp_path / "mine.yml").write_text(text)
     monkeypatch.setattr(hyperparameters, "FOLDER", tmp_path)
     with pytest.raises(ValueError, match=r"gamma = 1.5: must be a finite number in \[0, 1\]"):
@@ -19,10 +19,10 @@ def test_a_recipe_with_a_wrong_value_is_refused(tmp_path, monkeypatch):
 
 def test_a_linear_rate_falls_from_what_it_says_to_nearly_nothing():
     tables = training_tables(2, action="discrete")
-    model = hyperparameters.Recipe.of("ppo_mask", ["learning_rate=lin_1e-3"]).new_model(tables, 0)
+    model = hyperparameters.Recipe.of("ppo_value", ["learning_rate=lin_1e-3"]).new_model(tables, 0)
     rates = [model.lr_schedule(1.0 - done) for done in (0.0, 0.25, 0.5, 1.0)]
     assert rates == pytest.approx([1e-3, 0.7525e-3, 0.505e-3, 1e-5])
-    fixed = hyperparameters.Recipe.of("ppo_mask", ["learning_rate=0.01"]).new_model(tables, 0)
+    fixed = hyperparameters.Recipe.of("ppo_value", ["learning_rate=0.01"]).new_model(tables, 0)
     assert fixed.lr_schedule(1.0) == fixed.lr_schedule(0.0) == 0.01
     tables.close()
 

@@ -18,12 +18,12 @@ from sb3_contrib import MaskablePPO
 from stable_baselines3 import SAC
 
 import train
-from agents.evaluation import protocol, publish
+from agents import evaluate
 from agents.evaluation.entrants import Entrant
 from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe, names
 from agents.learning.model_files import KEPT, packed, read
-from agents.learning.models import POLICY, PRETRAINED, load_weights
+from agents.learning.models import POLICY, load_weights
 from agents.learning.policy_files import packed_policy, read_policy, write_policy
 from agents.players.trained import PolicyPlayer, load_player
 from snooker_env import SnookerVectorEnv
@@ -47,15 +47,15 @@ def made(name, file=None, seed=3):
 
 @pytest.fixture(scope="module")
 def mask(tmp_path_factory):
-    """The file of an untrained ``ppo_mask``."""
+    """The file of an untrained ``ppo_value``."""
     file = tmp_path_factory.mktemp("kept") / "model.zip"
-    made("ppo_mask", file)
+    made("ppo_value", file)
     return file
 
 
 @pytest.fixture
 def plain(mask, tmp_path):
-    """The same as agents.publish writes it."""
+    """The same as those of agents/pretrained are written."""
     (tmp_path / "plain.zip").write_bytes(packed(read(mask, "agent")))
     return tmp_path / "plain.zip"
 
@@ -86,7 +86,7 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
 
 @pytest.mark.parametrize("weights", [False, True])
 def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
-    """Evaluation, --start and publication, of our and another's model, with and without a sound policy.pth."""
+    """Evaluation and --start, of our and another's model, with and without a sound policy.pth."""
     (tmp_path / "run").mkdir()
     ours, foreign, mark = tmp_path / "run" / "model.zip", tmp_path / "foreign.zip", tmp_path / "mark"
     bombed(mask, ours, mark, weights)
@@ -96,10 +96,9 @@ def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
             wrong = weights or file == foreign
             with pytest.raises(ValueError, match=r"^agent = '.*': must be") if wrong else nullcontext():
                 call(file)
-    for arguments in ([foreign], [ours, "--agent", "ppo_value"]):
+    for arguments in ([foreign], [ours, "--agent", "ppo_target"]):
         new = ["--out", tmp_path / "new", "--envs", "2", "--no-progress"]
         assert "start = " in refused(train.main, "--start", *arguments, *new)
-    refused(publish.main, tmp_path / "run", "--limits", "none")
     assert not mark.exists()
 
 
@@ -117,7 +116,7 @@ HOSTILE += [("env_options", {name: value}) for name, value in OPTIONS.items()]
 def test_wrong_figures_are_refused(plain, tmp_path, key, value):
     change = edited(lambda found: found.update({key: value}))
     file = rezipped(plain, tmp_path / "wrong.zip", model_json=change)
-    says = r"must be a model (that train.py saved|of the current ppo_mask)"
+    says = r"must be a model (that train.py saved|of the current ppo_value)"
     with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}") as info:
         load_player(file)
     assert type(info.value) is ValueError and len(str(info.value)) < 600
@@ -155,7 +154,7 @@ def swollen(data):
     return file.getvalue()
 
 
-OLDER = "must be a model of the current ppo_mask: this one is older"
+OLDER = "must be a model of the current ppo_value: this one is older"
 OTHER = r"must be a model that train.py saved \(its policy.pth must hold weights and nothing else"
 
 
@@ -192,14 +191,14 @@ def test_a_file_says_only_once_what_it_is(plain, tmp_path):
         for name in file.namelist():
             both.writestr(name, file.read(name))
         both.writestr("data", json.dumps({"recipe": "ppo_target"}))
-    assert read(tmp_path / "both.zip", "agent").recipe == "ppo_mask"
+    assert read(tmp_path / "both.zip", "agent").recipe == "ppo_value"
 
 
 def test_weights_are_handed_on(mask, plain):
     """From a run's file and from the published one, as ``--start`` does."""
     its = MaskablePPO.load(mask, device="cpu").policy.state_dict()
     for file in (mask, plain):
-        model = made("ppo_mask", seed=9)
+        model = made("ppo_value", seed=9)
         load_weights(model, file)
         assert model.start == {
             "model": str(file),
@@ -210,18 +209,6 @@ def test_weights_are_handed_on(mask, plain):
         }
         weights = model.policy.state_dict()
         assert its.keys() == weights.keys() and all(torch.equal(its[name], weights[name]) for name in its)
-
-
-def test_the_policy_of_a_judged_model_is_handed_on(mask):
-    """``ppo_value`` holds the network of ``ppo_mask``, which goes on from it; the other way misses the value."""
-    judged, model = PRETRAINED / "ppo_value.zip", made("ppo_mask")
-    load_weights(model, judged)
-    its = read(judged, "start").policy.state_dict()
-    assert all(torch.equal(its[name], weights) for name, weights in model.policy.state_dict().items())
-    assert model.start["model"] == str(judged) and model.recipe == "ppo_mask"
-    says = r"start = '.*model.zip': must be a model of ppo_value, or .* not of ppo_mask"
-    with pytest.raises(ValueError, match=says):
-        load_weights(made("ppo_value"), mask)
 
 
 def test_a_model_of_another_maker_is_recognised(tmp_path):
@@ -310,7 +297,7 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused
     both = "must name a model with policy and value: none, professional, amateur, club or its file"
     for path in (file, tmp_path):
         name = f"planner@{path}"
-        error = refused(protocol.main, *QUICK, "--agent", name)
+        error = refused(evaluate.main, *QUICK, "--agent", name)
         assert error.endswith(f"error: player = {name!r}: {both}")
         error = refused(train.main, "--start", path, "--out", tmp_path / "run")
         assert error.endswith(f"error: start = {str(file)!r}: {whole}")
@@ -318,7 +305,7 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused
 
 def test_the_help_of_evaluations_names_it(capsys):
     with pytest.raises(SystemExit):
-        protocol.main(["--help"])
+        evaluate.main(["--help"])
     printed = " ".join(capsys.readouterr().out.split())
     assert "MODEL (a .zip, an .npz of plain weights, or a run's folder)" in printed
 
@@ -330,7 +317,7 @@ def test_it_is_evaluated_like_any_other_agent(tmp_path):
     write_policy(folder / POLICY, WEIGHTS, **ABOUT)
     assert load_player(folder).model.num_timesteps == 12
     more = [*QUICK, "--json", str(tmp_path / "r.json")]
-    assert protocol.main(["--agent", str(folder), f"same={folder / POLICY}", *more]) == 0
+    assert evaluate.main(["--agent", str(folder), f"same={folder / POLICY}", *more]) == 0
     report = json.loads((tmp_path / "r.json").read_text())
     (run,) = report["agents"][0]["runs"]
     wanted = {"recipe": "mine", "shots": 12, "seed": 3, "gamma": 0.9, "noise": "club", "physics": "paper"}

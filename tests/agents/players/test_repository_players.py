@@ -61,8 +61,9 @@ def test_a_planner_takes_the_value_of_a_model_of_your_own(tmp_path):
         for model in ("club", PRETRAINED / "ppo_value_club.zip")
     )
     assert np.array_equal(by_level.play(at, seeds).values, by_file.play(at, seeds).values)
-    tables = training_tables(2, action="discrete")
-    Recipe.of("ppo_mask").new_model(tables, 0).save(tmp_path / "without_value.zip")
+    recipe = Recipe.of("ppo_target")
+    tables = training_tables(2, **recipe.env_kwargs)
+    recipe.new_model(tables, 0).save(tmp_path / "without_value.zip")
     tables.close()
     with pytest.raises(ValueError, match="must name a model with policy and value"):
         sn.player(f"planner@{tmp_path / 'without_value.zip'}")

@@ -6,7 +6,7 @@ import re
 import pytest
 from matplotlib.figure import Figure
 
-from agents.evaluation import learning_curves
+from agents import curves
 from tests.pictures import unreadable
 
 
@@ -39,10 +39,10 @@ def drawn(monkeypatch):
 
 
 def test_time_begins_with_imitation(tmp_path):
-    run = learning_curves.run_of(keep(tmp_path / "a"))
+    run = curves.run_of(keep(tmp_path / "a"))
     assert run["minutes"] * 60 == pytest.approx([100, 160, 400])
     assert run["end"] == (1000, pytest.approx(700 / 60))
-    alone = learning_curves.run_of(keep(tmp_path / "b", imitation=[]))
+    alone = curves.run_of(keep(tmp_path / "b", imitation=[]))
     assert alone["minutes"] * 60 == pytest.approx([0, 70, 350])
 
 
@@ -50,7 +50,7 @@ def test_every_run_is_drawn(tmp_path, drawn, capsys):
     for name in ("a-0", "a-1", "b-0"):
         keep(tmp_path / name, steps=2000 if name == "b-0" else 1000)
     file = tmp_path / "new" / "c.png"
-    assert learning_curves.main([f"A={tmp_path}/a-?", str(tmp_path / "b-0"), "--out", str(file)]) == 0
+    assert curves.main([f"A={tmp_path}/a-?", str(tmp_path / "b-0"), "--out", str(file)]) == 0
     assert str(file) in capsys.readouterr().out and file.stat().st_size > 10_000
     assert len(drawn) == 1 and unreadable(drawn[0]) == []
     time, shots = drawn[0].axes
@@ -67,7 +67,7 @@ def test_every_run_is_drawn(tmp_path, drawn, capsys):
 
 def test_what_is_below_the_scale_lies_on_its_edge(tmp_path, drawn):
     keep(tmp_path / "a", **evaluated(0.02, 5.0))
-    assert learning_curves.main([str(tmp_path / "a"), "--out", str(tmp_path / "c.png")]) == 0
+    assert curves.main([str(tmp_path / "a"), "--out", str(tmp_path / "c.png")]) == 0
     assert drawn[0].axes[1].containers[0][0].get_ydata()[0] == 0.1
 
 
@@ -89,4 +89,4 @@ def test_wrong_input(tmp_path, refused, files, arguments, message):
     for name, changes in files.items():
         keep(tmp_path / name, **changes)
     words = arguments.replace("{}", "{0}").format(tmp_path).split()
-    assert re.search(message, refused(learning_curves.main, *words))
+    assert re.search(message, refused(curves.main, *words))

@@ -1,0 +1,145 @@
+"""How does ``train.py`` train? It opens the run, plays its rounds, judges what was learned, and writes the results."""
+
+import json
+import os
+import shlex
+import sys
+from contextlib import ExitStack
+from dataclasses import asdict, replace
+
+import tensorboard  # noqa: F401 - imported here so that a missing package is reported before anything starts
+import torch
+
+import snooker_env
+from commands.files import write_atomic
+from commands.lifecycle import command, python
+from commands.provenance import commit, software
+
+from .evaluation.training_summary import conclusion, evaluate, held_out, show
+from .learning.agent_training import AgentTraining
+from .learning.learn_strokes import AGENT, StrokeTraining
+from .learning.loop import Loop
+from .learning.models import zipped
+from .learning.run_folder import claimed, keep_settings, kept_settings
+from .learning.settings import FREE_ON_RESUME, Settings, parse
+
+
+def open_run(given, out, resume, ending):
+    """The training in the folder, new or resumed; ``ending`` releases what it holds. Every wrong input is refused here,
+    before the work, by ValueError."""
+    settings = Settings(**given)
+    if resume:
+        ending.enter_context(claimed(out, resume))
+        was = kept_settings(out, Settings)
+        for name, value in given.items():
+            if value != getattr(was, name) and name not in FREE_ON_RESUME:
+                differs = f"{value!r} but the run in {out} has {getattr(was, name)!r}"
+                raise ValueError(f"--{name.replace('_', '-')} is {differs}: give the same or leave it out")
+        settings = replace(was, **given)
+    kind = StrokeTraining if settings.agent == AGENT else AgentTraining
+    training = kind(settings, out, resume)
+    ending.callback(training.close)
+    if not resume:
+        ending.enter_context(claimed(out, resume))  # last, so that a wrong option leaves no folder behind
+    keep_settings(out, training.settings)
+    return training
+
+
+def judge_agent(training, loop):
+    """Play held-out visits and write the model; what was learned, figures, results, and the player to watch."""
+    model, expert, settings = training.model, training.expert, training.settings
+    parts = [
+        {"part": part.what, "unit": part.unit, "amount": part.done, "seconds": part.seconds}
+        | {"per_second": part.done / max(part.seconds, 1e-9)}
+        for part in training.parts
+    ]
+    lines = [
+        f"{p['part']}: {p['amount']:,} {p['unit']} in {p['seconds']:.0f} s, {p['per_second']:,.0f} a second"
+        for p in parts
+    ]
+    print("\n".join(lines) + " (learning included)", flush=True)
+    write_atomic(training.out / "model.zip", zipped(model))
+    figures = evaluate(training.recipe, model, settings.eval_visits, loop)
+    learned = conclusion(settings.agent, model.num_timesteps, model.imitated, figures, model.start)
+    curve = expert.curve if expert else []
+    simulated = [
+        model.num_timesteps,
+        *(one.get("simulated_shots") for one in (*curve[-1:], model.start) if one),
+    ]
+    results = {
+        "steps": model.num_timesteps,
+        "simulated_shots": None if None in simulated else sum(simulated),
+        "seconds": sum(part["seconds"] for part in parts),
+        "parts": parts,
+        "start": model.start,
+        "curve": training.ppo.curve,
+        "imitation": curve,
+    }
+    best = f"planner@{training.out}" if "planner" in figures else str(training.out)
+    return learned, figures, results, best, training.recipe.env_kwargs.get("noise", "none")
+
+
+def judge_strokes(training, loop):
+    """The same of ``stroke_value``."""
+    best, noise = f"{AGENT}@{training.write()}", "professional"
+    players = {"trained": best, "ghost_ball": "ghost_ball", "random": "random"}
+    players = {name: snooker_env.player(one) for name, one in players.items()}
+    figures = held_out(players, training.settings.eval_visits, loop, noise=noise, cue=training.strokes.cue)
+    learned = conclusion(AGENT, training.visits.tried, 0, figures)
+    results = {
+        "steps": sum(part.tried for part in training.parts),
+        "simulated_shots": sum(part.simulated for part in training.parts),
+        "without": "those of the planner and the tactician that it learned from",
+        "curve": {part.name: part.curve for part in training.parts},
+    }
+    return learned, figures, results, best, noise
+
+
+def report(training, learned, figures, results, best, noise):
+    """Write and print what a run has brought, and how its best player is seen under these errors."""
+    out, settings = training.out, training.settings
+    results = {"command": settings.command, "settings": asdict(settings)} | results
+    results |= {"learned": learned, "evaluation": figures, "versions": software()}
+    results |= {"git_commit": commit(), "processors": os.cpu_count()}
+    write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
+    show(figures)
+    # half of the longest break: other visits than those of the evaluation are played to find it
+    points = figures["planner" if "planner" in figures else "trained"]["longest_break"] // 2
+    words = ["--agent", best, "--noise", str(noise), "--at-least", str(points)]
+    watch = shlex.join([python(), "-m", "snooker_env.watch", *words])
+    shots = results["simulated_shots"]
+    known = "not known" if shots is None else f"{shots:,}"
+    without = f", without {results['without']}" if "without" in results else ""
+    print(f"{learned}\nAll simulated shots of the training{without}: {known}.")
+    print(f"Figures: {out / 'results.json'}\nWatch a break:  {watch}")
+    if (out / "tb").is_dir():
+        print(f"Curves: tensorboard --logdir {out / 'tb'}")
+
+
+@command("train.py")
+def main(argv=None):
+    """Train, evaluate, save. Exit code 0, or 128 + the signal that stopped it."""
+    parser, given, rest = parse(argv)
+    # more threads do not speed up a network this small, and the tables use the processors
+    torch.set_num_threads(1)
+    # these checks cost a twentieth of the time
+    torch.distributions.Distribution.set_default_validate_args(False)
+    with ExitStack() as ending:
+        try:
+            training = open_run(given, rest.out, rest.resume, ending)
+        except ValueError as error:
+            parser.error(str(error))
+        except OSError as error:
+            parser.error(f"out = {str(rest.out)!r}: must be a folder that can be written ({error.strerror})")
+        again = f"Continue with:  {shlex.join([python(), 'train.py', '--resume', '--out', str(rest.out)])}"
+        loop = Loop(training.settings.agent, training.parts, training.save, again, 1, rest.no_progress)
+        try:
+            snooker_env.warmup()
+            if (number := loop.run()) is not None:
+                return 128 + number
+            judge = judge_strokes if isinstance(training, StrokeTraining) else judge_agent
+            report(training, *judge(training, loop))
+        except (KeyboardInterrupt, OSError):
+            print(loop.again, file=sys.stderr)
+            raise
+    return 0

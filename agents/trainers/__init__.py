@@ -1,1 +1,0 @@
-"""How do other libraries train on this environment? RLlib here; TorchRL and a single file: ``examples/``."""

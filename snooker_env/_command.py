@@ -1,0 +1,48 @@
+"""How does a command end? With an exit code; what stops it from outside is one line, or none if nobody reads its output."""
+
+import errno
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+INTERRUPTED = 130  # the exit code after Ctrl-C, as shells have it
+DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)  # of a full or failing disk
+
+
+@contextmanager
+def until_closed() -> Iterator[None]:
+    """Around all that a command prints, ``--help`` too: SystemExit(1) once the reader has left, as in ``... | head``."""
+    try:
+        try:
+            yield
+        finally:
+            sys.stdout.flush()  # what is left would be lost without a word, or be said when Python ends
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise SystemExit(1) from None
+
+
+def of_file(error: OSError) -> str:
+    """The error of a file or a full disk in words."""
+    if error.strerror is None:
+        return str(error)
+    written = " cannot be written" if error.errno in DISK else ""
+    return f"{error.filename or 'the output'}{written}: {error.strerror}"
+
+
+def exit_code(name: str, command: Callable[[], int], missing: Callable[[ImportError], str] = str) -> int:
+    """What ``command()`` returns; 130 after Ctrl-C; 1 if a library is missing (``missing`` says how to install it) or a file
+    cannot be read or written. Whatever it is, the command ``name`` says it in one line on stderr."""
+    code = 1
+    try:
+        with until_closed():
+            return command()
+    except KeyboardInterrupt:
+        why, code = "interrupted", INTERRUPTED
+    except ImportError as error:
+        why = missing(error)
+    except OSError as error:
+        why = of_file(error)
+    print(f"{name}: {why}", file=sys.stderr)
+    return code
