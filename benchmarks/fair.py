@@ -12,12 +12,12 @@ fair at the best speed, at 2.3 and at 3.6 m/s.
 """
 
 import numpy as np
+from snooker_env.tasks.ghost_ball import GhostBallOpponent
 
 from snooker_env.game.frame_columns import IN_HAND
 from snooker_env.game.pots import pots
 from snooker_env.tasks import CHOICES, MAX_SPEED, MIN_SPEED, SPEEDS, STROKES
 from snooker_env.tasks.frame import Frames, Seat
-from snooker_env.tasks.ghost_ball import GhostBallOpponent
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, Crew

@@ -31,14 +31,14 @@ from multiprocessing import get_context
 from typing import Any, NamedTuple
 
 import numpy as np
+from snooker_env.tasks.ghost_ball import GhostBallOpponent
+from snooker_env.tasks.opponents import UniformOpponent
 
 from snooker_env.game.balls import COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of, mask_of_present
 from snooker_env.game.frame import Frame
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.frame import Frames, Seat
-from snooker_env.tasks.ghost_ball import GhostBallOpponent
-from snooker_env.tasks.opponents import UniformOpponent
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import ATTEMPT, CLEAR_PATH, DOWN, FOULS, ShotBuffers
 from snooker_env.tasks.tables import I_BALL_ON, I_FOULS, I_PENALTY, I_POINTS, Crew

@@ -8,9 +8,9 @@ from snooker_env.planning import action_masks
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.players import ChoicePlayer, SeenPlayer
 from snooker_env.players.choices import shares
+from snooker_env.players.saved_models import by_train, entries, one_thread
 from snooker_env.players.seen import conditions_seen
 from snooker_env.players.weights import learned_of
-from snooker_env.tasks.saved_models import by_train, entries, one_thread
 
 from ..features.observed import seen_of
 from ..learning.hyperparameters import ACTION_OPTIONS, SEEN_OPTIONS

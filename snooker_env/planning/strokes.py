@@ -108,14 +108,19 @@ def decoded(
         visits.nominated = nominated
     buffers = ShotBuffers(n, 0)
     visits.address(np.arange(n), actions, buffers)
+    return meant(buffers, visits.packed[0]), after
+
+
+def meant(buffers: ShotBuffers, options: Floats) -> Floats:
+    """Strokes (n, 5) that were struck without errors; ``options``: packed, of the action, one row for all or each."""
     strokes = buffers.shots[:, stroke.CUE_SPEED : stroke.ROOM].copy()
     changed = buffers.shots[:, stroke.ROOM] != 0  # what is meant does not say how the cue finds room
     strokes[changed] = buffers.shots[changed, stroke.MEANT :]
-    _off_the_tip(strokes, visits.packed[0])
+    _off_the_tip(strokes, options)
     off = np.arctan2(np.sin(strokes[:, AIM]), np.cos(strokes[:, AIM]))
     level = np.arctan2(buffers.shots[:, stroke.VY], buffers.shots[:, stroke.VX])
     strokes[:, AIM] = np.where(changed | (strokes[:, ELEVATION] > 0.0), off, level)
-    return strokes, after
+    return strokes
 
 
 class Stops(NamedTuple):

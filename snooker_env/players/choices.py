@@ -5,13 +5,17 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse_what
-from .._types import Floats, Ints
+from .._types import Bools, Floats, Ints
+from ..game.frame_columns import VISIT_COLUMNS
 from ..planning import Planner, Positions, pots
 from ..planning.positions import seeds_of
-from ..planning.strokes import available
+from ..planning.strokes import available, meant, packed_under
+from ..tasks.declarations import SAYS_NOTHING
 from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
-from ..tasks.ghost_ball import geometric_strokes
+from ..tasks.frame import Asked
 from ..tasks.options import Options
+from ..tasks.stroke import ShotBuffers, address
+from .ghost_ball import geometric_strokes
 from .player import BoundPlayer, Ranked, Strokes, streams_of
 
 MOST = 100  # most strokes of a ranking
@@ -104,14 +108,22 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; all else as by ``tasks.ghost_ball``."""
+    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; all else as in ``ghost_ball.py``."""
 
     name, training_shots = "ghost_ball", 0
+    _packed: tuple[Floats, Floats, Floats]
+
+    def _bind(self, options: Options) -> None:
+        super()._bind(options)
+        self._packed = self._planner.rules.packed()
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``."""
+        return self._played(positions, seeds)[0]
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """Its stroke, then the same at the other direct pots, with the tolerance of each pot [mrad]."""
-        at = Positions.of(positions)
-        strokes, start = self._played(at, seeds)
+        strokes, start = self._played(positions, seeds)
         direct = pots(start)
         ranked = []
         for k, many in enumerate((direct.ball >= 0).sum(axis=1).tolist()):
@@ -124,24 +136,34 @@ class GhostBall(ChoicePlayer):
             ranked.append(Ranked(joined, 1e3 * direct.tolerance[k, :many]))
         return ranked
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
-        """See ``Player.play``."""
-        return self._played(Positions.of(positions), seeds)[0]
-
-    def _played(self, at: Positions, seeds: Any) -> tuple[Strokes, Positions]:
+    def _played(self, positions: Any, seeds: Any) -> tuple[Strokes, Positions]:
         """What it plays, and from where: visits with placed cue balls."""
-        n, code, moved = len(at), self.options.rules.rule_set.code, at.copy()
-        values, (nominate, decision) = np.empty((n, 5)), np.empty((2, n), np.int64)
-        racks = at.in_hand & (at.on_table[:, 1:16].sum(axis=1) == 15)
-        streams = streams_of(seeds_of(seeds, n))
-        balls = moved.positions, moved.on_table, moved.game
-        geometric_strokes(*balls, code, streams, values, nominate, decision)
-        start = moved.as_visits()
-        again = at.of_frames and at.miss_called
-        rows = np.flatnonzero((pots(start, most=1).ball[:, 0] >= 0) & ~racks & ~np.broadcast_to(again, n))
-        values[rows] = self._planner.strokes_of(start, rows, np.full(len(rows), _PLAIN))[0]
-        place = np.where(moved.in_hand[:, None], moved.positions[:, 0], np.nan)
-        return Strokes(values, place, nominate, decision), start
+        at = Positions.of(positions)
+        tables, own = (
+            (at.positions.copy(), at.on_table.copy(), at.game.copy()),
+            at.known_to(self.options.rules),
+        )
+        asked, visits = self.turns(*tables, own.conditions, seeds_of(seeds, len(at)))
+        return Strokes(*asked), Positions(*tables[:2], visits, None, at.conditions)
+
+    def turns(
+        self, positions: Floats, on_table: Bools, game: Ints, conditions: Floats | None, seeds: Ints
+    ) -> tuple[Asked, Ints]:
+        """What it plays on n tables, and the visits (n, 5) in which it strikes. The tables' own arrays
+        become those after its decisions, with placed cue balls; ``conditions``: None if they are not drawn."""
+        n, rules, streams = len(seeds), self._planner.rules, streams_of(seeds)
+        values, places, visits = np.empty((n, 5)), np.empty((n, 2)), np.empty((n, VISIT_COLUMNS), np.int64)
+        (nominated, decisions), solves = np.empty((2, n), np.int64), np.empty(n, np.bool_)
+        made = values, places, nominated, decisions, visits, solves
+        geometric_strokes(positions, on_table, game, self.options.rules.rule_set.code, streams, *made)
+        if len(rows := np.flatnonzero(solves)):
+            packed, buffers = self._packed, ShotBuffers(len(rows), 0)
+            if conditions is not None:
+                packed = packed_under(conditions, rules)
+            tables = positions, on_table, visits, streams, np.empty(0, np.int64)
+            address(rows, np.full((n, 1), float(_PLAIN)), tables, buffers.struck, packed, rules.fidelity)
+            values[rows] = meant(buffers, packed[0] if conditions is None else packed[0][rows])
+        return (values, places, nominated, decisions, np.full(n, SAYS_NOTHING)), visits
 
 
 _PLAIN = choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))  # the widest pot, no spin

@@ -24,8 +24,8 @@ from ..planning.strokes import AIM, ELEVATION, NAMES, SIDE, SPEED, TOP
 from ..planning.worth import chosen, decide
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
-from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
+from .ghost_ball import put_in_hand
 
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]  # a dict: fields of ``Options``
 CODES: dict[str, tuple[int, ...]] = {

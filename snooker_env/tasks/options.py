@@ -43,7 +43,7 @@ MAX_STROKES = 1000
 FRAMES = 7
 """Default length of a match: best of 7."""
 OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
-object: a callable(observation, rng) -> action, a player, one with act(observations, masks, seeds), an OpponentPool"""
+object: a player or an OpponentPool; players.SeenPlayer makes a player of what acts on observations"""
 _UNSAID: Any = object()
 OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
 NEVER = 2**62  # stands for no limit of strokes or steps

@@ -2,7 +2,7 @@
 every caller: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -120,11 +120,10 @@ class StepOutput:
 
 
 class Crew:
-    """Runs ``task(part, buffers)``, here on all at once; ``generators``: for Python opponents."""
+    """Runs ``task(part, buffers)``, here on all at once."""
 
-    def __init__(self, buffers: Any = None, generators: Sequence[Any] = (), watch: Watch | None = None):
+    def __init__(self, buffers: Any = None, watch: Watch | None = None):
         self.buffers: Any = buffers  # ``ShotBuffers``, or None for a crew that allocates its own
-        self.generators: Sequence[Any] = generators
         self.watch: Watch | None = watch
 
     def __call__(self, which: Ints, task: Task) -> None:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from snooker_env.tasks.ghost_ball import GhostBallOpponent
 
 import snooker_env as sn
 from snooker_env.game import frame_columns as columns
@@ -10,7 +11,6 @@ from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_WIDTH
 from snooker_env.tasks.escapes import _REBOUND
 from snooker_env.tasks.frame import Frames, Seat
-from snooker_env.tasks.ghost_ball import GhostBallOpponent
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import AIM, CUE_SPEED, ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, I_POINTS, Crew

@@ -11,7 +11,7 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env import SnookerEnv, SnookerVectorEnv
-from snooker_env.tasks.saved_models import SavedModel
+from snooker_env.players.saved_models import SavedModel
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_POINTS, Crew
 from tests.bombs import bombed, edited, rezipped
