@@ -95,9 +95,9 @@ class Strokes:
             array = default if getattr(self, name) is None else np.asarray(getattr(self, name))
             if array.shape != default.shape:
                 raise refuse_what(name, f"array of shape {array.shape}", f"must have shape {default.shape}")
-            if name in CODES and not (sound := np.isin(array, CODES[name])).all():
-                k = int(np.argmin(sound))
-                raise refuse(f"{name}[{k}]", array[k].item(), f"must be one of {CODES[name]}")
+            for code in set(array.tolist()).difference(CODES[name]) if name in CODES else ():
+                k = array.tolist().index(code)
+                raise refuse(f"{name}[{k}]", code, f"must be one of {CODES[name]}")
             object.__setattr__(self, name, array.astype(default.dtype))
         sound = np.isnan(self.place).all(1) | (np.abs(self.place) <= (HALF_WIDTH, HALF_LENGTH)).all(1)
         if not sound.all():
