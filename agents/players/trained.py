@@ -27,7 +27,7 @@ class PolicyPlayer(ChoicePlayer):
     @property
     def learned(self):
         """Policy and value of a planner; None if the model has no value of positions."""
-        from ..export import arrays_of
+        from ..learning.networks import arrays_of  # it loads PyTorch
 
         policy = self.model.policy
         return learned_of(arrays_of(policy)) if hasattr(policy, "position_value") else None

@@ -13,12 +13,12 @@ from .._jit import entry
 from .._types import CueKind, Fidelity, Floats, Integers, Ints, Scalars, Vector, Vectors, Words
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
-from ..physics.conditions import END_MASS_RATIO, pack_into
+from ..physics.conditions import END_MASS_RATIO
 from ..physics.cue import MAX_ELEVATION as STEEPEST_CUE
 from ..physics.cue import squirt
 from ..physics.cue_room import NO_RAILS
 from ..physics.impact.contact import parse_fidelity
-from ..physics.parameters import Physics, PhysicsLike
+from ..physics.parameters import Physics, PhysicsLike, pack_into
 from ..tasks import stroke
 from ..tasks.arrays import CueLaw, StruckArrays, TableArrays
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, TARGET_SPAN, Actions, tip_on_disc

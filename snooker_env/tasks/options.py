@@ -17,7 +17,7 @@ from ..geometry import BALL_RADIUS
 from ..physics import conditions
 from ..physics.cue_room import NO_RAILS, rails_of
 from ..physics.impact.contact import parse_fidelity
-from ..physics.parameters import Physics, PhysicsLike
+from ..physics.parameters import Physics, PhysicsLike, physics_with
 from ..physics.table import Table, TableLike
 from . import observations
 from .box_actions import AIMS, Actions
@@ -307,7 +307,7 @@ class Options:
             raise refuse("observe_conditions", True, allowed)
         for end in (conditions.LOW, conditions.HIGH) if drawn else ():
             try:
-                conditions.physics_with(physics, end).check_stopping()
+                physics_with(physics, end).check_stopping()
             except ValueError as error:
                 allowed = f"must be 'fixed' with these physics, which do not go with a table drawn: {error}"
                 raise refuse("conditions", "drawn", allowed) from None

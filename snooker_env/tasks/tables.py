@@ -14,9 +14,9 @@ from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import pair, stream_of
 from ..physics.columns import CONSTANTS
 from ..physics.conditions import COLUMNS as CONDITIONS
-from ..physics.conditions import END_MASS_RATIO, drawn, nominal, normalised, pack_into, physics_with
+from ..physics.conditions import END_MASS_RATIO, drawn, normalised
 from ..physics.conditions import NAMES as CONDITION_NAMES
-from ..physics.parameters import Physics
+from ..physics.parameters import Physics, nominal, pack_into, physics_with
 from ..shot import Shot
 from . import discrete_actions, stroke
 from .box_actions import Actions
