@@ -22,6 +22,7 @@ from agents.evaluation.entrants import Entrant
 from snooker_env.benchmark import interval, play_visits
 from snooker_env.checks import refuse
 from snooker_env.physics import conditions
+from snooker_env.physics.parameters import physics_with
 from snooker_env.planning import Positions
 from snooker_env.planning.planner import options_in
 from snooker_env.planning.strokes import AIM, SIDE
@@ -99,7 +100,7 @@ def points(player, way, noise, physics, visits, seed):
     """Points of each visit of a player, in one of the ways of ``NAMES``."""
     base = sn.Physics.preset(physics)
     middle = conditions.drawn(np.full(conditions.COLUMNS, 0.5))
-    average = conditions.physics_with(base, middle)
+    average = physics_with(base, middle)
     believed = {"cue": average, "average": average, "preset": base}
     if way in believed:
         player = Stranger(player, believed[way], own=way == "cue")

@@ -15,9 +15,10 @@ import numpy as np
 
 from snooker_env.game.frame_columns import IN_HAND
 from snooker_env.game.pots import pots
+from snooker_env.players.opponents import opponent_of
 from snooker_env.tasks import CHOICES, MAX_SPEED, MIN_SPEED, SPEEDS, STROKES
-from snooker_env.tasks.frame import Frames, Seat
-from snooker_env.tasks.ghost_ball import GhostBallOpponent
+from snooker_env.tasks.carry_out import carry_out
+from snooker_env.tasks.frame import AGENT, Frames, Seat
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, Crew
@@ -60,10 +61,11 @@ def has_pot(tables, k):
 def from_frames(n, seed):
     """n positions without a direct pot, the cue ball not in hand, from frames of the built-in opponent
     against itself."""
-    found, player = [], GhostBallOpponent()
+    given = {"aim": "target", "placement": True, "decision": True, "noise": "professional"}
+    found, player = [], opponent_of("ghost_ball", Options(task="frame", **given))
     while len(found) < n:
         tables, which = (
-            dealt(20, seed, aim="target", placement=True, decision=True, noise="professional"),
+            dealt(20, seed, **given),
             np.arange(20),
         )
         while len(which):
@@ -71,9 +73,10 @@ def from_frames(n, seed):
                 tables, [k for k in which if not tables.game[k, IN_HAND] and not has_pot(tables, k)]
             )
             buffers, out = ShotBuffers(len(which)), tables.output()
-            tables.complete(
-                player.prepare(tables, which, None, buffers), out, buffers, Crew(buffers), reported=True
-            )
+            crew = Crew(buffers)
+            asked = player.strokes(tables, which, crew)
+            struck = carry_out(tables, which, asked, buffers, AGENT)
+            tables.complete(struck, out, buffers, crew, reported=True)
             which = which[~tables.ended()[which]]
         seed += 1
     return [found[k] for k in np.random.default_rng(seed).permutation(len(found))[:n]]

@@ -36,9 +36,9 @@ from snooker_env.game.balls import COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, Bal
 from snooker_env.game.frame import Frame
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.tasks.frame import Frames, Seat
-from snooker_env.tasks.ghost_ball import GhostBallOpponent
-from snooker_env.tasks.opponents import UniformOpponent
+from snooker_env.players.opponents import drawn, opponent_of
+from snooker_env.tasks.carry_out import carry_out
+from snooker_env.tasks.frame import AGENT, Frames, Seat
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import ATTEMPT, CLEAR_PATH, DOWN, FOULS, ShotBuffers
 from snooker_env.tasks.tables import I_BALL_ON, I_FOULS, I_PENALTY, I_POINTS, Crew
@@ -49,7 +49,7 @@ MOST_STROKES = 20_000
 """A frame that is longer counts as a failure."""
 REPLAYED = 20
 """Strokes played again from the JSON."""
-PLAYERS = {"random": UniformOpponent(), "ghost_ball": GhostBallOpponent()}
+PLAYERS = ("random", "ghost_ball")
 SAID = {"nominate": True, "concede": True, "claim": True, "lot": True}
 KINDS = (
     ("random", "off"),
@@ -107,6 +107,7 @@ class FrameTable:
         options = Options(**given | rules | more)
         self.tables = Frames(options, seats=[Seat.of(options.rules)] * 2)
         self.buffers, self.generator = ShotBuffers(1), np.random.default_rng()
+        self.ghost_ball = opponent_of("ghost_ball", options)
 
     def start(self, seed):
         """Deal a new frame."""
@@ -125,12 +126,15 @@ class FrameTable:
         return bool(self.tables.ended()[0])
 
     def turn(self, player):
-        """One turn: what was ``Turn``, or None where the table was only handed over."""
+        """One turn of a player of ``PLAYERS``: what was ``Turn``, or None where the table was only handed over."""
         striker, out = self.frame.striker, self.tables.output()
         crew = Crew(self.buffers)
 
         def prepare(which, buffers):
-            return player.prepare(self.tables, which, player.ask(self.tables, which, ()), buffers)
+            if player == "random":
+                return self.tables.prepare(which, self.uniform(which), buffers)
+            asked = self.ghost_ball.strokes(self.tables, which, crew)
+            return carry_out(self.tables, which, asked, buffers, AGENT)
 
         if not self.tables.turn(prepare, out, crew)[0]:
             return None
@@ -143,6 +147,15 @@ class FrameTable:
             counts[I_PENALTY],
             counts[I_FOULS],
         )
+
+    def uniform(self, which):
+        """A uniform action, but that it never concedes, by a seed of the table's own stream."""
+        reads = self.tables.rules.actions
+        rng = np.random.default_rng(int(drawn(self.tables, which)[0] * 2**32))
+        action = rng.uniform(-1.0, 1.0, (1, reads.size))
+        if reads.concede:
+            action[:, -1] = (5.0 * action[:, -1] + 1.0) / 6.0  # [-1, 1) becomes [-2/3, 1)
+        return action
 
     def as_json(self):
         """Everything that decides how the frame goes on."""
@@ -226,7 +239,7 @@ def ending(before, played, frame):
 def play_frame(seed, kind, miss):
     """One frame from the break to its end, everything checked; returns its ``Tally``. Raises
     AssertionError."""
-    player, rng, tally, table = PLAYERS[kind], np.random.default_rng(seed), Tally(), FrameTable(miss)
+    player, rng, tally, table = kind, np.random.default_rng(seed), Tally(), FrameTable(miss)
     table.start(seed)
     save_at, saved, following, visit, given = int(rng.integers(5, 50)), None, [], 0, [0, 0]
     while not table.over:
@@ -274,7 +287,7 @@ def judged_otherwise(seed):
     """One frame of ghost_ball against itself at club noise: strokes at a colour after a red, and those judged
     otherwise by nomination."""
     player, named, plain = (
-        PLAYERS["ghost_ball"],
+        "ghost_ball",
         FrameTable("off", noise="club", nominate=True),
         FrameTable("off", noise="club"),
     )
@@ -301,7 +314,7 @@ def judged_otherwise(seed):
 def escapes(seed, kind, noise):
     """One frame with miss="attempt": failures of snookered strikers, those that were no attempt, and those
     called a miss."""
-    player, table = PLAYERS[kind], FrameTable("attempt", noise=noise, decision=False)
+    player, table = kind, FrameTable("attempt", noise=noise, decision=False)
     table.start(seed)
     failed = poor = called = 0
     while not table.over:

@@ -33,6 +33,7 @@ from agents.learning.networks import TablePolicy, TableReader
 from commands.files import sealed, unsealed, write_atomic, write_json
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning.learned.pot_view import with_pots
+from snooker_env.players import OpponentPool, SeenPlayer
 from snooker_env.progress import Progress
 from snooker_env.sb3 import SnookerVecEnv
 from snooker_env.tasks import (
@@ -41,7 +42,6 @@ from snooker_env.tasks import (
     SIDES,
     SPEEDS,
     TOPS,
-    OpponentPool,
     choice_of,
     observation_space,
 )
@@ -128,15 +128,24 @@ def policy_of(weights):
     return policy
 
 
-class PastSelf:
+class PastSelf(SelfPlayed):
     """A past self as an opponent: it draws its choices from its own policy."""
 
     def __init__(self, weights):
         self.weights, self.policy = weights, policy_of(weights)
 
-    def many(self, observations, generators, masks):
-        """Its choices on all tables that wait for it."""
-        return self.policy.predict(observations[:, :OBSERVATION_SIZE], action_masks=masks)[0]
+    def act(self, observations, masks, seeds):
+        """Its choices, each drawn by the seed of its table."""
+        draws = np.array([np.random.default_rng(seed).random() for seed in seeds.tolist()])
+        seen = torch.as_tensor(observations[:, :OBSERVATION_SIZE])
+        with torch.no_grad():
+            shares = (
+                self.policy.get_distribution(seen, action_masks=masks)
+                .distribution.probs.double()
+                .cumsum(1)
+                .numpy()
+            )
+        return (shares < draws[:, None] * shares[:, -1:]).sum(axis=1)
 
 
 def add(pool, weights):
@@ -144,7 +153,7 @@ def add(pool, weights):
     others share the rest."""
     for k in range(len(pool.members)):
         pool.set_weight(k, 1.0)
-    pool.add(PastSelf(weights), max(1, len(pool.members)))
+    pool.add(SeenPlayer(PastSelf(weights)), max(1, len(pool.members)))
 
 
 def judge(policy, opponent, frames, threads):
@@ -230,7 +239,7 @@ class Run(BaseCallback):
             "shots": self.num_timesteps,
             "policy": weights(policy),
             "optimizer": policy.optimizer.state_dict(),
-            "pool": [past.weights for past in self.pool.members],
+            "pool": [past.seen.weights for past in self.pool.members],
             "tables": self.training_env.env_method("get_state"),
             "random": (np.random.get_state(), torch.get_rng_state()),  # noqa: NPY002
             "curve": self.curve,

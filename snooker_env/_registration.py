@@ -1,10 +1,12 @@
-"""Which ids does Gymnasium know once the package is imported?"""
+"""What is loaded by its name at the first use? The environments that Gymnasium knows by id, and the player of programs."""
 
 from typing import Any
 
 ID = "Snooker-v0"
 ENTRY_POINT = "snooker_env.envs.snooker:SnookerEnv"
 VECTOR_ENTRY_POINT = "snooker_env.envs.vector:SnookerVectorEnv"
+
+PROGRAM_PLAYER = "snooker_env.play.program:ProgramPlayer"  # it speaks the language of the page
 
 _TASKS = "snooker_env.benchmark.environments"
 _NAMES = ("Break", "BreakClub", "Escape", "Safety", "Frame")

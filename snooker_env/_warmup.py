@@ -72,10 +72,9 @@ def warmup() -> None:
         frame = Frame.start()
         frame.play(Stroke())
         frame.concede(0)
-        still: Any = [0.0] * 4
-        policies: Any = (lambda observation, rng: still, still), (_Still(), still)
-        for opponent, action in (*policies, ("random", 0), ("random", still)):
-            env = SnookerEnv(task="frame", opponent=opponent, action="discrete" if action == 0 else "box")
+        for action in (0, [0.0] * 4):
+            options: Any = {"opponent": "random", "action": "discrete" if action == 0 else "box"}
+            env = SnookerEnv(task="frame", **options)
             for seed in range(3):
                 env.reset(seed=seed)
                 env.step(action)

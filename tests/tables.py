@@ -10,6 +10,7 @@ import pytest
 from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
 from snooker_env.game.frame import Frame
+from snooker_env.players import SeenPlayer
 from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
 
 LAYOUTS = ("opened", "held_out", "break_off", "line_up", "colours", "random:0", "random:1", "random:15")
@@ -74,6 +75,23 @@ def frame_state(env, places, frame, **state):
     parts = layout(places) | {"frame": Frame(**fields).to_dict(), "unpaid": 0, "due": False}
     env.reset(options={"state": plain(env.get_state() | parts | state)})
     return env
+
+
+class Acting:
+    """What answers each observation by a function of it and a generator."""
+
+    def __init__(self, answer):
+        self.answer = answer
+
+    def act(self, observations, masks, seeds):
+        rngs = map(np.random.default_rng, seeds.tolist())
+        return [self.answer(row, rng) for row, rng in zip(observations, rngs, strict=True)]
+
+
+def acting(answer, **options):
+    """A player of the frames of ``frame_env``, by a function of observation and generator."""
+    usual = {"task": "frame", "aim": "target", "decision": True, "placement": True}
+    return SeenPlayer(Acting(answer), usual | options)
 
 
 def after_strike(env, action):

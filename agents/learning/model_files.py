@@ -14,7 +14,7 @@ from typing import Any
 
 from snooker_env import SnookerVectorEnv
 from snooker_env.checks import choice, integer, number, refuse
-from snooker_env.tasks.saved_models import PLAIN, by_train, entries, part
+from snooker_env.players.saved_models import PLAIN, by_train, entries, part
 
 from ..features.observed import space_of
 from .hyperparameters import ENV_OPTIONS, Recipe, names

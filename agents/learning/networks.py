@@ -17,6 +17,7 @@ from torch import nn
 
 from snooker_env.game import N_BALLS
 from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
+from snooker_env.planning.learned.stroke_policy import LAYERS
 from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, SPEEDS, STROKES, TOPS
 
 from .fused import FusedTable
@@ -170,3 +171,17 @@ class JudgedPolicy(TablePolicy):
         by_ppo = list(self.parameters())
         self.position_value = ValueNetwork()
         self.optimizer = self._new_optimizer(by_ppo, lr_schedule)
+
+
+def arrays_of(policy):
+    """The arrays of a ``JudgedPolicy`` by name: {name: float32 array}."""
+    parameters = [p.detach().numpy() for p in policy.fused.parameters]
+    arrays = {}
+    # the critic's own come last
+    for name, weight, bias in zip(LAYERS, parameters[::2], parameters[1::2], strict=False):
+        arrays |= {f"policy/{name}/weight": weight, f"policy/{name}/bias": bias}
+    value = policy.position_value
+    for k, (weight, bias) in enumerate(zip(value.weights, value.biases, strict=True)):
+        arrays[f"value/{k}/weight"] = weight.detach().numpy().transpose(0, 2, 1)
+        arrays[f"value/{k}/bias"] = bias.detach().numpy()[:, 0]
+    return {name: np.ascontiguousarray(array, np.float32) for name, array in arrays.items()}

@@ -8,8 +8,8 @@ from snooker_env.planning import action_masks
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.players import ChoicePlayer, SeenPlayer
 from snooker_env.players.choices import shares
+from snooker_env.players.saved_models import by_train, entries, one_thread
 from snooker_env.players.weights import learned_of
-from snooker_env.tasks.saved_models import by_train, entries, one_thread
 
 from ..features.observed import seen_of
 from ..learning.hyperparameters import ACTION_OPTIONS, SEEN_OPTIONS
@@ -26,7 +26,7 @@ class PolicyPlayer(ChoicePlayer):
     @property
     def learned(self):
         """Policy and value of a planner; None if the model has no value of positions."""
-        from ..export import arrays_of
+        from ..learning.networks import arrays_of  # it loads PyTorch
 
         policy = self.model.policy
         return learned_of(arrays_of(policy)) if hasattr(policy, "position_value") else None

@@ -23,8 +23,8 @@ from ..tasks.rewards import frame_reward
 from ..tasks.tables import Crew
 from .arguments import ONE, breakers_of, known_options, starts_of
 from .one_table import OneTable, Record
-from .opponents import match_options, match_tables
 from .pictures import FPS, MODES, SIZE, Pictures
+from .seats import match_options, match_tables
 
 PLAYERS = ("player_0", "player_1")
 
@@ -199,7 +199,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         striker, out = int(self.tables.game[0, STRIKER]), self.tables.output()
         a = self.tables.seats[striker].actions.check(action)
         self._pictures.require_display()
-        crew = Crew(self._record.buffers, (), self._watch)
+        crew = Crew(self._record.buffers, self._watch)
         self._record.begin_step()
         prepare = lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers, striker)  # noqa: E731
         played = self.tables.turn(prepare, out, crew)[0]

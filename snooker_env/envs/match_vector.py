@@ -15,7 +15,7 @@ from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.options import Options, observation_space_of
 from ..tasks.tables import Tables
-from .opponents import match_options, match_tables
+from .seats import match_options, match_tables
 from .vector import SnookerVectorEnv
 
 

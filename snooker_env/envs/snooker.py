@@ -15,8 +15,8 @@ from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput
 from .arguments import ONE, breakers_of, known_options, starts_of
 from .one_table import OneTable, Record
-from .opponents import game_of, tables_of
 from .pictures import FPS, MODES, SIZE, Pictures
+from .seats import game_of, tables_of
 
 
 class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
@@ -136,4 +136,4 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         self._show(played=True)
 
     def _crew(self) -> Crew:
-        return Crew(self._record.buffers, (self.np_random,), self._watch)
+        return Crew(self._record.buffers, self._watch)

@@ -23,8 +23,8 @@ from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
 from .arguments import MANY, OUTPUTS, arrays_of, breakers_of, known_options, mask_of, seeds_of, starts_of
-from .opponents import game_of, tables_of
 from .pictures import SIZE, Picture, Pictures
+from .seats import game_of, tables_of
 from .snooker import SnookerEnv
 
 PICTURES = ("rgb_array", "ansi")
@@ -278,7 +278,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     @contextmanager
     def _playing(self) -> Iterator[None]:
         """Strokes are played inside: after an error only some tables have played, so all need a reset."""
-        self._crew.generators = self._generators
         if self.render_mode is not None:
             self._recent = [[] for _ in range(self.num_envs)]
         try:

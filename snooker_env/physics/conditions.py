@@ -1,26 +1,8 @@
 """How do tables differ? The ranges of the constants that measurements leave open, and draws from them."""
 
-from dataclasses import replace
-from functools import lru_cache
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from .._types import Floats, Ints
-from .columns import (
-    P_E_B,
-    P_E_C,
-    P_E_J,
-    P_MU_BB_EXTRA,
-    P_MU_BB_LEAST,
-    P_MU_C,
-    P_MU_R,
-    P_MU_S,
-    P_SPIN,
-)
-
-if TYPE_CHECKING:
-    from .parameters import Physics
+from .._types import Floats
 
 RANGES: dict[str, tuple[float, float]] = {
     "mu_s": (0.178, 0.245),
@@ -56,32 +38,3 @@ def drawn(shares: Floats) -> Floats:
 def normalised(values: Floats) -> Floats:
     """Constants (..., 8) on a scale from -1 to 1, the ends of their ranges; beyond them the ends."""
     return np.clip(2.0 * (values - LOW) / (HIGH - LOW) - 1.0, -1.0, 1.0)
-
-
-def nominal(physics: "Physics") -> Floats:
-    """The constants (8,) of a ``Physics``, whose own friction between balls has the scale 1."""
-    return np.array([1.0 if name == "mu_bb_scale" else getattr(physics, name) for name in NAMES])
-
-
-def physics_with(base: "Physics", values: Floats) -> "Physics":
-    """``base`` with these constants (8,), without tables of rolling impacts: they take longer than its shots."""
-    return _physics_with(base, tuple(values.tolist()))
-
-
-@lru_cache(maxsize=256)  # a table is asked for its constants after every stroke
-def _physics_with(base: "Physics", values: tuple[float, ...]) -> "Physics":
-    changed = dict(zip(NAMES, values, strict=True))
-    scale, (a, b, c) = changed.pop("mu_bb_scale"), base.friction_law
-    friction = (scale * a, scale * b, c) if b else scale * a
-    return replace(base, mu_bb=friction, tables=False, **changed)
-
-
-def pack_into(rows: Floats, which: Ints, values: Floats, base: "Physics") -> None:
-    """Write the constants (len(which), 8) into rows (n, 22), each ``Physics.pack`` of ``physics_with``."""
-    law, scale = base.friction_law, values[:, MU_BB_SCALE]
-    rows[which, P_MU_S], rows[which, P_MU_R] = values[:, MU_S], values[:, MU_R]
-    rows[which, P_SPIN], rows[which, P_E_B] = values[:, SPIN_DECEL], values[:, E_B]
-    rows[which, P_MU_BB_LEAST], rows[which, P_MU_BB_EXTRA] = scale * law[0], scale * law[1]
-    rows[which, P_MU_C], rows[which, P_E_C] = values[:, MU_C], values[:, E_C]
-    if base.e_j is None:
-        rows[which, P_E_J] = values[:, E_C]

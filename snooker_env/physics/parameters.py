@@ -6,16 +6,29 @@ The Physics of Pocket Billiards (1994), as fitted by Alciatore (TP A.14); [TP A.
 
 import dataclasses
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from .._check import choice, number, refuse, truth
-from .._types import Floats, PhysicsName, Solver
+from .._types import Floats, Ints, PhysicsName, Solver
 from ..geometry import BALL_RADIUS
 from . import conditions
-from .columns import P_BALLS, P_E_J, P_JAW, P_RAIL
+from .columns import (
+    P_BALLS,
+    P_E_B,
+    P_E_C,
+    P_E_J,
+    P_JAW,
+    P_MU_BB_EXTRA,
+    P_MU_BB_LEAST,
+    P_MU_C,
+    P_MU_R,
+    P_MU_S,
+    P_RAIL,
+    P_SPIN,
+)
 from .impact.tables import SIZE, TABLED, Rolling, table_of
 
 MARLOW = (9.951e-3, 0.108, 1.088)
@@ -277,7 +290,7 @@ class Physics:
         """
         if not isinstance(rng, np.random.Generator):
             raise refuse("rng", rng, "must be a numpy.random.Generator")
-        return conditions.physics_with(cls.of(physics), conditions.drawn(rng.random(conditions.COLUMNS)))
+        return physics_with(cls.of(physics), conditions.drawn(rng.random(conditions.COLUMNS)))
 
     def check_stopping(self) -> None:
         """ValueError unless friction brings balls to rest in a finite time that is not zero."""
@@ -356,6 +369,35 @@ class Physics:
                 made[rolling] = table
                 packed[place] = len(packed) + SIZE * list(made).index(rolling)
         return np.concatenate([packed, *made.values()])
+
+
+def nominal(physics: Physics) -> Floats:
+    """The constants (8,) of a ``Physics``, whose own friction between balls has the scale 1."""
+    return np.array([1.0 if name == "mu_bb_scale" else getattr(physics, name) for name in conditions.NAMES])
+
+
+def physics_with(base: Physics, values: Floats) -> Physics:
+    """``base`` with these constants (8,), without tables of rolling impacts: they take longer than its shots."""
+    return _physics_with(base, tuple(values.tolist()))
+
+
+@lru_cache(maxsize=256)  # a table is asked for its constants after every stroke
+def _physics_with(base: Physics, values: tuple[float, ...]) -> Physics:
+    changed = dict(zip(conditions.NAMES, values, strict=True))
+    scale, (a, b, c) = changed.pop("mu_bb_scale"), base.friction_law
+    friction = (scale * a, scale * b, c) if b else scale * a
+    return dataclasses.replace(base, mu_bb=friction, tables=False, **changed)
+
+
+def pack_into(rows: Floats, which: Ints, values: Floats, base: Physics) -> None:
+    """Write the constants (len(which), 8) into rows (n, 22), each ``Physics.pack`` of ``physics_with``."""
+    law, scale = base.friction_law, values[:, conditions.MU_BB_SCALE]
+    rows[which, P_MU_S], rows[which, P_MU_R] = values[:, conditions.MU_S], values[:, conditions.MU_R]
+    rows[which, P_SPIN], rows[which, P_E_B] = values[:, conditions.SPIN_DECEL], values[:, conditions.E_B]
+    rows[which, P_MU_BB_LEAST], rows[which, P_MU_BB_EXTRA] = scale * law[0], scale * law[1]
+    rows[which, P_MU_C], rows[which, P_E_C] = values[:, conditions.MU_C], values[:, conditions.E_C]
+    if base.e_j is None:
+        rows[which, P_E_J] = values[:, conditions.E_C]
 
 
 PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None

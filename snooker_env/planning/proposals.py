@@ -26,8 +26,7 @@ from ..physics.cue import squirt
 from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
-from ..tasks.ghost_ball import break_off
-from ..tasks.lines import EASY, aim_at_met, new_work, racked
+from ..tasks.lines import EASY, aim_at_met, break_off, new_work, racked
 from ..tasks.noise import POT_SPEED
 from ..tasks.pot_aim import solved_aim
 from ..tasks.stroke import row_of

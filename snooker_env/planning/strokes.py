@@ -13,12 +13,12 @@ from .._jit import entry
 from .._types import CueKind, Fidelity, Floats, Integers, Ints, Scalars, Vector, Vectors, Words
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
-from ..physics.conditions import END_MASS_RATIO, pack_into
+from ..physics.conditions import END_MASS_RATIO
 from ..physics.cue import MAX_ELEVATION as STEEPEST_CUE
 from ..physics.cue import squirt
 from ..physics.cue_room import NO_RAILS
 from ..physics.impact.contact import parse_fidelity
-from ..physics.parameters import Physics, PhysicsLike
+from ..physics.parameters import Physics, PhysicsLike, pack_into
 from ..tasks import stroke
 from ..tasks.arrays import CueLaw, StruckArrays, TableArrays
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, TARGET_SPAN, Actions, tip_on_disc
@@ -108,14 +108,19 @@ def decoded(
         visits.nominated = nominated
     buffers = ShotBuffers(n, 0)
     visits.address(np.arange(n), actions, buffers)
+    return meant(buffers, visits.packed[0]), after
+
+
+def meant(buffers: ShotBuffers, options: Floats) -> Floats:
+    """Strokes (n, 5) that were struck without errors; ``options``: packed, of the action, one row for all or each."""
     strokes = buffers.shots[:, stroke.CUE_SPEED : stroke.ROOM].copy()
     changed = buffers.shots[:, stroke.ROOM] != 0  # what is meant does not say how the cue finds room
     strokes[changed] = buffers.shots[changed, stroke.MEANT :]
-    _off_the_tip(strokes, visits.packed[0])
+    _off_the_tip(strokes, options)
     off = np.arctan2(np.sin(strokes[:, AIM]), np.cos(strokes[:, AIM]))
     level = np.arctan2(buffers.shots[:, stroke.VY], buffers.shots[:, stroke.VX])
     strokes[:, AIM] = np.where(changed | (strokes[:, ELEVATION] > 0.0), off, level)
-    return strokes, after
+    return strokes
 
 
 class Stops(NamedTuple):

@@ -238,7 +238,7 @@ class Session:
         asked["place"] = before["positions"][CUE] if self.frame.in_hand else None
         asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
         try:
-            crew = Crew(self._buffers, (), self._watch)
+            crew = Crew(self._buffers, self._watch)
             tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
         except SimulationError:
             self._set(before)

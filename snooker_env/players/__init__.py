@@ -10,6 +10,7 @@ import sys as _sys
 from types import ModuleType as _ModuleType
 
 from .choices import ChoicePlayer
+from .opponent_pool import OpponentPool
 from .player import FRAMES, VISITS, BoundPlayer, Player, Ranked, Strokes, decided, decision_seeds
 from .resolver import player, players
 from .seen import Seen, SeenPlayer
@@ -19,6 +20,7 @@ __all__ = [
     "VISITS",
     "BoundPlayer",
     "ChoicePlayer",
+    "OpponentPool",
     "Player",
     "Ranked",
     "Seen",

@@ -5,13 +5,17 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse_what
-from .._types import Floats, Ints
-from ..planning import Planner, Positions, pots
+from .._types import Bools, Floats, Ints
+from ..game.frame_columns import VISIT_COLUMNS
+from ..planning import Positions, pots
 from ..planning.positions import seeds_of
-from ..planning.strokes import available
+from ..planning.strokes import available, meant, packed_under
+from ..tasks.declarations import SAYS_NOTHING
 from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
-from ..tasks.ghost_ball import geometric_strokes
-from ..tasks.options import Options
+from ..tasks.frame import Asked
+from ..tasks.options import Options, Rules
+from ..tasks.stroke import ShotBuffers, address
+from .ghost_ball import geometric_strokes
 from .player import BoundPlayer, Ranked, Strokes, streams_of
 
 MOST = 100  # most strokes of a ranking
@@ -33,12 +37,14 @@ class ChoicePlayer(BoundPlayer):
     """
 
     frames = False
-    _planner: Any = None
+    _rules: Rules  # of where it plays, under which its choices are read
+    _packed: tuple[Floats, Floats, Floats]  # the same for kernels
 
     def _bind(self, options: Options) -> None:
         names = ("physics", "table", "fidelity", "conditions", "cue")
         same: Any = {name: getattr(options, name) for name in names}
-        self._planner = Planner(Options(action="discrete", **same), threads=1)
+        self._rules = Options(action="discrete", **same).rules
+        self._packed = self._rules.packed()
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
         """Score all choices in n positions of visits: float (n, 540), -inf for unavailable ones."""
@@ -51,9 +57,7 @@ class ChoicePlayer(BoundPlayer):
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
         visits, places, decisions, scores = self._scored(positions, seeds)
-        choices = scores.argmax(axis=1)
-        values = self._planner.strokes_of(visits, np.arange(len(visits)), choices)[0]
-        return Strokes(values, places, decision=decisions)
+        return Strokes(self._meant(visits, scores.argmax(axis=1)), places, decision=decisions)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """Rank the choices of each position: at most 100 strokes, highest score first."""
@@ -61,11 +65,24 @@ class ChoicePlayer(BoundPlayer):
         ranked = []
         for k, row in enumerate(scores):
             choices = np.argsort(-row, kind="stable")[: max(1, min(MOST, int(np.isfinite(row).sum())))]
-            values = self._planner.strokes_of(visits, np.full(len(choices), k), choices)[0]
+            values = self._meant(visits[np.full(len(choices), k)], choices)
             where, what = np.repeat(places[k : k + 1], len(choices), 0), np.full(len(choices), decisions[k])
             strokes = Strokes(values, where, decision=what)
             ranked.append(Ranked(strokes, self.figures(row[choices])))
         return ranked
+
+    def _meant(self, visits: Positions, choices: Ints) -> Floats:
+        """The strokes (n, 5) that a choice in each of n visits means; cue balls have been placed."""
+        rules, n = self._rules, len(visits)
+        own, buffers, packed = visits.known_to(rules).conditions, ShotBuffers(n, 0), self._packed
+        if own is not None:
+            packed = packed_under(own, rules)
+        streams, nominated = np.zeros((n, 2), np.uint64), np.empty(0, np.int64)
+        tables = visits.positions, visits.on_table, visits.game, streams, nominated
+        address(
+            np.arange(n), choices[:, None].astype(np.float64), tables, buffers.struck, packed, rules.fidelity
+        )
+        return meant(buffers, packed[0])
 
     def _scored(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Ints, Floats]:
         """The visits with placed cue balls, their places, the decisions after fouls, and the scores."""
@@ -104,44 +121,50 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; all else as by ``tasks.ghost_ball``."""
+    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; all else as in ``ghost_ball.py``."""
 
     name, training_shots = "ghost_ball", 0
 
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``."""
+        return self._played(positions, seeds)[0]
+
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """Its stroke, then the same at the other direct pots, with the tolerance of each pot [mrad]."""
-        at = Positions.of(positions)
-        strokes, start = self._played(at, seeds)
+        strokes, start = self._played(positions, seeds)
         direct = pots(start)
         ranked = []
         for k, many in enumerate((direct.ball >= 0).sum(axis=1).tolist()):
             if many < 2:
                 ranked.append(Ranked(strokes[k : k + 1], None))
                 continue
-            values = self._planner.strokes_of(start, np.full(many, k), STROKES * np.arange(many) + _PLAIN)[0]
+            values = self._meant(start[np.full(many, k)], STROKES * np.arange(many) + _PLAIN)
             others = Strokes(values, np.repeat(strokes.place[k : k + 1], many, 0))
             joined = Strokes.join([strokes[k : k + 1], others[1:]])
             ranked.append(Ranked(joined, 1e3 * direct.tolerance[k, :many]))
         return ranked
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
-        """See ``Player.play``."""
-        return self._played(Positions.of(positions), seeds)[0]
-
-    def _played(self, at: Positions, seeds: Any) -> tuple[Strokes, Positions]:
+    def _played(self, positions: Any, seeds: Any) -> tuple[Strokes, Positions]:
         """What it plays, and from where: visits with placed cue balls."""
-        n, code, moved = len(at), self.options.rules.rule_set.code, at.copy()
-        values, (nominate, decision) = np.empty((n, 5)), np.empty((2, n), np.int64)
-        racks = at.in_hand & (at.on_table[:, 1:16].sum(axis=1) == 15)
-        streams = streams_of(seeds_of(seeds, n))
-        balls = moved.positions, moved.on_table, moved.game
-        geometric_strokes(*balls, code, streams, values, nominate, decision)
-        start = moved.as_visits()
-        again = at.of_frames and at.miss_called
-        rows = np.flatnonzero((pots(start, most=1).ball[:, 0] >= 0) & ~racks & ~np.broadcast_to(again, n))
-        values[rows] = self._planner.strokes_of(start, rows, np.full(len(rows), _PLAIN))[0]
-        place = np.where(moved.in_hand[:, None], moved.positions[:, 0], np.nan)
-        return Strokes(values, place, nominate, decision), start
+        at = Positions.of(positions)
+        own = at.positions.copy(), at.on_table.copy(), at.game.copy()
+        asked, start = self.turns(*own, at.conditions, seeds_of(seeds, len(at)))
+        return Strokes(*asked), start
+
+    def turns(
+        self, positions: Floats, on_table: Bools, game: Ints, conditions: Floats | None, seeds: Ints
+    ) -> tuple[Asked, Positions]:
+        """What it plays on n tables, and from where: visits after its decisions, with placed cue balls, which take over
+        the arrays of the tables."""
+        n, code = len(seeds), self.options.rules.rule_set.code
+        values, places, visits = np.empty((n, 5)), np.empty((n, 2)), np.empty((n, VISIT_COLUMNS), np.int64)
+        (nominated, decisions), solves = np.empty((2, n), np.int64), np.empty(n, np.bool_)
+        out = values, places, nominated, decisions, visits, solves
+        geometric_strokes(positions, on_table, game, code, streams_of(seeds), *out)
+        start, rows = Positions(positions, on_table, visits, None, conditions), np.flatnonzero(solves)
+        if len(rows):
+            values[rows] = self._meant(start[rows], np.full(len(rows), _PLAIN))
+        return (values, places, nominated, decisions, np.full(n, SAYS_NOTHING)), start
 
 
 _PLAIN = choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))  # the widest pot, no spin

@@ -9,7 +9,7 @@ from .._check import choice, refuse
 from .._files import strict_json
 from .._notices import say
 from ..tasks.options import Options
-from ..tasks.saved_models import by_train, entries
+from .saved_models import by_train, entries
 
 KEYS = (*Options.group("action", "visit"), "decision")  # what a model's file does not say
 LEFT_OUT = "must be left out: it is for models of Stable-Baselines3"

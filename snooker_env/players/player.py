@@ -24,8 +24,8 @@ from ..planning.strokes import AIM, ELEVATION, NAMES, SIDE, SPEED, TOP
 from ..planning.worth import chosen, decide
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
-from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
+from .ghost_ball import put_in_hand
 
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]  # a dict: fields of ``Options``
 CODES: dict[str, tuple[int, ...]] = {
@@ -95,9 +95,9 @@ class Strokes:
             array = default if getattr(self, name) is None else np.asarray(getattr(self, name))
             if array.shape != default.shape:
                 raise refuse_what(name, f"array of shape {array.shape}", f"must have shape {default.shape}")
-            if name in CODES and not (sound := np.isin(array, CODES[name])).all():
-                k = int(np.argmin(sound))
-                raise refuse(f"{name}[{k}]", array[k].item(), f"must be one of {CODES[name]}")
+            for code in set(array.tolist()).difference(CODES[name]) if name in CODES else ():
+                k = array.tolist().index(code)
+                raise refuse(f"{name}[{k}]", code, f"must be one of {CODES[name]}")
             object.__setattr__(self, name, array.astype(default.dtype))
         sound = np.isnan(self.place).all(1) | (np.abs(self.place) <= (HALF_WIDTH, HALF_LENGTH)).all(1)
         if not sound.all():

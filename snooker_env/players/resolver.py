@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .._check import refuse, refuse_what, truth
+from .._registration import PROGRAM_PLAYER
 from .choices import GhostBall, Random
 from .model_options import LEFT_OUT, checked, of_others
 from .player import Player
@@ -20,7 +21,7 @@ GROUP = "snooker_env.players"  # entry points for players: NAME = MODULE:MAKER, 
 READERS = "snooker_env.models"  # entry points that read models, called with a path; None if it is not theirs
 BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician", "stroke_value")
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
-PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"  # loaded as an entry point
+PROGRAM = "program:"
 _KINDS = "best_pot|search|tactician|stroke_value|planner(?:_value|_policy)?"
 _SEARCHING = re.compile(rf"({_KINDS})(?:_(\d+))?(?:@(.+))?")
 

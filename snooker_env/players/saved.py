@@ -11,8 +11,8 @@ from .._types import Bools, Ints, Observation
 from ..tasks.declarations import SAYS
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options
-from ..tasks.saved_models import SavedModel, by_train, entries, one_thread, outline
 from .model_options import say_assumed
+from .saved_models import SavedModel, by_train, entries, one_thread, outline
 from .seen import SeenPlayer
 
 

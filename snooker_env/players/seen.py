@@ -9,7 +9,8 @@ from .._check import choice, refuse_what
 from .._types import Bools, Floats, Ints, Observation, Singles
 from ..game import frame_columns as columns
 from ..game.balls import mask_of_present
-from ..physics.conditions import nominal, normalised
+from ..physics.conditions import normalised
+from ..physics.parameters import nominal
 from ..planning import Positions
 from ..planning.positions import seeds_of
 from ..planning.strokes import decoded

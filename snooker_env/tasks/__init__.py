@@ -7,7 +7,6 @@ from .noise import LEVELS, Noise
 from .observations import OBSERVATIONS, STATE_ENTRIES
 from .observations import SIZE as OBSERVATION_SIZE
 from .observations import space as observation_space
-from .opponent_pool import OpponentPool
 
 __all__ = [
     "CHOICES",
@@ -23,7 +22,6 @@ __all__ = [
     "STROKES",
     "TOPS",
     "Noise",
-    "OpponentPool",
     "choice_of",
     "observation_space",
 ]

@@ -1,6 +1,6 @@
 """How are players' strokes carried out in frames? What is said with each, its place, the strike."""
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,17 +14,19 @@ from . import declarations
 from .arrays import StruckArrays, TableArrays
 from .box_actions import tip_on_disc
 from .declarations import A_DECISION, declaration_of, nomination_of
-from .frame import Frames
 from .frame_kernels import choose_as, give_up
 from .options import Rules
 from .rewards import MATCH_REWARDS
 from .stroke import ShotBuffers, place, row_of, strike
 
+if TYPE_CHECKING:
+    from .frame import Asked, Frames
+
 
 @entry(what="the strokes of players in frames", seconds=3)
 def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
-    """Strokes of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m. ``asked``:
-    values, place, nominate, decision, declare of ``players.Strokes``; ``codes``: rule set, reward."""
+    """Strokes of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m. ``asked``: see
+    ``frame.Asked``; ``codes``: rule set, reward."""
     values, places, nominate, decisions, declared = asked
     tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), StruckArrays(*shots)
     (every, noise), (rules, reward), m = packed, codes, 0
@@ -62,8 +64,8 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
     return m
 
 
-def carry_out(frames: Frames, which: Ints, asked: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
-    """Carry out the strokes ``asked``, arrays of ``players.Strokes``, up to the strike, with the errors of the
+def carry_out(frames: "Frames", which: Ints, asked: "Asked", buffers: ShotBuffers, side: int) -> Ints:
+    """Carry out the strokes ``asked`` up to the strike, with the errors of the
     seat ``side``; returns the tables with a stroke."""
     codes = frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)
     playing, tables = np.empty(len(which), np.int64), (frames.arrays, frames.saved_arrays)

@@ -15,10 +15,9 @@ the end and pays its reward (``Frames.due``). A cue ball in hand is placed at on
 the free place of the D nearest to its usual one (``balls.SPOTS``), or if it may go anywhere, nearest to where it
 came to rest. The player may place it elsewhere."""
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
@@ -33,6 +32,7 @@ from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import normalised
 from . import frame_kernels
 from .box_actions import Actions
+from .carry_out import carry_out
 from .declarations import A_LOT
 from .discrete_actions import Choices
 from .frame_kernels import AGENT
@@ -45,28 +45,19 @@ from .stroke import ShotBuffers
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 from .visit import Visits
 
-Generators: TypeAlias = Sequence[np.random.Generator]  # one for each table, for an opponent in Python
+OPPONENT = 1 - AGENT  # index of the opponent in the frame, and of its seat
+Asked: TypeAlias = tuple[Floats, Floats, Ints, Ints, Ints]
+"""Of n tables: strokes (n, 5), places of cue balls in hand (n, 2), nominations, decisions and declarations (n,)."""
 
 
-class Opponent(ABC):
+class Opponent(Protocol):
     """Who plays the other side of frames."""
 
-    name: str = ""
+    name: str
 
-    def ask(self, frames: "Frames", which: Ints, generators: Generators) -> Any:
-        """What it plays on the tables ``which``, for ``prepare``; None for one that plays as a kernel."""
-        return None
-
-    @abstractmethod
-    def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
-        """Carry the strokes out up to the strike; returns the tables with a stroke."""
-
-    def turns(self, frames: "Frames", which: Ints, generators: Generators) -> "list[Turn]":
-        """Who plays on which of the tables ``which``, and what: [(opponent, tables, asked), ...]."""
-        return [(self, which, self.ask(frames, which, generators))]
-
-
-Turn: TypeAlias = tuple[Opponent, Ints, Any]  # who plays on which tables, and what was asked
+    def strokes(self, frames: "Frames", which: Ints, crew: Crew) -> Asked:
+        """What it plays on the tables ``which``, with a row for each table of ``frames``."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -322,17 +313,18 @@ class Frames(Tables):
 
     def _reply(self, which, out, crew):
         """All strokes of the opponent until it is the agent's turn or the frame has ended."""
-        opponent = self.seats[1].player
+        opponent = self.seats[OPPONENT].player
         assert opponent is not None  # ``turn`` plays for two without
         while len(which := which[(self.game[which, columns.STRIKER] != AGENT) & ~self.ended()[which]]):
-            for player, tables, asked in opponent.turns(self, which, crew.generators):
+            asked = opponent.strokes(self, which, crew)
 
-                def play(part, buffers, player=player, asked=asked):
-                    struck = player.prepare(self, part, asked, buffers)
-                    self.complete(struck, out, buffers, crew, reported=False)
-                    self.go_on(part)
+            def play(part, buffers, asked=asked):
+                self.complete(
+                    carry_out(self, part, asked, buffers, OPPONENT), out, buffers, crew, reported=False
+                )
+                self.go_on(part)
 
-                crew(tables, play)
+            crew(which, play)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew, *, breakers: Ints | None = None) -> None:
         """See ``Tables.reset``. ``breakers``: see ``deal``."""
@@ -346,7 +338,7 @@ class Frames(Tables):
         alone = len(self.seats) == 1
         self._replies[which] = 0
         crew(which, lambda part, _: self.deal(part, drawn=not alone, breakers=breakers))
-        if not alone and self.seats[1].player is not None:
+        if not alone and self.seats[OPPONENT].player is not None:
             try:
                 self._reply(which, out, crew)
             except BaseException:

@@ -17,7 +17,7 @@ from ..geometry import BALL_RADIUS
 from ..physics import conditions
 from ..physics.cue_room import NO_RAILS, rails_of
 from ..physics.impact.contact import parse_fidelity
-from ..physics.parameters import Physics, PhysicsLike
+from ..physics.parameters import Physics, PhysicsLike, physics_with
 from ..physics.table import Table, TableLike
 from . import observations
 from .box_actions import AIMS, Actions
@@ -43,7 +43,7 @@ MAX_STROKES = 1000
 FRAMES = 7
 """Default length of a match: best of 7."""
 OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
-object: a callable(observation, rng) -> action, a player, one with act(observations, masks, seeds), an OpponentPool"""
+object: a player or an OpponentPool; players.SeenPlayer makes a player of what acts on observations"""
 _UNSAID: Any = object()
 OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
 NEVER = 2**62  # stands for no limit of strokes or steps
@@ -307,7 +307,7 @@ class Options:
             raise refuse("observe_conditions", True, allowed)
         for end in (conditions.LOW, conditions.HIGH) if drawn else ():
             try:
-                conditions.physics_with(physics, end).check_stopping()
+                physics_with(physics, end).check_stopping()
             except ValueError as error:
                 allowed = f"must be 'fixed' with these physics, which do not go with a table drawn: {error}"
                 raise refuse("conditions", "drawn", allowed) from None

@@ -2,7 +2,7 @@
 every caller: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -14,9 +14,9 @@ from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import pair, stream_of
 from ..physics.columns import CONSTANTS
 from ..physics.conditions import COLUMNS as CONDITIONS
-from ..physics.conditions import END_MASS_RATIO, drawn, nominal, normalised, pack_into, physics_with
+from ..physics.conditions import END_MASS_RATIO, drawn, normalised
 from ..physics.conditions import NAMES as CONDITION_NAMES
-from ..physics.parameters import Physics
+from ..physics.parameters import Physics, nominal, pack_into, physics_with
 from ..shot import Shot
 from . import discrete_actions, stroke
 from .box_actions import Actions
@@ -120,11 +120,10 @@ class StepOutput:
 
 
 class Crew:
-    """Runs ``task(part, buffers)``, here on all at once; ``generators``: for Python opponents."""
+    """Runs ``task(part, buffers)``, here on all at once."""
 
-    def __init__(self, buffers: Any = None, generators: Sequence[Any] = (), watch: Watch | None = None):
+    def __init__(self, buffers: Any = None, watch: Watch | None = None):
         self.buffers: Any = buffers  # ``ShotBuffers``, or None for a crew that allocates its own
-        self.generators: Sequence[Any] = generators
         self.watch: Watch | None = watch
 
     def __call__(self, which: Ints, task: Task) -> None:

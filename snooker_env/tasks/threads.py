@@ -86,7 +86,7 @@ class Threads(Crew):
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {k: v for k, v in self.__dict__.items() if k != "_lock"}
-        return kept | {"_pool": None, "_desks": [], "generators": ()}
+        return kept | {"_pool": None, "_desks": []}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _lock=threading.Lock())  # threads and locks belong to one process

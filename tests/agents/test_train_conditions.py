@@ -15,6 +15,7 @@ from agents.learning.models import load_trained
 from agents.players.trained import load_player
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.physics import conditions
+from snooker_env.physics.parameters import nominal
 from snooker_env.planning import Planner, Positions
 from snooker_env.planning.learned.pot_view import SHOWN
 from tests.agents.training import results, run, weights
@@ -126,7 +127,7 @@ def test_it_sees_those_of_the_table_that_it_plays_on(observed, monkeypatch):
     monkeypatch.setattr(policy, "obs_to_tensor", lambda row: seen.append(np.squeeze(row)) or take(row))
     for options, wanted in (
         ({"conditions": "drawn"}, at.conditions),
-        ({"physics": "match"}, np.tile(conditions.nominal(sn.Physics.preset("match")), (3, 1))),
+        ({"physics": "match"}, np.tile(nominal(sn.Physics.preset("match")), (3, 1))),
     ):
         del seen[:]
         player.at(options).play(at, np.arange(3))

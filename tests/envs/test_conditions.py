@@ -13,6 +13,7 @@ from gymnasium.vector import AutoresetMode
 import snooker_env as sn
 from snooker_env.physics import conditions
 from snooker_env.physics.conditions import NAMES, RANGES
+from snooker_env.physics.parameters import nominal, pack_into, physics_with
 from snooker_env.planning import Planner, Positions
 from tests.envs.test_vector import check_equal
 from tests.processes import ROOT
@@ -68,10 +69,10 @@ def test_rows_are_the_packed_constants_of_the_physics():
         sn.Physics(e_j=0.5, nap=0.001, mu_bb=(0.01, 0.1, 2.0)),
     ):
         rows, values = np.tile(base.pack(), (5, 1)), conditions.drawn(rng.random((3, 8)))
-        conditions.pack_into(rows, np.array([0, 2, 4]), values, base)
+        pack_into(rows, np.array([0, 2, 4]), values, base)
         for k, one in zip((0, 2, 4), values, strict=True):
-            assert (rows[k] == conditions.physics_with(base, one).pack()).all()
-        assert (rows[1] == base.pack()).all() and (conditions.nominal(base)[[0, 4]] == (base.mu_s, 1.0)).all()
+            assert (rows[k] == physics_with(base, one).pack()).all()
+        assert (rows[1] == base.pack()).all() and (nominal(base)[[0, 4]] == (base.mu_s, 1.0)).all()
 
 
 @pytest.mark.parametrize("task", ["visit", "frame", "match"])
@@ -310,5 +311,5 @@ def test_a_network_sees_the_constants_that_it_was_trained_with():
     player.at(env).play(env, [0])
     assert np.allclose(seen[-1][0, -8:], conditions.normalised(of_state(env)), atol=1e-6)
     player.at({"physics": "match"}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0])
-    middle = conditions.normalised(conditions.nominal(sn.Physics.preset("match")))
+    middle = conditions.normalised(nominal(sn.Physics.preset("match")))
     assert np.allclose(seen[-1][0, -8:], middle, atol=1e-6)

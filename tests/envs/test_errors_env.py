@@ -10,6 +10,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import Options, SnookerEnv, SnookerVectorEnv
+from snooker_env.players import SeenPlayer
 from snooker_env.tasks.options import NAMES
 from tests.refusals import FIDELITY, INF, NAN, WRONG_FIDELITIES, case, make, refused
 from tests.tables import begun
@@ -245,7 +246,7 @@ def _one(action, **options):
 
 
 def _opponent(action):
-    env = SnookerEnv(task="frame", opponent=lambda observation, rng: action)
+    env = SnookerEnv(task="frame", opponent=SeenPlayer(_Same(action), {"task": "frame"}))
     env.reset(seed=1, options={"breaker": 0})
     env.step([0.0] * 4)
     return env.get_state()

@@ -8,6 +8,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import SnookerVectorEnv
 from snooker_env.envs.match import PLAYERS
+from snooker_env.tasks.frame import Frames, Seat
 from tests.tables import begun, plain
 
 pytest.importorskip("pettingzoo")
@@ -31,7 +32,7 @@ class Played:
 
     def __init__(self, options, seed):
         env = begun(sn.match_env(**options), seed)
-        self.key = _key(env.np_random)
+        self.key = int(env.tables.streams[0, 0])
         self.actions, self.seen = ([], []), []
         self.total, rng = 0.0, np.random.default_rng(seed)
         while not any(env.terminations.values()) and not any(env.truncations.values()):
@@ -66,31 +67,43 @@ class Played:
         return a
 
 
-def _key(rng):
-    """What identifies a table's generator: its state after the key of its stream was drawn."""
-    return json.dumps(rng.bit_generator.state, default=str)
-
-
 def _end(state):
     """What must agree at the end, in every bit: nobody is paid in the same places."""
     return json.dumps({key: value for key, value in state.items() if key not in ("unpaid", "due")})
 
 
 class Other:
-    """The opponent who plays again what player 1 played."""
+    """The opponent who plays again what player 1 played, its very actions: they are not made strokes first."""
 
     def __init__(self, played):
         self.left = {one.key: iter(one.actions[1]) for one in played}
         self.nothing = 0 * (played[0].actions[0] + played[0].actions[1])[0]
 
-    def __call__(self, observation, rng):
-        return next(self.left[_key(rng)], self.nothing)
+    def strokes(self, frames, which, crew):
+        actions = np.zeros((frames.n, frames.seats[1].actions.size))
+        for k in which.tolist():
+            wished = next(self.left[int(frames.streams[k, 0])], self.nothing)
+            actions[k] = frames.seats[1].actions.check(wished)
+        return actions
+
+
+def against(played, env):
+    """The environment with that opponent in place of its own."""
+    tables = env.tables
+    tables.sit([tables.seats[0], Seat.of(tables.rules, Other(played))])
+    return env
+
+
+@pytest.fixture(autouse=True)
+def as_actions(monkeypatch):
+    """What the opponent is asked for are actions."""
+    monkeypatch.setattr("snooker_env.tasks.frame.carry_out", Frames.prepare)
 
 
 def check_alike(options, seeds):
     played = [Played(options, seed) for seed in seeds]
     for seed, one in zip(seeds, played, strict=True):
-        env = sn.SnookerEnv(**options, opponent=Other([one]))
+        env = against([one], sn.SnookerEnv(**options, opponent="random"))
         shown, _ = env.reset(seed=seed)
         seen, total = [shown.tobytes()], 0.0
         for step in range(max(1, len(one.actions[0]))):
@@ -103,7 +116,7 @@ def check_alike(options, seeds):
         assert _end(env.get_state()) == one.end
         assert {name: info[name] for name in one.info} == one.info
     n = len(seeds)
-    tables = begun(SnookerVectorEnv(n, **options, opponent=Other(played), threads=1), list(seeds))
+    tables = begun(against(played, SnookerVectorEnv(n, **options, opponent="random", threads=1)), list(seeds))
     totals, over = np.zeros(n), np.zeros(n, bool)
     for step in range(max(1, *(len(one.actions[0]) for one in played))):
         actions = np.array([one.action(step) for one in played])

@@ -10,7 +10,7 @@ from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks.options import Options
 from tests.envs.test_vector import MODES, actions_of, check_equal, native, same
 from tests.refusals import refused
-from tests.tables import begun
+from tests.tables import acting, begun
 
 
 def policy(observation, rng):
@@ -18,21 +18,6 @@ def policy(observation, rng):
     return np.clip(
         rng.uniform(-1.0, 1.0, 7) * (1.0, 0.3, 0.3, 0.5, 1.0, 1.0, 1.0) + 0.01 * observation[0], -1.0, 1.0
     )
-
-
-class Many:
-    """The same opponent, which can be asked for many tables at once, and counts how often it is."""
-
-    def __init__(self):
-        self.calls = 0
-
-    def __call__(self, observation, rng):
-        return policy(observation, rng)
-
-    def many(self, observations, generators, masks):
-        self.calls += 1
-        assert masks is None
-        return [policy(row, rng) for row, rng in zip(observations, generators, strict=True)]
 
 
 FULL = {"decision": True, "placement": True, "aim": "target", "noise": "club"}
@@ -44,7 +29,7 @@ OPTIONS = {
     "random": FULL | {"opponent": "random", "layout": "random:1", "miss": "clear_path"},
     "ghost_ball": GHOST | {"layout": "random:1", "aim": "target", "observation": "balls", "reward": "win"},
     "ghost_ball breaks": FULL | GHOST | {"max_episode_steps": 4},
-    "callable": FULL | {"opponent": policy, "layout": "random:0", "max_strokes": 15},
+    "player": FULL | {"opponent": acting(policy), "layout": "random:0", "max_strokes": 15},
     "discrete": {"opponent": "random", "layout": "colours", "action": "discrete", "noise": "amateur"}
     | {"max_strokes": 30},
     "masked": GHOST | MASKED | {"nominate": True, "concede": True, "miss": "clear_path", "max_strokes": 20},
@@ -63,31 +48,12 @@ def test_they_equal_sync_vector_env(mode, options, monkeypatch):
     assert (strokes > 100) == ("opponent" in options)
 
 
-def test_a_player_of_many_tables_is_called_once_for_all_that_wait():
-    many = Many()
-    options = FULL | {"task": "frame", "layout": "random:2", "autoreset_mode": AutoresetMode.SAME_STEP}
-    one, other = native(40, opponent=many, **options), native(40, opponent=policy, **options)
-    assert same(one.reset(seed=1), other.reset(seed=1))
-    rng = np.random.default_rng(0)
-    for _ in range(5):
-        before, a = many.calls, actions_of(one, rng)
-        got, want = one.step(a), other.step(a)
-        assert all(same(x, y) for x, y in zip(got, want, strict=True))
-        longest = int(np.max(got[4]["opponent_strokes"]))
-        # rounds, not tables: handing over and new frames may add a few
-        assert 0 < many.calls - before <= 2 * longest + 6
-    short = type("Short", (), {"__call__": lambda *_: None, "many": lambda *_: []})()
-    wrong = SnookerVectorEnv(4, task="frame", opponent=short)
-    with pytest.raises(ValueError, match=r"^opponent's actions = \[\]: must be \d+, one for each table that"):
-        [wrong.reset(seed=seed) for seed in range(5)]
-
-
 def test_an_error_of_an_opponent_asks_for_a_reset():
     def failing(observation, rng):
         raise KeyError("no turn")
 
-    env = SnookerVectorEnv(4, task="frame", opponent=failing)
-    with pytest.raises(KeyError, match="no turn"):
+    env = SnookerVectorEnv(4, task="frame", opponent=acting(failing))
+    with pytest.raises(RuntimeError, match="no turn"):
         env.reset(seed=3)
     with pytest.raises(Exception, match=r"reset\(\) before step"):
         env.step(np.zeros((4, 4)))

@@ -71,7 +71,7 @@ TRAINED_FOR = (
     "snooker_env.game: frame_columns",
     "snooker_env.tasks.carry_out",
     "snooker_env.tasks.frame",
-    "snooker_env.tasks.saved_models",
+    "snooker_env.players.saved_models",
     "snooker_env.tasks.threads",
 )
 

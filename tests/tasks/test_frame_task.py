@@ -15,7 +15,7 @@ from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.tasks import observations
 from snooker_env.tasks.observations import FRAME_ENTRIES
 from snooker_env.tasks.options import NAMES
-from tests.tables import begun, frame_env, frame_state, plain, viewed
+from tests.tables import acting, begun, frame_env, frame_state, plain, viewed
 
 SOFT = [-1.0, 0, 0, 0.5, 0, 0, 0]
 """A soft stroke up the table (with ``aim="absolute"``)."""
@@ -152,7 +152,7 @@ def test_every_argument_is_documented():
 def test_the_layout_that_replace_restores_is_within_its_space(observation):
     """A ball may rest in the mouth of a middle pocket, farther out than the cushions' noses."""
     options = {"miss": "clear_path", "aim": "absolute", "observation": observation}
-    env = frame_env(opponent=lambda seen, rng: np.array(SOFT), **options)
+    env = frame_env(opponent=acting(lambda seen, rng: SOFT, aim="absolute", miss="clear_path"), **options)
     frame_state(env, {CUE: (0.0, 0.0), 1: (-0.3, -1.0), PINK: (0.3, 0.5), BLACK: (0.8993, -0.035)}, {})
     seen, _, _, _, _ = env.step(SOFT)
     assert env.frame.miss_called and env.positions[BLACK, 0] > 0.889

@@ -8,21 +8,22 @@ from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, YELLOW
 from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_WIDTH
+from snooker_env.players.opponents import opponent_of
+from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.escapes import _REBOUND
-from snooker_env.tasks.frame import Frames, Seat
-from snooker_env.tasks.ghost_ball import GhostBallOpponent
+from snooker_env.tasks.frame import AGENT, Frames, Seat
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import AIM, CUE_SPEED, ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, I_POINTS, Crew
 from tests.tables import begun
 
-PLAYER = GhostBallOpponent()
-
 
 def dealt(n, **options):
     """New frames at which player 0 is to play."""
     game = Options(task="frame", aim="target", placement=True, decision=True, **options)
-    tables = Frames(game, n, seats=[Seat.of(game.rules)] * 2)
+    tables = Frames(
+        game, n, seats=[Seat.of(game.rules, opponent_of("ghost_ball", game)), Seat.of(game.rules)]
+    )
     for k in range(n):
         tables.seed(k, np.random.default_rng(k))
     tables.deal(np.arange(n), drawn=False)
@@ -33,15 +34,17 @@ def turn(tables, which=None):
     """One stroke of "ghost_ball" on each of the tables: its fouls and points (n,), and the buffers."""
     which = np.arange(tables.n) if which is None else which
     buffers, out = ShotBuffers(len(which)), tables.output()
-    tables.complete(PLAYER.prepare(tables, which, None, buffers), out, buffers, Crew(buffers), reported=True)
+    crew = Crew(buffers)
+    asked = tables.seats[AGENT].player.strokes(tables, which, crew)
+    tables.complete(carry_out(tables, which, asked, buffers, AGENT), out, buffers, crew, reported=True)
     return out.counts[which, I_FOULS], out.reals[which, I_POINTS], buffers
 
 
 @pytest.mark.parametrize(
-    ("noise", "fouled", "back"), [("none", 0.02, 0.8), ("professional", 0.02, 0.8), ("amateur", 0.04, 0.7)]
+    ("noise", "fouled", "back"), [("none", 0.02, 0.8), ("professional", 0.02, 0.8), ("amateur", 0.07, 0.65)]
 )
 def test_it_breaks_off_without_a_foul_and_brings_the_cue_ball_back(noise, fouled, back):
-    tables = dealt(300, noise=noise)
+    tables = dealt(1000, noise=noise)
     fouls, *_ = turn(tables)
     assert (fouls != 0).mean() < fouled
     assert (tables.positions[:, CUE, 1] < BAULK_Y).mean() > back
@@ -55,14 +58,14 @@ def test_it_escapes_from_most_snookers(noise):
 
 
 def test_it_rarely_fouls_where_no_pot_is_on():
-    tables, which, fouls, many = dealt(60, noise="professional"), np.arange(60), 0, 0
+    tables, which, fouls, many = dealt(120, noise="professional"), np.arange(120), 0, 0
     while len(which):
         lies = ((tables.positions[k], tables.on_table[k], tables.on(k)) for k in which)
         without = (tables.game[which, columns.IN_HAND] == 0) & [len(pots(*each)) == 0 for each in lies]
         found, *_ = turn(tables, which)
         fouls, many = fouls + np.sum(found[without] != 0), many + without.sum()
         which = which[~tables.ended()[which]]
-    assert many > 200 and fouls / many < 0.08
+    assert many > 400 and fouls / many < 0.1
 
 
 def test_in_hand_without_a_pot_it_stands_where_it_sees_a_ball_on():

@@ -11,7 +11,7 @@ from snooker_env.tasks import declarations, discrete_actions
 from tests.miss_paths import paths
 from tests.refusals import refused
 from tests.tables import PLACES as STANDING
-from tests.tables import begun, frame_env, frame_state, layout, plain
+from tests.tables import acting, begun, frame_env, frame_state, layout, plain
 
 COLOURS = {CUE: (0.0, -0.5), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
 PLACES = COLOURS | {1: (0.6, 1.4), YELLOW: SPOTS[YELLOW]}
@@ -241,7 +241,7 @@ def asks_again(observation, rng):
 @pytest.mark.parametrize("miss", ["clear_path", "attempt"])
 def test_who_hides_in_hand_is_sent_back_warned_and_loses_the_frame(miss):
     """It is given up then: the red, the brown and the black that are left are paid for as well."""
-    env = frame_env(aim="absolute", miss=miss, opponent=asks_again)
+    env = frame_env(aim="absolute", miss=miss, opponent=acting(asks_again, aim="absolute"))
     places = {1: RED, BROWN: SPOTS[BROWN], BLACK: SPOTS[BLACK], CUE: (0.18, BAULK_Y)}
     frame_state(env, places, {"in_hand": True})
     for failures, warned in ((1, False), (2, True)):

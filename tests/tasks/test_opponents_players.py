@@ -14,10 +14,11 @@ from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
 from snooker_env.game.frame_columns import PLAY_AGAIN, REPLACE, STRIKER
 from snooker_env.game.sides import swapped
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
-from snooker_env.players import Strokes
-from snooker_env.tasks import OpponentPool
+from snooker_env.players import OpponentPool, SeenPlayer, Strokes
+from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.declarations import CONCEDES
 from snooker_env.tasks.stroke import ShotBuffers
+from snooker_env.tasks.tables import Crew
 from tests.tables import COPIES, PLACES, begun, frame_env, frame_state, plain
 
 MISS = [-0.9, 0, 0, 1.0, 0, 0, 0]
@@ -67,8 +68,8 @@ class Sees:
 def asked(env):
     """The opponent's turn on the first table, up to the strike: (its buffers, the tables with a stroke)."""
     one, opponent, buffers = np.zeros(1, np.int64), env.tables.seats[1].player, ShotBuffers(1)
-    which = opponent.prepare(env.tables, one, opponent.ask(env.tables, one, [None]), buffers)
-    return buffers, which.tolist()
+    strokes = opponent.strokes(env.tables, one, Crew(buffers))
+    return buffers, carry_out(env.tables, one, strokes, buffers, 1).tolist()
 
 
 def test_a_player_sees_the_frame_as_the_striker():
@@ -81,10 +82,10 @@ def test_a_player_sees_the_frame_as_the_striker():
     assert player.rules is env.options and 0 <= seeds[0] < 2**32
 
 
-def test_an_object_that_acts_sees_observations():
+def test_what_acts_on_observations_sees_them():
     for options, size in (({}, 121), ({"task": "frame"}, 140), ({"action": "discrete"}, 121)):
         one = Sees(**options)
-        env = frame_state(frame_env(opponent=one), PLACES, {"scores": (31, 62)})
+        env = frame_state(frame_env(opponent=SeenPlayer(one)), PLACES, {"scores": (31, 62)})
         one.seen.clear()
         assert env.step(MISS)[4]["opponent_strokes"] > 0 and one.seen[0].shape == (1, size)
 
@@ -107,6 +108,41 @@ def test_one_call_serves_all_tables_that_wait():
     player.calls.clear()
     _, _, _, _, info = tables.step(np.tile(MISS[:4], (16, 1)))
     assert len(player.calls) == info["opponent_strokes"].max() and len(player.calls[0][0]) > 8
+
+
+@pytest.mark.parametrize("name", ["ghost_ball", "random"])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"aim": "target", "noise": "club", "miss": "clear_path", "layout": "random:3"},
+        {"action": "discrete", "cue": "real", "noise": "professional", "layout": "colours"},
+        {"conditions": "drawn", "nominate": True, "game": "shoot_out", "layout": "random:2"},
+    ],
+    ids=["box", "discrete", "drawn"],
+)
+def test_a_name_is_one_player(name, options, monkeypatch):
+    """What the opponent with a name does is what the player with that name answers, on any number of threads."""
+    monkeypatch.setattr("snooker_env.tasks.threads.CHUNK", 4)
+    asked, player = [], sn.player(name)
+
+    class Same(Soft):
+        def at(self, rules):
+            self.player = player.at(rules)
+            return self
+
+        def play(self, positions, seeds):
+            asked.append(len(positions))
+            return self.player.play(positions, seeds)
+
+    runs = []
+    for opponent in (name, Same()):
+        tables = begun(sn.SnookerVectorEnv(20, threads=3, task="frame", opponent=opponent, **options), 3)
+        rng, shape = np.random.default_rng(0), tables.action_space.shape
+        for _ in range(5):
+            masks = tables.action_masks() if "action" in options else None
+            tables.step(rng.uniform(-1.0, 1.0, shape) if masks is None else masks.argmax(axis=1))
+        runs.append([plain(state) | {"rng": None} for state in tables.get_state()])
+    assert runs[0] == runs[1] and sum(asked) > 60
 
 
 def test_its_stroke_is_played_as_it_is():
@@ -147,7 +183,7 @@ def test_it_decides_after_a_foul_and_may_concede():
 @pytest.mark.parametrize("anywhere", [False, True])
 def test_without_a_place_in_its_action_it_stands_where_ghost_ball_would(anywhere):
     shoot_out = {"anywhere": True, "rules": "shoot_out", "miss": "off"} if anywhere else {}
-    env = frame_env(opponent=Sees(), game="shoot_out" if anywhere else "snooker")
+    env = frame_env(opponent=SeenPlayer(Sees()), game="shoot_out" if anywhere else "snooker")
     places = {CUE: (0.0, BAULK_Y - 0.1), 1: (0.4, 1.0), 21: SPOTS[21], 20: SPOTS[20], 17: SPOTS[17]}
     env = frame_state(env, places, {"in_hand": True} | shoot_out)
     env.tables.game[0, STRIKER] = 1
@@ -160,7 +196,9 @@ def test_without_a_place_in_its_action_it_stands_where_ghost_ball_would(anywhere
 def test_with_a_free_ball_any_colour_is_on_for_a_player_of_visits():
     """Snookered by a foul on the only red: a player blind to the free ball strikes at the hidden red."""
     one = Sees(action="discrete")
-    env = frame_state(frame_env(opponent=one), HIDDEN, {"striker": 0, "phase": "choice", "free_ball": True})
+    env = frame_state(
+        frame_env(opponent=SeenPlayer(one)), HIDDEN, {"striker": 0, "phase": "choice", "free_ball": True}
+    )
     env.tables.game[0, STRIKER] = 1  # the opponent has the free ball
     buffers, _ = asked(env)
     assert one.seen[-1][0, 110 + 1] == 1.0 and env.frame.free_ball and env.ball_on == BallOn.RED
@@ -276,7 +314,11 @@ OPTIONS_OF = "key of the options of player "
         (Soft, r"opponent = <class '.*Soft'>: must be an instance and not the class: Soft\(...\)"),
         (OpponentPool, "opponent = <class '.*OpponentPool'>: must be an instance"),
         (7, "opponent = 7: must be one of 'none', 'random', 'ghost_ball', the name of another player"),
-        (Sees(noise="club"), f"{OPTIONS_OF}Sees = 'noise': must be one of 'action'"),
+        (Sees(), "opponent = .*: must be one of .*; players.SeenPlayer makes a player of what acts"),
+        (
+            lambda observation, rng: MISS,
+            "opponent = .*: must be one of .*; players.SeenPlayer makes a player",
+        ),
         (f"{__name__}:SeesNothing", f"opponent = '.*SeesNothing': {OPTIONS_OF}SeesNothing"),
     ],
 )
@@ -327,14 +369,16 @@ def test_groups_hold_every_option_once():
 DOWN = np.array([-0.9, 0.0, 0.0, 1.0])
 
 
-def named(name, seen):
-    """A callable that notes who played."""
+class Noted(Soft):
+    """Notes who played."""
 
-    def play(observation, rng):
-        seen.append(name)
-        return DOWN
+    def __init__(self, name, seen):
+        super().__init__()
+        self.name, self.seen = name, seen
 
-    return play
+    def play(self, positions, seeds):
+        self.seen.append(self.name)
+        return super().play(positions, seeds)
 
 
 FRAME = {"task": "frame", "layout": "random:2"}
@@ -354,7 +398,7 @@ def test_one_is_drawn_for_each_frame_in_proportion_to_the_weights():
 
 def test_he_plays_the_whole_frame():
     seen = []
-    tables = frames(OpponentPool([named("a", seen), named("b", seen)]), max_strokes=30)
+    tables = frames(OpponentPool([Noted("a", seen), Noted("b", seen)]), max_strokes=30)
     by_frame = set()
     for seed in range(12):
         tables.reset(seed=seed)
@@ -397,10 +441,10 @@ def test_a_saved_state_keeps_the_opponent():
 
 def test_members_may_be_added_while_frames_go_on():
     seen = []
-    pool = OpponentPool([named("old", seen)])
+    pool = OpponentPool([Noted("old", seen)])
     tables = frames(pool, 8, max_strokes=6)
     tables.reset(seed=0)
-    pool.add(named("new", seen))
+    pool.add(Noted("new", seen))
     pool.set_weight(0, 0.0)
     seen.clear()
     for _ in range(12):

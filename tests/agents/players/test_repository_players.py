@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from agents.export import arrays_of
 from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe
 from agents.learning.models import PRETRAINED, load_trained, pretrained
+from agents.learning.networks import arrays_of
 from agents.players.trained import load_player, read_model
 from snooker_env.planning import Positions
 from snooker_env.players.model_options import of_others

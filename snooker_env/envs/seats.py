@@ -1,43 +1,14 @@
-"""Who sits opposite the agent of a frame? Whom the option ``opponent`` names, or an object, bound once."""
+"""Who sits at the tables of an environment? The agent and its opponent, or two players, by the options."""
 
 from collections.abc import Mapping
-from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
 from .._check import choice, refuse, refuse_what
 from ..tasks.declarations import SAYS
-from ..tasks.frame import TABLES, Frames, Opponent, Seat
-from ..tasks.ghost_ball import GhostBallOpponent
-from ..tasks.opponent_pool import OpponentPool, PoolOpponent
-from ..tasks.opponents import AskedOpponent, Policy, UniformOpponent
-from ..tasks.options import NEVER, OBJECT, OPPONENTS, Options, options_of
+from ..tasks.frame import TABLES, Frames, Seat
+from ..tasks.options import NEVER, OBJECT, Options, options_of
 from ..tasks.tables import Tables
-
-KERNELS: dict[str, type[Opponent]] = {"random": UniformOpponent, "ghost_ball": GhostBallOpponent}
-
-
-def opponent_of(opponent: Any, options: Options) -> Opponent:
-    """The opponent that a name or an object stands for in frames with these options."""
-    if isinstance(opponent, Opponent):
-        return opponent
-    if isinstance(opponent, OpponentPool):
-        return PoolOpponent(opponent, partial(opponent_of, options=options))
-    if isinstance(opponent, type):
-        raise refuse("opponent", opponent, f"must be an instance and not the class: {opponent.__name__}(...)")
-    opponent = str(opponent) if isinstance(opponent, Path) else opponent
-    if isinstance(opponent, str) and opponent in KERNELS:
-        return KERNELS[opponent]()
-    from ..players.opponent import seated
-
-    plays = callable(getattr(opponent, "play", None)) and callable(getattr(opponent, "at", None))
-    if isinstance(opponent, str) or plays:
-        return seated(opponent, options)
-    if callable(opponent) or callable(getattr(opponent, "many", None)):
-        return AskedOpponent(cast(Policy, opponent))
-    if callable(getattr(opponent, "act", None)):
-        return seated(opponent, options)
-    raise refuse("opponent", opponent, OPPONENTS)
 
 
 def game_of(options: Options | None, keywords: Mapping[str, Any]) -> tuple[Options, Any]:
@@ -97,6 +68,8 @@ def tables_of(options: Options, opponent: Any, n: int, limit: int = NEVER) -> Ta
         raise refuse("opponent", OBJECT, words)
     seats = [Seat.of(options.rules)]
     if options.opponent != "none":
+        from ..players.opponents import opponent_of  # planning is loaded where there is an opponent
+
         player = opponent_of(options.opponent if opponent is None else opponent, options)
         seats.append(Seat.of(options.rules, player))
     return kind(options.rules, n, limit=limit, seats=seats)

@@ -1,47 +1,29 @@
 """How does the opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain stroke."""
 
 from math import atan2, cos, hypot, sin, sqrt
-from typing import Any
 
 import numpy as np
 
 from .._jit import entry, kernel
-from .._types import Ints
 from ..game import frame_columns as columns
-from ..game.balls import N_BALLS, SPOTS, YELLOW, bits, touching_balls
+from ..game.balls import N_BALLS, N_REDS, YELLOW, balls_on_kernel, bits, touching_balls
 from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.rule_sets import SHOOT_OUT
 from ..game.ruling import AUTO
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
-from ..physics.cue import squirt
-from .arrays import StruckArrays
-from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
-from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, ROLL, ROLLING, find_escapes
-from .frame import Frames, Opponent
-from .lines import EASY, LINE_ROWS, NARROW, POTS, nearest, racked, thin_at_end
-from .opponents import SIDE
-from .stroke import ShotBuffers, place, row_of, strike
-from .windows import open_part, open_windows
+from ..tasks.declarations import nominated_ball
+from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, ROLL, ROLLING, find_escapes
+from ..tasks.lines import BREAK_X, EASY, LINE_ROWS, NARROW, POTS, break_off, nearest, racked
+from ..tasks.stroke import place
+from ..tasks.windows import open_part, open_windows
 
 SLIDE = 1.4  # initial speed of a ball struck in its middle, over the speed with which it rolls on
-BREAK_X = float(SPOTS[0, 0])
-"""Where the cue ball stands for the break-off: its x, either sign, on the baulk line [m]."""
-_BREAK_SPEED, _BREAK_SIDE, _BREAK_TOP = 3.4, 0.42, 0.1
-"""Of the break-off, thin at the end red, with running side, back to baulk over three cushions: among 6,000
-random ones that return to baulk in 40 trials of a professional, one that leaves hardly a pot."""
 _NUDGE = 0.3  # how much faster than needed a cue ball is rolled at a ball [m/s]; its speed varies by a tenth
 _STOP = 6.1
 """Squared speed of a ball struck 0.4 R below its middle that slides so far without spin left, over the
 distance [m/s^2]: 0.32 of it, over the cloth's sliding friction of 2 m/s^2."""
 _NEAR_POCKET = 0.09  # a cue ball that passes so near to a pocket's aim point is taken to go in [m]
-
-
-@kernel
-def break_off(positions, end_red):
-    """The break-off: (speed, side, top, direction); ``end_red``: the right one, mirrored on the left."""
-    sign = -1.0 if positions[0, 0] < 0.0 else 1.0
-    return _BREAK_SPEED, sign * _BREAK_SIDE, _BREAK_TOP, thin_at_end(positions, end_red, sign)
 
 
 @kernel
@@ -250,30 +232,33 @@ def geometric_turn(positions, on_table, row, rules, rows, stream):
     return speed, side, top, aim, named(positions, on_table, row, aim) if frame else AUTO, decision
 
 
-@entry(what="the geometric opponent", seconds=3)
-def _ghost_ball(which, tables, shots, packed, rules):
-    """The turns of ``GhostBallOpponent``, up to the strike. ``rules``: the code of the rule set."""
-    positions, on_table, game, streams, nominated = tables
-    shots, (every, noise, _), rows = StruckArrays(*shots), packed, np.empty((LINE_ROWS, POT_COLUMNS))
-    for j in range(which.shape[0]):
-        k = which[j]
-        p, on, options = positions[k], on_table[k], every[row_of(k, every)]
-        speed, side, top, aim, colour, _ = geometric_turn(p, on, game[k], rules, rows, streams[k])
-        if options[A_NOMINATE] >= 0:
-            nominated[k] = colour
-        intended = (speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0)
-        strike(intended, p, on, streams[k], options, noise, j, shots)
-
-
-@entry(what="the geometric player", seconds=3)
-def geometric_strokes(positions, on_table, game, rules, streams, strokes, nominated, decisions):
-    """The geometric player's strokes (n, 5), nominations and decisions (n,); places cue balls in hand."""
+@entry(what="the strokes of ghost_ball", seconds=3)
+def geometric_strokes(
+    positions, on_table, game, rules, streams, strokes, places, nominated, decisions, visits, pots
+):
+    """The geometric player's strokes (n, 5), the places (n, 2) of cue balls in hand, NaN where there is none, nominations
+    and decisions (n,). Then the arrays of the tables are those it strikes on, as ``visits`` (n, 5), and ``pots`` (n,) is
+    True where it may solve the aim of a pot."""
     rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
-        turn = geometric_turn(positions[k], on_table[k], game[k], rules, rows, streams[k])
-        speed, side, top, aim, colour, decision = turn
+        p, on, row, visit, reds = positions[k], on_table[k], game[k], visits[k], 0
+        for i in range(1, 1 + N_REDS):
+            reds += on[i]
+        frame = row.shape[0] > columns.ANYWHERE
+        solves = not (row[columns.IN_HAND] and reds == N_REDS) and not (frame and row[columns.MISS_CALLED])
+        speed, side, top, aim, colour, decision = geometric_turn(p, on, row, rules, rows, streams[k])
         nominated[k], decisions[k] = colour, decision
         strokes[k, 0], strokes[k, 1], strokes[k, 2], strokes[k, 3], strokes[k, 4] = speed, side, top, aim, 0.0
+        places[k, 0] = places[k, 1] = np.nan
+        if row[columns.IN_HAND]:
+            places[k, 0], places[k, 1] = p[0, 0], p[0, 1]
+        for c in range(columns.VISIT_COLUMNS):
+            visit[c] = row[c]
+        if frame:  # a free ball is any colour, and a ball that may stand anywhere has been placed
+            visit[columns.BALL_ON] = 0 if row[columns.FREE_BALL] else row[columns.BALL_ON]
+            visit[columns.IN_HAND] = row[columns.IN_HAND] and not row[columns.ANYWHERE]
+        mask = balls_on_kernel(visit[columns.BALL_ON], bits(on))
+        pots[k] = solves and on[0] and find_pots(p, on, mask, BALL_RADIUS, rows[:1]) > 0
 
 
 @entry(what="the places of a cue ball in hand", seconds=2)
@@ -286,12 +271,3 @@ def put_in_hand(positions, on_table, game, streams):
             anywhere = row.shape[0] > columns.ANYWHERE and row[columns.ANYWHERE] != 0
             mask = columns.strikeable(row, bits(on_table[k]) & ~1)
             put(positions[k], on_table[k], mask, anywhere, rows, streams[k])
-
-
-class GhostBallOpponent(Opponent):
-    """The geometric player ``ghost_ball`` as a kernel, see docs/environment/opponents.md."""
-
-    def prepare(self, frames: Frames, which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
-        _ghost_ball(which, frames.arrays, buffers.struck, frames.packs[SIDE], frames.rules.rule_set.code)
-        frames.hold_late(which, buffers)
-        return which

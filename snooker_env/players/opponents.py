@@ -1,0 +1,179 @@
+"""Who sits opposite the agent of a frame? A player, asked once for all tables that wait, or several in a pool."""
+
+from pathlib import Path
+
+import numpy as np
+
+from .._check import refuse, refuse_what
+from .._jit import entry
+from .._types import Floats, Ints
+from ..game.frame_columns import OPPONENT, Layouts
+from ..game.philox import pair
+from ..game.sides import strikers_own
+from ..planning import Positions
+from ..tasks.frame import Asked, Frames, Opponent
+from ..tasks.options import OPPONENTS, Options
+from ..tasks.tables import Crew
+from .choices import GhostBall
+from .model_options import of_others
+from .opponent_pool import OpponentPool
+from .player import Player, Strokes
+from .resolver import player as player_of
+from .saved import FittingModel, SavedNetwork
+from .seen import SeenPlayer
+
+_KINDS = (ValueError, TypeError, ImportError)
+
+
+@entry
+def _drawn(which, streams, out):
+    """One uniform number in [0, 1) from the stream of each of the tables ``which``: out (len(which),)."""
+    for j in range(which.shape[0]):
+        out[j], _ = pair(streams[which[j]])
+
+
+def drawn(frames: Frames, which: Ints) -> Floats:
+    """Uniform numbers in [0, 1), from the streams of the tables ``which``."""
+    numbers = np.empty(len(which))
+    _drawn(which, frames.streams, numbers)
+    return numbers
+
+
+class PlayerOpponent:
+    """A bound player as opponent, with a seed of each table's own stream for each stroke."""
+
+    def __init__(self, player: Player, name: str):
+        self.player, self.name = player, name
+
+    def strokes(self, frames: Frames, which: Ints, crew: Crew) -> Asked:
+        """See ``Opponent.strokes``; errors name the player."""
+        seeds, asked = np.zeros(frames.n, np.int64), _room(frames.n)
+        seeds[which] = drawn(frames, which) * 2**32
+        player = self.player
+        if isinstance(
+            player, GhostBall
+        ):  # all of it are kernels: on several threads, without looking at what it answers
+
+            def ask(part, _):
+                tables = frames.positions[part], frames.on_table[part], frames.game[part]
+                conditions = frames.conditions[part] if frames.rules.drawn else None
+                _write(asked, part, player.turns(*tables, conditions, seeds[part])[0])
+
+            crew(which, ask)
+        else:
+            _write(asked, which, self._answer(frames, which, seeds[which]).parts)
+        return asked
+
+    def _answer(self, frames: Frames, which: Ints, seeds: Ints) -> Strokes:
+        """What the player answers, checked."""
+        saved = Layouts(frames.saved.positions[which], frames.saved.on_table[which])
+        game = strikers_own(frames.game[which])
+        own = frames.conditions[which] if frames.rules.drawn else None
+        at = Positions(frames.positions[which], frames.on_table[which], game, saved, own)
+        try:
+            strokes = self.player.play(at, seeds)
+        # of the player's own code: it is named, and the kind kept where callers tell kinds apart
+        except Exception as error:
+            kind = next((kind for kind in _KINDS if isinstance(error, kind)), RuntimeError)
+            raise kind(f"opponent {self.name} raised {type(error).__name__}: {error}") from error
+        if not isinstance(strokes, Strokes) or len(strokes) != len(which):
+            many = len(strokes) if isinstance(strokes, Strokes) else "a"
+            allowed = f"must be {len(which)} Strokes, one for each position"
+            raise refuse_what(f"opponent {self.name}: play(...)", f"{many} {type(strokes).__name__}", allowed)
+        return strokes
+
+
+class PoolOpponent:
+    """The members of a pool as opponents in frames with these options; those added later are made ready when they play."""
+
+    name = "an OpponentPool"
+
+    def __init__(self, pool: OpponentPool, options: Options):
+        self.pool: OpponentPool = pool
+        self._options, self._ready = options, list[Opponent]()
+        self._complete()
+
+    def _complete(self) -> None:
+        for k, member in enumerate(self.pool.members[len(self._ready) :], len(self._ready)):
+            try:
+                self._ready.append(opponent_of(member, self._options))
+            except ValueError as error:
+                raise ValueError(f"members[{k}] of the OpponentPool: {error}") from error
+
+    def strokes(self, frames: Frames, which: Ints, crew: Crew) -> Asked:
+        """See ``Opponent.strokes``: each table's own member is asked."""
+        self._complete()
+        self._draw(frames, which)
+        playing, asked = frames.game[which, OPPONENT], _room(frames.n)
+        for number in np.unique(playing).tolist():
+            if number > len(self._ready):
+                allowed = f"must be below {len(self._ready)}, as many as the pool has"
+                raise refuse("opponent", f"member {number - 1} of a pool", allowed)
+            its = which[playing == number]
+            answer = self._ready[number - 1].strokes(frames, its, crew)
+            _write(asked, its, tuple(part[its] for part in answer))
+        return asked
+
+    def _draw(self, frames: Frames, which: Ints) -> None:
+        """Draw an opponent where none has been drawn in this frame."""
+        new = which[frames.game[which, OPPONENT] == 0]
+        if not len(new):
+            return
+        shares = np.cumsum(self.pool.weights)
+        if not len(shares) or shares[-1] <= 0.0:
+            raise refuse("opponent", self.name, "must have a member with a weight above 0")
+        numbers = drawn(frames, new)
+        frames.game[new, OPPONENT] = 1 + np.searchsorted(shares, numbers * shares[-1], side="right")
+
+
+def _room(n: int) -> Asked:
+    """Room for what is played on n tables."""
+    nominated, decisions, declared = np.zeros((3, n), np.int64)
+    return np.zeros((n, 5)), np.zeros((n, 2)), nominated, decisions, declared
+
+
+def _write(asked: Asked, rows: Ints, parts: tuple[Floats | Ints, ...]) -> None:
+    """Write what is played on some tables, the arrays of ``Strokes``."""
+    for whole, part in zip(asked, parts, strict=True):
+        whole[rows] = part
+
+
+def opponent_of(opponent: str | Path | Player | OpponentPool, options: Options) -> Opponent:
+    """The opponent that a name, a player or a pool stands for in frames with these options."""
+    if isinstance(opponent, OpponentPool):
+        return PoolOpponent(opponent, options)
+    if isinstance(opponent, type):
+        raise refuse("opponent", opponent, f"must be an instance and not the class: {opponent.__name__}(...)")
+    if isinstance(opponent, str | Path):
+        name = str(opponent)
+        return PlayerOpponent(_named(name, options).at(options), name)
+    if not isinstance(opponent, Player):
+        raise refuse("opponent", opponent, OPPONENTS)
+    return PlayerOpponent(opponent.at(options), getattr(opponent, "name", "") or type(opponent).__name__)
+
+
+def _named(name: str, options: Options) -> Player:
+    """The player with a name; errors say that it is the opponent's."""
+    if Path(name).suffix == ".zip" and (of_others(name) or not Path(name).is_file()):
+        return _model(name, options)
+    try:
+        return player_of(name, trust=options.trust)
+    except ValueError as error:
+        text = str(error)
+        if not text.startswith("player = "):  # of what the name stands for
+            raise ValueError(f"opponent = {name!r}: {text}") from error
+        others = text.removeprefix("player").replace("must be one of ", "must be one of 'none', ", 1)
+        raise ValueError(f"opponent{others}") from error
+
+
+def _model(path: str, options: Options) -> Player:
+    """A model of Stable-Baselines3, whose actions are the environment's, with or without what is said."""
+    plain = {name: getattr(options, name) for name in Options.group("action", "visit")}
+    full = plain | dict.fromkeys(options.says, True)
+    try:
+        model = FittingModel.of(path, full, "opponent")
+    except ValueError:
+        if full == plain or "nominate" in options.says:  # a nomination cannot be left out
+            raise
+        model = FittingModel.of(path, plain, "opponent")
+    return SeenPlayer(SavedNetwork(model, options.trust), name=path)
