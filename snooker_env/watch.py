@@ -23,6 +23,7 @@ from .players import FRAMES, VISITS, Player, decision_seeds, player
 from .players.model_options import add_model_options, of_others, options_of_words
 from .players.resolver import named
 from .replays import Replay, replay
+from .replays.chances import checked_judge
 from .replays.film import encoder_file
 
 NAME = "snooker_env.watch"
@@ -153,7 +154,7 @@ def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
         made = f"{names[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
     title = f"{made}, {args.noise}'s errors, {where.split(',')[0]}"
-    judge: Any = player(TACTICIAN).at(env) if args.frame else None
+    judge = checked_judge(player(TACTICIAN).at(env)) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
     print(*described(played), sep="\n")
     print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")

@@ -115,22 +115,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     return 1
 
 
-def _tasks(args: Any) -> int:
+def _tasks(args: argparse.Namespace) -> int:
     """List the tasks."""
-    about = lambda one: [one.id, one.title, one.judged_layout, one.frozen["noise"], f"{one.episodes:,}"]  # noqa: E731
     head = ["task", "what", "judged on", "noise", "episodes"]
-    print("\n".join(text_table(head, [about(task) for task in TASKS.values()], 4)))
+    rows = [
+        [task.id, task.title, task.judged_layout, task.frozen["noise"], f"{task.episodes:,}"]
+        for task in TASKS.values()
+    ]
+    print("\n".join(text_table(head, rows, 4)))
     print(f"\nFree options: {', '.join(FREE)}. All others are frozen.")
     return 0
 
 
-def _agent_of(args: Any, **more: Any) -> Agent:
+def _agent_of(args: argparse.Namespace, **more: Any) -> Agent:
     """The agent that the arguments name."""
     more |= {"options": options_of_words(args.options), "trust": args.trust, "timeout": args.timeout}
     return Agent.of(args.agent, **more)
 
 
-def _run(args: Any) -> int:
+def _run(args: argparse.Namespace) -> int:
     """Play tasks; whatever is wrong is said before the first one is played."""
     tasks = list(TASKS.values()) if args.tasks == ["all"] else [task_of(name) for name in args.tasks]
     shots = {"training_shots": args.training_shots, "shots_declared": args.simulated_shots}
@@ -159,7 +162,7 @@ def _run(args: Any) -> int:
     return worst
 
 
-def _text(args: Any) -> int:
+def _text(args: argparse.Namespace) -> int:
     """Play the track of words and print the result."""
     agent = _agent_of(args, label=args.label)
     out = Path(args.out or f"text.{agent.label}.json")
@@ -222,7 +225,7 @@ def suspicious(result: dict[str, Any], task: Task) -> bool:
     )
 
 
-def _check(args: Any) -> int:
+def _check(args: argparse.Namespace) -> int:
     """Verify files."""
     asked = args.replay is not None or args.fresh is not None
     if asked != (args.agent is not None):
@@ -250,7 +253,7 @@ def _check(args: Any) -> int:
     return worst
 
 
-def _by_agent(args: Any, result: dict[str, Any]) -> list[str]:
+def _by_agent(args: argparse.Namespace, result: dict[str, Any]) -> list[str]:
     """What the agent itself says against its file."""
     agent, wrong = _agent_of(args, label=result["agent"]["label"]), []
     if args.replay is not None:
@@ -264,7 +267,7 @@ def _by_agent(args: Any, result: dict[str, Any]) -> list[str]:
     return wrong
 
 
-def _degenerate(args: Any) -> int:
+def _degenerate(args: argparse.Namespace) -> int:
     """Play the degenerate policies and compare them."""
     tasks = [task_of(name) for name in args.tasks] or list(TASKS.values())
     folder, wrong = Path(args.out), list[str]()
@@ -289,7 +292,7 @@ def _sound(files: Sequence[str]) -> list[dict[str, Any]]:
     return results
 
 
-def _table(args: Any) -> int:
+def _table(args: argparse.Namespace) -> int:
     """Print the leaderboard, or write it as a page."""
     results = _sound(args.files)
     if args.markdown:
@@ -298,7 +301,7 @@ def _table(args: Any) -> int:
     return 0
 
 
-def _profile(args: Any) -> int:
+def _profile(args: argparse.Namespace) -> int:
     """Print performance profiles."""
     results = _sound(args.files)
     for task in TASKS.values():

@@ -1,6 +1,7 @@
 """Is a submitted result what it says? Its strokes are played again; all that follows must be equal to the bit."""
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ takes that long for a whole file, but with large budgets. So many tables are pla
 SURE = 3.29  # standard errors that a fresh mean may be away: 99.9 %
 
 
-def faults(record: Any, threads: int | None = None, *, asking: bool = True) -> list[str]:
+def faults(record: dict[str, Any], threads: int | None = None, *, asking: bool = True) -> list[str]:
     """Check a result: its fields, and all rows and figures by a replay of its strokes.
 
     Players known by name are asked again for their strokes and decisions: all, or in a random selection of episodes if that
@@ -161,7 +162,7 @@ def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
     return [fault("machine.arithmetic", made, must), *wrong]
 
 
-def _differences(value: Any, want: Any, name: str = "") -> list[str]:
+def _differences(value: object, want: object, name: str = "") -> list[str]:
     """Where does a record differ from what is computed anew?"""
     if isinstance(want, dict) and isinstance(value, dict):
         if set(value) != set(want):
@@ -258,7 +259,7 @@ def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes) -> list[
     return [f"agent.class = 'model_free': must be 'planning': {who} simulated {shots}"]
 
 
-def _by(agent: Agent, result: dict[str, Any], seeds: Any, threads: int | None) -> PlayedEpisodes:
+def _by(agent: Agent, result: dict[str, Any], seeds: Sequence[int], threads: int | None) -> PlayedEpisodes:
     """What the agent of a result plays on these tables, with every training seed."""
     task, runs = TASKS[result["task"]], len(result["agent"]["sources"])
     if len(agent.sources) != runs:

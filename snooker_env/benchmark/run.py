@@ -78,20 +78,17 @@ def judge(
             write_result(out, result)
         return result
 
+    def after_batch() -> None:
+        nonlocal saved
+        tick(len(played.rows), total)
+        if time.monotonic() - saved > SAVED:
+            kept_as("it was still running")
+            saved = time.monotonic()
+
     tick(len(played.rows), total)
     try:
         for run in range(len(agent.sources)):
-            with seated(agent, task, run) as player:
-                while len(played.rows) < (run + 1) * many:
-                    first = len(played.rows) - run * many
-                    played.add(play_episodes(task, player, seeds[first : first + agent.batch], run, threads))
-                    tick(len(played.rows), total)
-                    if time.monotonic() - saved > SAVED:
-                        kept_as("it was still running")
-                        saved = time.monotonic()
-                for seed in seeds if run == 0 else ():
-                    if alone.decisions < ONE_TABLE:
-                        alone.add(play_episodes(task, player, [seed], run, threads))
+            _play_run(task, agent, run, seeds, played, alone, threads, after_batch)
     except KeyboardInterrupt:
         why = f"interrupted after {len(played.rows)} of {total} episodes"
     except AgentError as error:
@@ -102,6 +99,18 @@ def judge(
             raise RuntimeError(f"the agent ended the program: SystemExit({error})") from error
         raise
     return kept_as(why)
+
+
+def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
+    """Play the episodes of one training seed, batch after batch; the first one's player decides on one table, too."""
+    with seated(agent, task, run) as player:
+        while len(played.rows) < (run + 1) * len(seeds):
+            first = len(played.rows) - run * len(seeds)
+            played.add(play_episodes(task, player, seeds[first : first + agent.batch], run, threads))
+            after_batch()
+        for seed in seeds if run == 0 else ():
+            if alone.decisions < ONE_TABLE:
+                alone.add(play_episodes(task, player, [seed], run, threads))
 
 
 def _kept(path: Path, task: Task, agent: Agent, episodes: int) -> tuple[dict[str, Any], PlayedEpisodes]:

@@ -133,7 +133,10 @@ def _onward(jaw, out, level, ends):
 def _throat(fall, noses, mouths):
     """The hole in the wood, from the mouth's middle to the fall's centre, as wide as its jaws' ends."""
     jaw_ends = [end for nose in noses for end in (nose[0], nose[-1])]
-    far = lambda point: np.hypot(*(point - fall[:2]))  # noqa: E731
+
+    def far(point):
+        return np.hypot(*(point - fall[:2]))
+
     (a, b), (c, d) = (sorted(points, key=far)[:2] for points in (mouths, jaw_ends))
     return [*(a + b) / 2, *fall[:2], np.hypot(*(c - d)) / 2]
 

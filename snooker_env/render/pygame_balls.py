@@ -2,9 +2,11 @@
 lamps and faint shadows; paths in pieces, so that one that grows changes only at its end."""
 
 import os
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,11 +17,14 @@ from .palette import COLOURS, LETTERS, PALETTE
 from .scene import Scene, matrix
 from .table_picture import LAMP_HEIGHT, View, lamps
 
+if TYPE_CHECKING:
+    from pygame import Surface
+
 FONTS = Path(__file__).parent / "fonts"
 BOLD, MEDIUM = "Inter-Bold.otf", "Inter-Medium.otf"
 
 
-def pygame_() -> Any:
+def pygame_() -> ModuleType:
     """The module ``pygame``, or an ImportError with the command that installs it."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
@@ -29,7 +34,7 @@ def pygame_() -> Any:
     return pygame
 
 
-def typeset(text: str, colour: Any, size: float, file: str = MEDIUM) -> Any:
+def typeset(text: str, colour: tuple[int, int, int], size: float, file: str = MEDIUM) -> "Surface":
     """A line of text as a surface, ``size`` pixels from a capital's top to the bottom of its descenders."""
     pygame = pygame_()
     if not pygame.font.get_init():
@@ -43,7 +48,7 @@ def _font(file, size):
     return pygame_().font.Font(str(FONTS / file), size)
 
 
-def surface_of(colour: Any, alpha: Any) -> Any:
+def surface_of(colour: Sequence[int] | Floats, alpha: Floats) -> "Surface":
     """A surface with transparency: its colours (3,) or (h, w, 3), from 0 to 255, and their opacities (h, w)."""
     image = np.empty((*alpha.shape, 4), np.uint8)
     image[..., :3], image[..., 3] = (np.clip(np.rint(part), 0, 255) for part in (colour, 255 * alpha))
@@ -60,7 +65,7 @@ def line_width(scale: float) -> float:
     return max(1.5, 0.0072 * scale)
 
 
-def draw_lines(surface: Any, lines: list[tuple[Floats, tuple[int, int, int]]], width: float) -> None:
+def draw_lines(surface: "Surface", lines: list[tuple[Floats, tuple[int, int, int]]], width: float) -> None:
     """Draw polylines (points (m, 2) [pixels], colour), later ones on top."""
     for points, colour in lines:
         pieces = list(_pieces(points))
@@ -121,7 +126,7 @@ _ALL_DARK = 0.62
 EYE = 2.0  # how far the eye is above the bed [m]: a ball that flies looks larger
 
 
-def draw_balls(surface: Any, scene: Scene, view: View) -> None:
+def draw_balls(surface: "Surface", scene: Scene, view: View) -> None:
     """Put a scene's balls, their shadows and faded ghosts on a surface."""
     radius = scene.ball_radius * view.scale
     over = lamps(scene.table)
@@ -254,7 +259,7 @@ def _letter(ball, radius):
     return typeset(LETTERS[ball], (0, 0, 0) if light else (255, 255, 255), 1.25 * radius, BOLD)
 
 
-def dot(ball: int, radius: float) -> Any:
+def dot(ball: int, radius: float) -> "Surface":
     """A small ball for a score bar, its id and radius [pixels], as a surface with transparency."""
     image = _body(tuple(COLOURS[ball].tolist()), round(radius, 2), 1.0, 2, 2).copy()
     if COLOURS[ball].max() < 90:  # dark on a dark bar

@@ -1,15 +1,17 @@
 """How is a table drawn with matplotlib? By a ``Sketch``: a point (x, y) [m] is at ``ax.plot(y, x)``."""
 
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._install import missing
-from .._types import Floats, Vector
+from .._types import Floats, Place, Vector, Vectors
 from ..game.balls import N_BALLS
 from ..physics.table import Table
 from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, extent, is_marked, outline
-from .palette import COLOURS, LETTERS, PALE, PALETTE
+from .palette import COLOURS, LETTERS, PALE, PALETTE, Colour
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +25,7 @@ CAPTIONS = {"full": 0.118, "short": 0.2, "none": 0.0}
 _MARGIN = 0.02  # floor shown around the rails [m]
 
 
-def pyplot() -> Any:
+def pyplot() -> ModuleType:
     """``matplotlib.pyplot``, or an ImportError with the command that installs it."""
     try:
         from matplotlib import pyplot as plt
@@ -83,13 +85,13 @@ def is_closed(table: Table) -> bool:
     return bool(np.isfinite(table.bounds).all())
 
 
-def rgb(colour: Any, alpha: float = 1.0) -> tuple[float, float, float, float]:
+def rgb(colour: Colour, alpha: float = 1.0) -> tuple[float, float, float, float]:
     """A colour of the palette by name, or three numbers up to 255, in matplotlib's form."""
     red, green, blue = (PALETTE[colour] if isinstance(colour, str) else colour)[:3]
     return red / 255, green / 255, blue / 255, alpha
 
 
-def flipped(points: Any) -> Floats:
+def flipped(points: ArrayLike | Vector | Vectors) -> Floats:
     """Points (..., 2) in the order for matplotlib: y to the right, x down."""
     return np.asarray(points, np.float64)[..., ::-1]
 
@@ -102,10 +104,8 @@ class Sketch:
         self.table: Table = table
         self.R: float = R
         depth = strip * region.width
-        axes: Any = ax
-        if axes is None:
-            size = (WIDTH, WIDTH * (region.height + depth) / region.width)
-            axes = plt.figure(figsize=size, facecolor=rgb("floor")).add_axes((0.0, 0.0, 1.0, 1.0))
+        size = (WIDTH, WIDTH * (region.height + depth) / region.width)
+        axes = ax or plt.figure(figsize=size, facecolor=rgb("floor")).add_axes((0.0, 0.0, 1.0, 1.0))
         self.ax: Axes = axes
         self.fresh: bool = not any(artist.get_gid() == TABLE for artist in axes.get_children())
         if self.fresh:
@@ -140,19 +140,19 @@ class Sketch:
             if clip is not None:
                 patch.set_clip_path(clip)
 
-        def box(extra, kind: Any = Rectangle, **more):
-            wide, high = high_y - low_y + 2 * extra, high_x - low_x + 2 * extra
-            return kind((low_y - extra, low_x - extra), wide, high, ec="none", **more)
+        def box(extra):
+            corner = low_y - extra, low_x - extra
+            return corner, high_y - low_y + 2 * extra, high_x - low_x + 2 * extra
 
         def rail(extra, radius, colour, level):
             style = f"round,pad=0,rounding_size={radius}"
-            add(box(extra, FancyBboxPatch, boxstyle=style, fc=rgb(colour)), level)
+            add(FancyBboxPatch(*box(extra), boxstyle=style, fc=rgb(colour), ec="none"), level)
 
         if is_closed(self.table):
             rail(RAIL, 0.09, "wood_edge", 0.0)
             rail(RAIL - 0.010, 0.08, "wood", 0.05)
             rail(RAIL - 0.022, 0.07, [min(255, round(1.13 * part)) for part in PALETTE["wood"]], 0.06)
-            add(box(CUSHION + 0.008, fc=rgb("wood_edge")), 0.1)
+            add(Rectangle(*box(CUSHION + 0.008), fc=rgb("wood_edge"), ec="none"), 0.1)
             rims = (0.014, "leather_edge", 0.15), (0.011, "leather", 0.16), (0.0, "hole", 0.2)
             for rim, colour, level in rims:
                 for x0, y0, x1, y1, half in parts.throats:
@@ -190,11 +190,12 @@ class Sketch:
 
     # things on the table
 
-    def disc(self, middle: Any, radius: float, **style: Any) -> None:
+    def disc(self, middle: Place | Floats, radius: float, **style: Any) -> None:
         """A disc; ``middle``: (y, x) [m]."""
         from matplotlib.patches import Circle
 
-        self.ax.add_patch(Circle(middle, radius, **style))
+        y, x = middle
+        self.ax.add_patch(Circle((y, x), radius, **style))
 
     def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
         """A ball at rest, with a highlight; ``label``: with its letter."""
@@ -225,7 +226,7 @@ class Sketch:
         self.keep_clear(np.asarray(place)[None], 2 * size)
 
     def line(
-        self, points: Floats, colour: Any, *, level: float = 5.0, width: float = PATH_WIDTH, **style: Any
+        self, points: Floats, colour: Colour, *, level: float = 5.0, width: float = PATH_WIDTH, **style: Any
     ) -> None:
         """A line (m, 2) [m] with a dark outline."""
         under = {"color": rgb("path_edge", 0.85), "lw": width + OUTLINE, "zorder": level - 0.5}
@@ -234,7 +235,7 @@ class Sketch:
             self.ax.plot(*flipped(points).T, **{"solid_capstyle": "round", **each})
         self.keep_clear(points, 0.0)
 
-    def arrow(self, place: Floats, direction: Floats, colour: Any) -> None:
+    def arrow(self, place: Floats, direction: Floats, colour: Colour) -> None:
         """An arrowhead at a place, pointing along a unit vector."""
         from matplotlib.patches import Polygon
 
@@ -244,7 +245,7 @@ class Sketch:
         self.ax.add_patch(Polygon(flipped(place + turned), **style))
 
     def mark(
-        self, place: Vector, marker: Any, colour: Any, size: float = 6.0, level: float = 8.0, **more: Any
+        self, place: Vector, marker: str, colour: Colour, size: float = 6.0, level: float = 8.0, **more: Any
     ) -> None:
         """A small sign at a place."""
         style = {"mfc": rgb(colour), "mec": rgb("path_edge"), "mew": 0.9, "ls": "none", "zorder": level}
@@ -260,7 +261,9 @@ class Sketch:
             points = np.concatenate([np.linspace(a, b, n) for a, b, n in lines])
         self._busy.append(np.column_stack([points, np.full(len(points), size)]))
 
-    def text(self, y: float, x: float, words: str, colour: Any = "text", size: float = 1, **how: Any) -> None:
+    def text(
+        self, y: float, x: float, words: str, colour: Colour = "text", size: float = 1, **how: Any
+    ) -> None:
         """Text at a place of the picture; ``size`` in units of the usual font."""
         style = {"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"}
         self.ax.text(y, x, words, **style | how)
