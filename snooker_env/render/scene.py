@@ -1,7 +1,7 @@
 """What is there to draw? A table, its lines, balls and overlays, in metres, without a drawing library."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -98,7 +98,6 @@ def scene(
     positions: Vectors,
     on_table: Flags | None = None,
     *,
-    ball_radius: float | None = None,
     paths: Mapping[int, Vectors] | None = None,
     ghosts: Mapping[int, Vectors] | None = None,
     turns: Mapping[int, Vector] | None = None,
@@ -109,7 +108,7 @@ def scene(
     r, table = np.array(positions, np.float64), Table.of(table)
     heights = r[:, 2] if r.shape[1] == 3 else np.zeros(len(r))
     ids = np.arange(len(r)) if on_table is None else np.flatnonzero(np.array(on_table))
-    radius = ball_radius or table.ball_radius or BALL_RADIUS
+    radius = table.ball_radius or BALL_RADIUS
     drawn = _copies(paths), _copies(ghosts), _copies(turns)
     return Scene(table, ids, r[ids, :2], np.maximum(heights[ids], 0.0), radius, *drawn, text, bar)
 
@@ -191,17 +190,8 @@ class Film:
                 paths[ball] = done
         turns = {ball: turning.at(t) for ball, turning in self._turning.items()}
         ghosts = {ball: places[times <= t] for ball, (places, times) in self._contacts.items()}
-        return scene(
-            self._table,
-            r,
-            self._gone_at > t,
-            ball_radius=self._shot.physics.R,
-            paths=paths,
-            ghosts=ghosts,
-            turns=turns,
-            text=self._text,
-            bar=self._bar,
-        )
+        made = scene(self._table, r, self._gone_at > t, paths=paths, ghosts=ghosts, turns=turns)
+        return replace(made, ball_radius=self._shot.physics.R, bar=self._bar, text=self._text)
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
         """One picture every speed / fps seconds of the shot's own time, and one of its end."""

@@ -1,11 +1,12 @@
 """How does a replay become a film? Picture by picture sent to the encoder: one at a time is in memory."""
 
 import subprocess
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -80,8 +81,8 @@ def filmed(
     placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
     turns = {0: UNTURNED} if placed else last.turns
     over = {"paths": last.paths, "ghosts": last.ghosts, "turns": turns}
-    after_it = scene(table, where, on_table, ball_radius=shot.physics.R, bar=after, text=text, **over)
-    return film, after_it
+    still = scene(table, where, on_table, bar=after, text=text, **over)
+    return film, replace(still, ball_radius=last.ball_radius)
 
 
 def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Size) -> Iterator[Bytes]:
@@ -95,16 +96,8 @@ def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: 
         yield from [rgb_array(after, size=size)] * round(PAUSE * fps)
 
 
-class Pictures(Protocol):
-    """Makes the pictures of a film."""
-
-    def __call__(self, *, fps: float, speed: float, size: Size) -> Iterator[Bytes]:
-        """Each uint8 (height, width, 3)."""
-        ...
-
-
 def write_film(
-    pictures_of: Pictures,
+    pictures_of: Callable[..., Iterator[Bytes]],
     target: Path,
     *,
     fps: float | None = None,

@@ -279,7 +279,6 @@ def test_the_chance_to_win_is_shared_out_over_the_strokes():
         ({"cue": {"side": 0.1}}, "keys of cue", "['side']", "must hold 'top'"),
         ({"cue": {"side": 0, "top": 0, "spin": 1}}, "keys of cue", "'spin'", "must be of 'speed', 'side'"),
         ({"cue": {"side": 2.0, "top": 0.0}}, "cue.side", "2.0", "must be a finite number in [-1, 1]"),
-        ({"balls": [5]}, "balls", "5", "must be an integer in [0, 2]"),
         ({"labels": 1}, "labels", "1", "must be True or False"),
         ({"caption": "long"}, "caption", "'long'", "must be one of 'full', 'short', 'none'"),
     ],
