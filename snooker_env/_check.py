@@ -93,7 +93,7 @@ def number(
     return x
 
 
-def _wanted(shape):
+def _shape_text(shape):
     """A shape as text, with letters for the lengths that are free."""
     free = iter("bn" if shape.count(-1) == 2 else "n")
     sizes = ", ".join(next(free) if s == -1 else str(s) for s in shape)
@@ -113,15 +113,15 @@ def array(
         try:
             raw = np.asarray(value)
         except (TypeError, ValueError):
-            raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}") from None
+            raise refuse(field, value, f"must be real numbers of shape {_shape_text(shape)}") from None
         if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
-            raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}")
+            raise refuse(field, value, f"must be real numbers of shape {_shape_text(shape)}")
         with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused
             a = np.array(raw, dtype=np.float64, order="C")
     if a.shape != shape and (
         a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True))
     ):
-        raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_wanted(shape)}")
+        raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_shape_text(shape)}")
     if most is None:
         return a
     sound = np.isfinite(a) if most == np.inf else np.abs(a) <= most

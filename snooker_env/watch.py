@@ -48,7 +48,7 @@ def episode(who: Player, seed: int, **options: Any) -> SnookerEnv:
     return env
 
 
-def described(played: Replay) -> Iterator[str]:
+def describe(played: Replay) -> Iterator[str]:
     """A line for each stroke."""
     for k, stroke in enumerate(played.to_dict()["strokes"], 1):
         cue = stroke["cue"]
@@ -82,7 +82,7 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
-def _checked(args: argparse.Namespace) -> dict[str, Any]:
+def _film_options(args: argparse.Namespace) -> dict[str, Any]:
     """The options of the film that is wanted, {} for a page; ValueError for arguments that do not agree."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     if suffix not in SUFFIXES:
@@ -143,7 +143,7 @@ def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
     return longest, its, [label]
 
 
-def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
+def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     """Play, print, write."""
     env, seed, names = sought(args)
     if args.frame:
@@ -156,7 +156,7 @@ def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
     title = f"{made}, {args.noise}'s errors, {where.split(',')[0]}"
     judge = checked_judge(player(TACTICIAN).at(env)) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
-    print(*described(played), sep="\n")
+    print(*describe(played), sep="\n")
     print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")
     if env.points < args.at_least:
         print(f"No visit of {args.at_least} points in {args.tries} tries: this one is the longest.")
@@ -173,7 +173,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with until_closed():
             args = p.parse_args(argv)
-            watched(args, _checked(args))
+            watch(args, _film_options(args))
     except ValueError as error:
         p.error(str(error))
     except (ImportError, OSError) as error:

@@ -19,7 +19,7 @@ from ..play.program import AgentError
 from ..players.model_options import add_model_options, options_of_words
 from ..progress import Progress
 from .agents import Agent, is_known, seated
-from .checking import afresh, faults, replayed
+from .checking import afresh, faults, faults_of_replay
 from .degenerate import ABOVE, results, winners
 from .leaderboard import board, lines, page, profile
 from .playing import COLUMNS
@@ -158,7 +158,7 @@ def _run(args: argparse.Namespace) -> int:
         if worst < 130:
             with _ticking(task.id, "episodes") as tick:
                 result = judge(task, agent, out=file, command=args.line, tick=tick, **more)
-            worst = max(worst, _told(result, task, file))
+            worst = max(worst, _report(result, task, file))
     return worst
 
 
@@ -191,7 +191,7 @@ def _ticking(what: str, unit: str) -> Iterator[Callable[[int, int], None]]:
         yield tick
 
 
-def _told(result: dict[str, Any], task: Task, file: Path) -> int:
+def _report(result: dict[str, Any], task: Task, file: Path) -> int:
     """Print a result in short; its exit code."""
     why, agent, figures = result["incomplete"], result["agent"], result["figures"]
     if why is not None:
@@ -257,7 +257,7 @@ def _by_agent(args: argparse.Namespace, result: dict[str, Any]) -> list[str]:
     """What the agent itself says against its file."""
     agent, wrong = _agent_of(args, label=result["agent"]["label"]), []
     if args.replay is not None:
-        wrong = replayed(result, agent, integer("replay", args.replay, 1, 2**20), args.threads)
+        wrong = faults_of_replay(result, agent, integer("replay", args.replay, 1, 2**20), args.threads)
     if args.fresh is not None and not wrong:
         many = integer("fresh", args.fresh, 2, 100_000)
         seed = int(np.random.default_rng().integers(FRESH_SEED, SEEDS_END - many, endpoint=True))

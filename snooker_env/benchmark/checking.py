@@ -14,8 +14,8 @@ from . import playing, schema
 from .agents import Agent, is_known, is_reserved, seated
 from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic
-from .results import completed, strokes_of
-from .schema import fault, faults_of_fields, shortened
+from .results import complete, strokes_of
+from .schema import fault, faults_of_fields, shorten
 from .tasks import TASKS, Task
 
 _BUDGET = re.compile(r"_\d+(?=@|$)")
@@ -60,7 +60,7 @@ def faults(record: dict[str, Any], threads: int | None = None, *, asking: bool =
     try:
         strokes = strokes_of(record)
         wrong = _of_runs(record, strokes) or _of_play(record, task, strokes, threads)
-        wrong = wrong or _differences(record, completed(record, task))
+        wrong = wrong or _differences(record, complete(record, task))
         return wrong or (_of_decisions(record, task, strokes, threads) if asking else [])
     except (ValueError, SimulationError) as error:  # damaged, no actions, or no shot that can be computed
         return [str(error)]
@@ -203,7 +203,7 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
                     n = next((n for n, (a, b) in enumerate(pairs) if a.tobytes() != b.tobytes()), len(again))
                     which = f"{source} plays another stroke than number {n} of the file"
                     wrong.append(f"strokes: run {run}, table {rows[k][1]}: {which}")
-            wrong += _of_class(result, shortened(source), played)
+            wrong += _of_class(result, shorten(source), played)
             simulated += played.simulated
             rates += [played.simulated / played.decisions] if played.decisions else []
             work += played.decisions + played.simulated / SHOTS
@@ -219,7 +219,9 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
     return _elsewhere(result, sorted(set(wrong))[:MOST] if len(wrong) > 1 else wrong)
 
 
-def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
+def faults_of_replay(
+    record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None
+) -> list[str]:
     """Have its agent play the first episodes of a sound result again: a line for each whose strokes or row differ."""
     seeds = TASKS[record["task"]].seeds(record["protocol"]["episodes"])[:episodes]
     again, wrong, rows = _by(agent, record, seeds, threads), [], record["rows"]

@@ -98,7 +98,7 @@ def faults_of_fields(
             not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool)
         ):
             wrong.append(fault(name, value, _WORDS.get(kind, "a number") + " or null" * empty))
-        elif value is not None and (allowed := _allowed(name, value, ranges)):
+        elif value is not None and (allowed := _requirement(name, value, ranges)):
             wrong.append(fault(name, value, allowed))
     for name, inner in record.items():
         several = isinstance(inner, dict) and name not in fields
@@ -111,7 +111,7 @@ _MISSING = object()
 _WORDS = {str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "an object"}
 
 
-def _allowed(name, value, ranges):
+def _requirement(name, value, ranges):
     """What is allowed in place of a value that has the right type; None if nothing is wrong with it."""
     if name in ranges and not (ranges[name][0] <= value <= ranges[name][1] and str(value) != "-0.0"):
         return f"between {ranges[name][0]:g} and {ranges[name][1]:g}"
@@ -134,7 +134,7 @@ def line(text: str) -> str:
     return re.sub(f"[{_CONTROL}]+", " ", text)[:2000]
 
 
-def shortened(value: object) -> str:
+def shorten(value: object) -> str:
     """A value in at most 60 characters of one line, for a message."""
     try:
         text = repr(value)
@@ -145,4 +145,4 @@ def shortened(value: object) -> str:
 
 def fault(name: str, value: object, must: str) -> str:
     """The line for a value that must be something else."""
-    return f"{name} = {shortened(value)}: must be {must}"
+    return f"{name} = {shorten(value)}: must be {must}"

@@ -50,7 +50,7 @@ def _middle_mean(values, weights):
 
 
 @lru_cache(maxsize=16)
-def _drawn(size, draws, n, seed):
+def _draw(size, draws, n, seed):
     """How often each of ``size`` things comes in ``draws`` with replacement, n times: (n, size)."""
     picks = np.random.default_rng(seed).integers(size, size=(n, draws)) + size * np.arange(n)[:, None]
     return np.bincount(picks.ravel(), minlength=n * size).reshape(n, size).astype(np.float64)
@@ -60,8 +60,8 @@ class Resamples:
     """n bootstrap samples of matrices (runs, visits): as many visits are the same ones; seeds draw runs."""
 
     def __init__(self, runs: int, visits: int, n: int = RESAMPLES, seed: int = 0):
-        self._runs = _drawn(runs, max(1, runs - 1), n, (1, seed))
-        self._visits = _drawn(visits, visits, n, (0, 0))
+        self._runs = _draw(runs, max(1, runs - 1), n, (1, seed))
+        self._visits = _draw(visits, visits, n, (0, 0))
 
     def sums(self, scores: Floats) -> Floats:
         """The sum of a matrix, float (runs, visits), in each sample: float64 (n,)."""

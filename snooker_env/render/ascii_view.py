@@ -62,7 +62,7 @@ def ansi(scene: Scene, width: int = WIDTH) -> str:
     for points in scene.paths.values():
         grid.line(points, _PATH)
     hidden = _balls(grid, scene)
-    lines = _framed(grid, scene.table)
+    lines = _frame(grid, scene.table)
     if scene.text:
         lines.append(scene.text)
     lines += wrap(_LEGEND, width)
@@ -90,7 +90,7 @@ def _balls(grid, scene):
     return hidden
 
 
-def _framed(grid, table):
+def _frame(grid, table):
     """The grid's lines inside the rails, with the pockets in them."""
     side, wall = ("═", "║") if len(table.noses) else (" ", " ")
     rails = [[side] * grid.columns, [side] * grid.columns]

@@ -140,11 +140,11 @@ def draw_balls(surface: "Surface", scene: Scene, view: View) -> None:
         ball, place, size = int(scene.ids[k]), where[k], radius * (1.0 + float(scene.heights[k]) / EYE)
         colour = tuple(COLOURS[ball].tolist())
         if ball in scene.turns:
-            images.append(_spotted(place, colour, size, scene.turns[ball]))
+            images.append(_with_spots(place, colour, size, scene.turns[ball]))
         else:
             images.append(_at(place, _body, colour, round(size, 2), 1.0))
     lettered = (scene.ids >= YELLOW) & scene.lettered
-    images += _mirrored(scene.positions[~lettered], over, where[~lettered], radius)
+    images += _reflections(scene.positions[~lettered], over, where[~lettered], radius)
     for ball, place in zip(scene.ids[lettered].tolist(), where[lettered], strict=True):
         letter = _letter(ball, round(radius, 1))
         x, y = place[0] - letter.get_width() / 2, place[1] - letter.get_height() / 2
@@ -165,7 +165,7 @@ def _grid(half, fx, fy):
     return np.meshgrid(steps - fx / 4, steps - fy / 4)
 
 
-def _shaded(colour, nz):
+def _shade(colour, nz):
     """Colours (..., 3) where the z of the unit normal is ``nz``: lit from above, and by the cloth below."""
     nz = nz[..., None]
     lit = np.asarray(colour, dtype=np.float64) * (0.50 + 0.56 * nz)
@@ -178,11 +178,11 @@ def _body(colour, radius, strength, fx, fy):
     """A ball without reflections."""
     x, y = _grid(int(np.ceil(radius)) + 1, fx, fy)
     d = np.hypot(x, y)
-    shaded = _shaded(colour, np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1)))
+    shaded = _shade(colour, np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1)))
     return surface_of(shaded, strength * np.clip(radius + 0.5 - d, 0, 1))
 
 
-def _spotted(place, colour, radius, turn):
+def _with_spots(place, colour, radius, turn):
     """A ball with six spots, after the rotation ``turn``."""
     column, row = float(place[0]), float(place[1])
     left, top = int(np.floor(column)), int(np.floor(row))
@@ -193,7 +193,7 @@ def _spotted(place, colour, radius, turn):
     seen = np.max(np.stack([y / radius, x / radius, nz], axis=-1) @ towards, axis=-1)
     spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
     ink = np.array(COLOURS[1] if min(colour) > 120 else (250, 250, 245), dtype=np.float64)
-    shaded = _shaded(colour, nz) * (1 - spot) + _shaded(ink, nz) * spot
+    shaded = _shade(colour, nz) * (1 - spot) + _shade(ink, nz) * spot
     made = surface_of(shaded, np.clip(radius + 0.5 - d, 0, 1))
     return made, (left - made.get_width() // 2, top - made.get_height() // 2)
 
@@ -204,7 +204,7 @@ def _rays(positions, over):
     return across, np.sqrt((across**2).sum(axis=-1) + LAMP_HEIGHT**2)
 
 
-def _mirrored(positions, over, where, radius):
+def _reflections(positions, over, where, radius):
     """Reflections: each lamp's where the normal is half-way between the lamp and the eye, straight above."""
     ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
     across, far = _rays(positions, ends.reshape(-1, 2))

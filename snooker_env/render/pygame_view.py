@@ -158,11 +158,11 @@ def _right(page, bar, width):
     if bar.reds_left is not None:
         x = _column(page, "REDS", str(bar.reds_left), x, (1,), widest="15")
     if bar.ball_on:
-        x = _column(page, "BALL ON", bar.ball_on, x, _shown(bar.ball_on), size=30)
+        x = _column(page, "BALL ON", bar.ball_on, x, _balls_on(bar.ball_on), size=30)
     return x
 
 
-def _shown(ball_on):
+def _balls_on(ball_on):
     """The balls drawn for the ball on."""
     words = ball_on.lower().split()
     if "colour" in words:

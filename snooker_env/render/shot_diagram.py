@@ -13,7 +13,7 @@ from ..physics.table import Table
 from ..simulation import Shot
 from .palette import PALE, Colour
 from .shot_paths import Piece, Tip, arrow_places, contacts, cue_ball, paths, tip_of
-from .sketch import CAPTIONS, PATH_WIDTH, WIDTH, Region, Sketch, flipped, is_closed, pyplot, rgb
+from .sketch import CAPTIONS, PATH_WIDTH, WIDTH, Region, Sketch, flip, is_closed, pyplot, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -167,7 +167,7 @@ def _draw_paths(sketch, shot, moved, first):
             _draw_impacts(sketch, shot, ball, start)
         else:
             thin = np.concatenate([piece.points for piece in moved[ball]])
-            sketch.ax.plot(*flipped(thin).T, color=rgb(PALE[ball], 0.75), lw=0.8, zorder=4.0, gid="thin path")
+            sketch.ax.plot(*flip(thin).T, color=rgb(PALE[ball], 0.75), lw=0.8, zorder=4.0, gid="thin path")
         if shot.on_table[ball]:
             sketch.ghost(ball, shot.positions[ball], 0.62 if ball in main else 0.3)
 
@@ -224,7 +224,7 @@ def _draw_cut(sketch, contact):
         if ray is not rays:
             points[0] = contact.centre
         ls = "-" if ray is rays else (0, (3, 2))
-        sketch.ax.plot(*flipped(points).T, color=rgb("aim"), lw=1.0, ls=ls, zorder=6.5, gid="cut")
+        sketch.ax.plot(*flip(points).T, color=rgb("aim"), lw=1.0, ls=ls, zorder=6.5, gid="cut")
 
 
 # the strip under the table

@@ -91,7 +91,7 @@ def rgb(colour: Colour, alpha: float = 1.0) -> tuple[float, float, float, float]
     return red / 255, green / 255, blue / 255, alpha
 
 
-def flipped(points: ArrayLike | Vector | Vectors) -> Floats:
+def flip(points: ArrayLike | Vector | Vectors) -> Floats:
     """Points (..., 2) in the order for matplotlib: y to the right, x down."""
     return np.asarray(points, np.float64)[..., ::-1]
 
@@ -159,7 +159,7 @@ class Sketch:
                     along = np.array([x1 - x0, y1 - y0]) / np.hypot(x1 - x0, y1 - y0)
                     across = (half + rim) * np.array([-along[1], along[0]])
                     a, b = np.array([x0, y0]), np.array([x1, y1])
-                    corners = flipped([a + across, b + across, b - across, a - across])
+                    corners = flip([a + across, b + across, b - across, a - across])
                     add(Polygon(corners, fc=rgb(colour), ec="none"), level)
                     add(Circle((y1, x1), half + rim, fc=rgb(colour), ec="none"), level)
             left, top = max(low_y - CUSHION, w.low_y), max(low_x - CUSHION, w.low_x)
@@ -174,16 +174,16 @@ class Sketch:
             add(Circle((y, x), radius, fc=rgb("hole"), ec="none"), 0.45, cloth)
         if is_marked(self.table):
             for line in (BAULK_LINE, D_ARC):
-                ax.plot(*flipped(line).T, color=rgb("line"), lw=0.0045 * scale, zorder=0.5, gid=TABLE)
+                ax.plot(*flip(line).T, color=rgb("line"), lw=0.0045 * scale, zorder=0.5, gid=TABLE)
             for x, y in SPOT_MARKS:
                 add(Circle((y, x), 0.007, fc=rgb("line"), ec="none"), 0.5)
         for nose in parts.noses:
             style = {"color": rgb("shadow", 0.28), "lw": 0.03 * scale, "zorder": 0.55, "gid": TABLE}
-            ax.plot(*flipped(nose).T, **style)[0].set_clip_path(cloth)
+            ax.plot(*flip(nose).T, **style)[0].set_clip_path(cloth)
         for polygon, nose in zip(parts.cushions, parts.noses, strict=True):
-            add(Polygon(flipped(polygon), fc=rgb("cushion"), ec="none"), 0.6, cloth)
+            add(Polygon(flip(polygon), fc=rgb("cushion"), ec="none"), 0.6, cloth)
             style = {"color": rgb("nose"), "lw": 0.005 * scale, "zorder": 0.65, "gid": TABLE}
-            ax.plot(*flipped(nose).T, **style, solid_capstyle="butt")
+            ax.plot(*flip(nose).T, **style, solid_capstyle="butt")
         if self.depth:
             add(Rectangle((w.low_y, w.high_x), w.width, self.depth, fc=rgb("bar"), ec="none"), 9.0)
             ax.plot([w.low_y, w.high_y], [w.high_x] * 2, color=rgb("bar_edge"), lw=1.0, zorder=9.1, gid=TABLE)
@@ -199,7 +199,7 @@ class Sketch:
 
     def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
         """A ball at rest, with a highlight; ``label``: with its letter."""
-        (y, x), R, colour, disc = flipped(place), self.R, COLOURS[ball % N_BALLS], self.disc
+        (y, x), R, colour, disc = flip(place), self.R, COLOURS[ball % N_BALLS], self.disc
         style = {"lw": 0.4, "zorder": 7.0, "gid": f"ball-{ball}"}
         disc((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9)
         disc((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), **style)
@@ -222,7 +222,7 @@ class Sketch:
         rim = rgb(PALE[ball % N_BALLS], min(1.0, alpha + 0.45))
         size, gid = (self.R, f"ghost-{ball}") if radius is None else (radius, "sign")
         style = {"fc": rgb(COLOURS[ball % N_BALLS], alpha), "ec": rim, "lw": 0.9, "zorder": level, "gid": gid}
-        self.disc(flipped(place), size, **style)
+        self.disc(flip(place), size, **style)
         self.keep_clear(np.asarray(place)[None], 2 * size)
 
     def line(
@@ -232,7 +232,7 @@ class Sketch:
         under = {"color": rgb("path_edge", 0.85), "lw": width + OUTLINE, "zorder": level - 0.5}
         over = {"color": rgb(colour), "lw": width, "zorder": level, "gid": "path"}
         for each in ({"gid": "outline", **under}, over | style):
-            self.ax.plot(*flipped(points).T, **{"solid_capstyle": "round", **each})
+            self.ax.plot(*flip(points).T, **{"solid_capstyle": "round", **each})
         self.keep_clear(points, 0.0)
 
     def arrow(self, place: Floats, direction: Floats, colour: Colour) -> None:
@@ -242,14 +242,14 @@ class Sketch:
         head = np.array([(5.0, 0.0), (-3.5, 3.2), (-1.7, 0.0), (-3.5, -3.2)])  # [points]
         turned = head / self.points_per_metre @ np.array([direction, [-direction[1], direction[0]]])
         style = {"fc": rgb(colour), "ec": rgb("path_edge"), "lw": 0.8, "zorder": 5.6, "gid": "arrow"}
-        self.ax.add_patch(Polygon(flipped(place + turned), **style))
+        self.ax.add_patch(Polygon(flip(place + turned), **style))
 
     def mark(
         self, place: Vector, marker: str, colour: Colour, size: float = 6.0, level: float = 8.0, **more: Any
     ) -> None:
         """A small sign at a place."""
         style = {"mfc": rgb(colour), "mec": rgb("path_edge"), "mew": 0.9, "ls": "none", "zorder": level}
-        self.ax.plot(*flipped(place), marker=marker, ms=size, **style | more)
+        self.ax.plot(*flip(place), marker=marker, ms=size, **style | more)
 
     # words
 
@@ -287,7 +287,7 @@ class Sketch:
         """Write text near a place where it covers least, with a line to it; False if there is no room."""
         high = 1.25 * self.font / self.points_per_metre
         wide = (0.66 * len(words) + 0.6) * self.font / self.points_per_metre
-        y, x = flipped(place)
+        y, x = flip(place)
         busy = np.concatenate(self._busy) if self._busy else np.empty((0, 3))
         best, least = None, np.inf
         for far in (1.6, 2.3, 3.2, 4.4):

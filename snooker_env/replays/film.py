@@ -67,10 +67,10 @@ def shown(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
     its = iter(bars(judged, replay.players, replay.win_chance))
     for stroke in replay.strokes:
         during, after = next(its) if isinstance(stroke, Played) else (None, None)
-        yield filmed(replay.table, stroke, during, after, "" if during else replay.title)
+        yield film_stroke(replay.table, stroke, during, after, "" if during else replay.title)
 
 
-def filmed(
+def film_stroke(
     table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = ""
 ) -> tuple[Film, Scene]:
     """A stroke as a film, and the table after it; ``during`` and ``after`` are the bars of ``bars``."""
