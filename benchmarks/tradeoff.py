@@ -22,8 +22,8 @@ from snooker_env.physics.impact import contact
 
 from ._common import shot_sets
 from ._common.command import Command, at_least, run, save_json
+from .speed.__main__ import impacts, median_impact, results
 from .speed.clock import Way, time_ways
-from .speed.command import impacts, median_impact, results
 
 OWN = ("fast", "standard", "reference")
 IMPACTS = (*OWN, *(f"euler:{n}" for n in (10, 30, 100, 200, 300, 1000, 3000, 10000)))

@@ -3,14 +3,13 @@
 from collections.abc import Collection
 from contextlib import suppress
 from math import isinf, nan
-from typing import Any
 
 import numpy as np
 
 from ._types import Bools, Floats
 
 
-def refuse(field: str, value: Any, allowed: str) -> ValueError:
+def refuse(field: str, value: object, allowed: str) -> ValueError:
     """The error for a bad value, in the one form that this package uses: ``raise refuse(...)``.
 
     Parameters
@@ -57,7 +56,7 @@ def refuse_what(field: str, what: str, allowed: str) -> ValueError:
 
 
 def number(
-    field: str, value: Any, low: float = -np.inf, high: float = np.inf, *, open_low: bool = False
+    field: str, value: object, low: float = -np.inf, high: float = np.inf, *, open_low: bool = False
 ) -> float:
     """Check that a value is a finite real number in a range; a bool, a str and an array are none.
 
@@ -87,14 +86,14 @@ def number(
             x = float(value)
     elif not isinstance(value, (bool, str, bytes)) and value is not None:
         with suppress(TypeError, ValueError, OverflowError):
-            x = float(value)
+            x = float(value)  # type: ignore[arg-type]  (TypeError is meant)
     if not low <= x <= high or isinf(x) or (open_low and x == low):
         left, right = "(" if open_low or low == -np.inf else "[", ")" if high == np.inf else "]"
         raise refuse(field, value, f"must be a finite number in {left}{low:g}, {high:g}{right}")
     return x
 
 
-def _wanted(shape):
+def _shape_text(shape):
     """A shape as text, with letters for the lengths that are free."""
     free = iter("bn" if shape.count(-1) == 2 else "n")
     sizes = ", ".join(next(free) if s == -1 else str(s) for s in shape)
@@ -105,7 +104,7 @@ _FLOAT = np.dtype(np.float64)
 
 
 def array(
-    field: str, value: Any, shape: tuple[int, ...], most: float | None = np.inf, unit: str = ""
+    field: str, value: object, shape: tuple[int, ...], most: float | None = np.inf, unit: str = ""
 ) -> Floats:
     """A new float64 array of this shape (-1: any), C-ordered, finite within ``most`` [unit]; None: not checked."""
     if type(value) is np.ndarray and value.dtype is _FLOAT:
@@ -114,15 +113,15 @@ def array(
         try:
             raw = np.asarray(value)
         except (TypeError, ValueError):
-            raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}") from None
+            raise refuse(field, value, f"must be real numbers of shape {_shape_text(shape)}") from None
         if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
-            raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}")
+            raise refuse(field, value, f"must be real numbers of shape {_shape_text(shape)}")
         with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused
             a = np.array(raw, dtype=np.float64, order="C")
     if a.shape != shape and (
         a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True))
     ):
-        raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_wanted(shape)}")
+        raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_shape_text(shape)}")
     if most is None:
         return a
     sound = np.isfinite(a) if most == np.inf else np.abs(a) <= most
@@ -133,7 +132,7 @@ def array(
     return a
 
 
-def choice(field: str, value: Any, options: Collection[str]) -> str:
+def choice(field: str, value: object, options: Collection[str]) -> str:
     """Check that a value is one of some names.
 
     Parameters
@@ -157,7 +156,7 @@ def choice(field: str, value: Any, options: Collection[str]) -> str:
     return value
 
 
-def integer(field: str, value: Any, low: float, high: float) -> int:
+def integer(field: str, value: object, low: float, high: float) -> int:
     """Check that a value is an integer in a range; a bool and a float are none.
 
     Parameters
@@ -182,7 +181,7 @@ def integer(field: str, value: Any, low: float, high: float) -> int:
     return int(value)
 
 
-def flags(field: str, value: Any, shape: tuple[int, ...]) -> Bools:
+def flags(field: str, value: object, shape: tuple[int, ...]) -> Bools:
     """A bool array of the given shape, always a new C-ordered copy."""
     try:
         a = np.array(value, order="C")
@@ -193,7 +192,7 @@ def flags(field: str, value: Any, shape: tuple[int, ...]) -> Bools:
     return a
 
 
-def truth(field: str, value: Any) -> bool:
+def truth(field: str, value: object) -> bool:
     """The value, a bool; ValueError for anything else: 0 and 1 are none."""
     if not isinstance(value, (bool, np.bool_)):
         raise refuse(field, value, "must be True or False")

@@ -11,7 +11,7 @@ import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -163,7 +163,7 @@ def _array(data: bytes) -> np.ndarray:
     size = len(data) - file.tell()
     if kind.hasobject or not kind.itemsize or math.prod(shape) * kind.itemsize != size:
         raise ValueError(f"{size:,} bytes are no array of {kind} and shape {shape}")
-    order: Any = "F" if columns else "C"
+    order: Literal["F", "C"] = "F" if columns else "C"
     return np.ndarray(shape, kind, data, file.tell(), order=order).copy(order)
 
 

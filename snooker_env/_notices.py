@@ -70,11 +70,12 @@ class _Listener(event.Listener):
     """numba calls it for every compile of this process, that is for what was not in the cache."""
 
     def on_start(self, event):
-        kernel: Any = (event.data or {}).get("dispatcher")
+        kernel = (event.data or {}).get("dispatcher")
         cost = getattr(kernel, "cost", None)  # other packages compile too
         if cost is None or not cost.what or (seconds := cost.total()) < 1:
             return
-        kept = isinstance(kernel._cache, Kept) and kernel._cache.has_room()
+        cache = getattr(kernel, "_cache", None)
+        kept = isinstance(cache, Kept) and cache.has_room()
         text = f"compiling {cost.what}, {'once, ' if kept else ''}about {seconds} s"
         if not (_running and _running[-1].spoke):  # said once in a warm-up
             text += f" ({f'kept in {CACHE_FOLDER}' if kept else 'for this process only'}; SNOOKER_ENV_QUIET=1 hides this)"

@@ -1,5 +1,6 @@
 """What is loaded by its name at the first use? The environments that Gymnasium knows by id, and the player of programs."""
 
+from types import ModuleType
 from typing import Any
 
 ID = "Snooker-v0"
@@ -22,7 +23,7 @@ ENTRY_POINTS = {  # of each id the environment of one table, and that of many
 }
 
 
-def register(registration: Any) -> None:
+def register(registration: ModuleType) -> None:
     """Register with Gymnasium's module the ids that it lacks; string entry points keep it light."""
     for name, (one, many) in ENTRY_POINTS.items():
         if name not in registration.registry:

@@ -17,8 +17,8 @@ def text_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1
 def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
     """The same in Markdown."""
     marks = ["---" if c < left else "--:" for c in range(len(head))]
-    cells = lambda row: [cell.replace("\\", "\\\\").replace("|", "\\|") for cell in row]  # noqa: E731
-    return [f"| {' | '.join(cells(row))} |" for row in (head, marks, *rows)]
+    safe = [[cell.replace("\\", "\\\\").replace("|", "\\|") for cell in row] for row in (head, marks, *rows)]
+    return [f"| {' | '.join(row)} |" for row in safe]
 
 
 def shown(figure: Mapping[str, float | None], scale: float = 1.0, form: str = "{:.1f}") -> str:

@@ -146,7 +146,7 @@ class Pocket:
         mouth, shelf, fall_radius = _sizes("pocket.corner", mouth, shelf, fall_radius)
         depth = (fall_radius + shelf) / sqrt(2.0) - mouth / (2.0 * sqrt(2.0))
         turn = 180.0 - number("pocket.corner.cut", cut, 135, 180)
-        return cls(**_named(False, mouth / sqrt(2.0), jaw_radius, turn, depth, fall_radius))
+        return cls(**_fields(False, mouth / sqrt(2.0), jaw_radius, turn, depth, fall_radius))
 
     @classmethod
     def middle(
@@ -155,7 +155,7 @@ class Pocket:
         """Make a middle pocket as ``Pocket.corner``; ``cut`` in [90, 180): 90 is parallel, the WPA's 104."""
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
-        return cls(**_named(True, mouth / 2.0, jaw_radius, turn, fall_radius + shelf, fall_radius))
+        return cls(**_fields(True, mouth / 2.0, jaw_radius, turn, fall_radius + shelf, fall_radius))
 
     # from the corner, or the middle on the nose line: depth outwards along the axis, offset across it
 
@@ -212,7 +212,7 @@ class Pocket:
 _SIZES = ("start", "jaw_radius", "turn", "fall_depth", "fall_radius")
 
 
-def _named(is_middle, *sizes):
+def _fields(is_middle, *sizes):
     """The fields of a ``Pocket``."""
     return {"is_middle": is_middle, **dict(zip(_SIZES, sizes, strict=True))}
 
@@ -293,9 +293,9 @@ def _bed(length, width, corner, middle, **ball):
 
 
 _INCH = 0.0254
-_CORNER = Pocket(**_named(False, 0.0976352, 0.0889, 45.0, 0.047625, 0.0889))
-_TIGHT = Pocket(**_named(False, 0.0934916, 0.0889, 45.0, 0.047625, 0.0889))
-_MIDDLE = Pocket(**_named(True, 0.109185, 0.0669, 90.0, 0.05159, 0.05319))
+_CORNER = Pocket(**_fields(False, 0.0976352, 0.0889, 45.0, 0.047625, 0.0889))
+_TIGHT = Pocket(**_fields(False, 0.0934916, 0.0889, 45.0, 0.047625, 0.0889))
+_MIDDLE = Pocket(**_fields(True, 0.109185, 0.0669, 90.0, 0.05159, 0.05319))
 
 
 def scaled(pocket: Pocket, factor: float) -> Pocket:

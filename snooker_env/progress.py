@@ -5,7 +5,7 @@ import sys
 import threading
 import time
 from collections import deque
-from typing import Any, TextIO
+from typing import TextIO
 
 __all__ = ["Progress"]
 
@@ -58,7 +58,7 @@ class Progress:
     ):
         self.done, self.total = done, total
         self._what, self._unit, self._figures = what, unit, ""
-        self._to: Any = None if quiet else to or sys.stderr
+        self._to: TextIO | None = None if quiet else to or sys.stderr
         self._terminal = self._to is not None and self._to.isatty()
         self._began = time.perf_counter()
         self._measured = deque([(self._began, done)])
@@ -73,7 +73,7 @@ class Progress:
             self._speaker.start()
         return self
 
-    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         if self._to is None:
             return
         self._ended.set()
@@ -137,6 +137,7 @@ class Progress:
             text = f"\r{' ' * width}\r{text}\n" if last else f"\r{drawn[:width]:{width}}"
         else:
             text += "\n"
+        assert self._to is not None
         try:
             self._to.write(text)
             self._to.flush()

@@ -1,7 +1,7 @@
 """What is the result of a simulated shot? ``Shot``, ``ShotBatch``: where balls end, events, any moment."""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,11 @@ from ._types import Bools, Floats, Ints, Real, Vector
 from .physics import trajectory
 from .physics.parameters import Physics
 from .physics.table import Table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+else:  # matplotlib is loaded at its first use
+    Axes = Any
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
 """Data type of a logged event: ``time`` [s], ``kind`` (an ``EventKind``, which explains ``i``, ``j``)."""
@@ -98,7 +103,7 @@ class Shot:
             out[2][times >= self.duration] = 0.0  # at exactly that time rounding may leave 1e-14 of a spin
         return (out[0][0], out[1][0], out[2][0]) if single else out
 
-    def plot(self, ax: Any = None, **options: Any) -> Any:
+    def plot(self, ax: "Axes | None" = None, **options: Any) -> "Axes":
         """Draw the shot with matplotlib, on the axes ``ax`` or a new figure; returns the axes.
 
         ``options``: see ``snooker_env.render.diagrams.plot``. ValueError for a wrong option or a shot without

@@ -22,6 +22,7 @@ from .players import FRAMES, VISITS, Player, decision_seeds, player
 from .players.model_options import add_model_options, of_others, options_of_words
 from .players.resolver import named
 from .replays import Replay, replay
+from .replays.chances import checked_judge
 from .replays.film import encoder_file
 
 NAME = "snooker_env.watch"
@@ -46,7 +47,7 @@ def episode(who: Player, seed: int, **options: Any) -> SnookerEnv:
     return env
 
 
-def described(played: Replay) -> Iterator[str]:
+def describe(played: Replay) -> Iterator[str]:
     """A line for each stroke."""
     for k, stroke in enumerate(played.to_dict()["strokes"], 1):
         cue = stroke["cue"]
@@ -80,7 +81,7 @@ def parser() -> argparse.ArgumentParser:
     return p
 
 
-def _checked(args: argparse.Namespace) -> dict[str, Any]:
+def _film_options(args: argparse.Namespace) -> dict[str, Any]:
     """The options of the film that is wanted, {} for a page; ValueError for arguments that do not agree."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     if suffix not in SUFFIXES:
@@ -141,7 +142,7 @@ def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
     return longest, its, [label]
 
 
-def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
+def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     """Play, print, write."""
     env, seed, names = sought(args)
     if args.frame:
@@ -152,9 +153,9 @@ def watched(args: argparse.Namespace, film: dict[str, Any]) -> None:
         made = f"{names[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
     title = f"{made}, {args.noise}'s errors, {where.split(',')[0]}"
-    judge: Any = player(TACTICIAN).at(env) if args.frame else None
+    judge = checked_judge(player(TACTICIAN).at(env)) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
-    print(*described(played), sep="\n")
+    print(*describe(played), sep="\n")
     print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")
     if env.points < args.at_least:
         print(f"No visit of {args.at_least} points in {args.tries} tries: this one is the longest.")
@@ -172,7 +173,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     def play() -> int:
         args = p.parse_args(argv)
         try:
-            watched(args, _checked(args))
+            watch(args, _film_options(args))
         except ValueError as error:
             p.error(str(error))
         return 0

@@ -15,7 +15,7 @@ from scipy.optimize import minimize_scalar
 import snooker_env as sn
 from snooker_env.physics.parameters import MARLOW
 
-from ..fit_cushion.command import DATA as REBOUNDS
+from ..fit_cushion.__main__ import DATA as REBOUNDS
 from .paper_shots import rolling
 
 FOLDER = REBOUNDS.parent

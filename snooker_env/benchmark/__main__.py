@@ -19,7 +19,7 @@ from ..play.program import AgentError
 from ..players.model_options import add_model_options, options_of_words
 from ..progress import Progress
 from .agents import Agent, is_known, seated
-from .checking import afresh, faults, replayed
+from .checking import afresh, faults, faults_of_replay
 from .degenerate import ABOVE, results, winners
 from .leaderboard import board, lines, page, profile
 from .playing import COLUMNS
@@ -110,22 +110,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     return exit_code("error", play)
 
 
-def _tasks(args: Any) -> int:
+def _tasks(args: argparse.Namespace) -> int:
     """List the tasks."""
-    about = lambda one: [one.id, one.title, one.judged_layout, one.frozen["noise"], f"{one.episodes:,}"]  # noqa: E731
     head = ["task", "what", "judged on", "noise", "episodes"]
-    print("\n".join(text_table(head, [about(task) for task in TASKS.values()], 4)))
+    rows = [
+        [task.id, task.title, task.judged_layout, task.frozen["noise"], f"{task.episodes:,}"]
+        for task in TASKS.values()
+    ]
+    print("\n".join(text_table(head, rows, 4)))
     print(f"\nFree options: {', '.join(FREE)}. All others are frozen.")
     return 0
 
 
-def _agent_of(args: Any, **more: Any) -> Agent:
+def _agent_of(args: argparse.Namespace, **more: Any) -> Agent:
     """The agent that the arguments name."""
     more |= {"options": options_of_words(args.options), "trust": args.trust, "timeout": args.timeout}
     return Agent.of(args.agent, **more)
 
 
-def _run(args: Any) -> int:
+def _run(args: argparse.Namespace) -> int:
     """Play tasks; whatever is wrong is said before the first one is played."""
     tasks = list(TASKS.values()) if args.tasks == ["all"] else [task_of(name) for name in args.tasks]
     shots = {"training_shots": args.training_shots, "shots_declared": args.simulated_shots}
@@ -150,11 +153,11 @@ def _run(args: Any) -> int:
         if worst < 130:
             with _ticking(task.id, "episodes") as tick:
                 result = judge(task, agent, out=file, command=args.line, tick=tick, **more)
-            worst = max(worst, _told(result, task, file))
+            worst = max(worst, _report(result, task, file))
     return worst
 
 
-def _text(args: Any) -> int:
+def _text(args: argparse.Namespace) -> int:
     """Play the track of words and print the result."""
     agent = _agent_of(args, label=args.label)
     out = Path(args.out or f"text.{agent.label}.json")
@@ -183,7 +186,7 @@ def _ticking(what: str, unit: str) -> Iterator[Callable[[int, int], None]]:
         yield tick
 
 
-def _told(result: dict[str, Any], task: Task, file: Path) -> int:
+def _report(result: dict[str, Any], task: Task, file: Path) -> int:
     """Print a result in short; its exit code."""
     why, agent, figures = result["incomplete"], result["agent"], result["figures"]
     if why is not None:
@@ -217,7 +220,7 @@ def suspicious(result: dict[str, Any], task: Task) -> bool:
     )
 
 
-def _check(args: Any) -> int:
+def _check(args: argparse.Namespace) -> int:
     """Verify files."""
     asked = args.replay is not None or args.fresh is not None
     if asked != (args.agent is not None):
@@ -245,11 +248,11 @@ def _check(args: Any) -> int:
     return worst
 
 
-def _by_agent(args: Any, result: dict[str, Any]) -> list[str]:
+def _by_agent(args: argparse.Namespace, result: dict[str, Any]) -> list[str]:
     """What the agent itself says against its file."""
     agent, wrong = _agent_of(args, label=result["agent"]["label"]), []
     if args.replay is not None:
-        wrong = replayed(result, agent, integer("replay", args.replay, 1, 2**20), args.threads)
+        wrong = faults_of_replay(result, agent, integer("replay", args.replay, 1, 2**20), args.threads)
     if args.fresh is not None and not wrong:
         many = integer("fresh", args.fresh, 2, 100_000)
         seed = int(np.random.default_rng().integers(FRESH_SEED, SEEDS_END - many, endpoint=True))
@@ -259,7 +262,7 @@ def _by_agent(args: Any, result: dict[str, Any]) -> list[str]:
     return wrong
 
 
-def _degenerate(args: Any) -> int:
+def _degenerate(args: argparse.Namespace) -> int:
     """Play the degenerate policies and compare them."""
     tasks = [task_of(name) for name in args.tasks] or list(TASKS.values())
     folder, wrong = Path(args.out), list[str]()
@@ -284,7 +287,7 @@ def _sound(files: Sequence[str]) -> list[dict[str, Any]]:
     return results
 
 
-def _table(args: Any) -> int:
+def _table(args: argparse.Namespace) -> int:
     """Print the leaderboard, or write it as a page."""
     results = _sound(args.files)
     if args.markdown:
@@ -293,7 +296,7 @@ def _table(args: Any) -> int:
     return 0
 
 
-def _profile(args: Any) -> int:
+def _profile(args: argparse.Namespace) -> int:
     """Print performance profiles."""
     results = _sound(args.files)
     for task in TASKS.values():

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from .._check import integer, number, refuse
 from ..play.program import ProgramPlayer
@@ -19,6 +19,9 @@ from ..players.weights import levels
 from .playing import BATCH
 from .schema import LABEL
 from .tasks import Task
+
+Source: TypeAlias = str | Player | object
+"""What ``sn.player`` makes a player of: a text, a player, or a model of Stable-Baselines3."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +51,7 @@ class Agent:
     """
 
     label: str
-    sources: tuple[Any, ...]
+    sources: tuple[Source, ...]
     options: dict[str, Any] = field(default_factory=dict)
     trust: bool = False
     timeout: float = 60.0
@@ -57,17 +60,17 @@ class Agent:
 
     @classmethod
     def of(
-        cls, agent: Any, *, label: str | None = None, training_shots: int | None = None, **more: Any
+        cls, agent: Source | Path, *, label: str | None = None, training_shots: int | None = None, **more: Any
     ) -> "Agent":
         """The agent of a text of ``sn.player``, of LABEL=SOURCE,SOURCE,... (training seeds) or of a player.
 
         Label and training shots that are None come from the text or class, and from a player known by name;
         ``**more``: other attributes. No code of a class or a file runs. ValueError if nothing has that name."""
         agent = str(agent) if isinstance(agent, Path) else agent
-        sources: list[Any] = [agent]
+        sources: list[Source] = [agent]
         if isinstance(agent, str) and not agent.startswith(PROGRAM) and not Path(agent).exists():
             name, equals, text = agent.rpartition("=")
-            label, sources = label or name if equals else label, text.split(",")
+            label, sources = label or name if equals else label, [*text.split(",")]
         if len(sources) > 1 and len(set(sources)) < len(sources):
             raise refuse("agent", agent, "must be different players or models, one for each training seed")
         for source in sources:
@@ -136,11 +139,13 @@ def seated(agent: Agent, task: Task, run: int) -> Iterator[Player]:
             player.close()
 
 
-def text_of(source: Any) -> str:
+def text_of(source: Source) -> str:
     """A source as a file names it: an object by its class."""
-    text: Any = source if isinstance(source, str) else getattr(source, "name", None)
-    if text is source or (isinstance(text, str) and text.startswith(PROGRAM)):
-        return text
+    if isinstance(source, str):
+        return source
+    name = getattr(source, "name", None)
+    if isinstance(name, str) and name.startswith(PROGRAM):
+        return name
     return f"{type(source).__module__}:{type(source).__qualname__}"
 
 
@@ -157,7 +162,7 @@ def is_reserved(label: str, sources: Sequence[str]) -> bool:
     return (is_known(label) or is_known(alike)) and list(sources) != [label]
 
 
-def _label(source: Any) -> str:
+def _label(source: Source) -> str:
     """A label from a source."""
     text = text_of(source)
     if text.startswith(PROGRAM):

@@ -1,6 +1,7 @@
 """Is a submitted result what it says? Its strokes are played again; all that follows must be equal to the bit."""
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,8 @@ from . import playing, schema
 from .agents import Agent, is_known, is_reserved, seated
 from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic
-from .results import completed, strokes_of
-from .schema import fault, faults_of_fields, shortened
+from .results import complete, strokes_of
+from .schema import fault, faults_of_fields, shorten
 from .tasks import TASKS, Task
 
 _BUDGET = re.compile(r"_\d+(?=@|$)")
@@ -25,7 +26,7 @@ takes that long for a whole file, but with large budgets. So many tables are pla
 SURE = 3.29  # standard errors that a fresh mean may be away: 99.9 %
 
 
-def faults(record: Any, threads: int | None = None, *, asking: bool = True) -> list[str]:
+def faults(record: dict[str, Any], threads: int | None = None, *, asking: bool = True) -> list[str]:
     """Check a result: its fields, and all rows and figures by a replay of its strokes.
 
     Players known by name are asked again for their strokes and decisions: all, or in a random selection of episodes if that
@@ -59,7 +60,7 @@ def faults(record: Any, threads: int | None = None, *, asking: bool = True) -> l
     try:
         strokes = strokes_of(record)
         wrong = _of_runs(record, strokes) or _of_play(record, task, strokes, threads)
-        wrong = wrong or _differences(record, completed(record, task))
+        wrong = wrong or _differences(record, complete(record, task))
         return wrong or (_of_decisions(record, task, strokes, threads) if asking else [])
     except (ValueError, SimulationError) as error:  # damaged, no actions, or no shot that can be computed
         return [str(error)]
@@ -161,7 +162,7 @@ def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
     return [fault("machine.arithmetic", made, must), *wrong]
 
 
-def _differences(value: Any, want: Any, name: str = "") -> list[str]:
+def _differences(value: object, want: object, name: str = "") -> list[str]:
     """Where does a record differ from what is computed anew?"""
     if isinstance(want, dict) and isinstance(value, dict):
         if set(value) != set(want):
@@ -202,7 +203,7 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
                     n = next((n for n, (a, b) in enumerate(pairs) if a.tobytes() != b.tobytes()), len(again))
                     which = f"{source} plays another stroke than number {n} of the file"
                     wrong.append(f"strokes: run {run}, table {rows[k][1]}: {which}")
-            wrong += _of_class(result, shortened(source), played)
+            wrong += _of_class(result, shorten(source), played)
             simulated += played.simulated
             rates += [played.simulated / played.decisions] if played.decisions else []
             work += played.decisions + played.simulated / SHOTS
@@ -218,7 +219,9 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
     return _elsewhere(result, sorted(set(wrong))[:MOST] if len(wrong) > 1 else wrong)
 
 
-def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
+def faults_of_replay(
+    record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None
+) -> list[str]:
     """Have its agent play the first episodes of a sound result again: a line for each whose strokes or row differ."""
     seeds = TASKS[record["task"]].seeds(record["protocol"]["episodes"])[:episodes]
     again, wrong, rows = _by(agent, record, seeds, threads), [], record["rows"]
@@ -258,7 +261,7 @@ def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes) -> list[
     return [f"agent.class = 'model_free': must be 'planning': {who} simulated {shots}"]
 
 
-def _by(agent: Agent, result: dict[str, Any], seeds: Any, threads: int | None) -> PlayedEpisodes:
+def _by(agent: Agent, result: dict[str, Any], seeds: Sequence[int], threads: int | None) -> PlayedEpisodes:
     """What the agent of a result plays on these tables, with every training seed."""
     task, runs = TASKS[result["task"]], len(result["agent"]["sources"])
     if len(agent.sources) != runs:

@@ -2,6 +2,7 @@
 
 from typing import Any, ClassVar
 
+from .._types import RenderMode
 from ..envs.pictures import SIZE
 from ..envs.snooker import SnookerEnv
 from ..envs.vector import SnookerVectorEnv
@@ -15,7 +16,9 @@ class TaskEnv(SnookerEnv):
 
     TASK: ClassVar[str]
 
-    def __init__(self, *, render_mode: Any = None, render_size: Any = SIZE, **free: Any):
+    def __init__(
+        self, *, render_mode: RenderMode | None = None, render_size: tuple[int, int] = SIZE, **free: Any
+    ):
         super().__init__(TASKS[self.TASK].options(**free), render_mode=render_mode, render_size=render_size)
 
 

@@ -101,7 +101,9 @@ def _share(figure: dict[str, Any]) -> str:
     return f"{sign}{100 * figure[name]:.1f}"
 
 
-def lines(results: Sequence[Any], *, markdown: bool = False, awaited: Sequence[str] = ()) -> list[str]:
+def lines(
+    results: Sequence[dict[str, Any]], *, markdown: bool = False, awaited: Sequence[str] = ()
+) -> list[str]:
     """Leaderboard and profiles of all tasks; labels ``awaited`` are named where their result is missing."""
 
     def table(head: list[str], rows: list[list[str]], label: int, left: int = 1) -> list[str]:

@@ -2,7 +2,7 @@
 of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -43,7 +43,7 @@ class PlayedEpisodes:
 class Decider:
     """A player at tables: what it decides is rounded, kept and timed, and its simulated shots are counted."""
 
-    def __init__(self, player: Any, tables: SnookerVectorEnv, seeds: Any, seed: int):
+    def __init__(self, player: Player | str, tables: SnookerVectorEnv, seeds: Sequence[int], seed: int):
         self.player: Player = player_named(player).at(tables)
         self.decisions: int = 0
         self.seconds: float = 0.0
@@ -87,12 +87,16 @@ class Repeater:
         return actions
 
 
+Decide = Callable[[Bools, int], NDArray[np.float32]]
+"""The actions on all tables, of those asked for their stroke of this number."""
 Round = tuple[Bools, dict[str, Any], Bools, Bools]  # asked for a stroke; the info after it; done; terminated
 
 
-def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None = None) -> Iterator[Round]:
+def rounds(
+    tables: SnookerVectorEnv, seeds: list[int], decide: Decide, rekey: int | None = None
+) -> Iterator[Round]:
     """Play every table to its end; seed ``rekey`` draws new execution errors after each decision."""
-    tables.reset(seed=seeds)
+    tables.reset(seed=[*seeds])
     going, number = np.ones(tables.num_envs, np.bool_), 0
     while going.any():
         # a frame that the opponent has won already only needs its last step
@@ -113,7 +117,7 @@ def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorE
 
 
 def play_episodes(
-    task: Task, player: Any, seeds: list[int], run: int = 0, threads: int | None = None
+    task: Task, player: Player | str, seeds: list[int], run: int = 0, threads: int | None = None
 ) -> PlayedEpisodes:
     """Play one episode on each of the judged tables with these seeds, side by side; ``run``: the training seed's index."""
     tables = tables_for(task, len(seeds), threads)
@@ -123,7 +127,9 @@ def play_episodes(
     return PlayedEpisodes(rows, strokes, decide.decisions, decide.seconds, decide.simulated)
 
 
-def rows_of(task: Task, tables: Any, seeds: list[int], decide: Any, run: int = 0) -> list[list[int]]:
+def rows_of(
+    task: Task, tables: SnookerVectorEnv, seeds: list[int], decide: Decide, run: int = 0
+) -> list[list[int]]:
     """The rows of the episodes with these seeds, as ``decide`` plays them."""
     n = len(seeds)
     sums: dict[str, Floats] = {name: np.zeros(n) for name in SUMS}

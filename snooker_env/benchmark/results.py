@@ -92,7 +92,7 @@ def missing(result: dict[str, Any], task: Task) -> list[str]:
     return [reason for reason, so in reasons.items() if so]
 
 
-def completed(record: dict[str, Any], task: Task) -> dict[str, Any]:
+def complete(record: dict[str, Any], task: Task) -> dict[str, Any]:
     """The record with all that follows from its other fields, computed anew; ``check`` compares."""
     agent, rows, shots = record["agent"], record["rows"], record["timing"]["simulated_shots"]
     declared = agent["simulated_shots"] if agent["declared"] else None
@@ -138,9 +138,9 @@ def result_of(
         "rows": played.rows,
         "figures": None,
         "incomplete": why and line(why),
-        "strokes": packed(played.strokes),
+        "strokes": pack_strokes(played.strokes),
     }
-    return completed(record, task)
+    return complete(record, task)
 
 
 def write_result(path: str | Path, result: dict[str, Any]) -> None:
@@ -190,7 +190,7 @@ def read_result(path: str | Path) -> Any:
     return read_json(path)
 
 
-def packed(strokes: Kept) -> dict[str, str]:
+def pack_strokes(strokes: Kept) -> dict[str, str]:
     """The field ``strokes`` of a file: little-endian float32, by zlib, in base64, with a digest."""
     rows = [np.ascontiguousarray(one, "<f4") for one in strokes if len(one)]
     raw = np.concatenate(rows).view(np.uint8).T.tobytes() if rows else b""
@@ -198,7 +198,7 @@ def packed(strokes: Kept) -> dict[str, str]:
     return {"sha256": hashlib.sha256(raw).hexdigest(), "data": data}
 
 
-def unpacked(field: dict[str, str], lengths: list[int], size: int) -> Kept:
+def unpack_strokes(field: dict[str, str], lengths: list[int], size: int) -> Kept:
     """Actions (n, ``size``) of each episode; ValueError if they are damaged or no actions."""
     n, width, much = sum(lengths), 4 * size, f"{len(field['data']):,} characters"
     try:
@@ -223,4 +223,4 @@ def strokes_of(result: dict[str, Any]) -> Kept:
     """The strokes of each row of a result whose rows have their form; ValueError if they are damaged."""
     task = TASKS[result["task"]]
     actions = task.judged(**(FRAMES if task.frame else VISITS)).rules.actions
-    return unpacked(result["strokes"], [row[STROKES] for row in result["rows"]], actions.size)
+    return unpack_strokes(result["strokes"], [row[STROKES] for row in result["rows"]], actions.size)

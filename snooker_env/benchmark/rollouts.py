@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Bools, Floats, Ints
+from .._types import Bools, Floats, Ints, Singles
 from ..envs.vector import SnookerVectorEnv
 from ..game.balls import BallOn
 from ..game.layouts import POT_WINDOWS
 from ..planning import Positions, pots
-from ..players import VISITS
+from ..players import VISITS, Player
 from .playing import Decider, rounds
 from .tasks import HELD_OUT_SEED
 
@@ -96,17 +96,15 @@ class Strokes:
         following[order[:-1][same]] = order[1:][same]
         return following
 
-    def a_visit(self, values: Any) -> Floats:
+    def a_visit(self, values: Floats | Bools) -> Floats:
         """Sums over each visit, float64 (visits,), of values of each stroke, float (n,)."""
         return np.asarray(np.bincount(self.visit, values, self.visits), np.float64)
 
 
 def play_visits(
-    player: Any,
+    player: Player | str,
     visits: int,
     *,
-    layout: str = "held_out",
-    noise: Any = "professional",
     first_seed: int | Sequence[int] = HELD_OUT_SEED,
     seed: int = 0,
     rekey: int | None = None,
@@ -120,8 +118,6 @@ def play_visits(
     ----------
     player, visits : Player or str, int
         A player, or the name of one, and the number of its visits.
-    layout, noise : str, and str, Noise or dict
-        As in ``Options``.
     first_seed : int or sequence of int
         Seed of the first table, the others have the seeds after it; or the seed of each table.
     seed, rekey : int, int or None
@@ -132,7 +128,7 @@ def play_visits(
     each : callable, optional
         Called after each round of strokes with the number of visits that still go on.
     **options
-        Other options of the environment.
+        Options of the environment; left out: ``players.VISITS`` on the layout "held_out", with "professional" noise.
 
     Returns
     -------
@@ -145,10 +141,11 @@ def play_visits(
     [0, 1, 2]
     """
     seeds = list(range(first_seed, first_seed + visits)) if isinstance(first_seed, int) else list(first_seed)
-    tables = SnookerVectorEnv(visits, layout=layout, noise=noise, threads=threads, **{**VISITS, **options})
+    usual = {**VISITS, "layout": "held_out", "noise": "professional"}
+    tables = SnookerVectorEnv(visits, threads=threads, **{**usual, **options})
     decide, log, ball_on = Decider(player, tables, seeds, seed), [], np.empty(0, np.int64)
 
-    def noted(asked: Bools, number: int) -> Any:
+    def noted(asked: Bools, number: int) -> Singles:
         nonlocal ball_on
         ball_on = Positions.of(tables).ball_on[asked]
         return decide(asked, number)

@@ -63,12 +63,11 @@ def judge(
     (2, False)
     """
     seeds = task.seeds(task.episodes if episodes is None else episodes)
-    many, played, alone, why = len(seeds), PlayedEpisodes([]), PlayedEpisodes([]), None
+    many, alone, why = len(seeds), PlayedEpisodes([]), None
     total = many * len(agent.sources)
-    if resume and out is not None and Path(out).exists():
-        kept, played = _kept(Path(out), task, agent, many)
-        if kept["incomplete"] is None:
-            return kept
+    kept, played = _kept(out if resume else None, task, agent, many)
+    if kept is not None and kept["incomplete"] is None:
+        return kept
     about, saved = {"command": command, "load": machine()}, time.monotonic()
 
     def kept_as(why: str | None) -> dict[str, Any]:
@@ -78,20 +77,17 @@ def judge(
             write_result(out, result)
         return result
 
+    def after_batch() -> None:
+        nonlocal saved
+        tick(len(played.rows), total)
+        if time.monotonic() - saved > SAVED:
+            kept_as("it was still running")
+            saved = time.monotonic()
+
     tick(len(played.rows), total)
     try:
         for run in range(len(agent.sources)):
-            with seated(agent, task, run) as player:
-                while len(played.rows) < (run + 1) * many:
-                    first = len(played.rows) - run * many
-                    played.add(play_episodes(task, player, seeds[first : first + agent.batch], run, threads))
-                    tick(len(played.rows), total)
-                    if time.monotonic() - saved > SAVED:
-                        kept_as("it was still running")
-                        saved = time.monotonic()
-                for seed in seeds if run == 0 else ():
-                    if alone.decisions < ONE_TABLE:
-                        alone.add(play_episodes(task, player, [seed], run, threads))
+            _play_run(task, agent, run, seeds, played, alone, threads, after_batch)
     except KeyboardInterrupt:
         why = f"interrupted after {len(played.rows)} of {total} episodes"
     except AgentError as error:
@@ -104,8 +100,24 @@ def judge(
     return kept_as(why)
 
 
-def _kept(path: Path, task: Task, agent: Agent, episodes: int) -> tuple[dict[str, Any], PlayedEpisodes]:
-    """A file of the same run, and what was played for it."""
+def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
+    """Play the episodes of one training seed, batch after batch; the first one's player decides on one table, too."""
+    with seated(agent, task, run) as player:
+        while len(played.rows) < (run + 1) * len(seeds):
+            first = len(played.rows) - run * len(seeds)
+            played.add(play_episodes(task, player, seeds[first : first + agent.batch], run, threads))
+            after_batch()
+        for seed in seeds if run == 0 else ():
+            if alone.decisions < ONE_TABLE:
+                alone.add(play_episodes(task, player, [seed], run, threads))
+
+
+def _kept(
+    path: str | Path | None, task: Task, agent: Agent, episodes: int
+) -> tuple[dict[str, Any] | None, PlayedEpisodes]:
+    """A file of the same run, and what was played for it; None and nothing if there is no file."""
+    if path is None or not Path(path).exists():
+        return None, PlayedEpisodes([])
     result = read_result(path)
     if wrong := faults(result, asking=False):  # what a known player says again is for ``check``
         raise refuse("out", str(path), f"must be a sound result to go on with ({wrong[0]})")

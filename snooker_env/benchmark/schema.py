@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 from datetime import datetime, timedelta, timezone
-from typing import Any
+from typing import Any, TypeAlias
 
 from .provenance import LIBRARIES
 
@@ -14,6 +14,9 @@ BEGUN = "2026-11-21T00:00:00Z"  # no result is older than the project
 DATE = "%Y-%m-%dT%H:%M:%SZ"
 NUMBER = (int, float)
 _ALIKE = "machines with the same one play strokes alike, bit for bit"
+
+Fields: TypeAlias = Mapping[str, tuple[Any, bool, str]]
+Ranges: TypeAlias = Mapping[str, tuple[float, float]]
 
 FIELDS: dict[str, tuple[Any, bool, str]] = {
     "schema.name": (str, False, f'"{NAME}"'),
@@ -78,15 +81,15 @@ PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
 
 
 def faults_of_fields(
-    record: Any, fields: Any = FIELDS, ranges: Any = (), version: int = VERSION
+    record: object, fields: Fields = FIELDS, ranges: Ranges | None = None, version: int = VERSION
 ) -> list[str]:
     """A line for each fault of a record; ``fields``, ``ranges``: as ``FIELDS``, and beside ``RANGES``."""
-    ranges = RANGES | dict(ranges)
+    ranges = RANGES | dict(ranges or {})
     if not isinstance(record, dict):
         return ["the file must hold one JSON object"]
     wrong = []
     for name, (kind, empty, _) in fields.items():
-        value: Any = record
+        value: object = record
         for part in name.split("."):
             value = value.get(part, _MISSING) if isinstance(value, dict) else _MISSING
         if value is _MISSING:
@@ -95,11 +98,11 @@ def faults_of_fields(
             not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool)
         ):
             wrong.append(fault(name, value, _WORDS.get(kind, "a number") + " or null" * empty))
-        elif value is not None and (allowed := _allowed(name, value, ranges)):
+        elif value is not None and (allowed := _requirement(name, value, ranges)):
             wrong.append(fault(name, value, allowed))
-    for name, value in record.items():
-        inner = isinstance(value, dict) and name not in fields
-        names = [f"{name}.{key}" for key in value] if inner else [name]
+    for name, inner in record.items():
+        several = isinstance(inner, dict) and name not in fields
+        names = [f"{name}.{key}" for key in inner] if several else [name]
         wrong += [f"{one}: is no field of version {version}" for one in names if one not in fields]
     return wrong
 
@@ -108,7 +111,7 @@ _MISSING = object()
 _WORDS = {str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "an object"}
 
 
-def _allowed(name: str, value: Any, ranges: Mapping[str, tuple[float, float]]) -> str | None:
+def _requirement(name, value, ranges):
     """What is allowed in place of a value that has the right type; None if nothing is wrong with it."""
     if name in ranges and not (ranges[name][0] <= value <= ranges[name][1] and str(value) != "-0.0"):
         return f"between {ranges[name][0]:g} and {ranges[name][1]:g}"
@@ -131,7 +134,7 @@ def line(text: str) -> str:
     return re.sub(f"[{_CONTROL}]+", " ", text)[:2000]
 
 
-def shortened(value: Any) -> str:
+def shorten(value: object) -> str:
     """A value in at most 60 characters of one line, for a message."""
     try:
         text = repr(value)
@@ -140,6 +143,6 @@ def shortened(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def fault(name: str, value: Any, must: str) -> str:
+def fault(name: str, value: object, must: str) -> str:
     """The line for a value that must be something else."""
-    return f"{name} = {shortened(value)}: must be {must}"
+    return f"{name} = {shorten(value)}: must be {must}"

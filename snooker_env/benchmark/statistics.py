@@ -8,17 +8,18 @@ where luck within a visit matters most (5 runs: up to 1.5 times), and the 95 % i
 seeds differ (``test_statistics`` measures both). How rare the never seen is, a bootstrap cannot say: ``unseen``.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._types import Floats
 
 RESAMPLES = 2000  # number of bootstrap samples
 
 
-def iqm(values: Any) -> float:
+def iqm(values: ArrayLike) -> float:
     """The inter-quartile mean: the mean of the middle half.
 
     Parameters
@@ -49,7 +50,7 @@ def _middle_mean(values, weights):
 
 
 @lru_cache(maxsize=16)
-def _drawn(size, draws, n, seed):
+def _draw(size, draws, n, seed):
     """How often each of ``size`` things comes in ``draws`` with replacement, n times: (n, size)."""
     picks = np.random.default_rng(seed).integers(size, size=(n, draws)) + size * np.arange(n)[:, None]
     return np.bincount(picks.ravel(), minlength=n * size).reshape(n, size).astype(np.float64)
@@ -59,19 +60,19 @@ class Resamples:
     """n bootstrap samples of matrices (runs, visits): as many visits are the same ones; seeds draw runs."""
 
     def __init__(self, runs: int, visits: int, n: int = RESAMPLES, seed: int = 0):
-        self._runs = _drawn(runs, max(1, runs - 1), n, (1, seed))
-        self._visits = _drawn(visits, visits, n, (0, 0))
+        self._runs = _draw(runs, max(1, runs - 1), n, (1, seed))
+        self._visits = _draw(visits, visits, n, (0, 0))
 
-    def sums(self, scores: Any) -> Floats:
+    def sums(self, scores: Floats) -> Floats:
         """The sum of a matrix, float (runs, visits), in each sample: float64 (n,)."""
         return ((self._visits @ scores.T) * self._runs).sum(axis=1)
 
-    def ratios(self, above: Any, below: Any) -> Floats:
+    def ratios(self, above: Floats, below: Floats) -> Floats:
         """The ratio of the sums of two matrices in each sample: float64 (n,), NaN where it divides by 0."""
         over = self.sums(below)
         return np.divide(self.sums(above), over, out=np.full(len(over), np.nan), where=over != 0)
 
-    def iqms(self, scores: Any) -> Floats:
+    def iqms(self, scores: Floats) -> Floats:
         """The inter-quartile mean of a matrix, float (runs, visits), in each sample: float64 (n,)."""
         values, which = np.unique(scores, return_inverse=True)
         which, eye = which.reshape(scores.shape), np.eye(len(values))
@@ -79,7 +80,7 @@ class Resamples:
         return _middle_mean(values, sum(each))
 
 
-def interval(samples: Any, level: float = 0.95) -> tuple[float, float]:
+def interval(samples: Floats | Sequence[float], level: float = 0.95) -> tuple[float, float]:
     """The percentile interval of bootstrap samples.
 
     Parameters
@@ -109,7 +110,7 @@ def unseen(n: float, level: float = 0.95) -> float:
     return 1.0 - (1.0 - level) ** (1.0 / n)
 
 
-def figure(value: float, samples: Any) -> dict[str, float | None]:
+def figure(value: float, samples: Floats | Sequence[float]) -> dict[str, float | None]:
     """A figure with its 95 % bootstrap interval: "value", "low" and "high"; None where a number is not finite."""
     numbers = zip(("value", "low", "high"), (value, *interval(samples)), strict=True)
     return {name: float(x) if np.isfinite(x) else None for name, x in numbers}

@@ -137,7 +137,7 @@ TASKS: dict[str, Task] = {task.id: task for task in _ALL}
 """The tasks of the benchmark by id."""
 
 
-def task_of(name: Any) -> Task:
+def task_of(name: object) -> Task:
     """The task with an id."""
     return TASKS[choice("task", name, tuple(TASKS))]
 

@@ -13,7 +13,7 @@ from .._check import integer, refuse
 from .._files import read_json, with_checksum, write_atomic
 from ..planning import Positions
 from ..play.program import AnswerError, ProgramPlayer
-from ..players import decided, decision_seeds
+from ..players import Player, Strokes, decided, decision_seeds
 from ..players.resolver import PROGRAM
 from .agents import Agent
 from .playing import tables_for
@@ -37,7 +37,7 @@ class TextPlayer(ProgramPlayer):
         self.counts: dict[str, int] = {}
         self._error: str | None = None
 
-    def _stroke(self, at: Positions, k: int, seed: int) -> Any:
+    def _stroke(self, at: Positions, k: int, seed: int) -> Strokes:
         self._error = None
         for left in reversed(range(TRIES)):
             try:
@@ -56,10 +56,10 @@ class TextPlayer(ProgramPlayer):
         return answer
 
 
-def play_text(agent: Agent, visits: int, done: list[dict[str, int]], each: Callable[[], Any]) -> None:
+def play_text(agent: Agent, visits: int, done: list[dict[str, int]], each: Callable[[], object]) -> None:
     """Play the visits after those ``done``, to which their counts are added; ``each`` is called after every one."""
     command = agent.texts[0].removeprefix(PROGRAM)
-    player: Any = TextPlayer(command, timeout=agent.timeout) if agent.program else agent.player(TASK)
+    player = TextPlayer(command, timeout=agent.timeout) if agent.program else agent.player(TASK)
     try:
         for table in TASK.seeds(visits)[len(done) :]:
             done.append(_visit(player, table))
@@ -69,7 +69,7 @@ def play_text(agent: Agent, visits: int, done: list[dict[str, int]], each: Calla
             player.close()
 
 
-def _visit(player: Any, table: int) -> dict[str, int]:
+def _visit(player: Player, table: int) -> dict[str, int]:
     """Play one visit: the table and its counts."""
     counts: dict[str, int] = dict.fromkeys(COUNTS, 0)
     if isinstance(player, TextPlayer):
@@ -106,7 +106,12 @@ def figures_of(rows: list[dict[str, int]]) -> dict[str, Any]:
 
 
 def judge_text(
-    agent: Agent, *, visits: int = VISITS, out: str | Path, resume: bool = False, tick: Any = None
+    agent: Agent,
+    *,
+    visits: int = VISITS,
+    out: str | Path,
+    resume: bool = False,
+    tick: Callable[[int, int], None] | None = None,
 ) -> dict[str, Any]:
     """Play the track and keep the result in ``out`` after every visit, with which ``resume`` goes on; returns it."""
     integer("visits", visits, 2, MOST)

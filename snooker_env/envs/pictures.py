@@ -129,12 +129,12 @@ class Pictures:
 
     def _films(self, history: list[Played], recent: int) -> Iterator[Any]:
         """The last strokes: each as a film, and the table after it."""
-        from ..replays.film import filmed
+        from ..replays.film import film_stroke
         from ..replays.words import bars
 
         shown = bars(history, self.players)
         for k in range(len(history) - recent, len(history)):
-            yield filmed(self.table, history[k], *shown[k])
+            yield film_stroke(self.table, history[k], *shown[k])
 
     def _motion(self, history: list[Played], recent: int) -> Iterator[Bytes]:
         for film, after in self._films(history, recent):

@@ -2,8 +2,6 @@
 The centre must be on or within the lines of the D; anywhere on the table, within the rectangle that leaves a
 gap to the cushions, off pockets."""
 
-from typing import Any
-
 import numpy as np
 
 from .._check import number, refuse
@@ -50,7 +48,7 @@ def within_d(x: float, y: float) -> bool:
     return y <= BAULK_Y + ROUNDING and np.hypot(x, y - BAULK_Y) <= D_RADIUS + ROUNDING
 
 
-in_d: Any = kernel(within_d)
+in_d = kernel(within_d)
 
 
 @kernel

@@ -59,15 +59,15 @@ def window(cos_angle, middle):
 
 
 @kernel
-def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
+def clear_segment(positions, on_table, start, end, skip1, skip2, d):
     """Whether all balls except two are at least a distance away from a segment. An inner kernel.
 
     Parameters
     ----------
     positions, on_table : numpy.ndarray
         float64 (22, 2), centres of the balls [m]; bool (22,), which balls are on the table.
-    ax, ay, bx, by : float
-        The ends of the segment [m].
+    start, end : tuple of float
+        The ends (x, y) of the segment [m].
     skip1, skip2 : int
         Ids of the balls that do not count.
     d : float
@@ -78,6 +78,7 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
     bool
         False if a ball's centre is nearer than d to the segment.
     """
+    (ax, ay), (bx, by) = start, end
     ux, uy = bx - ax, by - ay
     length2 = ux * ux + uy * uy
     sure = 1.001 * d * d * length2
@@ -129,10 +130,10 @@ def pot_at(positions, on_table, ball, k, d, least):
     tolerance = width * of_width
     if width <= 0.0 or tolerance <= least:
         return 0.0, 0.0, 0.0, 0.0
-    tx, ty = POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y]
-    if not clear_segment(positions, on_table, bx, by, tx, ty, ball, 0, d):
+    pocket = POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y]
+    if not clear_segment(positions, on_table, (bx, by), pocket, ball, 0, d):
         return 0.0, 0.0, 0.0, 0.0
-    if not clear_segment(positions, on_table, cx, cy, gx, gy, ball, 0, d * (1.0 - 1e-9)):
+    if not clear_segment(positions, on_table, (cx, cy), (gx, gy), ball, 0, d * (1.0 - 1e-9)):
         return 0.0, 0.0, 0.0, 0.0
     return tolerance, gx, gy, cos_cut
 

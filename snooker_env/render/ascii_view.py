@@ -15,7 +15,7 @@ from .scene import Scene
 WIDTH = 100  # default number of characters a line
 
 _LEGEND = "W=cue  r=red (digit: several)  Y=yellow G=green N=brown B=blue P=pink K=black"
-_LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", ".", "-", "o", "O"
+_LINE, _ARC, _SPOT, _PATH, _POCKET = "│", "·", "+", ".", "O"
 
 
 class _Grid:
@@ -61,12 +61,8 @@ def ansi(scene: Scene, width: int = WIDTH) -> str:
             grid.mark(spot, _SPOT)
     for points in scene.paths.values():
         grid.line(points, _PATH)
-    if scene.aim is not None:
-        grid.line(scene.aim, _AIM)
-    if scene.ghost is not None:
-        grid.mark(scene.ghost, _GHOST)
     hidden = _balls(grid, scene)
-    lines = _framed(grid, scene.table)
+    lines = _frame(grid, scene.table)
     if scene.text:
         lines.append(scene.text)
     lines += wrap(_LEGEND, width)
@@ -94,7 +90,7 @@ def _balls(grid, scene):
     return hidden
 
 
-def _framed(grid, table):
+def _frame(grid, table):
     """The grid's lines inside the rails, with the pockets in them."""
     side, wall = ("═", "║") if len(table.noses) else (" ", " ")
     rails = [[side] * grid.columns, [side] * grid.columns]

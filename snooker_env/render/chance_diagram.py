@@ -58,10 +58,10 @@ def win_chance(
         raise refuse(f"chances[{k}]", float(values[k]), "must be in [0, 1]")
     if isinstance(players, str) or len(players) != 2:
         raise refuse_what("players", repr(players), "must be two names")
-    plt: Any = pyplot()
-    drawn: Any = ax or plt.figure(figsize=(WIDTH, HEIGHT), layout="constrained").add_subplot()
+    plt = pyplot()
+    drawn = ax or plt.figure(figsize=(WIDTH, HEIGHT), layout="constrained").add_subplot()
     edges = np.arange(len(values) + 1) - 0.5
-    parts: Any = (np.zeros(len(values)), values, np.ones(len(values)))
+    parts = (np.zeros(len(values)), values, np.ones(len(values)))
     for k, (name, colour) in enumerate(zip(players, ("first", "other"), strict=True)):
         style: dict[str, Any] = {"fill": True, "color": rgb(colour), "label": name, "gid": colour}
         drawn.stairs(parts[k + 1], edges, baseline=parts[k], **style)

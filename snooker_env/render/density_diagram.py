@@ -1,6 +1,7 @@
 """Where does a ball stop, and how likely? A heat map, with the areas of 50 and 90 % of the points."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,13 +11,13 @@ from .._types import Floats, Vectors
 from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
 from .outline import extent
-from .shot_diagram import View, places_of, region_of
+from .shot_diagram import Placed, View, places_of, region_of
 from .sketch import Sketch, halo, is_closed, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-HEAT = (255, 176, 46)  # colour of the map: red, green, blue
+HEAT = (255, 176, 46)  # colour of the map
 CELL = 0.01  # size of the cells of the map [m]
 _REACH = 3.0  # a Gaussian kernel is cut off at this many bandwidths
 
@@ -38,8 +39,7 @@ def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float) -> t
         half = int(min(np.ceil(_REACH * bandwidth / size[axis]), n[axis]))
         bell = np.exp(-0.5 * (np.arange(-half, half + 1) * size[axis] / bandwidth) ** 2)
         wide = np.pad(values, [(half, half) if k == axis else (0, 0) for k in range(2)], mode="symmetric")
-        smooth: Any = np.convolve
-        values = np.apply_along_axis(smooth, axis, wide, bell / bell.sum(), mode="valid")
+        values = np.apply_along_axis(partial(np.convolve, v=bell / bell.sum(), mode="valid"), axis, wide)
     return values, size
 
 
@@ -54,10 +54,9 @@ def density(
     ax: "Axes | None" = None,
     *,
     table: TableLike = "match",
-    position: Any = None,
+    position: Placed | Vectors | None = None,
     shares: Sequence[float] = (0.5, 0.9),
     bandwidth: float | None = None,
-    colour: Sequence[int] = HEAT,
     view: View = "table",
     title: str = "",
 ) -> "Axes":
@@ -80,8 +79,6 @@ def density(
         Shares of the points, each in (0, 1), around which lines are drawn.
     bandwidth : float, optional
         Standard deviation of the Gaussian kernels [m], in [0.0001, 1]; None: Scott's rule.
-    colour : sequence of int
-        Red, green and blue of the map, 0 to 255.
     view, title
         As in ``plot``; "shot": as much of the table as the points need.
 
@@ -114,14 +111,14 @@ def density(
         r, here = places_of(position)
         for ball in np.flatnonzero(here).tolist():
             sketch.ball(ball, r[ball])
-    _draw_cloud(sketch, sound, wide, lines, colour)
+    _draw_cloud(sketch, sound, wide, lines)
     sketch.mark(sound.mean(axis=0), "+", "text", 9.0, 8.0, mew=2.0, mec=rgb("text"), gid="mean")
     if not on_table.all():
         sketch.label(sound.mean(axis=0), f"stops on the table in {100 * on_table.mean():.0f} %")
     return sketch.ax
 
 
-def _draw_cloud(sketch, points, bandwidth, shares, colour):
+def _draw_cloud(sketch, points, bandwidth, shares):
     """The map, more opaque where it is denser, and a line around each share."""
     from matplotlib.image import AxesImage
 
@@ -132,7 +129,7 @@ def _draw_cloud(sketch, points, bandwidth, shares, colour):
         low, high = np.maximum(low, bounds[:, 0] + sketch.R), np.minimum(high, bounds[:, 1] - sketch.R)
     values, size = density_of(points.clip(low, high), low, high, bandwidth)
     strength = values / values.max()
-    picture, ink = np.empty((*values.shape, 4)), np.array(rgb(colour)[:3])
+    picture, ink = np.empty((*values.shape, 4)), np.array(rgb(HEAT)[:3])
     picture[..., :3] = ink + (1 - ink) * 0.55 * strength[..., None] ** 3
     picture[..., 3] = 0.95 * (1 - np.exp(-5 * strength))
     style: dict[str, Any] = {"origin": "upper", "interpolation": "bilinear", "zorder": 3.0}

@@ -133,7 +133,10 @@ def _onward(jaw, out, level, ends):
 def _throat(fall, noses, mouths):
     """The hole in the wood, from the mouth's middle to the fall's centre, as wide as its jaws' ends."""
     jaw_ends = [end for nose in noses for end in (nose[0], nose[-1])]
-    far = lambda point: np.hypot(*(point - fall[:2]))  # noqa: E731
+
+    def far(point):
+        return np.hypot(*(point - fall[:2]))
+
     (a, b), (c, d) = (sorted(points, key=far)[:2] for points in (mouths, jaw_ends))
     return [*(a + b) / 2, *fall[:2], np.hypot(*(c - d)) / 2]
 
@@ -164,15 +167,15 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     """
     table = Table.of(table)
     parts = outline(table)
-    marks = {"baulk": _rounded(BAULK_LINE), "d": _rounded(D_ARC), "spots": _rounded(SPOT_MARKS)}
+    marks = {"baulk": _round(BAULK_LINE), "d": _round(D_ARC), "spots": _round(SPOT_MARKS)}
     keys = ("name", "letter", "value", "rgb")
     balls = zip(NAMES, LETTERS, VALUES.tolist(), COLOURS.tolist(), strict=True)
     return {
-        "cushions": [_rounded(polygon) for polygon in parts.cushions],
-        "noses": [_rounded(nose) for nose in parts.noses],
-        "falls": _rounded(parts.falls),
-        "throats": _rounded(parts.throats),
-        "extent": _rounded(extent(table)),
+        "cushions": [_round(polygon) for polygon in parts.cushions],
+        "noses": [_round(nose) for nose in parts.noses],
+        "falls": _round(parts.falls),
+        "throats": _round(parts.throats),
+        "extent": _round(extent(table)),
         "rail": RAIL,
         "cushion": CUSHION,
         "lines": marks if is_marked(table) else None,
@@ -182,5 +185,5 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     }
 
 
-def _rounded(points):
+def _round(points):
     return (np.round(points, 6) + 0.0).tolist()  # + 0.0: no "-0.0"

@@ -2,9 +2,11 @@
 lamps and faint shadows; paths in pieces, so that one that grows changes only at its end."""
 
 import os
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,11 +17,14 @@ from .palette import COLOURS, LETTERS, PALETTE
 from .scene import Scene, matrix
 from .table_picture import LAMP_HEIGHT, View, lamps
 
+if TYPE_CHECKING:
+    from pygame import Surface
+
 FONTS = Path(__file__).parent / "fonts"
 BOLD, MEDIUM = "Inter-Bold.otf", "Inter-Medium.otf"
 
 
-def pygame_() -> Any:
+def pygame_() -> ModuleType:
     """The module ``pygame``, or an ImportError with the command that installs it."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
@@ -29,7 +34,7 @@ def pygame_() -> Any:
     return pygame
 
 
-def typeset(text: str, colour: Any, size: float, file: str = MEDIUM) -> Any:
+def typeset(text: str, colour: tuple[int, int, int], size: float, file: str = MEDIUM) -> "Surface":
     """A line of text as a surface, ``size`` pixels from a capital's top to the bottom of its descenders."""
     pygame = pygame_()
     if not pygame.font.get_init():
@@ -43,7 +48,7 @@ def _font(file, size):
     return pygame_().font.Font(str(FONTS / file), size)
 
 
-def surface_of(colour: Any, alpha: Any) -> Any:
+def surface_of(colour: Sequence[int] | Floats, alpha: Floats) -> "Surface":
     """A surface with transparency: its colours (3,) or (h, w, 3), from 0 to 255, and their opacities (h, w)."""
     image = np.empty((*alpha.shape, 4), np.uint8)
     image[..., :3], image[..., 3] = (np.clip(np.rint(part), 0, 255) for part in (colour, 255 * alpha))
@@ -60,7 +65,7 @@ def line_width(scale: float) -> float:
     return max(1.5, 0.0072 * scale)
 
 
-def draw_lines(surface: Any, lines: list[tuple[Floats, tuple[int, int, int]]], width: float) -> None:
+def draw_lines(surface: "Surface", lines: list[tuple[Floats, tuple[int, int, int]]], width: float) -> None:
     """Draw polylines (points (m, 2) [pixels], colour), later ones on top."""
     for points, colour in lines:
         pieces = list(_pieces(points))
@@ -121,7 +126,7 @@ _ALL_DARK = 0.62
 EYE = 2.0  # how far the eye is above the bed [m]: a ball that flies looks larger
 
 
-def draw_balls(surface: Any, scene: Scene, view: View) -> None:
+def draw_balls(surface: "Surface", scene: Scene, view: View) -> None:
     """Put a scene's balls, their shadows and faded ghosts on a surface."""
     radius = scene.ball_radius * view.scale
     over = lamps(scene.table)
@@ -135,11 +140,11 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
         ball, place, size = int(scene.ids[k]), where[k], radius * (1.0 + float(scene.heights[k]) / EYE)
         colour = tuple(COLOURS[ball].tolist())
         if ball in scene.turns:
-            images.append(_spotted(place, colour, size, scene.turns[ball]))
+            images.append(_with_spots(place, colour, size, scene.turns[ball]))
         else:
             images.append(_at(place, _body, colour, round(size, 2), 1.0))
     lettered = (scene.ids >= YELLOW) & scene.lettered
-    images += _mirrored(scene.positions[~lettered], over, where[~lettered], radius)
+    images += _reflections(scene.positions[~lettered], over, where[~lettered], radius)
     for ball, place in zip(scene.ids[lettered].tolist(), where[lettered], strict=True):
         letter = _letter(ball, round(radius, 1))
         x, y = place[0] - letter.get_width() / 2, place[1] - letter.get_height() / 2
@@ -160,7 +165,7 @@ def _grid(half, fx, fy):
     return np.meshgrid(steps - fx / 4, steps - fy / 4)
 
 
-def _shaded(colour, nz):
+def _shade(colour, nz):
     """Colours (..., 3) where the z of the unit normal is ``nz``: lit from above, and by the cloth below."""
     nz = nz[..., None]
     lit = np.asarray(colour, dtype=np.float64) * (0.50 + 0.56 * nz)
@@ -173,11 +178,11 @@ def _body(colour, radius, strength, fx, fy):
     """A ball without reflections."""
     x, y = _grid(int(np.ceil(radius)) + 1, fx, fy)
     d = np.hypot(x, y)
-    shaded = _shaded(colour, np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1)))
+    shaded = _shade(colour, np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1)))
     return surface_of(shaded, strength * np.clip(radius + 0.5 - d, 0, 1))
 
 
-def _spotted(place, colour, radius, turn):
+def _with_spots(place, colour, radius, turn):
     """A ball with six spots, after the rotation ``turn``."""
     column, row = float(place[0]), float(place[1])
     left, top = int(np.floor(column)), int(np.floor(row))
@@ -188,7 +193,7 @@ def _spotted(place, colour, radius, turn):
     seen = np.max(np.stack([y / radius, x / radius, nz], axis=-1) @ towards, axis=-1)
     spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
     ink = np.array(COLOURS[1] if min(colour) > 120 else (250, 250, 245), dtype=np.float64)
-    shaded = _shaded(colour, nz) * (1 - spot) + _shaded(ink, nz) * spot
+    shaded = _shade(colour, nz) * (1 - spot) + _shade(ink, nz) * spot
     made = surface_of(shaded, np.clip(radius + 0.5 - d, 0, 1))
     return made, (left - made.get_width() // 2, top - made.get_height() // 2)
 
@@ -199,7 +204,7 @@ def _rays(positions, over):
     return across, np.sqrt((across**2).sum(axis=-1) + LAMP_HEIGHT**2)
 
 
-def _mirrored(positions, over, where, radius):
+def _reflections(positions, over, where, radius):
     """Reflections: each lamp's where the normal is half-way between the lamp and the eye, straight above."""
     ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
     across, far = _rays(positions, ends.reshape(-1, 2))
@@ -254,7 +259,7 @@ def _letter(ball, radius):
     return typeset(LETTERS[ball], (0, 0, 0) if light else (255, 255, 255), 1.25 * radius, BOLD)
 
 
-def dot(ball: int, radius: float) -> Any:
+def dot(ball: int, radius: float) -> "Surface":
     """A small ball for a score bar, its id and radius [pixels], as a surface with transparency."""
     image = _body(tuple(COLOURS[ball].tolist()), round(radius, 2), 1.0, 2, 2).copy()
     if COLOURS[ball].max() < 90:  # dark on a dark bar

@@ -2,9 +2,7 @@
 it, and the score bar as on television."""
 
 from functools import lru_cache
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from .._types import Bytes
 from ..game.balls import COLOUR_NAMES, YELLOW
@@ -15,17 +13,18 @@ from .table_picture import SIZE as SIZE
 from .table_picture import Size, table_picture
 from .table_picture import View as View
 
+if TYPE_CHECKING:
+    from pygame import Surface
+
 _ROWS = 72  # lengths in this file are those of a bar 72 pixels high, as in a picture of 1080
 _SMALLEST = 36  # A lower bar is one line of text [pixels]
 _EDGE = 28
 _GAP = 30
-_TURN = np.linspace(0.0, 2 * np.pi, 49)
-_CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)], axis=1)
 _STRIP = 7  # height of the shares of the chance to win, at the upper edge
 
 
 @lru_cache(maxsize=64)
-def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> Any:
+def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> "Surface":
     """The bar (if None, the text) as a surface of this size [pixels], which is kept: do not draw on it."""
     pygame = pygame_()
     page = _Page(pygame.Surface((width, height), 0, 24), height / _ROWS)
@@ -37,7 +36,7 @@ def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> Any:
         page.box(first, 0, width / page.unit - first, _STRIP, "other")
     if bar is None or height < _SMALLEST:
         words, size = in_words(bar) if bar is not None else text, 33 if height >= _SMALLEST else 44
-        page.text(words, size, _EDGE, 36, room=width / page.unit - 2 * _EDGE)
+        page.text(words, size, (_EDGE, 36), room=width / page.unit - 2 * _EDGE)
         return page.surface
     right = _right(page, bar, width / page.unit)
     middle = _players(page, bar, width / page.unit) if bar.players else right
@@ -70,11 +69,11 @@ class _Page:
         left, right = round(x * u), round((x + width) * u)
         self.surface.fill(PALETTE[ink], (left, round(y * u), right - left, max(1, round(height * u))))
 
-    def text(self, text, size, x, y, *, ink="text", file=MEDIUM, anchor="midleft", room=None):
-        """Write a line with its middle at height y; one that is too long ends in "…". Returns its width."""
+    def text(self, text, size, place, *, ink="text", file=MEDIUM, anchor="midleft", room=None):
+        """Write a line with its middle at the height of a place (x, y); one that is too long ends in "…". Returns its width."""
         line = self._fitting(text, size, ink, file, room)
         u = self.unit
-        self.surface.blit(line, line.get_rect(**{anchor: (round(x * u), round(y * u))}))
+        self.surface.blit(line, line.get_rect(**{anchor: tuple(round(part * u) for part in place)}))
         return line.get_width() / u
 
     def width(self, text, size, file=MEDIUM, room=None):
@@ -100,8 +99,8 @@ def _break(page, bar, end):
     """On the left: the break, the balls potted in it, and the referee's words."""
     x = _EDGE
     if bar.break_points is not None:
-        page.text("BREAK", 17, x, 17, ink="text_quiet", file=BOLD)
-        x += max(page.text(str(bar.break_points), 46, x, 46, file=BOLD), 62) + _GAP
+        page.text("BREAK", 17, (x, 17), ink="text_quiet", file=BOLD)
+        x += max(page.text(str(bar.break_points), 46, (x, 46), file=BOLD), 62) + _GAP
     room, balls = end - x, len(bar.potted)
     lines = bool(balls) + bool(bar.words)
     if balls:
@@ -110,7 +109,7 @@ def _break(page, bar, end):
             page.ball(ball, x + 9 + k * step, 36 if lines == 1 else 24, 9)
     if bar.words:
         y, ink = (36, "text") if lines == 1 else (52, "text_quiet")
-        page.text(bar.words, 24, x, y, ink=ink, room=room)
+        page.text(bar.words, 24, (x, y), ink=ink, room=room)
 
 
 def _players(page, bar, width):
@@ -120,7 +119,7 @@ def _players(page, bar, width):
         name, score = bar.players[0], str(bar.scores[0])
         taken = page.width(name, 36, room=300)
         start = middle - (taken + 30 + 2 * half) / 2
-        page.text(name, 36, start, 37, room=300)
+        page.text(name, 36, (start, 37), room=300)
         _score(page, score, start + taken + 30 + half, half, True)
         return start
     begin = []
@@ -129,7 +128,7 @@ def _players(page, bar, width):
         _score(page, str(score), middle + side * (half + 2), half, on)
         x = middle + side * (2 * half + 24)
         ink, file = "text" if on or bar.striker is None else "text_quiet", BOLD if on else MEDIUM
-        taken = page.text(name, 36, x, 37, ink=ink, file=file, anchor=("midright", "midleft")[k], room=300)
+        taken = page.text(name, 36, (x, 37), ink=ink, file=file, anchor=("midright", "midleft")[k], room=300)
         if on:
             _turn(page, x + side * (taken + 26), -side)
         begin.append(x + side * (taken + 40))
@@ -138,7 +137,7 @@ def _players(page, bar, width):
 
 def _score(page, score, middle, half, on):
     page.box(middle - half, 12, 2 * half, 50, "bar_accent" if on else "bar_edge")
-    page.text(score, 44, middle, 37, file=BOLD, anchor="center")
+    page.text(score, 44, (middle, 37), file=BOLD, anchor="center")
 
 
 def _turn(page, x, side):
@@ -159,11 +158,11 @@ def _right(page, bar, width):
     if bar.reds_left is not None:
         x = _column(page, "REDS", str(bar.reds_left), x, (1,), widest="15")
     if bar.ball_on:
-        x = _column(page, "BALL ON", bar.ball_on, x, _shown(bar.ball_on), size=30)
+        x = _column(page, "BALL ON", bar.ball_on, x, _balls_on(bar.ball_on), size=30)
     return x
 
 
-def _shown(ball_on):
+def _balls_on(ball_on):
     """The balls drawn for the ball on."""
     words = ball_on.lower().split()
     if "colour" in words:
@@ -180,26 +179,20 @@ def _column(page, label, value, end, balls=(), size=36, widest=""):
     wide = max(page.width(text, size, BOLD, room=220) for text in (value, widest))
     across = max(page.width(label, 17, BOLD), taken + wide)
     start = end - across
-    page.text(label, 17, start, 17, ink="text_quiet", file=BOLD)
+    page.text(label, 17, (start, 17), ink="text_quiet", file=BOLD)
     for k, ball in enumerate(balls):
         page.ball(ball, start + 9 + k * step, 47, 9)
-    page.text(value, size, start + taken, 46, file=BOLD, room=220)
+    page.text(value, size, (start + taken, 46), file=BOLD, room=220)
     return start - _GAP
 
 
 def draw(scene: Scene, view: View) -> Bytes:
     """The picture of a scene in a view of its table: uint8 (height, width, 3), a new array."""
     pixels = table_picture(scene.table, view).copy()
-    surface: Any = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")  # draws into it
+    surface = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")  # draws into it
     surface.set_clip((0, 0, view.width, view.height - view.bar))
-    width, aim = line_width(view.scale), PALETTE["aim"]
     lines = [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()]
-    draw_lines(surface, lines, width)
-    if scene.aim is not None:
-        draw_lines(surface, [(view(scene.aim), aim)], 0.8 * width)
-    if scene.ghost is not None:
-        circle = scene.ghost + scene.ball_radius * _CIRCLE
-        draw_lines(surface, [(view(circle), aim)], 0.6 * width)
+    draw_lines(surface, lines, line_width(view.scale))
     draw_balls(surface, scene, view)
     surface.set_clip(None)
     if scene.bar is not None or scene.text:

@@ -1,8 +1,7 @@
 """What is there to draw? A table, its lines, balls and overlays, in metres, without a drawing library."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -87,13 +86,11 @@ class Scene:
     heights: Floats  # (k,) above the bed [m]
     ball_radius: float
     paths: dict[int, Floats]  # ball -> (m, 2) points [m]
-    aim: Floats | None  # (m, 2) points of the line of aim [m]
-    ghost: Floats | None  # (2,) where the cue ball should meet its object ball [m], drawn as an outline
     ghosts: dict[int, Floats]  # ball -> (m, 2) earlier places [m], drawn faded
     turns: dict[int, Floats]  # ball -> quaternion (w, x, y, z) since the start; such a ball has spots
     text: str  # one line of status, shown without a bar
     bar: ScoreBar | None
-    lettered: bool  # whether balls carry their letters, so that colours are not needed
+    lettered: bool = False  # whether balls carry their letters, so that colours are not needed
 
 
 def scene(
@@ -101,25 +98,23 @@ def scene(
     positions: Vectors,
     on_table: Flags | None = None,
     *,
-    ball_radius: float | None = None,
     paths: Mapping[int, Vectors] | None = None,
-    aim: Vectors | None = None,
-    ghost: Vector | None = None,
     ghosts: Mapping[int, Vectors] | None = None,
     turns: Mapping[int, Vector] | None = None,
     text: str = "",
     bar: ScoreBar | None = None,
-    lettered: bool = False,
 ) -> Scene:
     """One picture: n <= 22 balls, ids 0 to n-1, positions (n, 2) or with heights (n, 3), the rest as in ``Scene``, copied."""
     r, table = np.array(positions, np.float64), Table.of(table)
     heights = r[:, 2] if r.shape[1] == 3 else np.zeros(len(r))
     ids = np.arange(len(r)) if on_table is None else np.flatnonzero(np.array(on_table))
-    radius = ball_radius or table.ball_radius or BALL_RADIUS
-    own: Any = lambda points: None if points is None else np.array(points, np.float64)  # noqa: E731
-    each: Any = lambda balls: {int(ball): own(points) for ball, points in (balls or {}).items()}  # noqa: E731
-    drawn = each(paths), own(aim), own(ghost), each(ghosts), each(turns)
-    return Scene(table, ids, r[ids, :2], np.maximum(heights[ids], 0.0), radius, *drawn, text, bar, lettered)
+    radius = table.ball_radius or BALL_RADIUS
+    drawn = _copies(paths), _copies(ghosts), _copies(turns)
+    return Scene(table, ids, r[ids, :2], np.maximum(heights[ids], 0.0), radius, *drawn, text, bar)
+
+
+def _copies(balls: Mapping[int, Vector] | Mapping[int, Vectors] | None) -> dict[int, Floats]:
+    return {int(ball): np.array(points, np.float64) for ball, points in (balls or {}).items()}
 
 
 def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), step: float = 0.02) -> dict[int, Floats]:
@@ -169,11 +164,12 @@ class Film:
         trail: Iterable[int] = (CUE,),
         spots: Iterable[int] = (),
         faded: Iterable[int] = (),
-        **overlays: Any,
+        bar: ScoreBar | None = None,
+        text: str = "",
     ):
         self.duration: float = shot.duration
         self._table, self._shot = Table.of(table), shot
-        self._overlays: dict[str, Any] = {"ball_radius": shot.physics.R, **overlays}
+        self._bar, self._text = bar, text
         self._paths = _timed_paths(shot, trail)
         self._turning = {int(ball): Turning(shot, ball) for ball in spots}
         self._contacts = {int(ball): _timed_contacts(shot, ball) for ball in faded}
@@ -194,8 +190,8 @@ class Film:
                 paths[ball] = done
         turns = {ball: turning.at(t) for ball, turning in self._turning.items()}
         ghosts = {ball: places[times <= t] for ball, (places, times) in self._contacts.items()}
-        over = {"paths": paths, "turns": turns, "ghosts": ghosts} | self._overlays
-        return scene(self._table, r, self._gone_at > t, **over)
+        made = scene(self._table, r, self._gone_at > t, paths=paths, ghosts=ghosts, turns=turns)
+        return replace(made, ball_radius=self._shot.physics.R, bar=self._bar, text=self._text)
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
         """One picture every speed / fps seconds of the shot's own time, and one of its end."""

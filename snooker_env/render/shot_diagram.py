@@ -1,19 +1,19 @@
 """How are shots drawn as diagrams? Paths, impacts, speeds, the cut and the tip, on a ``Sketch`` for each."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
-from .._check import array, choice, integer, number, refuse, refuse_what, truth
-from .._types import Floats, Place
+from .._check import array, choice, number, refuse, refuse_what, truth
+from .._types import Bools, Floats, Ints, Place, Vectors
 from ..game.balls import N_BALLS, NAMES
 from ..physics.engine import EventKind
 from ..physics.table import Table
 from ..simulation import Shot
-from .palette import PALE
+from .palette import PALE, Colour
 from .shot_paths import Piece, Tip, arrow_places, contacts, cue_ball, paths, tip_of
-from .sketch import CAPTIONS, PATH_WIDTH, WIDTH, Region, Sketch, flipped, is_closed, pyplot, rgb
+from .sketch import CAPTIONS, PATH_WIDTH, WIDTH, Region, Sketch, flip, is_closed, pyplot, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,11 +21,21 @@ if TYPE_CHECKING:
 View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
 """The part to show: all, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""
 
+
+@runtime_checkable
+class Placed(Protocol):
+    """Balls on a table, such as ``snooker_env.Position``."""
+
+    def arrays(self) -> tuple[Floats, Bools, Ints]:
+        """Places (22, 2) [m], which of them are on the table, and the state of the game."""
+        ...
+
+
 SLIDES = (255, 168, 36)  # colour of the stripes of a path on which the ball slides
 DASHES = (0, (2.0, 1.6))  # lengths of these stripes, in widths of the path
 MOST_PATHS = 7  # if more balls move, only those of cue ball, first object ball and potted balls are wide
 
-_SIGNS: dict[EventKind, tuple[Any, Any, float, str]] = {
+_SIGNS: dict[EventKind, tuple[str, Colour, float, str]] = {
     EventKind.BALL_BALL: ("o", "text", 4.5, "ball"),
     EventKind.CUSHION: ("D", SLIDES, 4.5, "cushion"),
     EventKind.JAW: ("^", SLIDES, 5.5, "jaw"),
@@ -39,7 +49,6 @@ def plot(
     *,
     cue: Mapping[str, float] | None = None,
     view: View = "table",
-    balls: Iterable[int] | None = None,
     labels: bool = False,
     speeds: bool = True,
     caption: Literal["full", "short", "none"] = "full",
@@ -48,9 +57,9 @@ def plot(
     """Draw a shot from above, baulk left and black right.
 
     Balls are drawn where they were before the shot; faded ones show them when they meet another, and at rest.
-    Paths have the balls' colours, striped where the ball slides and plain where it rolls. Signs mark impacts:
-    a disc with a ball, a diamond with a cushion, a triangle with a jaw, a cross in a pocket. Under the table:
-    the tip, speeds and the cut.
+    If many moved, the paths of the less important ones are thin. Paths have the balls' colours, striped where
+    the ball slides and plain where it rolls. Signs mark impacts: a disc with a ball, a diamond with a cushion, a
+    triangle with a jaw, a cross in a pocket. Under the table: the tip, speeds and the cut.
 
     Parameters
     ----------
@@ -65,8 +74,6 @@ def plot(
     view : "table", "shot" or ((float, float), (float, float))
         The part of the table to show: all of it (if it has cushions on all sides), as much as the shot needs,
         or a range of x and one of y [m].
-    balls : iterable of int, optional
-        Balls whose paths are drawn; None: all that moved, and if many did, the less important ones thinly.
     labels : bool
         Whether balls carry their letters.
     speeds : bool
@@ -96,8 +103,6 @@ def plot(
     truth("speeds", speeds)
     choice("caption", caption, CAPTIONS)
     table, moved = shot.table or Table.of(None), paths(shot)
-    named = moved if balls is None else balls
-    chosen = {integer("balls", ball, 0, len(shot.positions) - 1) for ball in named}
     first = cue_ball(shot)
     tip = _tip(cue, shot, first)
     sketch = Sketch(table, shot.physics.R, region_of(view, area(shot), table), ax, strip=CAPTIONS[caption])
@@ -105,24 +110,15 @@ def plot(
     start, present = shot.at(0.0)[0][:, :2], shot.on_table | (shot.potted != -1)
     for ball in np.flatnonzero(present).tolist():
         sketch.ball(ball, start[ball], label=labels)
-    main = principals(shot, moved, first) if balls is None else chosen
-    for ball in sorted(chosen & set(moved), reverse=True):  # the cue ball last, on top
-        if ball in main:
-            _draw_path(sketch, moved[ball], ball)
-            _draw_impacts(sketch, shot, ball, start)
-        else:
-            thin = np.concatenate([piece.points for piece in moved[ball]])
-            sketch.ax.plot(*flipped(thin).T, color=rgb(PALE[ball], 0.75), lw=0.8, zorder=4.0, gid="thin path")
-        if shot.on_table[ball]:
-            sketch.ghost(ball, shot.positions[ball], 0.62 if ball in main else 0.3)
-    if speeds and first is not None and first in chosen:
+    _draw_paths(sketch, shot, moved, first)
+    if speeds and first is not None:
         _write_speeds(sketch, shot, first, start)
     if sketch.depth:
         _write_strip(sketch, shot, first, tip, cue is not None, short=caption == "short")
     return sketch.ax
 
 
-def region_of(view: Any, points: Floats, table: Table) -> Region:
+def region_of(view: View, points: Floats, table: Table) -> Region:
     """The part of the table that a view shows, for a shot with these points (m, 2) [m]."""
     if isinstance(view, str) and view in ("table", "shot"):
         whole = view == "table" and is_closed(table)
@@ -136,14 +132,13 @@ def region_of(view: Any, points: Floats, table: Table) -> Region:
     return Region(low_x, high_x, low_y, high_y)
 
 
-def places_of(position: Any, least: int = 0) -> tuple[Floats, Any]:
-    """Places (n, 2) [m] and flags (n,) of a ``Position`` or of an array of ``least`` to ``N_BALLS``."""
-    if hasattr(position, "arrays"):
+def places_of(position: Placed | Vectors) -> tuple[Floats, Bools]:
+    """Places (n, 2) [m] and flags (n,) of a ``Position`` or of an array."""
+    if isinstance(position, Placed):
         return position.arrays()[:2]
     r = array("position", position, (-1, 2))
-    if not least <= len(r) <= N_BALLS:
-        allowed = f"{least} to {N_BALLS}, the cue ball first" if least else f"at most {N_BALLS}"
-        raise refuse_what("position", f"{len(r)} places", f"must be {allowed}")
+    if len(r) > N_BALLS:
+        raise refuse_what("position", f"{len(r)} places", f"must be at most {N_BALLS}")
     return r, np.ones(len(r), bool)
 
 
@@ -155,12 +150,26 @@ def area(shot: Shot) -> Floats:
     return np.concatenate(points) if points else shot.positions[shot.on_table]
 
 
-def principals(shot: Shot, moved: Mapping[int, Any], first: int | None) -> set[int]:
+def principals(shot: Shot, moved: Mapping[int, Sequence[Piece]], first: int | None) -> set[int]:
     """The balls that matter: all that move, or if many do, cue ball, its first object ball, potted balls."""
     if len(moved) <= MOST_PATHS or first is None:
         return set(moved)
     met = [contact.other for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL]
     return {first, *met[:1], *np.flatnonzero(shot.potted >= 0).tolist()} & set(moved)
+
+
+def _draw_paths(sketch, shot, moved, first):
+    """The paths of all balls that moved, their impacts and where they stopped; thin if they matter less."""
+    main, start = principals(shot, moved, first), shot.at(0.0)[0][:, :2]
+    for ball in sorted(moved, reverse=True):  # the cue ball last, on top
+        if ball in main:
+            _draw_path(sketch, moved[ball], ball)
+            _draw_impacts(sketch, shot, ball, start)
+        else:
+            thin = np.concatenate([piece.points for piece in moved[ball]])
+            sketch.ax.plot(*flip(thin).T, color=rgb(PALE[ball], 0.75), lw=0.8, zorder=4.0, gid="thin path")
+        if shot.on_table[ball]:
+            sketch.ghost(ball, shot.positions[ball], 0.62 if ball in main else 0.3)
 
 
 def _draw_path(sketch: Sketch, path: Sequence[Piece], ball: int) -> None:
@@ -215,7 +224,7 @@ def _draw_cut(sketch, contact):
         if ray is not rays:
             points[0] = contact.centre
         ls = "-" if ray is rays else (0, (3, 2))
-        sketch.ax.plot(*flipped(points).T, color=rgb("aim"), lw=1.0, ls=ls, zorder=6.5, gid="cut")
+        sketch.ax.plot(*flip(points).T, color=rgb("aim"), lw=1.0, ls=ls, zorder=6.5, gid="cut")
 
 
 # the strip under the table
@@ -392,6 +401,6 @@ def compare(
         high = wide * (region.height / region.width + CAPTIONS.get(caption, 0.0))
         figure = pyplot().figure(figsize=(WIDTH, WIDTH * high), facecolor=rgb("floor"))
         axes = [figure.add_axes((k * (wide + _GAP), 0.0, wide, 1.0)) for k in range(n)]
-    over: Any = options | {"view": np.array(region).reshape(2, 2), "caption": caption}
+    over = options | {"view": np.array(region).reshape(2, 2), "caption": caption}
     each = zip(shots, axes, labels or [""] * len(shots), cues or [None] * len(shots), strict=True)
     return tuple(plot(shot, ax, cue=cue, title=title, **over) for shot, ax, title, cue in each)

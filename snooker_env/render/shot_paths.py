@@ -85,8 +85,11 @@ def paths(shot: Shot) -> dict[int, list[Piece]]:
     """The pieces of each ball that moved, by its id."""
     check_path(shot)
     every = {ball: pieces(shot, ball) for ball in range(len(shot.positions))}
-    moves = lambda parts: any(np.ptp(piece.points, axis=0).max() > STILL for piece in parts)  # noqa: E731
-    return {ball: parts for ball, parts in every.items() if moves(parts)}
+    return {ball: parts for ball, parts in every.items() if any(map(_moves, parts))}
+
+
+def _moves(piece):
+    return np.ptp(piece.points, axis=0).max() > STILL
 
 
 def cue_ball(shot: Shot) -> int | None:

@@ -1,15 +1,17 @@
 """How is a table drawn with matplotlib? By a ``Sketch``: a point (x, y) [m] is at ``ax.plot(y, x)``."""
 
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._install import missing
-from .._types import Floats, Vector
+from .._types import Floats, Place, Vector, Vectors
 from ..game.balls import N_BALLS
 from ..physics.table import Table
 from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, extent, is_marked, outline
-from .palette import COLOURS, LETTERS, PALE, PALETTE
+from .palette import COLOURS, LETTERS, PALE, PALETTE, Colour
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +25,7 @@ CAPTIONS = {"full": 0.118, "short": 0.2, "none": 0.0}
 _MARGIN = 0.02  # floor shown around the rails [m]
 
 
-def pyplot() -> Any:
+def pyplot() -> ModuleType:
     """``matplotlib.pyplot``, or an ImportError with the command that installs it."""
     try:
         from matplotlib import pyplot as plt
@@ -83,13 +85,13 @@ def is_closed(table: Table) -> bool:
     return bool(np.isfinite(table.bounds).all())
 
 
-def rgb(colour: Any, alpha: float = 1.0) -> tuple[float, float, float, float]:
+def rgb(colour: Colour, alpha: float = 1.0) -> tuple[float, float, float, float]:
     """A colour of the palette by name, or three numbers up to 255, in matplotlib's form."""
     red, green, blue = (PALETTE[colour] if isinstance(colour, str) else colour)[:3]
     return red / 255, green / 255, blue / 255, alpha
 
 
-def flipped(points: Any) -> Floats:
+def flip(points: ArrayLike | Vector | Vectors) -> Floats:
     """Points (..., 2) in the order for matplotlib: y to the right, x down."""
     return np.asarray(points, np.float64)[..., ::-1]
 
@@ -102,10 +104,8 @@ class Sketch:
         self.table: Table = table
         self.R: float = R
         depth = strip * region.width
-        axes: Any = ax
-        if axes is None:
-            size = (WIDTH, WIDTH * (region.height + depth) / region.width)
-            axes = plt.figure(figsize=size, facecolor=rgb("floor")).add_axes((0.0, 0.0, 1.0, 1.0))
+        size = (WIDTH, WIDTH * (region.height + depth) / region.width)
+        axes = ax or plt.figure(figsize=size, facecolor=rgb("floor")).add_axes((0.0, 0.0, 1.0, 1.0))
         self.ax: Axes = axes
         self.fresh: bool = not any(artist.get_gid() == TABLE for artist in axes.get_children())
         if self.fresh:
@@ -140,26 +140,26 @@ class Sketch:
             if clip is not None:
                 patch.set_clip_path(clip)
 
-        def box(extra, kind: Any = Rectangle, **more):
-            wide, high = high_y - low_y + 2 * extra, high_x - low_x + 2 * extra
-            return kind((low_y - extra, low_x - extra), wide, high, ec="none", **more)
+        def box(extra):
+            corner = low_y - extra, low_x - extra
+            return corner, high_y - low_y + 2 * extra, high_x - low_x + 2 * extra
 
         def rail(extra, radius, colour, level):
             style = f"round,pad=0,rounding_size={radius}"
-            add(box(extra, FancyBboxPatch, boxstyle=style, fc=rgb(colour)), level)
+            add(FancyBboxPatch(*box(extra), boxstyle=style, fc=rgb(colour), ec="none"), level)
 
         if is_closed(self.table):
             rail(RAIL, 0.09, "wood_edge", 0.0)
             rail(RAIL - 0.010, 0.08, "wood", 0.05)
             rail(RAIL - 0.022, 0.07, [min(255, round(1.13 * part)) for part in PALETTE["wood"]], 0.06)
-            add(box(CUSHION + 0.008, fc=rgb("wood_edge")), 0.1)
+            add(Rectangle(*box(CUSHION + 0.008), fc=rgb("wood_edge"), ec="none"), 0.1)
             rims = (0.014, "leather_edge", 0.15), (0.011, "leather", 0.16), (0.0, "hole", 0.2)
             for rim, colour, level in rims:
                 for x0, y0, x1, y1, half in parts.throats:
                     along = np.array([x1 - x0, y1 - y0]) / np.hypot(x1 - x0, y1 - y0)
                     across = (half + rim) * np.array([-along[1], along[0]])
                     a, b = np.array([x0, y0]), np.array([x1, y1])
-                    corners = flipped([a + across, b + across, b - across, a - across])
+                    corners = flip([a + across, b + across, b - across, a - across])
                     add(Polygon(corners, fc=rgb(colour), ec="none"), level)
                     add(Circle((y1, x1), half + rim, fc=rgb(colour), ec="none"), level)
             left, top = max(low_y - CUSHION, w.low_y), max(low_x - CUSHION, w.low_x)
@@ -174,31 +174,32 @@ class Sketch:
             add(Circle((y, x), radius, fc=rgb("hole"), ec="none"), 0.45, cloth)
         if is_marked(self.table):
             for line in (BAULK_LINE, D_ARC):
-                ax.plot(*flipped(line).T, color=rgb("line"), lw=0.0045 * scale, zorder=0.5, gid=TABLE)
+                ax.plot(*flip(line).T, color=rgb("line"), lw=0.0045 * scale, zorder=0.5, gid=TABLE)
             for x, y in SPOT_MARKS:
                 add(Circle((y, x), 0.007, fc=rgb("line"), ec="none"), 0.5)
         for nose in parts.noses:
             style = {"color": rgb("shadow", 0.28), "lw": 0.03 * scale, "zorder": 0.55, "gid": TABLE}
-            ax.plot(*flipped(nose).T, **style)[0].set_clip_path(cloth)
+            ax.plot(*flip(nose).T, **style)[0].set_clip_path(cloth)
         for polygon, nose in zip(parts.cushions, parts.noses, strict=True):
-            add(Polygon(flipped(polygon), fc=rgb("cushion"), ec="none"), 0.6, cloth)
+            add(Polygon(flip(polygon), fc=rgb("cushion"), ec="none"), 0.6, cloth)
             style = {"color": rgb("nose"), "lw": 0.005 * scale, "zorder": 0.65, "gid": TABLE}
-            ax.plot(*flipped(nose).T, **style, solid_capstyle="butt")
+            ax.plot(*flip(nose).T, **style, solid_capstyle="butt")
         if self.depth:
             add(Rectangle((w.low_y, w.high_x), w.width, self.depth, fc=rgb("bar"), ec="none"), 9.0)
             ax.plot([w.low_y, w.high_y], [w.high_x] * 2, color=rgb("bar_edge"), lw=1.0, zorder=9.1, gid=TABLE)
 
     # things on the table
 
-    def disc(self, middle: Any, radius: float, **style: Any) -> None:
+    def disc(self, middle: Place | Floats, radius: float, **style: Any) -> None:
         """A disc; ``middle``: (y, x) [m]."""
         from matplotlib.patches import Circle
 
-        self.ax.add_patch(Circle(middle, radius, **style))
+        y, x = middle
+        self.ax.add_patch(Circle((y, x), radius, **style))
 
     def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
         """A ball at rest, with a highlight; ``label``: with its letter."""
-        (y, x), R, colour, disc = flipped(place), self.R, COLOURS[ball % N_BALLS], self.disc
+        (y, x), R, colour, disc = flip(place), self.R, COLOURS[ball % N_BALLS], self.disc
         style = {"lw": 0.4, "zorder": 7.0, "gid": f"ball-{ball}"}
         disc((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9)
         disc((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), **style)
@@ -221,34 +222,34 @@ class Sketch:
         rim = rgb(PALE[ball % N_BALLS], min(1.0, alpha + 0.45))
         size, gid = (self.R, f"ghost-{ball}") if radius is None else (radius, "sign")
         style = {"fc": rgb(COLOURS[ball % N_BALLS], alpha), "ec": rim, "lw": 0.9, "zorder": level, "gid": gid}
-        self.disc(flipped(place), size, **style)
+        self.disc(flip(place), size, **style)
         self.keep_clear(np.asarray(place)[None], 2 * size)
 
     def line(
-        self, points: Floats, colour: Any, *, level: float = 5.0, width: float = PATH_WIDTH, **style: Any
+        self, points: Floats, colour: Colour, *, level: float = 5.0, width: float = PATH_WIDTH, **style: Any
     ) -> None:
         """A line (m, 2) [m] with a dark outline."""
         under = {"color": rgb("path_edge", 0.85), "lw": width + OUTLINE, "zorder": level - 0.5}
         over = {"color": rgb(colour), "lw": width, "zorder": level, "gid": "path"}
         for each in ({"gid": "outline", **under}, over | style):
-            self.ax.plot(*flipped(points).T, **{"solid_capstyle": "round", **each})
+            self.ax.plot(*flip(points).T, **{"solid_capstyle": "round", **each})
         self.keep_clear(points, 0.0)
 
-    def arrow(self, place: Floats, direction: Floats, colour: Any) -> None:
+    def arrow(self, place: Floats, direction: Floats, colour: Colour) -> None:
         """An arrowhead at a place, pointing along a unit vector."""
         from matplotlib.patches import Polygon
 
         head = np.array([(5.0, 0.0), (-3.5, 3.2), (-1.7, 0.0), (-3.5, -3.2)])  # [points]
         turned = head / self.points_per_metre @ np.array([direction, [-direction[1], direction[0]]])
         style = {"fc": rgb(colour), "ec": rgb("path_edge"), "lw": 0.8, "zorder": 5.6, "gid": "arrow"}
-        self.ax.add_patch(Polygon(flipped(place + turned), **style))
+        self.ax.add_patch(Polygon(flip(place + turned), **style))
 
     def mark(
-        self, place: Vector, marker: Any, colour: Any, size: float = 6.0, level: float = 8.0, **more: Any
+        self, place: Vector, marker: str, colour: Colour, size: float = 6.0, level: float = 8.0, **more: Any
     ) -> None:
         """A small sign at a place."""
         style = {"mfc": rgb(colour), "mec": rgb("path_edge"), "mew": 0.9, "ls": "none", "zorder": level}
-        self.ax.plot(*flipped(place), marker=marker, ms=size, **style | more)
+        self.ax.plot(*flip(place), marker=marker, ms=size, **style | more)
 
     # words
 
@@ -260,7 +261,9 @@ class Sketch:
             points = np.concatenate([np.linspace(a, b, n) for a, b, n in lines])
         self._busy.append(np.column_stack([points, np.full(len(points), size)]))
 
-    def text(self, y: float, x: float, words: str, colour: Any = "text", size: float = 1, **how: Any) -> None:
+    def text(
+        self, y: float, x: float, words: str, colour: Colour = "text", size: float = 1, **how: Any
+    ) -> None:
         """Text at a place of the picture; ``size`` in units of the usual font."""
         style = {"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"}
         self.ax.text(y, x, words, **style | how)
@@ -284,7 +287,7 @@ class Sketch:
         """Write text near a place where it covers least, with a line to it; False if there is no room."""
         high = 1.25 * self.font / self.points_per_metre
         wide = (0.66 * len(words) + 0.6) * self.font / self.points_per_metre
-        y, x = flipped(place)
+        y, x = flip(place)
         busy = np.concatenate(self._busy) if self._busy else np.empty((0, 3))
         best, least = None, np.inf
         for far in (1.6, 2.3, 3.2, 4.4):

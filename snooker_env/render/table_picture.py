@@ -1,8 +1,9 @@
 """How is a table drawn from above? Everything that does not move, as an array; needs only numpy. Each part is
 a signed distance [m] (negative inside); an edge covers a part of a pixel, smooth at every size."""
 
+from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -48,7 +49,7 @@ class View(NamedTuple):
         return np.stack([self.x + self.scale * points[..., 1], self.y + self.scale * points[..., 0]], axis=-1)
 
 
-def checked_size(size: Any, field: str = "size") -> Size:
+def checked_size(size: Sequence[int], field: str = "size") -> Size:
     """(width, height) of pictures; ValueError unless they are two valid integers."""
     if isinstance(size, str) or not hasattr(size, "__len__") or len(size) != 2:
         raise refuse(field, size, "must be (width, height)")

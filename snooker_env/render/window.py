@@ -3,7 +3,7 @@
 import dataclasses
 import os
 import sys
-from typing import Any
+from typing import TYPE_CHECKING
 
 from .._check import number
 from .palette import PALETTE
@@ -11,6 +11,9 @@ from .pygame_balls import BOLD, MEDIUM, pygame_, typeset
 from .pygame_view import draw
 from .scene import Film, Scene
 from .table_picture import SIZE, Size, View, checked_size
+
+if TYPE_CHECKING:
+    from pygame import Surface
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)  # that the user can choose, in multiples of the caller's
 KEYS = "space: pause    right: step    enter: skip    up/down: speed    L: letters    P: paths    esc: close"
@@ -44,7 +47,7 @@ class Window:
 
     def __init__(self, *, size: Size | None = None):
         self._size = None if size is None else checked_size(size)
-        self._screen: Any = None
+        self._screen: Surface | None = None
         self.speed: float = 1.0  # as the user has chosen; in multiples of that of ``play``
         self.paused: bool = False
         self._shut, self._letters, self._paths = False, False, True
@@ -144,16 +147,16 @@ class Window:
 
     def _show(self, scene):
         pygame = pygame_()
-        self._screen = pygame.display.get_surface()  # a new one after the window was resized
-        width, height = self._screen.get_size()
+        screen = self._screen = pygame.display.get_surface()  # a new one after the window was resized
+        width, height = screen.get_size()
         hint, paths = self._hint, scene.paths if self._paths else {}
         scene = dataclasses.replace(scene, lettered=scene.lettered or self._letters, paths=paths)
         pixels = draw(scene, View.of(scene.table, size=(max(width, 100), max(height - hint, 100))))
-        self._screen.fill(PALETTE["floor"])
-        self._screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))
+        screen.fill(PALETTE["floor"])
+        screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))
         words = typeset(self.status, PALETTE["text"], 0.62 * hint, BOLD)
-        self._screen.blit(words, words.get_rect(midleft=(hint, height - hint / 2)))
+        screen.blit(words, words.get_rect(midleft=(hint, height - hint / 2)))
         keys = typeset(KEYS, PALETTE["text_quiet"], 0.58 * hint, MEDIUM)
         if words.get_width() + keys.get_width() < width - 4 * hint:
-            self._screen.blit(keys, keys.get_rect(midright=(width - hint, height - hint / 2)))
+            screen.blit(keys, keys.get_rect(midright=(width - hint, height - hint / 2)))
         pygame.display.flip()

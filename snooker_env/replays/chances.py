@@ -1,7 +1,7 @@
 """How likely is each player of a frame to win, as it goes on? The positions of a frame, judged one after the other."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -35,7 +35,7 @@ class Standing(NamedTuple):
     on_table: Bools
 
 
-def checked_judge(judge: Any) -> Judge | None:
+def checked_judge(judge: object) -> Judge | None:
     """A judge, or None for none."""
     if judge is not None and not isinstance(judge, Judge):
         allowed = 'must have chance_to_win(positions), as snooker_env.player("tactician").at(env) has'
@@ -59,18 +59,21 @@ def win_chances(judge: Judge, standings: Sequence[Standing]) -> list[float]:
     return np.clip(first.round(DIGITS), least, 1.0 - least).tolist()
 
 
-def standings_of(strokes: Sequence[Any]) -> list[Standing]:
+def standings_of(strokes: Sequence[object]) -> list[Standing]:
     """The frame before the first of n strokes, and after each: n + 1. ValueError unless all are of frames."""
+    standings: list[Standing] = []
     for k, one in enumerate(strokes):
         if not isinstance(one, Played) or one.frame is None:
             what = "a stroke of a visit" if isinstance(one, Played) else "a bare shot"
             raise refuse_what(f"strokes[{k}]", what, "must be of a frame with a judge: nobody wins a visit")
-    return [_before(strokes[0]), *(Standing(one.frame, one.positions, one.on_table) for one in strokes)]
+        if k == 0:
+            standings.append(_before(one, one.frame))
+        standings.append(Standing(one.frame, one.positions, one.on_table))
+    return standings
 
 
-def _before(stroke: Played) -> Standing:
+def _before(stroke: Played, after: Frame) -> Standing:
     """The frame that a stroke was played from, its cue ball placed; how often it was missed before is not known."""
-    after: Any = stroke.frame
     first = stroke.shot.segments[: len(stroke.shot.positions)]
     here = first[:, cloth.SEGMENT_STATE] != cloth.GONE
     scores = list(stroke.scores)

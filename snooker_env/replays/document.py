@@ -3,16 +3,16 @@
 import html
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
 from .._check import choice, refuse, refuse_what
 from .._files import write_atomic
-from .._types import Bytes
+from .._types import Bytes, Environment
 from ..physics.table import Table, TableLike
 from ..planning import Position
 from ..render.scene import scene_data
@@ -184,21 +184,21 @@ class Replay:
         return target
 
 
-def checked_path(field: str, path: Any) -> Path:
+def checked_path(field: str, path: object) -> Path:
     """``path`` as a Path, else ValueError."""
     if not isinstance(path, str | PathLike):
         raise refuse(field, path, "must be a str or a Path")
     return Path(path)
 
 
-def checked_text(field: str, text: Any) -> str:
+def checked_text(field: str, text: object) -> str:
     """``text`` if a file can hold it, else ValueError."""
     if not isinstance(text, str) or any(0xD800 <= ord(letter) < 0xE000 for letter in text):
         raise refuse(field, text, "must be a str, without halves of surrogate pairs")
     return text
 
 
-def checked_players(players: Any) -> tuple[str, ...]:
+def checked_players(players: object) -> tuple[str, ...]:
     """Names of players as a tuple; a single name may be a str."""
     if players is not None and not isinstance(players, Iterable):
         raise refuse("players", players, "must be None, or names")
@@ -208,8 +208,20 @@ def checked_players(players: Any) -> tuple[str, ...]:
     return tuple(checked_text("players", name) for name in names)
 
 
+@runtime_checkable
+class KeepsHistory(Protocol):
+    """An environment that may keep what was played, as ``SnookerEnv`` and matches do."""
+
+    history: list[Played]
+    keep_history: bool
+
+
+Source: TypeAlias = Replay | Shot | Played | Sequence[Shot | Played] | Position | Environment
+"""What can be shown as a replay."""
+
+
 def replay(
-    source: Any,
+    source: Source,
     path: str | Path | None = None,
     *,
     title: str = "",
@@ -248,12 +260,9 @@ def replay(
     >>> sn.replay(env, title="one stroke")
     Replay(1 strokes, 'one stroke')
     """
-    strokes: Any
     if isinstance(source, Replay):
-        strokes, title, players = source.strokes, title or source.title, players or source.players
-        table = table or source.table
-    else:
-        strokes = _strokes(source, table)
+        title, players, table = title or source.title, players or source.players, table or source.table
+    strokes = source.strokes if isinstance(source, Replay) else _strokes(source, table)
     made = Replay(strokes, title=title, players=players, table=table, judge=judge)
     if isinstance(source, Replay) and judge is None:
         made.win_chance = source.win_chance
@@ -262,7 +271,7 @@ def replay(
     return made
 
 
-def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
+def _strokes(source: Source, table: TableLike) -> list[Shot | Played]:
     if isinstance(source, Shot | Played):
         return [source]
     if isinstance(source, list | tuple):
@@ -272,7 +281,7 @@ def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
         nothing, table = np.zeros((len(places), 3)), Table.of("match" if table is None else table)
         return [simulate(places, nothing[:, :2], nothing, table, on_table=on_table)]
     env = getattr(source, "unwrapped", source)
-    if not hasattr(env, "history"):
+    if not isinstance(env, KeepsHistory):
         allowed = "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay"
         allowed += ", or an environment that keeps its history"
         raise refuse_what("source", f"a {type(source).__name__}", allowed)
@@ -282,4 +291,4 @@ def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
     if not env.history:
         what = "an environment without a stroke since its reset"
         raise refuse_what("source", what, "must have played at least one")
-    return env.history
+    return [*env.history]

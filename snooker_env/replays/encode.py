@@ -9,6 +9,7 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._check import refuse_what
 from ..game.balls import N_BALLS
@@ -27,7 +28,7 @@ _EVENT = ["time", "kind", "i", "j"]
 _WHICH = [cloth.SEGMENT_BALL, cloth.SEGMENT_STATE]
 
 
-def packed(values: Any, kind: str) -> str:
+def packed(values: ArrayLike, kind: str) -> str:
     """Numbers as base64 of little-endian ``kind``: "f8", "f4" or "u1", row after row."""
     little = np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<"))
     return base64.b64encode(little.tobytes()).decode("ascii")

@@ -3,9 +3,10 @@
 import subprocess
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,10 +17,13 @@ from .._jit import entry
 from .._types import Bytes
 from ..physics.table import Table
 from ..render.scene import Film, Scene, ScoreBar, scene
-from ..render.table_picture import SIZE
+from ..render.table_picture import SIZE, Size
 from ..simulation import Shot
 from ..tasks.played import Played
 from .words import bars, pots_of
+
+if TYPE_CHECKING:
+    from .document import Replay
 
 _HALF = 1 << 15
 
@@ -57,16 +61,16 @@ USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif":
 """Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
 
-def shown(replay: Any) -> Iterator[tuple[Film, Scene]]:
+def shown(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
     """For each stroke of a ``Replay`` its film, and the table after it with the referee's words."""
     judged = [stroke for stroke in replay.strokes if isinstance(stroke, Played)]
     its = iter(bars(judged, replay.players, replay.win_chance))
     for stroke in replay.strokes:
         during, after = next(its) if isinstance(stroke, Played) else (None, None)
-        yield filmed(replay.table, stroke, during, after, "" if during else replay.title)
+        yield film_stroke(replay.table, stroke, during, after, "" if during else replay.title)
 
 
-def filmed(
+def film_stroke(
     table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = ""
 ) -> tuple[Film, Scene]:
     """A stroke as a film, and the table after it; ``during`` and ``after`` are the bars of ``bars``."""
@@ -76,11 +80,12 @@ def filmed(
     where, on_table = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
     placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
     turns = {0: UNTURNED} if placed else last.turns
-    over: Any = {"paths": last.paths, "ghosts": last.ghosts, "turns": turns, "bar": after, "text": text}
-    return film, scene(table, where, on_table, ball_radius=shot.physics.R, **over)
+    over = {"paths": last.paths, "ghosts": last.ghosts, "turns": turns}
+    still = scene(table, where, on_table, bar=after, text=text, **over)
+    return film, replace(still, ball_radius=last.ball_radius)
 
 
-def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Any) -> Iterator[Bytes]:
+def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Size) -> Iterator[Bytes]:
     """The pictures of what ``shown`` gives."""
     from ..render.pygame_view import rgb_array
 
@@ -92,12 +97,17 @@ def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: 
 
 
 def write_film(
-    pictures_of: Callable[..., Any], target: Path, *, fps: Any = None, speed: float = 1.0, size: Any = None
+    pictures_of: Callable[..., Iterator[Bytes]],
+    target: Path,
+    *,
+    fps: float | None = None,
+    speed: float = 1.0,
+    size: Size | None = None,
 ) -> None:
     """Write the pictures of ``pictures_of(fps=, speed=, size=)`` to an .mp4 or .gif file."""
     usual_size, usual_fps = USUAL[target.suffix.lower()]
     size, fps = usual_size if size is None else size, usual_fps if fps is None else _rate("fps", fps)
-    sides: Any = size if isinstance(size, tuple | list) else ()
+    sides = size if isinstance(size, tuple | list) else ()
     if len(sides) != 2 or not all(isinstance(side, int) and side > 0 and side % 2 == 0 for side in sides):
         raise refuse("size", size, "must be (width, height), both even, as video encoders require")
     width, height = sides
@@ -105,7 +115,7 @@ def write_film(
     write_atomic(target, lambda path: _encode(pictures, path, fps, (width, height)))
 
 
-def _rate(field: str, value: Any) -> float:
+def _rate(field: str, value: float) -> float:
     return number(field, value, 0.0, 1000.0, open_low=True)
 
 

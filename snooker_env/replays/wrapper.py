@@ -7,6 +7,7 @@ from typing import Any
 import gymnasium
 
 from .._check import choice, refuse, refuse_what
+from .._types import Action
 from .chances import Judge, checked_judge
 from .document import SUFFIXES, Replay, checked_path, checked_players
 
@@ -100,7 +101,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         self._number, self._written = self._number + 1, False
         return result
 
-    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+    def step(self, action: Action) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         """See ``SnookerEnv.step``; an episode that ends is written, with OSError if it cannot be."""
         result = super().step(action)
         if self._written:  # an inner wrapper has begun another episode

@@ -1,13 +1,13 @@
 """Is a saved state valid? Checks every part of the result of ``get_state`` before any of it is used."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._check import array, flags, integer, number, refuse, refuse_what, truth
-from .._types import Bools, Floats
+from .._types import Bools, Floats, Vector
 from ..game import balls
 from ..game.frame import MOST_BREAK, Frame
 from ..game.in_hand import within_d
@@ -59,7 +59,7 @@ MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break", "best_of")
 """Keys of the saved state of a visit, of a frame, and of a match; with drawn constants also "conditions"."""
 
 
-def check_keys(state: Any, keys: Collection[str]) -> None:
+def check_keys(state: object, keys: Collection[str]) -> None:
     """Raise ValueError unless ``state`` is a dict with exactly these keys."""
     if not isinstance(state, dict):
         raise refuse("state", state, "must be a state of get_state(), a dict")
@@ -72,7 +72,7 @@ def check_keys(state: Any, keys: Collection[str]) -> None:
 
 
 def checked_layout(
-    names: tuple[str, str], positions: Any, on_table: Any, table: Table, R: float
+    names: tuple[str, str], positions: Sequence[Vector], on_table: object, table: Table, R: float
 ) -> tuple[Floats, Bools]:
     """The arrays positions (22, 2), on_table (22,); ValueError, with one of ``names``, if not a layout."""
     field = names[0]
@@ -107,7 +107,7 @@ def _check_like(field, value, known):
         _check_like(f"{field}.{key}", value[key], known[key])
 
 
-def check_rng(rng: Any, generator: np.random.Generator) -> None:
+def check_rng(rng: Mapping[str, Any], generator: np.random.Generator) -> None:
     """ValueError unless ``rng`` is a state that the NumPy ``generator``, which is not changed, could take."""
     trial = type(generator.bit_generator)()
     _check_like("state.rng", rng, trial.state)
@@ -118,14 +118,16 @@ def check_rng(rng: Any, generator: np.random.Generator) -> None:
         raise refuse("state.rng", rng, allowed) from None
 
 
-def check_stream(stream: Any) -> list[int]:
+def check_stream(stream: object) -> list[int]:
     """Key and counter of a stream as a list of two ints; ValueError if they are none."""
     if not isinstance(stream, list | tuple) or len(stream) != 2:
         raise refuse("state.stream", stream, "must be two integers, key and counter")
     return [integer(f"state.stream[{k}]", word, 0, 2**64 - 1) for k, word in enumerate(stream)]
 
 
-def check_conditions(state: Any, keys: tuple[str, ...], rules: Rules) -> dict[str, float] | None:
+def check_conditions(
+    state: Mapping[str, Any], keys: tuple[str, ...], rules: Rules
+) -> dict[str, float] | None:
     """The constants drawn, in their order, None if they are fixed; ValueError for wrong ones or other keys."""
     check_keys(state, (*keys, "conditions") if rules.drawn else keys)
     if not rules.drawn:
@@ -138,7 +140,9 @@ def check_conditions(state: Any, keys: tuple[str, ...], rules: Rules) -> dict[st
     return {name: number(f"state.conditions.{name}", values[name], *ends) for name, ends in each}
 
 
-def checked(state: Any, rules: Rules, generator: np.random.Generator, *, to_play: bool = False) -> State:
+def checked(
+    state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, to_play: bool = False
+) -> State:
     """The ``State`` of a dict; ValueError names the first wrong part, or if none is left ``to_play``."""
     conditions, table, R = check_conditions(state, VISIT_KEYS, rules), rules.table, rules.physics.R
     positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
@@ -163,7 +167,7 @@ def checked(state: Any, rules: Rules, generator: np.random.Generator, *, to_play
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"], conditions)
 
 
-def checked_frame(state: Any, rules: Rules, generator: np.random.Generator) -> FrameState:
+def checked_frame(state: Mapping[str, Any], rules: Rules, generator: np.random.Generator) -> FrameState:
     """The ``FrameState`` that a dict describes, under these rules; ValueError names the first wrong part."""
     conditions = check_conditions(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R

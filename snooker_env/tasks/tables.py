@@ -25,6 +25,7 @@ from .discrete_actions import Choices
 from .noise import Noise
 from .options import NEVER, Rules
 from .played import Played, judged, room_of, struck
+from .states import FrameState, State
 
 REALS = ("points", "break", "seconds")
 COUNTS = ("penalty", "pots", "fouls", "ball_on", "first_ball", "events")
@@ -82,6 +83,8 @@ def _shares(which, streams, out):
             out[j, c], out[j, c + 1] = pair(streams[which[j]])
 
 
+Packed: TypeAlias = tuple[Floats, Floats, Floats]
+"""Action's options, noise's deviations and physical parameters: the first and the last one row, or one a table."""
 Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
 """Work on some tables, called as ``task(which, buffers)``."""
 Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
@@ -122,13 +125,14 @@ class StepOutput:
 class Crew:
     """Runs ``task(part, buffers)``, here on all at once."""
 
-    def __init__(self, buffers: Any = None, watch: Watch | None = None):
-        self.buffers: Any = buffers  # ``ShotBuffers``, or None for a crew that allocates its own
+    def __init__(self, buffers: stroke.ShotBuffers | None = None, watch: Watch | None = None):
+        self.buffers: stroke.ShotBuffers | None = buffers  # None for a crew that allocates its own
         self.watch: Watch | None = watch
 
     def __call__(self, which: Ints, task: Task) -> None:
         """Run the task."""
         if len(which):
+            assert self.buffers is not None
             task(which, self.buffers)
 
     def saw(self, which: Ints, buffers: stroke.ShotBuffers, reported: bool) -> None:
@@ -163,9 +167,7 @@ class Tables(ABC):
     streams: Words  # (n, 2) key and counter of each table's random stream
     nominated: Ints = np.empty(0, np.int64)  # (n,) of frames: what each striker has nominated
     begun: Bools  # (n,) which tables have an episode, possibly one that has ended
-    # action's options, noise's deviations, physical parameters; the first and last one row, for all tables, or
-    # with drawn conditions one for each
-    packed: tuple[Floats, Floats, Floats]
+    packed: Packed  # with a row for each table if the conditions are drawn
     conditions: Floats  # (n, 8) constants drawn, of ``physics.conditions``; without rows if they are fixed
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
@@ -229,8 +231,8 @@ class Tables(ABC):
         shot = {"shot": self.shot(k, buffers, j), "cue": struck(buffers, j), "room": room_of(buffers, j)}
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
-        after: Any = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
-        who: Any = {"cue_kind": self.rules.cue, "noise": self.noise_of(seen[stroke.PLAYER])}
+        after = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
+        who = {"cue_kind": self.rules.cue, "noise": self.noise_of(seen[stroke.PLAYER])}
         return Played(**shot, **who, **balls, **after, **judged(seen), **standing)
 
     def noise_of(self, player: int) -> Noise:
@@ -289,13 +291,13 @@ class Tables(ABC):
 
     # the constants of tables
 
-    def own_rows(self, packed: tuple[Floats, Floats, Floats]) -> tuple[Floats, Floats, Floats]:
+    def own_rows(self, packed: Packed) -> Packed:
         """``packed`` with a row for each table, if they differ."""
         if not self.rules.drawn:
             return packed
         return np.repeat(packed[0], self.n, axis=0), packed[1], self._phys
 
-    def _every_pack(self) -> tuple[tuple[Floats, Floats, Floats], ...]:
+    def _every_pack(self) -> tuple[Packed, ...]:
         return (self.packed,)
 
     def _take_rows(self, here: slice) -> None:
@@ -317,7 +319,7 @@ class Tables(ABC):
         for options, _, _ in self._every_pack():
             options[which, A_END_MASS] = values[:, END_MASS_RATIO]
 
-    def show_conditions(self, which: Any, out: StepOutput) -> None:
+    def show_conditions(self, which: Ints | slice, out: StepOutput) -> None:
         """Write the constants of the tables ``which`` into the results of a step, if they are drawn."""
         if self.rules.drawn:
             out.reals[which, -CONDITIONS:] = self.conditions[which]
@@ -347,7 +349,7 @@ class Tables(ABC):
         """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
         self.strike(which, actions, buffers, self.packed)
 
-    def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: Any) -> None:
+    def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: Packed) -> None:
         """``address`` with the options and errors of ``packed``."""
         stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
 
@@ -389,18 +391,20 @@ class Tables(ABC):
             balls["conditions"] = dict(zip(CONDITION_NAMES, self.conditions[k].tolist(), strict=True))
         return balls | {"stream": self.streams[k].tolist()}
 
-    def _set_state(self, k: int, state: Any) -> None:
+    def _set_state(self, k: int, state: State | FrameState) -> None:
         """What all tasks restore alike: the random stream and the constants."""
         self.streams[k] = np.array(state.stream, np.uint64)
-        if self.rules.drawn:
+        if state.conditions is not None:
             self.set_conditions(np.array([k]), np.array([list(state.conditions.values())]))
 
     @abstractmethod
-    def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> Any:
+    def checked(
+        self, state: Mapping[str, Any], generator: np.random.Generator, *, to_play: bool = False
+    ) -> State | FrameState:
         """The valid state that a dict describes; ValueError if it is none, or no shot is left ``to_play``."""
 
     @abstractmethod
-    def set_state(self, k: int, state: Any) -> None:
+    def set_state(self, k: int, state: State | FrameState) -> None:
         """Restore a valid state on table k."""
 
     @abstractmethod

@@ -1,6 +1,7 @@
 """How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance: a
 step is ``stroke.address``, ``stroke.run`` and ``_conclude``; new ones ``deal_tables`` and ``_begin``."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -153,7 +154,9 @@ class Visits(Tables):
         visit = {"ball_on": ball_on, "in_hand": bool(in_hand), "points": points, "over": bool(over)}
         return super().get_state(k) | visit
 
-    def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> State:
+    def checked(
+        self, state: Mapping[str, Any], generator: np.random.Generator, *, to_play: bool = False
+    ) -> State:
         return checked(state, self.rules, generator, to_play=to_play)
 
     def set_state(self, k: int, state: State) -> None:

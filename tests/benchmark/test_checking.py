@@ -8,9 +8,9 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, judge, page
-from snooker_env.benchmark.checking import replayed
+from snooker_env.benchmark.checking import faults_of_replay
 from snooker_env.benchmark.leaderboard import markdown_table, plain, profile
-from snooker_env.benchmark.results import figures_of, packed, strokes_of
+from snooker_env.benchmark.results import figures_of, pack_strokes, strokes_of
 from snooker_env.benchmark.schema import DATE, LONG_LINE, RANGES
 from snooker_env.benchmark.schema import line as one_line
 from tests.benchmark.records import put
@@ -51,7 +51,7 @@ def test_sources_are_texts(sources):
 def test_the_same_source_five_times_makes_nothing_surer():
     record, strokes = changed(agent__sources=["model.zip"] * 5), strokes_of(sound())
     record["rows"] = [[run, *row[1:]] for run in range(5) for row in sound()["rows"]]
-    record["strokes"] = packed(strokes * 5)
+    record["strokes"] = pack_strokes(strokes * 5)
     record["figures"] = figures_of(TASKS[record["task"]], "any", record["rows"])
     assert faults(record) == ["agent.sources: must be different: the same one twice makes nothing surer"]
     for alike in (["search", "search_120"], ["planner_30@club", "planner_030@club"]):
@@ -141,16 +141,20 @@ def test_what_is_not_known_is_not_official():
 def test_a_replay_is_of_every_training_seed_by_the_same_agent():
     two = Agent(label="two", sources=("random", "search_30"), training_shots=0)
     record = judge(TASKS["SnookerEscape-v0"], two, episodes=6)
-    assert faults(record) == [] and replayed(record, two, 6) == [] and replayed(record, two, 4) == []
+    assert (
+        faults(record) == []
+        and faults_of_replay(record, two, 6) == []
+        and faults_of_replay(record, two, 4) == []
+    )
     other, strokes = copy.deepcopy(record), strokes_of(record)
     strokes[8] = -strokes[8]
-    other["strokes"] = packed(strokes)
-    wrong = replayed(other, two, 6)
+    other["strokes"] = pack_strokes(strokes)
+    wrong = faults_of_replay(other, two, 6)
     assert len(wrong) == 1
     assert wrong[0].startswith(f"run 1, table {record['rows'][8][1]}: played again other strokes")
-    assert replayed(other, two, 2) == []
+    assert faults_of_replay(other, two, 2) == []
     with pytest.raises(ValueError, match="must have the 2 training seeds of the file"):
-        replayed(record, Agent.of("random"), 6)
+        faults_of_replay(record, Agent.of("random"), 6)
 
 
 def test_no_text_of_a_file_is_markup_of_the_page():

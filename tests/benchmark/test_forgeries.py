@@ -14,9 +14,16 @@ import pytest
 import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, checking, judge
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.checking import afresh, faults, replayed
+from snooker_env.benchmark.checking import afresh, faults, faults_of_replay
 from snooker_env.benchmark.provenance import arithmetic
-from snooker_env.benchmark.results import completed, figures_of, packed, read_result, strokes_of, write_result
+from snooker_env.benchmark.results import (
+    complete,
+    figures_of,
+    pack_strokes,
+    read_result,
+    strokes_of,
+    write_result,
+)
 from snooker_env.benchmark.schema import FIELDS, PACKAGES, PROTOCOL, UNPROVED
 from snooker_env.players import VISITS
 from tests.benchmark.records import at, put
@@ -70,7 +77,7 @@ def test_a_maximum_in_every_visit(label):
     record["agent"]["sources"] = [label if label == "random" else "mine:Genius"]
     consistent(BREAK, record)
     assert faults(record)[0].startswith("strokes.data = ")
-    record["strokes"] = packed([np.zeros((36, 7), "<f4")] * 100)
+    record["strokes"] = pack_strokes([np.zeros((36, 7), "<f4")] * 100)
     assert faults(record)[0].startswith("rows[0].") and faults(record)[-1].endswith(" more faults")
 
 
@@ -81,7 +88,9 @@ def test_rows_101_to_500(official):
         row[2:] = [27, 6, 27, 6, 0, 1, 0, 1]
     assert faults(consistent(CLUB, record))[0].startswith("strokes.data = ")
     strokes = strokes_of(official)
-    record["strokes"] = packed(strokes[:100] + [np.resize(one, (6, one.shape[1])) for one in strokes[100:]])
+    record["strokes"] = pack_strokes(
+        strokes[:100] + [np.resize(one, (6, one.shape[1])) for one in strokes[100:]]
+    )
     refused = faults(record)
     assert all(line.startswith(("rows[10", "rows[11")) for line in refused[:-1])
     assert refused[-1].endswith(" more faults")
@@ -124,7 +133,7 @@ def forged(record, task, episodes, better):
     assert all(a[0].tobytes() == b[0].tobytes() for a, b in zip(strokes_of(other), played, strict=True))
     other["agent"] |= {name: record["agent"][name] for name in ("label", "sources", "training_shots")}
     other["timing"]["simulated_shots"] = record["timing"]["simulated_shots"]
-    return completed(other, task)
+    return complete(other, task)
 
 
 def test_hindsight_from_the_second_stroke_on():
@@ -146,7 +155,7 @@ def test_a_decision_after_a_foul_that_the_player_does_not_make():
     assert longer and faults(record) == []
     for k in longer:
         strokes[k][1:, -1] = -strokes[k][1:, -1] if strokes[k][1:, -1].any() else -1.0
-    record["strokes"] = packed(strokes)
+    record["strokes"] = pack_strokes(strokes)
     assert any(line.startswith(("strokes: ", "rows[")) for line in faults(record)), many
 
 
@@ -157,7 +166,7 @@ def test_a_planner_may_not_state_other_shots(share, monkeypatch):
     assert faults(record) == []
     shots = record["timing"]["simulated_shots"]
     record["timing"]["simulated_shots"] = round(share * shots)
-    record = completed(record, HARD)
+    record = complete(record, HARD)
     (line,) = faults(record)
     assert line.startswith(
         f"timing.simulated_shots = {round(share * shots)}: must be {shots}, as known players"
@@ -173,7 +182,7 @@ def test_tables_that_are_asked_again_are_not_known_beforehand(monkeypatch):
     record = judge(HARD, Agent.of("ghost_ball"), episodes=24)
     strokes = [one.copy() for one in strokes_of(record)]
     strokes[5][0, 1] = np.nextafter(strokes[5][0, 1], np.float32(1.0))
-    record["strokes"] = packed(strokes)
+    record["strokes"] = pack_strokes(strokes)
     monkeypatch.setattr(checking, "TOGETHER", 4)
     monkeypatch.setattr(checking, "WORK", 8.0)
     found = {bool(faults(record)) for _ in range(40)}
@@ -186,7 +195,9 @@ def test_simulated_shots_that_the_agent_does_not_need():
     record = judge(HARD, random, episodes=4)
     record["timing"]["simulated_shots"] = 8
     record["agent"] |= {"simulated_shots": 2.0, "class": "planning"}
-    assert replayed(record, random, 4) == ["timing.simulated_shots = 8: must be 0, as the agent played again"]
+    assert faults_of_replay(record, random, 4) == [
+        "timing.simulated_shots = 8: must be 0, as the agent played again"
+    ]
 
 
 @pytest.mark.parametrize(("name", "training"), [("search_30", 0), ("planner_30", 10**7)])
@@ -195,7 +206,7 @@ def test_a_known_planner_is_not_model_free(name, training):
     record = judge(HARD, Agent.of(name, training_shots=training), episodes=4)
     assert faults(record) == [] and record["agent"]["class"] == "planning"
     record["timing"]["simulated_shots"] = 1
-    (line,) = faults(completed(copy.deepcopy(record), HARD))
+    (line,) = faults(complete(copy.deepcopy(record), HARD))
     assert line.startswith("timing.simulated_shots = 1: must be ")
     record["timing"]["simulated_shots"] = 0
     record["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
@@ -257,7 +268,7 @@ def test_one_flipped_bit_of_a_stroke(boxes):
         raw = bytearray(strokes[0].tobytes())
         raw[bit // 8] ^= 1 << bit % 8
         flipped = np.frombuffer(bytes(raw), "<f4").reshape(strokes[0].shape)
-        record["strokes"] = packed([flipped, *strokes[1:]]) | {"sha256": boxes["strokes"]["sha256"]}
+        record["strokes"] = pack_strokes([flipped, *strokes[1:]]) | {"sha256": boxes["strokes"]["sha256"]}
         assert faults(record)[0].startswith("strokes.sha256 = ")
     raw = base64.b64decode(boxes["strokes"]["data"])
     for bit in np.random.default_rng(0).integers(0, 8 * len(raw), 60).tolist():
@@ -278,7 +289,7 @@ def test_other_strokes_are_found_by_what_they_score(boxes):
     fair = [k for k, row in enumerate(record["rows"]) if row[2]]
     for k in fair:
         strokes[k][0, 0] = -1.0
-    record["strokes"] = packed(strokes)
+    record["strokes"] = pack_strokes(strokes)
     assert {line.split(".")[0] for line in faults(record)[:-1]} <= {f"rows[{k}]" for k in fair}
     assert faults(record)[0].startswith(f"rows[{fair[0]}].score = 1: must be 0, as its strokes play")
 
@@ -288,7 +299,7 @@ def test_strokes_too_few_and_too_many(boxes):
         record, strokes = copy.deepcopy(boxes), strokes_of(boxes)
         record["rows"][3][COLUMNS.index("strokes")] += more
         strokes[3] = np.resize(strokes[3], (1 + more, 7))
-        record["strokes"] = packed(strokes)
+        record["strokes"] = pack_strokes(strokes)
         record["agent"]["simulated_shots"] = 0.0
         refused = faults(consistent(HARD, record))
         assert any(one.startswith(f"rows[3].strokes = {line}") for one in refused), refused
@@ -298,7 +309,7 @@ def test_strokes_too_few_and_too_many(boxes):
 def test_strokes_outside_the_space(boxes, value):
     record, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
     strokes[7][0, 0] = value
-    record["strokes"] = packed(strokes)
+    record["strokes"] = pack_strokes(strokes)
     assert faults(record)[0].startswith("strokes.data[")
     assert "must be finite and within [-1, 1]" in faults(record)[0]
 
@@ -312,7 +323,7 @@ def test_swapped_episodes_and_other_seeds(boxes):
     for row, old in ((record["rows"][a], rows[a]), (record["rows"][b], rows[b])):
         row[1] = old[1]
     strokes[a], strokes[b] = strokes[b], strokes[a]
-    record["strokes"] = packed(strokes)
+    record["strokes"] = pack_strokes(strokes)
     assert faults(consistent(HARD, record))[0].startswith((f"rows[{a}].", f"rows[{b}]."))
     later = copy.deepcopy(boxes)
     for row in later["rows"]:
@@ -325,7 +336,9 @@ def test_rows_more_or_fewer(boxes):
     strokes = strokes_of(boxes)
     for episodes in (list(range(23)), [*range(24), 23]):
         rows = [boxes["rows"][k] for k in episodes]
-        record = consistent(HARD, boxes | {"rows": rows, "strokes": packed([strokes[k] for k in episodes])})
+        record = consistent(
+            HARD, boxes | {"rows": rows, "strokes": pack_strokes([strokes[k] for k in episodes])}
+        )
         says = f"rows: must be 24 episodes, 24 for each training seed, not {len(rows)}"
         assert faults(record)[0].startswith(says)
 

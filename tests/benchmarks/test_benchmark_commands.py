@@ -19,7 +19,7 @@ from benchmarks._common import kept, package_copies
 from tests.processes import ROOT
 
 NAMES = [file.stem for file in (ROOT / "benchmarks").glob("*.py")]
-NAMES += [file.parent.name for file in (ROOT / "benchmarks").glob("*/command.py")]
+NAMES += [file.parent.name for file in (ROOT / "benchmarks").glob("*/__main__.py")]
 COMMANDS = sorted(name for name in NAMES if not name.startswith("_"))
 WITHOUT_CHANCE = ("film", "left_out", "nap", "paper", "pockets", "web")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from benchmarks.paper import command as paper
+from benchmarks.paper import __main__ as paper
 from benchmarks.paper import other_data as data
 from benchmarks.paper import paper_shots as shots
 from tests.oracles.paper_tables import PAPER_ROWS

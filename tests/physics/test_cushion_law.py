@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import snooker_env as sn
-from benchmarks.fit_cushion import command as fit_cushion
+from benchmarks.fit_cushion import __main__ as fit_cushion
 from benchmarks.fit_cushion import line
 from benchmarks.fit_cushion.lengths import RAMP, START, lengths, path
 from snooker_env.physics.impact import contact

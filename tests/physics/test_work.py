@@ -59,7 +59,7 @@ def counted():
     import numpy as np
 
     import snooker_env as sn
-    from benchmarks.speed.command import shots
+    from benchmarks.speed.__main__ import shots
     from snooker_env.physics import detection, engine, roots
     from snooker_env.physics.impact import contact, impulse
     from snooker_env.simulation import MAX_EVENTS, _run

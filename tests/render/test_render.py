@@ -80,9 +80,6 @@ def test_overlays_and_text_change_only_where_they_are():
     drawn = rgb_array(scene("match", SPOTS, ~ALL, paths={CUE: path}))
     assert at(drawn, (0.1, 0.5)).min() > 200
     assert np.array_equal(at(drawn, (0.1, 0.55)), at(plain, (0.1, 0.55)))
-    assert at(rgb_array(scene("match", SPOTS, ~ALL, aim=path)), (0.1, 0.5))[:2].min() > 200
-    ghost = rgb_array(scene("match", SPOTS, ~ALL, ghost=(0.3, 0.5)))
-    assert np.array_equal(at(ghost, (0.3, 0.5)), at(plain, (0.3, 0.5))) and np.any(ghost != plain)
     nothing = rgb_array(scene("match", SPOTS, ~ALL, text=" "))
     # what does not fit is cut off
     for text, least, most in (("break 12", 100, 300), ("long " * 100, 1700, 1900)):
@@ -150,12 +147,9 @@ def test_text_never_hides_the_cue_ball():
     assert "W" not in "".join(ansi(scene("match", SPOTS, without(CUE))).split("\n")[:27])
 
 
-def test_text_overlays():
-    aim = np.array([(-0.5, 0.5), (0.5, 0.5)])
-    drawn = scene("match", SPOTS, ALL, aim=aim, ghost=(0.6, 0.5), paths={CUE: aim - (0, 0.2)})
-    plain = ansi(drawn)
-    table = "".join(plain.split("\n")[:27])
-    assert table.count("-") >= 13 and table.count("o") == 1 and table.count(".") >= 13
+def test_a_path_in_text():
+    plain = ansi(scene("match", SPOTS, ALL, paths={CUE: np.array([(-0.5, 0.3), (0.5, 0.3)])}))
+    assert "".join(plain.split("\n")[:27]).count(".") >= 13
 
 
 def test_without_pygame_the_message_says_what_to_install(monkeypatch):

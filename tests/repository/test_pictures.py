@@ -32,7 +32,7 @@ def read(figures, least=1):
 )
 def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch):
     try:
-        command = importlib.import_module(f"benchmarks.{name}.command")
+        command = importlib.import_module(f"benchmarks.{name}.__main__")
     except ModuleNotFoundError:
         command = importlib.import_module(f"benchmarks.{name}")
     monkeypatch.setattr("sys.argv", [name, "--from", "--out", str(tmp_path)])

@@ -18,7 +18,6 @@ EXTRAS = {
     "train": "import snooker_env.sb3",
     "multi": "import snooker_env as sn; sn.match_env()",
     "plot": "import snooker_env as sn; sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0, 0, 0)]).plot()",
-    "notebook": "import snooker_env.widget as w, snooker_env as sn; w.replay_widget(sn.replay)",
 }
 """Extra -> what needs it."""
 
