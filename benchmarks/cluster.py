@@ -20,7 +20,7 @@ import snooker_env as sn
 from agents.cluster.job import Here
 from agents.cluster.ray_cluster import connected, ray_of
 from agents.learning.self_play import positions_given
-from snooker_env.planning import Positions, StrokeSearch
+from snooker_env.planning import Positions, Search, VisitJudge
 
 from ._common.command import Command, at_least, run, save_json
 
@@ -68,7 +68,7 @@ def measured(args):
     here, found = Here(1), {}
     for shared, given in (long, short):
         seconds(here, shared, given[:1])
-    search = StrokeSearch({"noise": "professional"}, SEARCH, threads=1)
+    search = Search(VisitJudge({"noise": "professional"}, threads=1), SEARCH)
     tables = sn.SnookerVectorEnv(args.positions, noise="professional")
     tables.reset(seed=args.seed)
     at, seeds = Positions.of(tables), np.arange(args.positions)

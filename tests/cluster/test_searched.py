@@ -49,7 +49,7 @@ def test_data_are_what_the_search_plays(tmp_path):
     assert np.array_equal(np.isnan(found["scores"]), np.isnan(found["strokes"]).all(axis=2))
     assert len(np.unique(found["positions"].reshape(24, -1), axis=0)) == 24
     at = Positions(found["positions"], found["on_table"], found["game"])
-    played = Planner({}).play(at, np.arange(24), strokes=found["strokes"][:, 0].astype(float))
+    played = Planner({}).play_strokes(at, np.arange(24), found["strokes"][:, 0].astype(float))
     assert (played.points > 0).mean() > 0.6
 
 
