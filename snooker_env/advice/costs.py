@@ -13,11 +13,8 @@ from .recorded import Recorded
 
 PARTS = ("potting", "position", "safety")
 SAMPLES = 24  # how often the best stroke at a called pot is played
-SLOW, FAST, TIP = (
-    0.8,
-    4.5,
-    0.35,
-)  # of the strokes tried there: cue speeds [m/s], the largest height of the tip over R
+SLOW, FAST, TIP = 0.8, 4.5, 0.35
+"""Of the strokes tried there: cue speeds [m/s], the largest height of the tip over R."""
 
 
 def lost(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, Ints]:

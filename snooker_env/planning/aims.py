@@ -111,7 +111,7 @@ def pot_aim(
     Returns
     -------
     numpy.ndarray
-        float64 (n,). Directions [rad], anticlockwise from +x, as ``actions_of`` takes them.
+        float64 (n,). Directions [rad], anticlockwise from +x, as the aims of strokes.
 
     Examples
     --------
@@ -150,10 +150,11 @@ def solved_aims(
     else:
         behind = array("ghosts", ghosts, (n, 2))
     played, aims = np.zeros((n, COLUMNS)), np.empty(n)
-    if np.ndim(strokes) == 2:
+    depth = np.ndim(strokes)  # type: ignore[arg-type]
+    if depth == 2:
         played[:] = array("strokes", strokes, (n, COLUMNS))
     else:
-        played[:, SPEED] = array("strokes", strokes, (n,) if np.ndim(strokes) else ())
+        played[:, SPEED] = array("strokes", strokes, (n,) if depth else ())
     most = (np.inf, offset, offset, np.inf, STEEPEST_CUE)
     check_columns(played, (0.0, -offset, -offset, -np.inf, 0.0), most)
     _pot_aim(at.positions, at.on_table, which, ids, to, behind, played, law_of(dynamics, at), aims)

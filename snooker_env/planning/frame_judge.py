@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import integer
+from .._check import integer, refuse_what
 from .._types import Bools, Environment, Floats, Ints
 from ..game import frame_columns as columns
 from ..tasks.noise import Noise, NoiseLike
@@ -44,8 +44,25 @@ def scaled(plan: Plan, share: float) -> Plan:
 
 
 class FrameJudge:
-    """Judges strokes by the ``worth`` of the positions that they leave, and by the ``chance`` to win of an expected lead
-    (None: points alone count). ``noise`` and ``threads`` are as for ``Planner``."""
+    """Judges strokes by the positions of a frame that they leave.
+
+    Parameters
+    ----------
+    env_or_options : Env, VectorEnv, AECEnv, Options or dict
+        Where strokes are played, see ``Planner``; the rules of frames count, too.
+    worth : callable
+        Points that the strikers of n ``Positions`` will score in the rest of the frame less the others': (n,).
+    chance : Chance, optional
+        The law of the chance to win of an expected lead, see ``planning.worth``. None (default): points alone count.
+    noise, threads : optional
+        As for ``Planner``.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import FrameJudge, prospects_of
+    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, 1e-3)[0]).shots
+    0
+    """
 
     least = 30
 
@@ -72,6 +89,12 @@ class FrameJudge:
 
     def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
         """See ``Judge.plans``: one where a likely pot makes the decision easy, one elsewhere."""
+        if not at.of_frames:
+            raise refuse_what("positions", "those of visits", "must be of frames, or judged by a VisitJudge")
+        if len(search.propose) != 1:
+            raise refuse_what(
+                "propose", f"{len(search.propose)} generators", "must be one: of strokes at pots"
+            )
         easy, hard = (scaled(plan, search.budget / BUDGET) for plan in PLANS)
         if self.noise.silent:
             easy, hard = easy._replace(rounds=()), hard._replace(rounds=())

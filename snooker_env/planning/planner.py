@@ -207,8 +207,7 @@ class Planner:
         visits.step(told, np.zeros(n, np.bool_), out, self._threads)
         with self._lock:
             self._shots += n
-        counts = (out.counts[:, column].copy() for column in (I_PENALTY, I_FIRST))
-        penalty, first = counts
+        penalty, first = (out.counts[:, column].copy() for column in (I_PENALTY, I_FIRST))
         points = out.reals[:, I_POINTS].copy()
         where = visits.places, visits.potted
         return Outcomes(points, penalty, ~after.over, first, *where, after, out.observations)

@@ -7,11 +7,12 @@
    ``PRIOR`` of them. Without execution errors nothing is sampled."""
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from .._check import integer
+from .._check import integer, refuse_what
 from .._types import Bools, Floats, Integers, Ints
 from ..tasks.options import Rules
 from .aims import Dynamics
@@ -122,7 +123,7 @@ class Search:
     budget : int, optional
         Simulated shots of a decision: at most in visits, at least 8; on average in frames, at least 30. Default 120.
     propose : callable or sequence of callable, optional
-        Generators of strokes at pots, ``propose(search, at, m, seeds)`` -> ``Proposals``. Default: ``at_pots``.
+        Generators of strokes at pots, ``propose(search, at, m, seeds)`` -> ``Proposals``; in frames one. Default: ``at_pots``.
 
     Examples
     --------
@@ -134,6 +135,8 @@ class Search:
     """
 
     def __init__(self, judge: Judge, budget: int = BUDGET, propose: Propose | Sequence[Propose] = at_pots):
+        if not hasattr(judge, "plans"):
+            raise refuse_what("judge", f"a {type(judge).__name__}", "must be a VisitJudge or a FrameJudge")
         self.judge = judge
         self.budget: int = integer("budget", budget, judge.least, MOST)
         self.propose: tuple[Propose, ...] = (propose,) if callable(propose) else tuple(propose)
@@ -180,9 +183,8 @@ class Search:
         tried = np.arange(chances.shape[1]) < counts[:, None]  # what was not tried is last
         flat = np.repeat(np.arange(len(at)), counts), order[tried]
         told = Strokes(strokes[flat])
-        ends = np.cumsum(counts).tolist()
         ranked = []
-        for start, end in zip([0, *ends[:-1]], ends, strict=True):
+        for start, end in pairwise([0, *np.cumsum(counts).tolist()]):
             which = flat[0][start:end], flat[1][start:end]
             figures = scores[which], points[which], samples[which], kinds[which]
             ranked.append(Ranked(told[start:end], *figures))

@@ -19,6 +19,7 @@ from ..physics.cue import squirt
 from ..physics.cue_room import NO_RAILS
 from ..tasks import stroke
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions
+from ..tasks.carry_out import sayings
 from ..tasks.declarations import A_END_MASS, CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.discrete_actions import SIZE, masks
 from ..tasks.options import Options, Rules
@@ -100,6 +101,8 @@ class Strokes:
 
     def __getitem__(self, rows: Any) -> "Strokes":
         """Some of the strokes: ``rows`` is a slice, a mask or an array of rows."""
+        if isinstance(rows, int | np.integer):
+            raise refuse("rows", rows, "must be a slice, a mask or an array of rows")
         return self._of(part[rows] for part in self.parts)
 
     @classmethod
@@ -144,14 +147,18 @@ class Strokes:
         """Elevations of the cue [rad], float64 (n,)."""
         return self.values[:, ELEVATION]
 
-    def actions(self, options: Options, at: Positions) -> Floats:
+    def actions(self, options: Options, positions: PositionsLike) -> Floats:
         """Convert to actions of an environment, with all that is said: float64 (n, k) in [-1, 1].
 
-        ``options``: of the environment, with ``action="box"``. ``at``: the n positions, on which the meaning of a place,
-        a nomination and an aim from a target line depends. ValueError if the environment reads other actions, or a
+        ``options``: of the environment, with ``action="box"``. ``positions``: n of them, see ``Positions.of``, on which the
+        meaning of a place, a nomination and an aim from a target line depends. ValueError if the environment reads other actions, or a
         stroke, a decision or a declaration that they do not hold; a place and a nomination that they do not hold are
         left out."""
-        box = options.rules.actions
+        box, at = options.rules.actions, Positions.of(positions)
+        if len(at) != len(self):
+            raise refuse_what(
+                "positions", f"{len(at)} positions", f"must be {len(self)}, one for each stroke"
+            )
         if not isinstance(box, Actions):
             raise refuse("options.action", options.action, 'must be "box": choices hold a few strokes only')
         turns = self.aim / np.pi
@@ -192,7 +199,8 @@ class Strokes:
         """The component of an aim from the target line, on which an action with 0 there is played."""
         level = actions.clip(-1.0, 1.0)
         level[:, 3] = 0.0
-        lines = decode(rules, at, np.arange(len(at)), level)[0][:, AIM]
+        nominated = sayings(rules, level, at.game)[0] if at.of_frames else None
+        lines = decode(rules, at, np.arange(len(at)), level, nominated)[0][:, AIM]
         off = self.aim - lines
         off = (off - 2.0 * np.pi * np.round(off / (2.0 * np.pi))) / TARGET_SPAN
         if (far := np.abs(off) > 1.0 + 1e-9).any():

@@ -77,4 +77,7 @@ def shown(one: Ranked, said: Strokes) -> Ranked:
     says with the one that it plays (one row)."""
     m = min(RANKED, int((one.samples > 0).sum()) or len(one.samples))
     same = [np.repeat(part, m, 0) for part in said.parts[1:]]
-    return Ranked(Strokes(one.strokes.values[:m], *same), None if one.scores is None else one.scores[:m])
+    scores = None if one.scores is None else one.scores[:m]
+    return Ranked(
+        Strokes(one.strokes.values[:m], *same), scores, one.points[:m], one.samples[:m], one.kinds[:m]
+    )

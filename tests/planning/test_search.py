@@ -375,6 +375,7 @@ def test_other_wrong_arguments_are_refused():
         (lambda: search(noise="loud"), "noise = 'loud'"),
         (lambda: VisitJudge(3), "env_or_options = "),
         (lambda: search().rank(3, [1]), "positions = "),
+        (lambda: Search(OPTIONS), "judge = a dict: must be a VisitJudge or a FrameJudge"),
         *((lambda b=budget: search(b), f"budget = {budget!r}") for budget in (7, -1, 30.0, "30", None)),
     ):
         with pytest.raises(ValueError, match=f"^{complaint}"):

@@ -7,8 +7,10 @@ from positions import tables
 import snooker_env as sn
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import Planner, Position, Positions, Strokes, action_masks, pot_aim, pots
+from snooker_env.planning.strokes import decode
 from snooker_env.players import VISITS
 from snooker_env.tasks import choice_of
+from snooker_env.tasks.carry_out import sayings
 
 DISCRETE = {"action": "discrete"}
 
@@ -53,6 +55,7 @@ def test_a_stroke_of_a_speed_and_a_direction_is_what_it_says():
         {"aim": "absolute", "elevation": True, "layout": "break_off"},
         {"aim": "target", "placement": True, "elevation": True, "layout": "break_off"},
         {"aim": "target", "cue": "real", "layout": "random:6"},
+        {"aim": "target", "task": "frame", "placement": True, "decision": True},
     ],
 )
 def test_strokes_become_actions_that_mean_them(options):
@@ -72,6 +75,22 @@ def test_strokes_become_actions_that_mean_them(options):
         assert told[:, 0].tolist() == [-1.0, 1.0] and told[:, 3].tolist() == [1.0, -0.5]
 
 
+def test_an_aim_from_a_target_line_is_that_of_the_nominated_ball():
+    options = sn.Options(task="frame", aim="target", nominate=True)
+    env, rng = sn.SnookerEnv(options), np.random.default_rng(3)
+    colours = {"yellow": (0.3, 0.4), "blue": (0.0, 0.0), "pink": (-0.4, 0.7), "black": (0.5, 1.2)}
+    position = Position(cue=(0.1, -0.6), reds=[(-0.6, -0.2)], on="any_colour", **colours)
+    env.reset(seed=1, options={"position": position})
+    at = Positions.of(env)[np.zeros(20, int)]
+    actions = rng.uniform(-0.9, 0.9, (20, 5))
+    nominated, *_ = sayings(options.rules, actions, at.game)
+    assert len(set(nominated.tolist())) == 4
+    values, _ = decode(options.rules, at, np.arange(20), actions, nominated)
+    back = Strokes(values, nominate=nominated).actions(options, at)
+    assert np.allclose(back[:, :4], actions[:, :4], rtol=0, atol=1e-9)
+    assert np.array_equal(sayings(options.rules, back, at.game)[0], nominated)
+
+
 def test_what_an_action_cannot_hold_is_refused():
     at = Positions.of(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]))
     for stroke, options, complaint in (
@@ -85,6 +104,10 @@ def test_what_an_action_cannot_hold_is_refused():
     ):
         with pytest.raises(ValueError, match=f"^{complaint}"):
             Strokes([stroke]).actions(sn.Options(**options), at)
+    with pytest.raises(ValueError, match=r"^positions = 2 positions: must be 1, one for each stroke"):
+        Strokes([stroke]).actions(sn.Options(), at[[0, 0]])
+    with pytest.raises(ValueError, match=r"^rows = 0: must be a slice, a mask or an array of rows"):
+        Strokes([stroke])[0]
 
 
 def test_a_solved_aim_pots_where_the_straight_line_misses():

@@ -76,7 +76,7 @@ GOOD = (
     "states = sn.Positions.of([env.get_state(), env.get_state()])[:1]",
     "blue = sn.Positions.of([position, position])[1].blue",
     "aims = sn.planning.pot_aim(states, [0], [1], [(0.8, 0.8)], [[2.3, 0.1, 0.0, 0.0, 0.1]], physics='match')",
-    "strokes = sn.planning.Strokes([[3.6, 0.0, 0.25, aims[0], 0.0]])",
+    "strokes = sn.planning.Strokes(np.array([[3.6, 0.0, 0.25, aims[0], 0.0]]))",
     "acts: np.ndarray = strokes.actions(sn.Options(), states)",
     "apart = planner.play_strokes(states, [0], strokes.values, errors=np.zeros((1, 5))).places[0]",
     "best = sn.planning.Search(sn.planning.VisitJudge({'noise': 'club'}), 30).rank(states, [1])[0].strokes.speed",
