@@ -65,7 +65,7 @@ def pool_of(n, seed):
         for _ in range(8):
             every = np.arange(len(at))
             strokes = player.play(at, every + 64 * deal).values
-            stops = exact.stops(at, every, strokes=strokes)
+            stops = exact.play_strokes(at, every, strokes)
             for k in every.tolist():
                 ball = int(stops.first[k])
                 if ball > 0 and stops.potted[k, ball] >= 0 and not stops.penalty[k]:
@@ -73,7 +73,7 @@ def pool_of(n, seed):
                     ours = ball if ball > 15 else int(at.on_table[k, 1 : ball + 1].sum())
                     pool.append((at[k], strokes[k], ours, int(stops.potted[k, ball])))
             keys = np.random.default_rng((seed, deal, len(pool))).integers(0, 2**63, len(at))
-            stops = noisy.stops(at, every, strokes=strokes, keys=keys.astype(np.uint64))
+            stops = noisy.play_strokes(at, every, strokes, keys.astype(np.uint64))
             at = stops.afterstates[stops.goes_on]
             if not len(at):
                 break
@@ -107,7 +107,7 @@ def played(pool, rows, noise, rng):
     at = Positions.of([pool[k].position for k in rows])
     strokes = np.stack([pool[k].intended.numbers() for k in rows])
     z = rng.standard_normal((len(rows), 5))
-    stops = planner.stops(at, np.arange(len(rows)), strokes=strokes, errors=z)
+    stops = planner.play_strokes(at, np.arange(len(rows)), strokes, errors=z)
     balls, pockets = np.array([(pool[k].ball, pool[k].pocket) for k in rows]).T
     made = (stops.potted[np.arange(len(rows)), balls] == pockets) & (stops.penalty == 0)
     return executed(strokes, z, noise), made

@@ -25,7 +25,7 @@ from snooker_env.physics import conditions
 from snooker_env.physics.parameters import physics_with
 from snooker_env.planning import Positions
 from snooker_env.planning.planner import options_in
-from snooker_env.planning.strokes import AIM, SIDE
+from snooker_env.planning.stroke_columns import AIM, SIDE
 from snooker_env.players import Strokes
 
 from ._common.command import Command, at_least, run, save_json

@@ -17,7 +17,7 @@ import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.physics.impact import contact
-from snooker_env.planning import Planner, Positions, StrokeSearch, at_pots
+from snooker_env.planning import Planner, Positions, VisitJudge, at_pots
 
 from ._common.command import Command, at_least, run, save_json
 from .scene.models import SCENES
@@ -69,9 +69,9 @@ def played(at, rows, strokes, physics, errors, more):
         Planner({**options, "physics": {"preset": physics, "flight": flight}}) for flight in (False, True)
     )
     return (
-        flat.stops(at, rows, strokes=strokes, errors=errors),
-        flying.stops(at, rows, strokes=strokes, errors=errors),
-        flat.stops(at, rows, strokes=strokes, errors=more),
+        flat.play_strokes(at, rows, strokes, errors=errors),
+        flying.play_strokes(at, rows, strokes, errors=errors),
+        flat.play_strokes(at, rows, strokes, errors=more),
     )
 
 
@@ -79,8 +79,8 @@ def pots(tables, physics, rng, seed):
     """Strokes at pots: positions, rows, strokes."""
     env = sn.SnookerVectorEnv(tables, layout="opened", physics=physics, cue="real", noise="professional")
     env.reset(seed=list(range(seed, seed + tables)))
-    at, search = Positions.of(env), StrokeSearch(env)
-    strokes = at_pots(search, at, EACH, rng.integers(2**32, size=tables)).strokes
+    at = Positions.of(env)
+    strokes = at_pots(VisitJudge(env), at, EACH, rng.integers(2**32, size=tables)).strokes
     env.close()
     rows = np.repeat(np.arange(tables), EACH)
     flat = strokes.reshape(-1, 5)

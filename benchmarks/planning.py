@@ -24,7 +24,7 @@ from snooker_env._jit import ENTRIES
 from snooker_env.benchmark import play_visits
 from snooker_env.physics import engine
 from snooker_env.planning import Planner, Positions
-from snooker_env.planning.strokes import NO_NOISE, TrialVisits
+from snooker_env.planning.trials import NO_NOISE, TrialVisits
 from snooker_env.players.search import SearchPlayer
 from snooker_env.tasks import stroke, visit
 

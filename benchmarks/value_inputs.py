@@ -20,7 +20,7 @@ from torch import nn
 import snooker_env as sn
 from agents.learning.networks import CONTEXT, TableReader, ValueHead
 from agents.learning.value_network import ValueNetwork
-from snooker_env.planning import Positions, StrokeSearch
+from snooker_env.planning import Positions, Search, VisitJudge
 from snooker_env.planning.learned.pot_view import VIEW_SPACE, with_pots
 from snooker_env.planning.learned.value_features import value_features
 
@@ -57,7 +57,8 @@ class Features(nn.Module):
 
 def examples(many, seed):
     """Positions of visits, the targets, and which table each is from."""
-    search, rng = StrokeSearch({"noise": "professional"}, 60), np.random.default_rng(seed)
+    judge, rng = VisitJudge({"noise": "professional"}), np.random.default_rng(seed)
+    search = Search(judge, 60)
     at, targets, tables, first = [], [], [], 0
     while sum(map(len, targets)) < many:
         env = sn.SnookerVectorEnv(TABLES, noise="professional")
@@ -65,11 +66,13 @@ def examples(many, seed):
         now, running = Positions.of(env), np.arange(first, first + TABLES)
         first += TABLES
         while len(running):
-            strokes = search.rank(now, rng.integers(2**32, size=len(now))).strokes[:, 0]
+            ranked = search.rank(now, rng.integers(2**32, size=len(now)))
+            strokes = np.stack([one.strokes.values[0] for one in ranked])
             rows = np.repeat(np.arange(len(now)), SAMPLES)
-            out = search.outcomes(now, rows, strokes[rows], rng.standard_normal((len(rows), 5)))
+            errors = rng.standard_normal((len(rows), 5))
+            out = judge.planner.play_strokes(now, rows, strokes[rows], errors=errors)
             gains, on = out.points.copy(), np.flatnonzero(out.goes_on)
-            gains[on] += search.value(out.afterstates[on])
+            gains[on] += judge.value(out.afterstates[on])
             at.append(now)
             targets.append(gains.reshape(-1, SAMPLES).mean(1))
             tables.append(running)
@@ -82,7 +85,7 @@ def examples(many, seed):
         Positions(positions, on_table, game),
         np.concatenate(targets).astype(np.float32),
         np.concatenate(tables),
-        search.spread,
+        judge.spread,
     )
 
 

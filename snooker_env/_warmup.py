@@ -42,7 +42,16 @@ def warmup() -> None:
     from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
-    from .planning import Planner, Position, Positions, StrokeSearch, clear_paths, obstructions, prospects_of
+    from .planning import (
+        Planner,
+        Position,
+        Positions,
+        Search,
+        VisitJudge,
+        clear_paths,
+        obstructions,
+        prospects_of,
+    )
     from .planning import pots as direct_pots
     from .planning.proposals import at_balls, over_cushions
     from .planning.worth import best_places, decide
@@ -105,9 +114,9 @@ def warmup() -> None:
             player(name).at({"task": "frame", "noise": "club", "miss": "clear_path"}).play(both, [0])
         decide(lambda some: np.zeros(len(some)), both)
         best_places(lambda some: np.zeros(len(some)), both)
-        search = StrokeSearch({"noise": "club"}, budget=30)
+        search = Search(VisitJudge({"noise": "club"}), budget=30)
         search.rank(at, seeds=[0])
-        search.planner.play(at, [0], strokes=[[1.0, 0.0, 0.0, 0.0, 0.0]], keys=[0])
+        Planner({"noise": "club"}).play_strokes(at, [0], [[1.0, 0.0, 0.0, 0.0, 0.0]], [0])
         for generate in (at_balls, over_cushions):
             generate(search, at, 1, [0])
         for call in (direct_pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):

@@ -59,10 +59,8 @@ class Likeliest(ChoicePlayer):
     def _share(self, at, rows, columns, n, rng):
         """How often each of these choices scores in n tries, all with the same errors."""
         keys = rng.integers(0, 2**64 - 1, n, dtype=np.uint64)
-        points = self._tries.play(
-            at, np.repeat(rows, n), np.repeat(PICKS[columns], n), np.tile(keys, len(rows))
-        )[0]
-        return (points > 0).reshape(-1, n).mean(axis=1)
+        rows, picks, keys = np.repeat(rows, n), np.repeat(PICKS[columns], n), np.tile(keys, len(rows))
+        return (self._tries.play(at, rows, picks, keys).points > 0).reshape(-1, n).mean(axis=1)
 
 
 class WidestPot(ChoicePlayer):

@@ -1,12 +1,10 @@
 """What do strokes cost a player? Points of a frame lost by potting, position and safety (docs/play/coach.md)."""
 
-from typing import Any
-
 import numpy as np
 
 from .._types import Floats, Ints
-from ..planning import Positions, pots
-from ..planning.proposals import strokes_at
+from ..planning import Positions, Proposals, Search, pots
+from ..planning.proposals import Asking, strokes_at
 from ..planning.sobol import sobol_points
 from ..planning.worth import lead_of, passed
 from .judging import joined
@@ -14,9 +12,9 @@ from .practice import JUDGING, Practice, keys, one_position
 from .recorded import Recorded
 
 PARTS = ("potting", "position", "safety")
-# Strokes tried at a called pot, the best of them, how often these are played
-LOOKS, BEST, SAMPLES = 24, 4, 24
-SLOW, FAST, TIP = 0.8, 4.5, 0.35  # of these strokes: cue speeds [m/s], the largest height of the tip over R
+SAMPLES = 24  # how often the best stroke at a called pot is played
+SLOW, FAST, TIP = 0.8, 4.5, 0.35
+"""Of the strokes tried there: cue speeds [m/s], the largest height of the tip over R."""
 
 
 def lost(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, Ints]:
@@ -63,33 +61,26 @@ def values(bench: Practice, strokes: list[Recorded]) -> Floats:
 
 def best_at(bench: Practice, at: Positions, one: Recorded, seed: int) -> tuple[float, float, float] | None:
     """The target's best stroke at the called pot: chance, worth if made and if missed; None if not direct."""
-    direct = pots(at, 16)
+    direct, judge = pots(at, 16), bench.judge
     which = np.flatnonzero((direct.ball[0] == one.ball) & (direct.pocket[0] == one.pocket))
     if not len(which):
         return None
-    u = sobol_points(LOOKS, 2, seed)
-    tips = np.column_stack([SLOW * (FAST / SLOW) ** u[:, 0], np.zeros(LOOKS), TIP * (2.0 * u[:, 1] - 1.0)])
-    asked, before, each = bench.judge, lead_of(at), np.full((1, LOOKS), which[0])
-    proposed = strokes_at(at.as_visits(), each, tips[None], asked.spread, asked.dynamics)
-    strokes, chances = proposed.strokes[0], proposed.chances[0]
 
-    def outcomes(tried: Floats, samples: Any) -> tuple[Any, Floats]:
-        rows = np.zeros(len(tried), np.int64)
-        stops = bench.play(at, rows, tried, samples)
-        went = (stops.potted[:, one.ball] == one.pocket) & (stops.penalty == 0)
-        return went, asked.valued(np.repeat(before, len(tried)), stops.afterstates)[:, 1]
+    def at_the_pot(asking: Asking, at: Positions, m: int, seeds: Ints) -> Proposals:
+        u = sobol_points(m, 2, seed)
+        tips = np.column_stack([SLOW * (FAST / SLOW) ** u[:, 0], np.zeros(m), TIP * (2.0 * u[:, 1] - 1.0)])
+        return strokes_at(at, np.full((1, m), which[0]), tips[None], asking.spread, asking.dynamics)
 
-    went, worth = outcomes(strokes, None)
-    looks = np.where(went, chances * worth, -np.inf)
-    best = np.argsort(-looks, kind="stable")[:BEST]
-    many = 1 if bench.sure else SAMPLES
-    samples = None if bench.sure else np.tile(keys(seed, JUDGING, many), len(best))
-    played = outcomes(np.repeat(strokes[best], many, 0), samples)
-    went, worth = (part.reshape(len(best), many) for part in played)
-    k = int(worth.mean(axis=1).argmax())
-    if not went[k].any():
+    (ranked,) = Search(judge, propose=at_the_pot).rank(at, [seed])
+    best = ranked.strokes[ranked.kinds == 0][:1].values
+    if not len(best):
         return None
-    made = float(worth[k][went[k]].mean())
+    many = 1 if bench.sure else SAMPLES
+    stops = bench.play(at, np.zeros(many, np.int64), np.repeat(best, many, 0), keys(seed, JUDGING, many))
+    went = (stops.potted[:, one.ball] == one.pocket) & (stops.penalty == 0)
+    if not went.any():
+        return None
+    worth = judge.valued(np.repeat(lead_of(at), many), stops.afterstates)[:, 1]
     # where it is never missed: a miss would leave the balls about as they lie
-    left = float(worth[k][~went[k]].mean()) if not went[k].all() else -float(asked.worth(passed(at))[0])
-    return float(went[k].mean()), made, left
+    left = float(worth[~went].mean()) if not went.all() else -float(judge.worth(passed(at))[0])
+    return float(went.mean()), float(worth[went].mean()), left

@@ -16,8 +16,8 @@ from .._check import integer, refuse_what
 from .._types import Floats
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
 from ..planning import Positions
+from ..planning.aims import STEEPEST_CUE
 from ..planning.sobol import sobol_points
-from ..planning.strokes import STEEPEST_CUE
 from ..tasks.noise import LEVELS, POT_SPEED, TWICE, Noise
 from .practice import Practice, practice_of
 from .recorded import CALLED, Recorded, agreed, direction_of, squirted
@@ -441,7 +441,7 @@ def tolerances(strokes: list[Recorded], practice: Practice, seed: int) -> Pots:
     errors = (RADII[:, None, None] * ways[:, None]).reshape(-1, 5)
     at = Positions.of([one.position for one in called])
     each = np.repeat(np.arange(len(called)), many)
-    stops = practice.noisy.stops(at, each, strokes=meant[each], errors=errors)
+    stops = practice.noisy.play_strokes(at, each, meant[each], errors=errors)
     balls, pockets = np.array([(one.ball, one.pocket) for one in called]).T
     went = (stops.potted[np.arange(len(each)), balls[each]] == pockets[each]) & (stops.penalty == 0)
     shares = went.reshape(len(called), len(RADII), WAYS).mean(axis=2)

@@ -9,8 +9,8 @@ import numpy as np
 from .._types import Floats, Ints
 from ..game import frame_columns as columns
 from ..game.balls import CUE
-from ..planning import Positions, Stops, clear_paths, obstructions
-from ..planning.frame_trials import turned
+from ..planning import Outcomes, Positions, clear_paths, obstructions
+from ..planning.trials import turned
 from ..planning.worth import chosen, lead_of
 from ..players.player import placed
 from .practice import Practice
@@ -31,7 +31,7 @@ class Outlook(NamedTuple):
 
 
 def outlooks(
-    practice: Practice, starts: Positions, each: Ints, stops: Stops, n: int, visits: int, seed: int
+    practice: Practice, starts: Positions, each: Ints, stops: Outcomes, n: int, visits: int, seed: int
 ) -> list[Outlook]:
     """The outlook of n strokes: ``each`` (n * tries,) says which; ``visits`` are played to their end."""
     after = stops.afterstates
@@ -71,7 +71,7 @@ def met(after: Positions) -> Positions:
     return placed(chosen(turned(after), columns.PLAY), np.zeros(len(after), np.int64))[0]
 
 
-def lies(stops: Stops) -> list[str]:
+def lies(stops: Outcomes) -> list[str]:
     """Where strokes that leave the table to the other put the cue ball, in words; "" elsewhere."""
     out, after = [""] * len(stops.first), stops.afterstates
     rows = np.flatnonzero(others_next(after) & (stops.penalty == 0))

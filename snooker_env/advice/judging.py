@@ -10,7 +10,7 @@ from .._types import Bools, Floats
 from ..game.balls import CUE
 from ..game.frame_columns import Layouts
 from ..geometry import BALL_RADIUS
-from ..planning import Positions, Stops, clear_paths
+from ..planning import Outcomes, Positions, clear_paths
 from . import words as say
 from .frames import Outlook, Z, lies, outlooks, rest_of
 from .practice import JUDGING, Practice, keys, played_from
@@ -77,7 +77,7 @@ def joined(positions: list[Positions]) -> Positions:
 
 
 def _trial(
-    practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: Any, lie: str
+    practice: Practice, starts: Positions, trial: Outcomes, k: int, stroke: CueStroke, hidden: Any, lie: str
 ) -> Tried:
     """Stroke k; ``hidden``: no straight path leads to a ball on; ``lie``: where it leaves the cue ball, in words."""
     room = room_for(stroke.numbers(), starts[k : k + 1], practice.options.rules)

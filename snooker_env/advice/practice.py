@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from .._check import choice, integer, refuse, refuse_what
-from .._types import Floats
+from .._types import Floats, Words
 from ..game import frame_columns as columns
 from ..game.in_hand import place_cue
-from ..planning import RULE_OF_THUMB, SURE, Planner, Positions, Stops, prospects_of, spread_of
-from ..planning.frame_search import LEAST, FrameSearch
+from ..planning import FrameJudge, Outcomes, Planner, Positions, Search, VisitJudge
 from ..planning.positions import bare
 from ..planning.worth import chosen
 from ..players.seen import begun
@@ -25,6 +24,7 @@ from .strokes import CueStroke
 PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")  # of the table
 FRAME_OPTIONS = tuple(Options.group("frame"))  # those that count as well where a position is of a frame
 MOST_SCORE = 1000  # largest score of a player in a position of a frame
+QUICK = 30  # simulated shots of a decision of the player that plays visits on
 JUDGING, GOING_ON = 1, 2  # of noise samples: those that chose a stroke do not judge it, for it may be lucky
 
 
@@ -35,24 +35,26 @@ class Practice:
         self.options = options
         self.noisy: Planner = Planner(options)
         self.exact: Planner = Planner(options, noise="none")
-        physical: Any = {name: getattr(options, name) for name in PHYSICAL_OPTIONS}
-        self._choices = Planner(Options(action="discrete", **physical))
         self.noise: Noise = options.rules.noise
         self.sure: bool = self.noise.silent
-        self._spread = spread_of(self.noise, options.rules.physics)
 
     @cached_property
-    def judge(self) -> FrameSearch:
+    def judge(self) -> FrameJudge:
         """Plays strokes of frames and knows what is worth what in them: the same for all players."""
-        return Tactician(LEAST).at(self.options).search
+        return Tactician().at(self.options).judge
 
-    def play(self, at: Positions, rows: Any, strokes: Floats, keys: Any = None) -> Stops:
+    @cached_property
+    def quick(self) -> Search:
+        """A fast search, with which visits are played on."""
+        return Search(VisitJudge(self.options), QUICK)
+
+    def play(self, at: Positions, rows: Any, strokes: Floats, keys: Words | None = None) -> Outcomes:
         """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without.
 
         Of positions of frames the points, the penalty and what is left are those of a frame, and whoever played is
         still player 0 in ``afterstates``. Kicks (``Noise.kick``) do not change what is left."""
         planner = self.exact if keys is None else self.noisy
-        stops = planner.stops(at, rows, strokes=strokes, keys=None if self.sure else keys)
+        stops = planner.play_strokes(at, rows, strokes, None if self.sure else keys)
         if not at.of_frames:
             return stops
         errors = np.zeros_like(strokes)
@@ -67,15 +69,6 @@ class Practice:
             goes_on=stays,
             afterstates=after,
         )
-
-    def chosen(self, at: Positions, rows: Any, choices: Any) -> Floats:
-        """The strokes (n, 5) that choices of ``action="discrete"`` mean on ``at[rows]``."""
-        return self._choices.strokes_of(at, rows, choices)[0]
-
-    def prospects(self, at: Positions) -> tuple[Floats, Floats]:
-        """Values of positions for this player by the rule of thumb, and chances of their four widest pots."""
-        rule, rails = SURE if self.sure else RULE_OF_THUMB, self.options.rules.rails
-        return prospects_of(at, self._spread, rule, threads=self.exact.threads, rails=rails)
 
 
 def practice_of(noise: Any, options: Any = None, source: Any = None, *, of_frames: bool = False) -> Practice:

@@ -2,20 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
+from functools import partial
 from math import hypot
 from typing import Any, TypeAlias, overload
 
 import numpy as np
 
 from .._check import array, choice, number, refuse_what
-from .._types import Floats, Place, Singles
+from .._types import Floats, Place
 from ..game.in_hand import within_d
-from ..physics.parameters import Physics
 from ..planning import Position, Positions
-from ..planning.strokes import FARTHEST, encoded
-from ..players import Strokes
+from ..planning.stroke_columns import FARTHEST, LEAST, MOST, NAMES
+from ..planning.strokes import Strokes
 from ..replays.words import errors_words
-from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, Actions
 from .room import Room
 
 
@@ -53,15 +52,12 @@ class CueStroke:
     place: Place | None = None
 
     def __post_init__(self) -> None:
-        put: Any = lambda name, value: object.__setattr__(self, name, value)  # noqa: E731
-        put("speed", number("speed", self.speed, MIN_SPEED, MAX_SPEED))
-        put("aim", number("aim", self.aim))
-        for name in ("side", "top"):
-            put(name, number(name, getattr(self, name), -FARTHEST, FARTHEST))
+        put = partial(object.__setattr__, self)
+        for name, least, most in zip(NAMES, LEAST, MOST, strict=True):
+            put(name, number(name, getattr(self, name), least, most))
         if hypot(self.side, self.top) > FARTHEST + 1e-9:
             allowed = f"must lie within the disc of radius {FARTHEST}"
             raise refuse_what("side, top", f"({self.side:g}, {self.top:g})", allowed)
-        put("elevation", number("elevation", self.elevation, 0.0, STEEPEST))
         if self.place is not None:
             put("place", tuple(array("place", self.place, (2,)).tolist()))
             if not within_d(*self.place):
@@ -96,15 +92,11 @@ class CueStroke:
         """Return float64 (5,): speed [m/s], side, top, aim [rad], elevation [rad]."""
         return np.array([self.speed, self.side, self.top, self.aim, self.elevation])
 
-    def action(self, *, elevation: bool = False, placement: bool = False, decision: bool = False) -> Singles:
-        """Return the stroke as an action of an environment with ``aim="absolute"``: float32 (k,) in [-1, 1].
-
-        ``elevation``, ``placement``, ``decision``: whether the action holds these. Without a place the cue
-        ball is put in the middle of the baulk line; the decision is to play. ValueError for a raised cue
-        that the action does not hold."""
-        form = Actions("absolute", elevation, placement, Physics(), ("decision",) if decision else ())
-        places = None if self.place is None else [self.place]
-        return encoded(form, self.numbers()[None], places)[0].astype(np.float32)
+    def strokes(self) -> Strokes:
+        """Return the stroke as ``Strokes`` of one row; their ``actions(env.options, position)`` is what an environment reads."""
+        return Strokes(
+            self.numbers()[None], np.array([(np.nan, np.nan) if self.place is None else self.place])
+        )
 
 
 StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any  # what ``CueStroke.of`` takes

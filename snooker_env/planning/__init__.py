@@ -3,27 +3,32 @@
 A planner works in two steps:
 
 1. Find strokes: ``pots``, ``action_masks``, ``obstructions``, ``clear_paths``, ``pot_aim``. A stroke is five
-   numbers in SI: cue speed, side, top, direction of the cue ball, elevation. ``Planner.strokes_of`` and
-   ``Planner.actions_of`` decode and encode actions.
-2. Play them: ``Planner.play`` returns points and afterstates; ``Planner.stops`` also returns where each ball
-   stopped.
+   numbers in SI: cue speed, side, top, direction of the cue ball, elevation. ``Strokes.actions`` encodes strokes as
+   actions, ``Planner.strokes_of`` decodes actions.
+2. Play them: ``Planner.play`` plays actions, ``Planner.play_strokes`` strokes; both return points, afterstates and
+   where each ball stopped.
 
-The caller assigns a value to each afterstate. ``prospects_of`` is a rule of thumb for that.
+The caller assigns a value to each afterstate; ``prospects_of`` is a rule of thumb for that. ``Search`` does all of this: it
+returns the best strokes as a judge sees them, of visits (``VisitJudge``) or of frames (``FrameJudge``).
 """
 
 from ..tasks.threads import processors
+from .aims import pot_aim
+from .frame_judge import FrameJudge
 from .geometry import Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
 from .proposals import Proposals, at_pots
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
-from .stroke_search import Ranked, StrokeSearch
-from .strokes import Stops, action_masks, actions_of, as_actions, pot_aim
+from .search import Ranked, Search
+from .strokes import Strokes, action_masks
+from .visit_judge import VisitJudge
 
 __all__ = [
     "RULE_OF_THUMB",
     "SURE",
+    "FrameJudge",
     "Outcomes",
     "Planner",
     "Position",
@@ -31,11 +36,10 @@ __all__ = [
     "Pots",
     "Proposals",
     "Ranked",
-    "Stops",
-    "StrokeSearch",
+    "Search",
+    "Strokes",
+    "VisitJudge",
     "action_masks",
-    "actions_of",
-    "as_actions",
     "at_pots",
     "clear_paths",
     "obstructions",

@@ -10,38 +10,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import array, integer, refuse, refuse_what
-from .._types import Environment, Integers, Scalars, Vectors
+from .._types import Environment, Floats, Integers, Ints, Scalars, Vectors, Words
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..tasks.box_actions import Actions
 from ..tasks.noise import Noise, NoiseLike, errors_of
 from ..tasks.observations import OBSERVATIONS
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
-from ..tasks.tables import I_FIRST, I_PENALTY
+from ..tasks.tables import I_FIRST, I_PENALTY, I_POINTS
 from ..tasks.threads import Threads, processors
+from .aims import Dynamics, solved_aims
 from .positions import Positions, PositionsLike, bare, check_played, rows_of
-from .strokes import (
-    AIM,
-    Dynamics,
-    Stops,
-    TrialVisits,
-    WatchedVisits,
-    check_strokes,
-    decoded,
-    encoded,
-    solved_aims,
-)
-from .strokes import COLUMNS as STROKE
+from .stroke_columns import COLUMNS
+from .strokes import check_strokes, decode
+from .trials import TrialVisits
 
 
 class Outcomes(NamedTuple):
-    """What n strokes led to, as returned by ``Planner.play``.
+    """What n strokes led to, as ``Planner.play`` and ``Planner.play_strokes`` return it.
 
     Attributes
     ----------
-    points, goes_on : numpy.ndarray
-        float64 (n,), points scored, 0 for a miss or a foul; bool (n,), whether the visit continues.
+    points, penalty : numpy.ndarray
+        float64 (n,), points scored, 0 for a miss or a foul; int64 (n,), penalty points of a foul, or 0.
+    goes_on : numpy.ndarray
+        bool (n,). Whether the visit continues after the stroke.
+    first : numpy.ndarray
+        int64 (n,). Id of the ball struck first (the lowest of several at once); -1 if none was.
+    places, potted : numpy.ndarray
+        float64 (n, 22, 2), centres at rest [m] before colours are respotted, of a potted ball where it fell;
+        int64 (n, 22), pocket of each ball, an index into ``snooker_env.POCKETS``, or -1.
     afterstates : Positions
         n rows: the balls at rest, with colours respotted, and the ball on for the next stroke.
     observations : numpy.ndarray
@@ -51,12 +49,16 @@ class Outcomes(NamedTuple):
     --------
     >>> from snooker_env.planning import Planner, Position
     >>> outcomes = Planner({"action": "discrete"}).play(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0], [67])
-    >>> outcomes.points.tolist(), outcomes.goes_on.tolist(), outcomes.afterstates.over.tolist()
-    ([7.0], [False], [True])
+    >>> outcomes.points.tolist(), outcomes.goes_on.tolist(), int(outcomes.first[0]), int(outcomes.potted[0, 21])
+    ([7.0], [False], 21, 3)
     """
 
     points: NDArray[np.float64]
+    penalty: NDArray[np.int64]
     goes_on: NDArray[np.bool_]
+    first: NDArray[np.int64]
+    places: NDArray[np.float64]
+    potted: NDArray[np.int64]
     afterstates: Positions
     observations: NDArray[np.float32]
 
@@ -108,7 +110,7 @@ class Planner:
         self._rules = replace(rules, noise=errors, **plain)
         usual = min(1024, processors())
         self._threads = Threads(usual if threads is None else integer("threads", threads, 1, 1024))
-        self._visits, self._watched = TrialVisits(self._rules, 0), WatchedVisits(self._rules, 0)
+        self._visits = TrialVisits(self._rules, 0)
         self._lock = threading.Lock()
         self._shots = 0
 
@@ -146,70 +148,69 @@ class Planner:
         self,
         positions: PositionsLike,
         rows: Integers,
-        actions: Vectors | Integers | None = None,
+        actions: Vectors | Integers,
         keys: Integers | Sequence[Integers] | None = None,
-        *,
-        strokes: Vectors | None = None,
-        errors: Vectors | None = None,
     ) -> Outcomes:
-        """Play n strokes, each on a copy of its position, and return ``Outcomes``.
+        """Play n actions, each on a copy of its position, and return ``Outcomes``.
 
-        ``rows`` int (n,): row of the m ``positions`` (see ``Positions.of``) for each stroke. What is played
-        is either ``actions``, float (n, k), or int (n,) with ``action="discrete"``; or ``strokes``, float (n,
-        5) in SI, with a cue ball in hand played from where it lies. The errors are drawn by ``keys``, int
-        (n,) in [0, 2**64), or (n, 2) with a counter as a saved state has them: equal keys give equal errors
-        for every stroke (common random numbers). Or they are ``errors``, float (n, 5) in standard deviations,
-        of speed, side, top, aim and elevation, and no kicks. Without noise neither is needed.
+        ``rows`` int (n,): row of the m ``positions`` (see ``Positions.of``) for each action. ``actions``: float (n, k),
+        or int (n,) with ``action="discrete"``. The errors are drawn by ``keys``, int (n,) in [0, 2**64), or (n, 2) with a
+        counter as a saved state has them: equal keys give equal errors for every stroke (common random numbers).
+        Without noise no keys are needed.
 
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
         SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
-        after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors)
-        return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
+        at, which = self._asked(positions, rows)
+        told = self._rules.actions.check_many(actions, len(which))
+        return self._played(at[which], told, _streams(keys, len(which), self.noise.silent), None)
 
-    def stops(
+    def play_strokes(
         self,
         positions: PositionsLike,
         rows: Integers,
-        actions: Vectors | Integers | None = None,
+        strokes: Vectors,
         keys: Integers | Sequence[Integers] | None = None,
         *,
-        strokes: Vectors | None = None,
         errors: Vectors | None = None,
-    ) -> Stops:
-        """Play n strokes as ``play`` does, and return where each ball stopped: ``Stops`` with n rows."""
-        visits = copy.copy(self._watched)
-        exact: Any = {"strokes": strokes, "errors": errors}
-        after, out = self._played(positions, rows, actions, keys, **exact, visits=visits)
-        first, penalty = out.counts[:, I_FIRST].copy(), out.counts[:, I_PENALTY].copy()
-        return Stops(visits.places, visits.potted, first, out.reals[:, 0].copy(), penalty, ~after.over, after)
+    ) -> Outcomes:
+        """Play n strokes, float (n, 5) in SI, as ``play`` does actions; a cue ball in hand is played from where it lies.
 
-    def _played(self, positions, rows, actions=None, keys=None, *, strokes=None, errors=None, visits=None):
-        """Play the checked strokes on ``visits`` to be filled: the afterstates, and the step's output."""
+        The errors are drawn by ``keys``, or they are ``errors``, float (n, 5) in standard deviations, of speed, side, top,
+        aim and elevation, and no kicks."""
+        at, which = self._asked(positions, rows)
+        n = len(which)
+        told, streams = check_strokes(strokes, n), _streams(keys, n, self.noise.silent or errors is not None)
+        if errors is not None:
+            if keys is not None:
+                raise refuse_what(
+                    "keys, errors", "both", "must be one of them: the errors are drawn or passed"
+                )
+            return self._played(at[which], told, streams, array("errors", errors, (n, COLUMNS)))
+        drawn = np.zeros((n, COLUMNS)) if self.noise.silent else errors_of(streams)
+        return self._played(at[which], told, streams, drawn, self.noise.kick)
+
+    def _asked(self, positions: PositionsLike, rows: Integers) -> tuple[Positions, Ints]:
+        """The positions as visits, and the checked rows."""
         at = Positions.of(positions).as_visits().known_to(self._rules)
         which = rows_of(at, rows)
-        n = len(which)
-        if (actions is None) == (strokes is None):
-            what = "none" if actions is None else "both"
-            raise refuse_what("actions, strokes", what, "must be one of them: what is played")
-        played = self._rules.actions.check_many(actions, n) if strokes is None else check_strokes(strokes, n)
-        streams = _streams(keys, n, self.noise.silent or errors is not None)
-        if errors is not None and keys is not None:
-            raise refuse_what("keys, errors", "both", "must be one of them: the errors are drawn or passed")
-        wrong = None if errors is None else array("errors", errors, (n, STROKE))
         check_played(at, which, self.table, self.physics.R)
-        after = at[which]  # a visit is played in place: each row becomes its afterstate
-        if strokes is not None and wrong is None:
-            wrong = np.zeros((n, STROKE)) if self.noise.silent else errors_of(streams)
-        elif strokes is None and wrong is not None:
-            played, after = decoded(self._rules, at, which, played)
-        visits = copy.copy(self._visits) if visits is None else visits
-        visits.kick = self.noise.kick if errors is None else 0.0
-        visits.lay(after, streams, wrong)
-        out = visits.output()
-        visits.step(played, np.zeros(n, np.bool_), out, self._threads)
+        return at, which
+
+    def _played(
+        self, after: Positions, told: Floats, streams: Words, errors: Floats | None, kick: float = 0.0
+    ) -> Outcomes:
+        """Play checked actions, or strokes under ``errors``, on ``after``, which is played in place."""
+        visits = copy.copy(self._visits)
+        visits.kick = kick
+        visits.lay(after, streams, errors)
+        out, n = visits.output(), len(told)
+        visits.step(told, np.zeros(n, np.bool_), out, self._threads)
         with self._lock:
             self._shots += n
-        return after, out
+        penalty, first = (out.counts[:, column].copy() for column in (I_PENALTY, I_FIRST))
+        points = out.reals[:, I_POINTS].copy()
+        where = visits.places, visits.potted
+        return Outcomes(points, penalty, ~after.over, first, *where, after, out.observations)
 
     def strokes_of(
         self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers
@@ -220,33 +221,7 @@ class Planner:
         with a cue ball in hand on the place that the action names."""
         at = Positions.of(positions)
         which = rows_of(at, rows)
-        return decoded(self._rules, at, which, self._rules.actions.check_many(actions, len(which)))
-
-    def actions_of(
-        self,
-        strokes: Vectors,
-        *,
-        positions: PositionsLike | None = None,
-        rows: Integers | None = None,
-        places: Vectors | None = None,
-    ) -> NDArray[np.float64]:
-        """Encode strokes (n, 5) as actions of this planner's action space: float64 (n, k) in [-1, 1].
-
-        ``positions`` and ``rows``: where each is played, required with ``aim="target"``, which is measured
-        from a line there. ``places`` (n, 2) [m]: with ``placement=True``, where in the D a cue ball in hand
-        is placed, by default the middle of the baulk line. What actions say beside the stroke is 0: to play.
-        ValueError if a stroke is out of range or cannot be such an action."""
-        told, form = check_strokes(strokes), self._rules.actions
-        if not isinstance(form, Actions):
-            raise refuse("action", "discrete", 'must be "box": choices hold a few strokes only')
-        where = None if places is None else array("places", places, (len(told), 2))
-        if form.aim == "absolute":
-            return encoded(form, told, where)
-        if positions is None or rows is None:
-            allowed = 'must be given with aim="target", which is measured from a line in each position'
-            raise refuse("positions, rows", None, allowed)
-        lines, _ = self.strokes_of(positions, rows, encoded(form, told, where, told[:, AIM]))
-        return encoded(form, told, where, lines[:, AIM])
+        return decode(self._rules, at, which, self._rules.actions.check_many(actions, len(which)))
 
     def pot_aim(
         self,

@@ -11,8 +11,9 @@ strokes for each position that it has any for.
 * ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the
   models of the engine."""
 
+from collections.abc import Callable
 from math import atan2, erf, exp, hypot, log, pi, sqrt
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
@@ -31,10 +32,11 @@ from ..tasks.noise import POT_SPEED
 from ..tasks.pot_aim import solved_aim
 from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
+from .aims import Dynamics, law_of
 from .positions import Positions
 from .prospects import FAR, FOLLOWS, raised_spread
 from .sobol import sobol
-from .strokes import AIM, COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
+from .stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 
 SLOWEST, FASTEST, SOFTEST = 0.8, 6.5, 0.5
 """Cue speeds of the proposals at pots [m/s]; the smallest of strokes without a pot."""
@@ -53,15 +55,15 @@ ESCAPES, ANYWHERE, MOST_POTS = 8, 8, 16
 """Escapes that share strokes, every which over cushions goes anywhere; pots that share strokes."""
 
 
-class Search(Protocol):
-    """What a generator may ask a ``StrokeSearch``."""
+class Asking(Protocol):
+    """What a generator may ask of the search that calls it."""
 
-    spread: float
+    spread: float  # standard deviation of the cue ball's direction [rad]
     dynamics: Dynamics
 
 
 class Proposals(NamedTuple):
-    """m strokes for each of n positions, which a ``StrokeSearch`` then tries.
+    """m strokes for each of n positions, which a ``Search`` then tries.
 
     Attributes
     ----------
@@ -80,6 +82,10 @@ class Proposals(NamedTuple):
 
     strokes: Floats
     chances: Floats
+
+
+Propose: TypeAlias = Callable[[Asking, Positions, int, Ints], Proposals]
+"""A generator: proposals of m strokes for each position, of the search, the n positions, m and seeds (n,)."""
 
 
 @kernel
@@ -271,8 +277,8 @@ def _escapes(balls, seeds, law, strokes, chances):
 _SPREAD = np.empty((0, 0), np.int64)
 
 
-def at_pots(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
-    """Generate strokes spread over all direct pots, speeds and tips, for ``StrokeSearch``.
+def at_pots(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
+    """Generate strokes spread over all direct pots, speeds and tips, for a ``Search``.
 
     Parameters
     ----------
@@ -287,9 +293,9 @@ def at_pots(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals
 
     Examples
     --------
-    >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_pots
+    >>> from snooker_env.planning import Position, Positions, VisitJudge, at_pots
     >>> at = Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> at_pots(StrokeSearch({}), at, 5, [7]).strokes.shape
+    >>> at_pots(VisitJudge({}), at, 5, [7]).strokes.shape
     (1, 5, 5)
     """
     return _proposed(at, np.zeros((len(at), m, COLUMNS)), seeds, _SPREAD, search.spread, search.dynamics)
@@ -318,17 +324,17 @@ def _balls(at):
     return at.positions, at.on_table, at.game
 
 
-def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
+def at_balls(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
     """Strokes at the balls on that the cue ball can strike; none where no ball on is seen."""
     return _of_visits(_contacts, search, at, m, seeds, False)
 
 
-def safeties(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
+def safeties(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
     """Such strokes of all speeds, every other one thin; before a break-off the first one is the built-in break-off."""
     return _of_visits(_contacts, search, at, m, seeds, True)
 
 
-def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
+def over_cushions(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
     """Escapes over cushions, where hardly anything of a ball on is seen; none in other positions."""
     return _of_visits(_escapes, search, at, m, seeds)
 

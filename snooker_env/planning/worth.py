@@ -20,8 +20,8 @@ from ..game.balls import BLACK, CUE, N_BALLS, VALUES, available
 from ..game.sides import swapped
 from ..geometry import BAULK_Y, D_RADIUS
 from ..tasks.stroke import place
-from .frame_trials import turned
 from .positions import Positions
+from .trials import turned
 
 SPREAD, NARROWEST, WIDEST = 1.2e-3, 3.3e-4, 5e-3
 """An error of direction in the middle of those that are learned from [rad]; those beyond the others count as these."""

@@ -9,7 +9,7 @@ from ..game.rule_sets import RULES, rule_set
 from ..game.snookered import is_snookered
 from ..geometry import POCKET_AIMS
 from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
-from ..planning.strokes import FARTHEST
+from ..planning.stroke_columns import FARTHEST
 from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
 from ..replays.words import ERRORS, errors_words

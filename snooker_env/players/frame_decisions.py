@@ -6,13 +6,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..game import frame_columns as columns
-from ..planning import Positions
-from ..planning.frame_search import Tried
+from ..planning import Positions, Search
+from ..planning.frame_judge import FrameJudge
+from ..planning.learned.frame_strokes import FrameStrokes
 from ..planning.positions import seeds_of
 from ..planning.worth import best_places, breaks_off, chosen, decide, lead_of, left_of
 from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
+from .choices import GhostBall
 from .player import BoundPlayer, Ranked, Strokes, placed
-from .search import RANKED
+from .search import shown
 
 LOST = 0.01  # the chance to win below which it concedes a frame in which it needs snookers, where it may
 _IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
@@ -22,24 +24,25 @@ class Decided(NamedTuple):
     """What a player does in n positions."""
 
     strokes: Strokes
-    tried: list[Tried | None]  # what its search tried; None where it plays no stroke or found none
+    tried: list[Ranked | None]  # what its search tried; None where it plays no stroke or found none
     start: Positions  # what the strokes are played from, after decisions, with placed cue balls
 
 
 class FramePlayer(BoundPlayer):
-    """Plays frames by what its ``search`` says; where that finds no stroke, that of ``_plain``."""
+    """Plays frames by what its ``search`` finds and its ``judge`` says of positions; without a stroke as ``_plain`` does."""
 
-    search: Any = None  # a ``FrameSearch`` or ``FrameStrokes`` where it is bound
-    _plain: Any = None
+    search: Search | FrameStrokes
+    judge: FrameJudge | FrameStrokes
+    _plain: GhostBall
 
     def decided(self, at: Positions, seeds: Any) -> Decided:
         """What it does in n positions of frames, what it tried in those in which it strikes, and from where."""
-        options, search, seeds = self.options, self.search, seeds_of(seeds, len(at))
-        worth = search.worth
-        n, at = len(at), at.known_to(search.rules).copy()
+        options, judge, seeds = self.options, self.judge, seeds_of(seeds, len(at))
+        worth = judge.worth
+        n, at = len(at), at.known_to(judge.rules).copy()
         values, places = np.tile(_IDLE, (n, 1)), np.full((n, 2), np.nan)
         decisions, declare = np.full(n, columns.PLAY), np.full(n, SAYS_NOTHING)
-        plays, code = np.ones(n, np.bool_), search.rules.rule_set.code
+        plays, code = np.ones(n, np.bool_), judge.rules.rule_set.code
         rows = np.flatnonzero(at.lot)
         if len(rows):
             at.game[rows, columns.PHASE] = columns.STROKE
@@ -58,30 +61,27 @@ class FramePlayer(BoundPlayer):
                 some = placed(at[rows], seeds[rows]) if usual[rows[0]] else best_places(worth, at[rows])
                 at.positions[rows] = some[0].positions
                 places[rows] = at.positions[rows, 0]
-        tried: list[Tried | None] = [None] * n
+        tried: list[Ranked | None] = [None] * n
         rows = np.flatnonzero(plays)
-        for k, one in zip(rows.tolist(), search.rank(at[rows], seeds[rows]), strict=True):
+        for k, one in zip(rows.tolist(), self.search.rank(at[rows], seeds[rows]), strict=True):
             if len(one.strokes):
-                tried[k], values[k] = one, one.strokes[0]
+                tried[k], values[k] = one, one.strokes.values[0]
         rows = rows[[tried[k] is None for k in rows.tolist()]]
         if len(rows):  # nothing was found: any stroke at a ball on
             values[rows] = self._plain.play(at[rows].as_visits(), seeds[rows]).values
-        if "concede" in options.says and search.chance is not None:
-            some = np.flatnonzero([one is not None and one.chances[0] < LOST for one in tried])
+        if "concede" in options.says and judge.chance is not None:
+            some = np.flatnonzero(
+                [one is not None and one.scores is not None and one.scores[0] < LOST for one in tried]
+            )
             behind = lead_of(at[some]) < -left_of(at[some])  # it needs snookers
             declare[some[behind]] = CONCEDES
         return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)
 
     def _considered(self, at: Positions, seeds: Any) -> list[Ranked]:
         """The strokes that met noise samples, else all, at most ``RANKED``, best first, with chances or points."""
-        search, (strokes, tried, _) = self.search, self.decided(at, seeds)
-        considered = []
-        for k, one in enumerate(tried):
-            if one is None:
-                considered.append(Ranked(strokes[k : k + 1], None))
-                continue
-            m = min(RANKED, int((one.samples > 0).sum()) or len(one.samples))
-            same = [np.repeat(part[k : k + 1], m, 0) for part in strokes.parts[1:]]
-            scores = one.points if search.chance is None else one.chances
-            considered.append(Ranked(Strokes(one.strokes[:m], *same), scores[:m]))
-        return considered
+        strokes, tried, _ = self.decided(at, seeds)
+        own = [strokes[k : k + 1] for k in range(len(tried))]
+        return [
+            Ranked(mine, None) if one is None else shown(one, mine)
+            for mine, one in zip(own, tried, strict=True)
+        ]

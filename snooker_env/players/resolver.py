@@ -10,10 +10,12 @@ from typing import Any
 
 from .._check import refuse, refuse_what, truth
 from .._registration import PROGRAM_PLAYER
+from ..planning import VisitJudge
+from ..planning.search import BUDGET, MOST
 from .choices import GhostBall, Random
 from .model_options import LEFT_OUT, checked, of_others
 from .player import Player
-from .search import BUDGET, LEAST, MOST, SearchPlayer
+from .search import SearchPlayer
 from .stroke_value import StrokeValuePlayer
 from .tactician import Tactician
 
@@ -137,8 +139,10 @@ def _built_in(name: str) -> Player | None:
         return StrokeValuePlayer(None if model is None else _strokes(name, Path(model)))
     if model is not None and not kind.startswith("planner"):
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
-    if budget and not LEAST <= int(budget) <= MOST:
-        raise refuse("player", name, f"must end in a number of simulated shots from {LEAST} to {MOST:,}")
+    if budget and not VisitJudge.least <= int(budget) <= MOST:
+        raise refuse(
+            "player", name, f"must end in a number of simulated shots from {VisitJudge.least} to {MOST:,}"
+        )
     if kind == Tactician.kind:
         return Tactician(int(budget) if budget else BUDGET)
     learned = None if model is None else _learned(model)

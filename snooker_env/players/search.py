@@ -1,4 +1,4 @@
-"""How do players search? By one ``StrokeSearch``; a name may end in simulated shots: ``search_2000``.
+"""How do players search? By one ``Search``; a name may end in simulated shots: ``search_2000``.
 
 * ``search`` judges positions by the rule of thumb and looks at strokes spread evenly over the pots.
 * ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It takes
@@ -7,70 +7,77 @@
 
 After a foul in a frame a planner decides by the learned worth, the others by the likeliest pot (``BoundPlayer.worth``)."""
 
-from typing import Any
-
 import numpy as np
 
 from .._check import integer
-from .._types import Floats, Ints
-from ..planning import Positions, StrokeSearch
+from .._types import Floats, Integers
+from ..planning import Positions, Search, VisitJudge
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
+from ..planning.positions import PositionsLike
+from ..planning.proposals import Propose, at_pots
+from ..planning.search import BUDGET, MOST
+from ..planning.stroke_columns import COLUMNS
 from ..tasks.options import Options
 from .player import BoundPlayer, Ranked, Strokes
 from .weights import Learned, learned_at, learned_worth, level_for
 
-BUDGET = 120  # simulated shots of a decision where the name does not say how many
 KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")  # the last two: half a planner
-LEAST, MOST = 8, 10**7  # the fewest and the most simulated shots of a decision
 RANKED = 40  # most strokes of a ranking
 
 
 class SearchPlayer(BoundPlayer):
-    """The best stroke of a ``StrokeSearch``; ``learned``: a planner's, by default the package's."""
+    """The best stroke of a ``Search`` with a ``VisitJudge``; ``learned``: a planner's, by default the package's."""
 
     frames = False
 
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
-        self.budget = integer("budget", budget, LEAST, MOST)
+        self.budget = integer("budget", budget, VisitJudge.least, MOST)
         self._learned, self.training_shots = learned, None if kind.startswith("planner") else 0
-        self.search: Any = None  # the ``StrokeSearch`` where it is bound; None before
         self._worth: LearnedWorth | None = None
 
     def _bind(self, options: Options) -> None:
-        self.search = search = StrokeSearch(options, self.budget, pots_only=self.kind == "best_pot")
+        self.judge = judge = VisitJudge(options, pots_only=self.kind == "best_pot")
+        propose: Propose = at_pots
         if self.kind.startswith("planner"):
-            learned = self._learned or learned_at(level_for(search.noise))
-            value = LearnedValue(learned.value, search.spread, search.planner.threads)
+            learned = self._learned or learned_at(level_for(judge.noise))
+            value = LearnedValue(learned.value, judge.spread, judge.planner.threads)
             self._worth = LearnedWorth(value, learned_worth()[0])
             if self.kind != "planner_policy":
-                search.value = value
+                judge.value = value
             if self.kind != "planner_value":
-                search.propose = PolicyProposals(learned.policy)
+                propose = PolicyProposals(learned.policy)
+        self.search = Search(judge, self.budget, propose)
 
     def worth(self, at: Positions) -> Floats:
         """See ``BoundPlayer.worth``."""
         return super().worth(at) if self._worth is None else self._worth(at).astype(np.float64)
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
-        ranked, places, decisions = self._ranked(positions, seeds)
-        return Strokes(ranked.strokes[:, 0], places, decision=decisions)
+        return self._played(positions, seeds)[0]
 
-    def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their scores [points]."""
-        ranked, places, decisions = self._ranked(positions, seeds)
-        met = (ranked.samples > 0).sum(axis=1)
-        most = np.minimum(np.where(met > 0, met, ranked.samples.shape[1]), RANKED)
-        made = []
-        for k, m in enumerate(most.tolist()):
-            where, what = np.repeat(places[k : k + 1], m, 0), np.full(m, decisions[k])
-            made.append(Ranked(Strokes(ranked.strokes[k, :m], where, decision=what), ranked.scores[k, :m]))
-        return made
+        strokes, ranked = self._played(positions, seeds)
+        return [shown(one, strokes[k : k + 1]) for k, one in enumerate(ranked)]
 
-    def _ranked(self, positions: Any, seeds: Any) -> tuple[Any, Floats, Ints]:
-        """The ranking of the search, the places of cue balls in hand, NaN elsewhere, and the decisions after fouls."""
+    def _played(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, list[Ranked]]:
+        """What it plays, and the rankings of its search."""
         visits, places, decisions = self.started(positions, seeds)
-        return self.search.rank(visits, seeds), places, decisions
+        ranked = self.search.rank(visits, seeds)
+        best = np.array([one.strokes.values[0] for one in ranked]).reshape(-1, COLUMNS)
+        return Strokes(best, places, decision=decisions), ranked
+
+
+def shown(one: Ranked, said: Strokes) -> Ranked:
+    """What a player shows of a ranking: the strokes that met noise samples, else all, at most ``RANKED``, each with what it
+    says with the one that it plays (one row)."""
+    m = min(RANKED, int((one.samples > 0).sum()) or len(one.samples))
+    same = [np.repeat(part, m, 0) for part in said.parts[1:]]
+    scores = None if one.scores is None else one.scores[:m]
+    return Ranked(
+        Strokes(one.strokes.values[:m], *same), scores, one.points[:m], one.samples[:m], one.kinds[:m]
+    )

@@ -13,7 +13,7 @@ from ..physics.conditions import normalised
 from ..physics.parameters import nominal
 from ..planning import Positions
 from ..planning.positions import seeds_of
-from ..planning.strokes import decoded
+from ..planning.strokes import decode
 from ..tasks.carry_out import sayings
 from ..tasks.declarations import SAYS
 from ..tasks.discrete_actions import Choices
@@ -112,7 +112,7 @@ class SeenPlayer(BoundPlayer):
             said = sayings(self._rules, actions, shown.game)
             shown = shown.copy()
             shown.game[np.ix_(said[1] == columns.PLACE_ANYWHERE, [columns.IN_HAND, columns.ANYWHERE])] = 1
-        values, start = decoded(self._rules, shown, np.arange(len(at)), actions, *said[:1])
+        values, start = decode(self._rules, shown, np.arange(len(at)), actions, *said[:1])
         puts = (shown.in_hand & bool(self._rules.actions.placement))[:, None]
         return Strokes(values, np.where(puts, start.positions[:, 0], places), *said)
 

@@ -7,13 +7,14 @@ import numpy as np
 
 from .._types import Floats
 from ..planning import Positions, spread_of
+from ..planning.aims import Dynamics
 from ..planning.learned.frame_strokes import FOULS, FrameStrokes
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.stroke_value import LOOKS, Candidates, StrokeValue
 from ..planning.positions import seeds_of
 from ..planning.proposals import over_cushions
-from ..planning.strokes import COLUMNS, Dynamics
+from ..planning.stroke_columns import COLUMNS
 from ..tasks.options import Options
 from .choices import GhostBall
 from .frame_decisions import FramePlayer
@@ -28,6 +29,7 @@ class StrokeValuePlayer(FramePlayer):
     """The best stroke of a ``StrokeValue``, in frames of a ``FrameStrokes``, with the layers ``learned``."""
 
     name = "stroke_value"
+    search: FrameStrokes
 
     def __init__(self, learned: StrokeLayers | None = None):
         self._given, self.values = learned, None
@@ -40,7 +42,9 @@ class StrokeValuePlayer(FramePlayer):
         # one of the value's networks says almost as much as all, in a quarter of the time
         value, worth = LearnedValue(learned.value[:1], spread), LearnedValue(learned.value, spread)
         self.values = StrokeValue(value, learned.policy, Dynamics.of(rules), rules.noise, layers.visits)
-        self.search = FrameStrokes(rules, self.values, LearnedWorth(worth, learned_worth()[0]), layers.frames)
+        self.search = self.judge = FrameStrokes(
+            rules, self.values, LearnedWorth(worth, learned_worth()[0]), layers.frames
+        )
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""

@@ -6,31 +6,34 @@ from typing import Any
 import numpy as np
 
 from .._check import integer, refuse, refuse_what
-from .._types import Floats
+from .._types import Floats, Singles
 from ..game import frame_columns as columns
-from ..planning import Positions, processors, spread_of
-from ..planning.frame_search import AVERAGE, LEAST, FrameSearch
+from ..planning import FrameJudge, Positions, Search, processors, spread_of
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
 from ..planning.positions import PositionsLike
-from ..planning.worth import decide, lead_of
+from ..planning.search import BUDGET, MOST
+from ..planning.worth import Chance, decide, lead_of
 from ..tasks.options import Options
 from .choices import GhostBall
 from .frame_decisions import FramePlayer
 from .player import Ranked, Strokes
-from .search import MOST, SearchPlayer
+from .search import SearchPlayer
 from .weights import learned_at, learned_worth, level_for
 
 
 class Tactician(FramePlayer):
-    """The best stroke of a ``FrameSearch``, in visits of the planner; ``learned``: layers and a ``Chance``."""
+    """The best stroke of a ``Search`` with a ``FrameJudge``, in visits of the planner; ``learned``: layers and a ``Chance``."""
 
     kind = "tactician"
+    judge: FrameJudge
 
-    def __init__(self, budget: int = AVERAGE, learned: Any = None):
-        self.name: str = self.kind if budget == AVERAGE else f"{self.kind}_{budget}"
-        self.budget: int = integer("budget", budget, LEAST, MOST)
+    def __init__(
+        self, budget: int = BUDGET, learned: tuple[list[tuple[Singles, Singles]], Chance] | None = None
+    ):
+        self.name: str = self.kind if budget == BUDGET else f"{self.kind}_{budget}"
+        self.budget: int = integer("budget", budget, FrameJudge.least, MOST)
         self._given, self._visits = learned, SearchPlayer("planner", budget)
 
     def _bind(self, options: Options) -> None:
@@ -40,7 +43,8 @@ class Tactician(FramePlayer):
         learned = learned_at(level_for(noise))
         value = LearnedValue(learned.value, spread_of(noise, physics), processors())
         worth = LearnedWorth(value, layers)
-        self.search = FrameSearch(options, worth, PolicyProposals(learned.policy), self.budget, chance=chance)
+        self.judge = FrameJudge(options, worth, chance)
+        self.search = Search(self.judge, self.budget, PolicyProposals(learned.policy))
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
@@ -59,12 +63,12 @@ class Tactician(FramePlayer):
         law (``planning.worth.Chance``) says what that is worth while so many points are on the table. A cue ball in hand
         is not placed; after a foul or a lot that was won the best decision is taken. ValueError if the player is not
         bound or has no law, or positions are of visits."""
-        rules, at, search = self.options.rules, Positions.of(positions), self.search
+        rules, at, judge = self.options.rules, Positions.of(positions), self.judge
         if not at.of_frames:
             raise refuse_what("positions", "those of visits", "must be of frames: nobody wins a visit")
-        if search.chance is None:
+        if judge.chance is None:
             raise refuse("player", self.name, "must hold a law of the chance to win")
-        at, worth = at.known_to(rules), search.worth
+        at, worth = at.known_to(rules), judge.worth
         gains, over = np.zeros(len(at)), at.game[:, columns.PHASE] == columns.FINISHED
         rows = np.flatnonzero(~(over | at.choice | at.lot))
         if len(rows):
@@ -78,5 +82,5 @@ class Tactician(FramePlayer):
             black.game[:, columns.PHASE] = columns.STROKE
             gains[rows] = np.abs(worth(black))  # it begins, or the other does
         won = at.game[:, columns.WINNER] == 0
-        chances = search.chances(lead_of(at), gains, at)
+        chances = judge.chances(lead_of(at), gains, at)
         return np.where(over, won, chances)

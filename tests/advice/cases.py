@@ -63,6 +63,6 @@ def played(position, stroke, tables, **options):
     """A stroke on so many tables of the environment, each with errors of its own."""
     env = sn.SnookerVectorEnv(tables, aim="absolute", elevation=True, placement=True, **options)
     env.reset(seed=99, options={"state": state_of(position, aim="absolute", elevation=True, placement=True)})
-    action = stroke.action(elevation=True, placement=True)
-    _, _, _, _, info = env.step([action.tolist()] * tables)
+    actions = stroke.strokes().actions(env.options, sn.Positions.of(env)[:1])
+    _, _, _, _, info = env.step(np.repeat(actions, tables, 0))
     return info["points"], info["foul"], env.get_state()

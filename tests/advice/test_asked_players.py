@@ -7,7 +7,7 @@ import pytest
 from cases import ALL, ENDGAME, IN_HAND, OPEN, state_of, stroke_of
 
 import snooker_env as sn
-from snooker_env.planning import Position
+from snooker_env.planning import Position, Positions
 from snooker_env.players import Ranked, Strokes
 from snooker_env.tasks import choice_of
 
@@ -69,7 +69,7 @@ def test_a_players_stroke_is_read_as_the_environment_reads_it():
         stroke = stroke_of(player, position)
         other = sn.SnookerVectorEnv(1, aim="absolute", placement=True)
         other.reset(seed=0, options={"state": state_of(position)})
-        other.step(stroke.action(placement=True)[None])
+        other.step(stroke.strokes().actions(other.options, Positions.of(other)))
         (one,), (same,) = tables.get_state(), other.get_state()
         assert one["on_table"] == same["on_table"]
         assert np.allclose(one["positions"], same["positions"], atol=2e-3)  # float32, magnified by impacts

@@ -50,9 +50,8 @@ def played_by(noise, n, seed):
     """n strokes at the pot of ``ALONE``: strokes played with errors, and whether the ball went in."""
     ball, pocket, meant = pot_of(ALONE)
     z = np.random.default_rng(seed).standard_normal((n, 5))
-    stops = Planner({"noise": noise}).stops(
-        ALONE, np.zeros(n, int), strokes=np.repeat(meant.numbers()[None], n, 0), errors=z
-    )
+    strokes = np.repeat(meant.numbers()[None], n, 0)
+    stops = Planner({"noise": noise}).play_strokes(ALONE, np.zeros(n, int), strokes, errors=z)
     made = (stops.potted[:, ball] == pocket) & (stops.penalty == 0)
     its, more = LEVELS[noise], np.sqrt(5.0)
     tip = its.offset_mm * 1e-3 / sn.Physics().R

@@ -72,7 +72,7 @@ def test_the_room_said_is_the_room_played():
         }
         stroke = CueStroke(speed=1.0, **numbers)
         env.reset(seed=1, options={"position": FROZEN})
-        env.step(stroke.action(elevation=True))
+        env.step(stroke.strokes().actions(env.options, Positions.of(env))[0])
         cue, said = env.history[-1].cue, room(FROZEN, **numbers)
         assert (said.elevation, said.side, said.top) == pytest.approx(
             (cue["elevation"], cue["side"], cue["top"]), abs=1e-5

@@ -17,7 +17,9 @@ from tests.shots import shot
 def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
     stroke = CueStroke(speed=3.1, aim=2.5, side=-0.2, top=0.3, elevation=0.2, place=(0.1, -1.2))
     actions = box_actions.Actions("absolute", True, True, sn.Physics(), ("decision",))
-    a = stroke.action(elevation=True, placement=True, decision=True).astype(float)
+    options = sn.Options(task="frame", aim="absolute", elevation=True, placement=True, decision=True)
+    at = sn.Positions.of(OPEN)
+    (a,) = stroke.strokes().actions(options, at)
     places, on_table, _ = OPEN.arrays()
     speed, side, top, cue, elevation = shot(actions, a, places, on_table, 2)
     v, _ = sn.strike(speed, cue, side, top, 0.0)
@@ -26,9 +28,9 @@ def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
     x, back = a[5], 0.5 * (a[6] + 1.0)
     assert (0.292 * x, -1.0475 - 0.292 * np.sqrt(1 - x * x) * back) == pytest.approx((0.1, -1.2), abs=1e-6)
     assert abs(a[7]) < 1 / 3  # play
-    assert CueStroke(speed=1.0, aim=7.0).action()[3] == pytest.approx((7.0 - 2 * pi) / pi)
-    corner = CueStroke(speed=1.0, aim=0.0, place=(0.292, -1.0475)).action(placement=True)
-    assert corner.tolist()[4:] == [1.0, -1.0]
+    corner = CueStroke(speed=1.0, aim=7.0, place=(0.292, -1.0475)).strokes()
+    (a,) = corner.actions(sn.Options(aim="absolute", placement=True), at)
+    assert a[3:].tolist() == pytest.approx([(7.0 - 2 * pi) / pi, 1.0, -1.0])
     assert CueStroke(**stroke.to_dict()) == stroke == CueStroke.of(stroke.to_dict())
     assert CueStroke.of(stroke) is stroke
     (one,) = sn.advise(OPEN, n=1, samples=10, visits=0)

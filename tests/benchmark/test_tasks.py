@@ -159,11 +159,11 @@ def test_a_search_for_legal_strokes_cares_for_nothing_else():
     """Of a pot and a touch, both sure to be legal, it may play either; a foul it never ranks first."""
     at = sn.Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red")
     for reward in ("legal", "points"):
-        search = sn.planning.StrokeSearch({"reward": reward, "noise": "professional"}, budget=60)
-        ranked = search.rank(at, [7])
+        judge = sn.planning.VisitJudge({"reward": reward, "noise": "professional"})
+        (ranked,) = sn.planning.Search(judge, budget=60).rank(at, [7])
         if reward == "legal":
             assert set(np.unique(ranked.scores[ranked.samples == 0])) <= {0.0, 1.0}
-            assert ranked.scores.min() >= 0.0 and ranked.scores[0, 0] > 0.8
+            assert ranked.scores.min() >= 0.0 and ranked.scores[0] > 0.8
         else:
             assert ranked.scores.min() < -10.0
 

@@ -14,7 +14,7 @@ import snooker_env as sn
 from snooker_env.physics import conditions
 from snooker_env.physics.conditions import NAMES, RANGES
 from snooker_env.physics.parameters import nominal, pack_into, physics_with
-from snooker_env.planning import Planner, Positions
+from snooker_env.planning import Planner, Positions, Strokes
 from tests.envs.test_vector import check_equal
 from tests.processes import ROOT
 from tests.tables import begun
@@ -236,8 +236,7 @@ def test_bad_options_are_refused(options, message):
 
 
 def _planned(env, options, strokes):
-    planner = Planner(options, threads=1)
-    return planner.stops(env, np.zeros(len(strokes), int), strokes=strokes).places
+    return Planner(options, threads=1).play_strokes(env, np.zeros(len(strokes), int), strokes).places
 
 
 def test_plans_are_made_with_the_constants_of_the_table():
@@ -249,8 +248,7 @@ def test_plans_are_made_with_the_constants_of_the_table():
     nominal = _planned(env, options.but(conditions="fixed"), strokes)
     assert (nominal == _planned(at, sn.Options(), strokes)).all() and np.abs(nominal - own).max() > 1e-3
     # what the environment does
-    planner = Planner(options, threads=1)
-    env.step(planner.actions_of(strokes)[0])
+    env.step(Strokes(strokes).actions(options, at)[0])
     assert np.allclose(env.last_shot.positions, own[0], atol=1e-9)
 
 
@@ -260,10 +258,10 @@ def test_many_positions_are_planned_each_on_its_own_table():
     many.reset(seed=1)
     at, choices = Positions.of(many), np.array([67, 67, 67])
     planner = Planner(options, threads=1)
-    together = planner.stops(at, np.arange(3), choices).places
+    together = planner.play(at, np.arange(3), choices).places
     for k, physics in enumerate(many.call("physics")):
         plain = Planner(sn.Options(action="discrete", physics=physics), threads=1)
-        alone = plain.stops(at[[k]], [0], choices[k : k + 1]).places[0]
+        alone = plain.play(at[[k]], [0], choices[k : k + 1]).places[0]
         assert (together[k] == alone).all()
     strokes = planner.strokes_of(at, np.arange(3), choices)[0]
     for name in ("ghost_ball", "best_pot_8"):

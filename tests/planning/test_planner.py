@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env.geometry import POCKET_PLACES
 from snooker_env.planning import Planner, Position, Positions
+from snooker_env.tasks import stroke
 from snooker_env.tasks.noise import errors_of
 
 SILENT = Planner({})
@@ -19,12 +21,13 @@ def actions(n, k, seed=0):
     return np.random.default_rng(seed).uniform(-1.0, 1.0, (n, k)).astype(np.float32)
 
 
+def parts(made):
+    left = made.afterstates
+    return left.positions, left.on_table, left.game, *(part for part in made if part is not left)
+
+
 def same(one, other):
-    parts = [getattr(one.afterstates, name) for name in ("positions", "on_table", "game")]
-    others = [getattr(other.afterstates, name) for name in ("positions", "on_table", "game")]
-    return all(
-        map(np.array_equal, [*one[:2], one.observations, *parts], [*other[:2], other.observations, *others])
-    )
+    return all(map(np.array_equal, parts(one), parts(other)))
 
 
 @pytest.mark.parametrize(
@@ -45,9 +48,11 @@ def test_a_planned_stroke_is_the_stroke_of_the_environment(options):
         state = env.get_state()
         shape = env.action_space.shape
         chosen = actions(1, *shape, seed=k) if shape else np.flatnonzero(env.action_masks())[[17]]
-        points, goes_on, left, seen = planner.play(state, [0], chosen, [state["stream"]])
+        made = planner.play(state, [0], chosen, [state["stream"]])
+        left = made.afterstates
         observation, reward, ended, _, info = env.step(chosen[0])
-        assert points[0] == reward and goes_on[0] == (not ended) and np.array_equal(seen[0], observation)
+        assert made.points[0] == reward and made.goes_on[0] == (not ended)
+        assert np.array_equal(made.observations[0], observation)
         assert np.array_equal(left.positions[0], env.positions)
         assert np.array_equal(left.on_table[0], env.on_table)
         after = left.ball_on[0], left.in_hand[0], left.points[0], left.over[0]
@@ -114,22 +119,13 @@ def test_a_stroke_decoded_is_played_as_its_action(options):
     whole = planner.play(env, rows, chosen, keys)
     errors = errors_of(np.stack([keys, 0 * keys], 1).astype(np.uint64))
     for other in (
-        planner.play(at, np.arange(60), strokes=strokes, keys=keys),
-        planner.play(at, np.arange(60), strokes=strokes, errors=errors),
-        planner.play(env, rows, chosen, errors=errors),
+        planner.play_strokes(at, np.arange(60), strokes, keys),
+        planner.play_strokes(at, np.arange(60), strokes, errors=errors),
     ):
         apart = np.abs(other.afterstates.positions - whole.afterstates.positions).max(axis=(1, 2))
         assert apart.max() < 1e-3 and np.median(apart) < 1e-9 and np.array_equal(other.points, whole.points)
-    exact = planner.play(at, np.arange(60), strokes=strokes, errors=np.zeros((60, 5))).afterstates.positions
+    exact = planner.play_strokes(at, np.arange(60), strokes, errors=np.zeros((60, 5))).afterstates.positions
     assert (np.abs(exact - whole.afterstates.positions).max(axis=(1, 2)) > 1e-3).mean() > 0.5
-    stops = planner.stops(at, np.arange(60), strokes=strokes, errors=errors)
-    assert np.array_equal(stops.points, whole.points)
-    if planner.rules.actions.size != 1:
-        back = planner.actions_of(strokes, positions=at, rows=np.arange(60), places=at.positions[:, 0])
-        again, placed = planner.strokes_of(env, rows, back)
-        assert np.allclose(again[:, [0, 1, 2, 4]], strokes[:, [0, 1, 2, 4]], atol=1e-12)
-        assert np.allclose(np.exp(1j * again[:, 3]), np.exp(1j * strokes[:, 3]), atol=1e-9)
-        assert not at.in_hand.any() or np.allclose(placed.positions[:, 0], at.positions[:, 0], atol=1e-6)
 
 
 SOFT = [2.0, 0.0, 0.0, 0.3, 0.0]
@@ -138,8 +134,6 @@ SOFT = [2.0, 0.0, 0.0, 0.3, 0.0]
 @pytest.mark.parametrize(
     ("passed", "complaint"),
     [
-        ({}, "actions, strokes = none: must be one of them"),
-        ({"actions": [[0, 0, 0, 0]], "strokes": [SOFT]}, "actions, strokes = both"),
         ({"strokes": [SOFT]}, "keys = None: must be given with execution noise"),
         ({"strokes": [SOFT], "keys": [1], "errors": [[0] * 5]}, "keys, errors = both"),
         ({"strokes": [SOFT], "errors": [[0] * 4]}, "errors = array of shape"),
@@ -155,32 +149,20 @@ SOFT = [2.0, 0.0, 0.0, 0.3, 0.0]
 def test_strokes_and_errors_that_make_no_sense_are_refused(passed, complaint):
     planner = Planner({"noise": "club"}, threads=1)
     with pytest.raises(ValueError, match=f"^{complaint}"):
-        planner.play(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]), [0], **passed)
+        planner.play_strokes(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]), [0], **passed)
     assert planner.shots == 0
-
-
-def test_what_an_action_space_cannot_say_is_refused():
-    with pytest.raises(ValueError, match=r"elevation = 0\.1: must be 0"):
-        Planner({}).actions_of([[2.0, 0.0, 0.0, 0.3, 0.1]])
-    with pytest.raises(ValueError, match="action = 'discrete'"):
-        Planner({"action": "discrete"}).actions_of([SOFT])
-    aimed, position = Planner({"aim": "target"}), Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)])
-    with pytest.raises(ValueError, match="positions, rows = None"):
-        aimed.actions_of([SOFT])
-    with pytest.raises(ValueError, match=r"aim = 0.3: must be within 3 degrees of the target line"):
-        aimed.actions_of([SOFT], positions=position, rows=[0])
 
 
 def test_the_key_alone_decides_the_errors():
     position = Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)])
-    planner, stroke = Planner({"noise": "club"}), np.tile(np.float32([[0.0, 0.0, 0.0, 0.3]]), (6, 1))
-    first = planner.play(position, np.zeros(6, int), stroke, [5, 5, 6, 7, 7, 2**64 - 1])
+    planner, action = Planner({"noise": "club"}), np.tile(np.float32([[0.0, 0.0, 0.0, 0.3]]), (6, 1))
+    first = planner.play(position, np.zeros(6, int), action, [5, 5, 6, 7, 7, 2**64 - 1])
     cue = first.afterstates.positions[:, 0]
     assert np.array_equal(cue[0], cue[1]) and np.array_equal(cue[3], cue[4])
     assert len(np.unique(cue, axis=0)) == 4
-    again = planner.play(position, [0], stroke[:1], np.array([[5, 0]], np.uint64)).afterstates.positions[0, 0]
+    again = planner.play(position, [0], action[:1], np.array([[5, 0]], np.uint64)).afterstates.positions[0, 0]
     assert np.array_equal(again, cue[0])  # a key is a stream at its beginning
-    later = planner.play(position, [0], stroke[:1], [[5, 3]]).afterstates.positions[0, 0]
+    later = planner.play(position, [0], action[:1], [[5, 3]]).afterstates.positions[0, 0]
     assert not np.array_equal(later, cue[0])
 
 
@@ -219,11 +201,12 @@ def test_a_frame_and_a_match_are_planned_as_a_visit():
         at, planner = Positions.of(env), Planner(env)
         assert len(at) == 1 and at.in_hand[0] and at.ball_on[0] == 1
         assert planner.rules.actions.space.shape == (7,)
-        stroke = np.float32([[0.6, 0.0, 0.0, 0.1, 0.5, 0.5, 0.0]])
-        _, _, left, seen = planner.play(at, [0], stroke)
-        env.step(stroke[0])
+        action = np.float32([[0.6, 0.0, 0.0, 0.1, 0.5, 0.5, 0.0]])
+        made = planner.play(at, [0], action)
+        env.step(action[0])
         after = env.unwrapped.get_state()
-        assert seen.shape == (1, 121) and np.array_equal(left.positions[0], after["positions"])
+        assert made.observations.shape == (1, 121)
+        assert np.array_equal(made.afterstates.positions[0], after["positions"])
 
 
 def test_what_may_be_planned_for():
@@ -271,8 +254,8 @@ def test_what_makes_no_sense_is_refused_by_name(arguments, complaint):
     with pytest.raises(ValueError, match=complaint):
         SILENT.play(*arguments)
     assert SILENT.play(AT, [0], STROKE).points.shape == (1,)
-    points, goes_on, left, seen = SILENT.play(AT, [], np.zeros((0, 4)))  # no strokes are no error
-    assert (len(points), len(goes_on), len(left), seen.shape) == (0, 0, 0, (0, 121))
+    none = SILENT.play(AT, [], np.zeros((0, 4)))  # no strokes are no error
+    assert {len(part) for part in none} == {0} and none.observations.shape == (0, 121)
 
 
 @pytest.mark.parametrize(
@@ -330,3 +313,58 @@ def test_strokes_in_succession_are_those_played_alone(options):
         assert same(alone, type(together)(*(part[k : k + 1] for part in together))), k
     cues = together.afterstates.positions[:, 0]
     assert len(np.unique(cues, axis=0)) == len(rows)  # no two strokes are alike
+
+
+OPEN = Position(
+    cue=(0.25, -0.4), reds=[(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)], blue=(0.0, 0.0), black=(0.0, 1.4605)
+)
+SWEEP = np.zeros((60, 5))
+SWEEP[:, 0], SWEEP[:, 3] = np.linspace(1.0, 6.0, 60), np.linspace(-3.0, 3.0, 60)
+"""Strokes in all directions."""
+
+
+def test_where_balls_stop_agrees_with_what_is_left():
+    planner = Planner({"noise": "club"})
+    made = planner.play_strokes(OPEN, np.zeros(60, int), SWEEP, np.arange(60))
+    assert ((made.penalty > 0) & (made.points == 0)).any() and (made.penalty == 0).any()
+    assert not made.points[made.penalty > 0].any()
+    stays = OPEN.arrays()[1][None] & (made.potted < 0)
+    reds = stays[:, 1:16]
+    # colours may be respotted, reds not
+    assert np.array_equal(made.places[:, 1:16][reds], made.afterstates.positions[:, 1:16][reds])
+    assert np.array_equal(stays[:, 0], made.afterstates.on_table[:, 0]) and (~stays[:, 0]).any()
+
+
+def test_a_colour_that_was_potted_lies_in_its_pocket_and_not_on_its_spot():
+    position = Position(cue=(0.3, 1.1), reds=[(-0.5, 0.0)], black=(0.0, 1.4605), on="any_colour")
+    made = Planner({"action": "discrete"}).play(position, [0], [67])
+    pocket = int(made.potted[0, 21])
+    assert made.points[0] == 7 and made.first[0] == 21 and made.goes_on[0]
+    assert np.hypot(*(made.places[0, 21] - POCKET_PLACES[pocket])) < 0.1
+    assert made.afterstates.positions[0, 21].tolist() == [0.0, 1.4605]
+
+
+def test_balls_stop_where_the_shot_simulated_by_itself_leaves_them():
+    made = SILENT.play_strokes(OPEN, np.zeros(60, int), SWEEP)
+    places, present, _ = OPEN.arrays()
+    balls = np.flatnonzero(present)
+    for k in range(0, 60, 7):
+        v, w = sn.strike(SWEEP[k, 0], SWEEP[k, 3])
+        velocities, spins = np.zeros((len(balls), 2)), np.zeros((len(balls), 3))
+        velocities[0], spins[0] = v[:2], w
+        shot = sn.simulate(places[balls], velocities, spins)
+        assert np.array_equal(shot.potted, made.potted[k, balls])
+        assert np.allclose(shot.positions, made.places[k, balls], atol=1e-9)
+        hits = shot.events[(shot.events["kind"] == sn.EventKind.BALL_BALL) & (shot.events["i"] == 0)]
+        assert made.first[k] == (balls[hits["j"][0]] if len(hits) else -1)
+
+
+def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
+    """The same with room for three events at first as with room for 512."""
+    original, runs = stroke.ShotBuffers.__init__, []
+    for log in (512, 3):
+        with monkeypatch.context() as patch:
+            first = lambda self, m, n=log, **more: original(self, m, n, **more)  # noqa: E731
+            patch.setattr(stroke.ShotBuffers, "__init__", first)
+            runs.append(SILENT.play_strokes(OPEN, np.zeros(60, int), SWEEP))
+    assert same(*runs)

@@ -185,7 +185,7 @@ def test_planning_plays_the_strokes_of_frames_as_those_of_visits():
     visits, strokes = at.as_visits(), np.array([[2.0, 0.1, 0.2, 1.3, 0.0]] * 2)
     planner = Planner({}, threads=1)
     for plan in (
-        lambda at: planner.play(at, [0, 1], strokes=strokes).afterstates.positions,
+        lambda at: planner.play_strokes(at, [0, 1], strokes).afterstates.positions,
         lambda at: pots(at).ball,
         action_masks,
         lambda at: clear_paths(at).any_part,

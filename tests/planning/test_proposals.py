@@ -11,6 +11,7 @@ from positions import chances_by_width, tables
 
 from snooker_env import planning
 from snooker_env.geometry import POCKET_AIMS
+from snooker_env.planning.aims import Dynamics
 from snooker_env.planning.proposals import (
     AIM,
     ANYWHERE,
@@ -31,7 +32,6 @@ from snooker_env.planning.proposals import (
     over_cushions,
     strokes_at,
 )
-from snooker_env.planning.strokes import Dynamics
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.box_actions import MAX_SPEED
 
@@ -114,14 +114,15 @@ def test_a_chance_is_what_errors_leave_of_the_pot():
     """Strokes that score without errors, under a professional's: by the chance that they have."""
     n, m, errors = 40, 30, 12
     at = planning.Positions.of(tables(n, seed=9))
-    tool = planning.StrokeSearch({"noise": "professional", "fidelity": "fast"}, threads=1)
+    tool = planning.VisitJudge({"noise": "professional", "fidelity": "fast"}, threads=1)
     strokes, chances = at_pots(tool, at, m, seeds(n))
     rows = np.repeat(np.arange(n), m * errors)
     drawn = np.random.default_rng(0).standard_normal((len(rows), 5))
     flat, chances = strokes.reshape(-1, 5), chances.ravel()
-    made = tool.outcomes(at, rows, np.repeat(flat, errors, 0), drawn).points > 0
+    play = tool.planner.play_strokes
+    made = play(at, rows, np.repeat(flat, errors, 0), errors=drawn).points > 0
     made = made.reshape(-1, errors).mean(axis=1)
-    scores = tool.outcomes(at, np.repeat(np.arange(n), m), flat, np.zeros((n * m, 5))).points > 0
+    scores = play(at, np.repeat(np.arange(n), m), flat, errors=np.zeros((n * m, 5))).points > 0
     firm = flat[:, 0] > 3.0
     for some, exact in (
         (scores & (chances > 0.9), 0.05),
@@ -132,12 +133,12 @@ def test_a_chance_is_what_errors_leave_of_the_pot():
 
 
 HIDDEN = planning.Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red")
-SEARCH = planning.StrokeSearch({"fidelity": "fast", "noise": "club"}, threads=1)
+SEARCH = planning.VisitJudge({"fidelity": "fast", "noise": "club"}, threads=1)
 
 
 def first_struck(at, strokes):
     """Ids of the balls that strokes (m, 5) at one position meet first."""
-    return PLANNER.stops(at, np.zeros(len(strokes), int), strokes=strokes).first
+    return PLANNER.play_strokes(at, np.zeros(len(strokes), int), strokes).first
 
 
 def test_where_there_is_no_pot_the_strokes_hit_the_balls_on_from_thin_to_full():
@@ -183,7 +184,7 @@ def test_away_from_a_ball_on_that_touches_the_cue_ball():
     at = planning.Positions.of(planning.Position(cue=(0.0, 0.0), reds=[(0.0525, 0.0)], black=(0.0, -1.0)))
     strokes = at_balls(SEARCH, at, 100, [3]).strokes[0]
     assert np.cos(strokes[:, AIM]).max() < 1e-6 and np.ptp(strokes[:, AIM]) > 3.0
-    fouls = PLANNER.stops(at, np.zeros(100, int), strokes=strokes)
+    fouls = PLANNER.play_strokes(at, np.zeros(100, int), strokes)
     assert (fouls.penalty[(fouls.potted[:, [0, 21]] < 0).all(axis=1)] == 0).all()
     assert (fouls.penalty == 0).mean() > 0.7
 
@@ -194,7 +195,7 @@ def test_hidden_balls_are_reached_over_cushions():
     strokes, chances = (one[0] for one in over_cushions(SEARCH, at, 64, [4]))
     assert (chances == 1.0).all()
     aimed = np.arange(64) % ANYWHERE != ANYWHERE - 1
-    fair = PLANNER.stops(at, np.zeros(64, int), strokes=strokes).penalty == 0
+    fair = PLANNER.play_strokes(at, np.zeros(64, int), strokes).penalty == 0
     assert fair[:4].all() and fair[aimed].mean() > 0.7 and fair[~aimed].mean() < 0.5
     assert len(np.unique(strokes[:, AIM].round(1))) > 6 and (strokes[aimed, TOP] == ROLLING).all()
 

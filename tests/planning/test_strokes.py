@@ -6,17 +6,11 @@ from positions import tables
 
 import snooker_env as sn
 from snooker_env.geometry import POCKET_AIMS
-from snooker_env.planning import (
-    Planner,
-    Position,
-    Positions,
-    action_masks,
-    actions_of,
-    as_actions,
-    pot_aim,
-    pots,
-)
+from snooker_env.planning import Planner, Position, Positions, Strokes, action_masks, pot_aim, pots
+from snooker_env.planning.strokes import decode
+from snooker_env.players import VISITS
 from snooker_env.tasks import choice_of
+from snooker_env.tasks.carry_out import sayings
 
 DISCRETE = {"action": "discrete"}
 
@@ -26,7 +20,8 @@ def test_choices_as_angles_are_the_same_shots():
     choices, angles = tables(40, layout="random:1", **DISCRETE), tables(40, layout="random:1", aim="absolute")
     masks = choices.action_masks()
     picks = np.where(masks[:, choice_of(0, 3, 2, 3)], choice_of(0, 3, 2, 3), 0)
-    actions = as_actions(angles, np.arange(40), picks)
+    strokes, _ = Planner(choices).strokes_of(choices, np.arange(40), picks)
+    actions = Strokes(strokes).actions(angles.options, Positions.of(angles)).astype(np.float32)
     assert np.abs(actions).max() <= 1.0
     _, first, _, _, _ = choices.step(picks)
     _, second, _, _, _ = angles.step(actions)
@@ -41,34 +36,78 @@ def test_the_masks_are_those_of_the_environment():
     assert np.array_equal(action_masks(env.get_state()), env.action_masks())
 
 
-def test_an_action_of_a_speed_and_a_direction_is_that_stroke():
+def test_a_stroke_of_a_speed_and_a_direction_is_what_it_says():
     """A ball alone: where it goes and how far is what ``strike`` says."""
     at = Position(cue=(0.0, 0.0), black=(0.0, -1.0))
     for speed, aim, side, top in ((0.6, 0.3, 0.0, 0.0), (0.5, 2.9, 0.3, 0.1), (0.7, 3.1, -0.2, -0.3)):
-        action = actions_of([speed], [aim], side, top)
-        left = Planner({}).play(at, [0], action).afterstates.positions[0, 0]
+        left = Planner({}).play_strokes(at, [0], [[speed, side, top, aim, 0.0]]).afterstates.positions[0, 0]
         assert np.arctan2(left[1], left[0]) == pytest.approx(aim, abs=1e-6)
         v, w = sn.strike(speed, 0.0, abs(side), top)
         shot = sn.simulate([(0.0, 0.0)], [v[:2]], [w], None)
         assert np.hypot(*left) == pytest.approx(np.hypot(*shot.positions[0]), rel=1e-6)
-    assert actions_of([0.2, 7.0], [np.pi, 7 * np.pi / 2]).tolist() == [[-1, 0, 0, 1], [1, 0, 0, -0.5]]
 
 
 @pytest.mark.parametrize(
-    ("arguments", "complaint"),
+    "options",
     [
-        (([0.1], [0.0]), r"strokes\[0\], speed = 0.1: must be a finite number in"),
-        (([7.1], [0.0]), r"strokes\[0\], speed = 7.1"),
-        (([np.nan], [0.0]), r"speeds\[0\] = nan"),
-        (([1.0], [np.inf]), r"aims\[0\] = inf"),
-        (([1.0], [0.0], 0.6), r"strokes\[0\], side = 0.6"),
-        (([1.0], [0.0], np.nan), r"strokes\[0\], side = nan"),
-        (([[1.0]], [0.0]), "speeds = array of shape"),
+        VISITS,
+        {"aim": "absolute"},
+        {"aim": "absolute", "elevation": True, "layout": "break_off"},
+        {"aim": "target", "placement": True, "elevation": True, "layout": "break_off"},
+        {"aim": "target", "cue": "real", "layout": "random:6"},
+        {"aim": "target", "task": "frame", "placement": True, "decision": True},
     ],
 )
-def test_a_stroke_that_cannot_be_an_action_is_refused(arguments, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        actions_of(*arguments)
+def test_strokes_become_actions_that_mean_them(options):
+    """The encoder and the decoder: from random actions to strokes, and back twice."""
+    env = tables(40, **options)
+    at, rng, rows = Positions.of(env), np.random.default_rng(2), np.arange(40)
+    planner = Planner(env)
+    values, start = planner.strokes_of(at, rows, rng.uniform(-0.6, 0.6, (40, *env.single_action_space.shape)))
+    strokes = Strokes(values, np.where(at.in_hand[:, None], start.positions[:, 0], np.nan))
+    again, placed = planner.strokes_of(at, rows, strokes.actions(env.options, at))
+    assert np.allclose(again[:, [0, 1, 2, 4]], values[:, [0, 1, 2, 4]], rtol=0, atol=1e-12)
+    assert np.allclose(np.exp(1j * again[:, 3]), np.exp(1j * values[:, 3]), rtol=0, atol=1e-9)
+    assert np.allclose(placed.positions[:, 0], start.positions[:, 0], rtol=0, atol=1e-9)
+    ends = Strokes([[0.2, 0.0, 0.0, np.pi, 0.0], [7.0, 0.0, 0.0, 3.5 * np.pi, 0.0]])
+    if env.options.aim == "absolute":
+        told = ends.actions(env.options, at[:2])
+        assert told[:, 0].tolist() == [-1.0, 1.0] and told[:, 3].tolist() == [1.0, -0.5]
+
+
+def test_an_aim_from_a_target_line_is_that_of_the_nominated_ball():
+    options = sn.Options(task="frame", aim="target", nominate=True)
+    env, rng = sn.SnookerEnv(options), np.random.default_rng(3)
+    colours = {"yellow": (0.3, 0.4), "blue": (0.0, 0.0), "pink": (-0.4, 0.7), "black": (0.5, 1.2)}
+    position = Position(cue=(0.1, -0.6), reds=[(-0.6, -0.2)], on="any_colour", **colours)
+    env.reset(seed=1, options={"position": position})
+    at = Positions.of(env)[np.zeros(20, int)]
+    actions = rng.uniform(-0.9, 0.9, (20, 5))
+    nominated, *_ = sayings(options.rules, actions, at.game)
+    assert len(set(nominated.tolist())) == 4
+    values, _ = decode(options.rules, at, np.arange(20), actions, nominated)
+    back = Strokes(values, nominate=nominated).actions(options, at)
+    assert np.allclose(back[:, :4], actions[:, :4], rtol=0, atol=1e-9)
+    assert np.array_equal(sayings(options.rules, back, at.game)[0], nominated)
+
+
+def test_what_an_action_cannot_hold_is_refused():
+    at = Positions.of(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]))
+    for stroke, options, complaint in (
+        ([2.0, 0.0, 0.0, 0.3, 0.2], {}, r"elevation = 0\.2: must be left out"),
+        ([2.0, 0.0, 0.0, 0.3, 0.0], DISCRETE, "options.action = 'discrete'"),
+        (
+            [2.0, 0.0, 0.0, 0.3, 0.0],
+            {"aim": "target"},
+            r"aim\[0\] = 0.3: must be within 3 degrees of the target",
+        ),
+    ):
+        with pytest.raises(ValueError, match=f"^{complaint}"):
+            Strokes([stroke]).actions(sn.Options(**options), at)
+    with pytest.raises(ValueError, match=r"^positions = 2 positions: must be 1, one for each stroke"):
+        Strokes([stroke]).actions(sn.Options(), at[[0, 0]])
+    with pytest.raises(ValueError, match=r"^rows = 0: must be a slice, a mask or an array of rows"):
+        Strokes([stroke])[0]
 
 
 def test_a_solved_aim_pots_where_the_straight_line_misses():
@@ -80,8 +119,9 @@ def test_a_solved_aim_pots_where_the_straight_line_misses():
     spun = np.tile([2.9, 0.3, 0.0, 0.0, 0.0], (60, 1))
     solved = planner.pot_aim(at, n, direct.ball[:, 0], targets, spun)
     assert np.array_equal(solved, pot_aim(at, n, direct.ball[:, 0], targets, spun, ghosts=direct.ghost[:, 0]))
-    played = [planner.play(at, n, actions_of(np.full(60, 2.9), aims, 0.3)) for aims in (solved, straight)]
-    made = [(outcomes.points > 0).mean() for outcomes in played]
+    made = []
+    for spun[:, 3] in solved, straight:
+        made.append((planner.play_strokes(at, n, spun).points > 0).mean())
     assert made[0] > 0.8 and made[1] < 0.5
 
 
@@ -111,10 +151,3 @@ def test_an_aim_that_cannot_be_solved_is_refused(changes, complaint):
     assert pot_aim(**arguments).shape == (1,)
     with pytest.raises(ValueError, match=complaint):
         pot_aim(**arguments | changes)
-
-
-def test_choices_out_of_range_are_refused():
-    with pytest.raises(ValueError, match=r"choices\[1\] = 540: must be an integer in \[0, 539\]"):
-        as_actions(POT, [0, 0], [3, 540])
-    with pytest.raises(ValueError, match=r"choices = int64 array of shape \(2,\): must be integers of shape"):
-        as_actions(POT, [0], [3, 4])

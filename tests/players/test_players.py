@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.planning import Planner, Position, Positions
+from snooker_env.planning import Position, Positions
 from snooker_env.players import FRAMES, VISITS, ChoicePlayer, SeenPlayer, Strokes, decided, decision_seeds
 from snooker_env.players.resolver import BUILT_IN
 from tests.positions import tables
@@ -71,32 +71,6 @@ def test_a_player_is_bound_before_it_is_asked():
     player = sn.player("search_30").at({"noise": "none"})
     with pytest.raises(ValueError, match="seeds"):
         player.play(of_visits(2), [0])
-
-
-@pytest.mark.parametrize("options", [VISITS, {"aim": "absolute"}, {"aim": "absolute", "elevation": True}])
-def test_strokes_become_actions_that_mean_them(options):
-    """The encoder and the decoder: through an environment and back."""
-    options = sn.Options(**options)
-    rng, at = np.random.default_rng(2), of_visits(40, "break_off")
-    values = rng.uniform((0.2, -0.3, -0.3, -3.1, 0.0), (7.0, 0.3, 0.3, 3.1, 0.5), (40, 5))
-    values[:, 4] *= options.elevation
-    strokes = Strokes(values)
-    decoded, start = Planner(options).strokes_of(at, np.arange(len(at)), strokes.actions(options, at))
-    assert np.allclose(decoded, values, rtol=0, atol=1e-13)
-    if options.placement:
-        assert np.allclose(start.positions[:, 0], at.positions[:, 0], atol=1e-12)
-
-
-def test_what_an_action_cannot_hold_is_refused():
-    at = of_visits(1)
-    raised = Strokes(np.array([[2.0, 0.0, 0.0, 0.0, 0.2]]))
-    with pytest.raises(ValueError, match="elevation"):
-        raised.actions(sn.Options(), at)
-    with pytest.raises(ValueError, match="absolute"):
-        raised.actions(sn.Options(aim="target"), at)
-    for wrong in ([[2.0, 0, 0, 0]], [[9.0, 0, 0, 0, 0]], [[2.0, 0, 0, np.nan, 0]], [[2.0, 0.6, 0, 0, 0]]):
-        with pytest.raises(ValueError):
-            Strokes(np.array(wrong))
 
 
 class Soft:

@@ -9,7 +9,7 @@ from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Planner, Positions
 from snooker_env.planning.learned.learned_value import LearnedValue
 from snooker_env.planning.learned.policy_proposals import PolicyProposals
-from snooker_env.planning.stroke_search import schedule
+from snooker_env.planning.visit_judge import schedule
 from snooker_env.players import FRAMES, weights
 from snooker_env.players.degenerate import SILLY
 from snooker_env.players.search import BUDGET, KINDS
@@ -32,9 +32,10 @@ def test_a_name_may_end_in_a_number_of_shots(kind):
 def test_each_kind_has_its_value_and_its_proposals():
     kinds = {}
     for kind in KINDS:
-        search = sn.player(f"{kind}_30").at({"noise": "professional"}).search
-        learned = isinstance(search.value, LearnedValue), isinstance(search.propose, PolicyProposals)
-        kinds[kind] = (*learned, search.pots_only)
+        player = sn.player(f"{kind}_30").at({"noise": "professional"})
+        (propose,) = player.search.propose
+        learned = isinstance(player.judge.value, LearnedValue), isinstance(propose, PolicyProposals)
+        kinds[kind] = (*learned, player.judge.pots_only)
     assert kinds == {
         "best_pot": (False, False, True),
         "search": (False, False, False),
@@ -50,17 +51,17 @@ def test_a_ranking_is_sorted_and_its_first_stroke_pots(kind, noise):
     at, player = held_out(), sn.player(f"{kind}_60").at({"noise": noise})
     ranking = player.rank(at, np.arange(4))
     for one in ranking:
-        last = 40 if noise == "none" else schedule(60)[1][-1][0]  # those that met most noise samples
+        last = 40 if noise == "none" else schedule(60).rounds[-1][0]  # those that met most noise samples
         assert len(one.strokes) == len(one.scores) and (np.diff(one.scores[:last]) <= 0.0).all()
-        assert len(one.scores) == 40 if noise == "none" else len(one.scores) == schedule(60)[1][0][0]
+        assert len(one.scores) == 40 if noise == "none" else len(one.scores) == schedule(60).rounds[0][0]
     best = np.concatenate([one.strokes.values[:1] for one in ranking])
-    assert (Planner({}).play(at, np.arange(4), strokes=best).points > 0).sum() >= 3
+    assert (Planner({}).play_strokes(at, np.arange(4), best).points > 0).sum() >= 3
 
 
 def test_a_decision_takes_as_many_shots_as_its_name_says():
     player = sn.player("planner_60").at({"noise": "professional"})
     player.play(held_out(), np.arange(4))
-    assert 0.9 * 4 * 60 <= player.search.shots <= 4 * 60
+    assert 0.9 * 4 * 60 <= player.judge.shots <= 4 * 60
 
 
 def test_the_weights_are_those_of_the_noise_else_of_the_nearest():
@@ -77,7 +78,7 @@ def test_the_weights_are_those_of_the_noise_else_of_the_nearest():
 def test_a_value_says_more_for_a_better_player():
     at = held_out(30)
     players = (sn.player("planner_30").at({"noise": n}) for n in ("none", "professional", "club"))
-    values = [player.search.value(at).mean() for player in players]
+    values = [player.judge.value(at).mean() for player in players]
     assert values[0] > values[1] > 1.5 * values[2] > 0
 
 

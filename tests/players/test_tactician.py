@@ -10,8 +10,8 @@ from snooker_env.planning.worth import chosen, last_of, lead_of, left_of
 from snooker_env.players.tactician import Tactician
 from snooker_env.players.weights import learned_worth
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
-from tests.planning.test_frame_search import frame_of
-from tests.planning.test_frame_trials import GAME, frames_in_play, positions_of
+from tests.planning.test_frame_judge import frame_of
+from tests.planning.test_trials import GAME, frames_in_play, positions_of
 
 OPTIONS = GAME | {"noise": "club", "cue": "real", "decision": True}
 
@@ -69,12 +69,12 @@ def test_a_third_miss_loses_the_frame_whatever_the_lead():
     position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], black=(0.0, 1.4605), on="red")
     ahead = frame_of(position, scores=(60, 5))
     ahead.game[:, columns.WARNED], ahead.game[:, columns.FAILURES] = 1, 2
-    search = sn.player("tactician_30").at(OPTIONS | {"noise": "none"}).search
+    judge = sn.player("tactician_30").at(OPTIONS | {"noise": "none"}).judge
     away = np.array([[2.0, 0.0, 0.0, -2.4, 0.0]])
-    (chance, points), *_ = search.gains(ahead, np.array([0]), away, np.zeros((1, 5))).tolist()
+    (chance, points), *_ = judge.gains(ahead, np.array([0]), away, np.zeros((1, 5))).tolist()
     assert chance == 0.0 and points == -4.0 - 15.0
     ahead.game[:, columns.WARNED] = 0
-    (chance, _), *_ = search.gains(ahead, np.array([0]), away, np.zeros((1, 5))).tolist()
+    (chance, _), *_ = judge.gains(ahead, np.array([0]), away, np.zeros((1, 5))).tolist()
     assert chance > 0.5
 
 
@@ -86,7 +86,7 @@ def test_the_lot_is_decided_by_the_worth_of_the_black():
     silent.actions(sn.Options(**OPTIONS), far)  # an environment without lots reads it
     told = OPTIONS | {"lot": True}
     said = sn.player("tactician_30").at(told).play(far, [3]).declare.tolist()
-    worth = sn.player("tactician_30").at(told).search.worth(far)
+    worth = sn.player("tactician_30").at(told).judge.worth(far)
     assert (said[0] == OTHER_BEGINS) == bool(worth[0] < 0.0)
 
 
@@ -117,9 +117,9 @@ def test_the_chance_to_win_is_that_of_the_lead_to_come():
         chances.shape == (12,) and ((chances >= 0) & (chances <= 1)).all() and len(set(chances.tolist())) > 6
     )
     going = np.flatnonzero(~at.over)
-    law, worth = player.search.chance, player.search.worth
+    law, worth = player.judge.chance, player.judge.worth
     some = at[going]
-    wanted = law(lead_of(some), worth(some), left_of(some), last_of(some), player.search.spread)
+    wanted = law(lead_of(some), worth(some), left_of(some), last_of(some), player.judge.spread)
     np.testing.assert_allclose(chances[going], wanted, rtol=0, atol=1e-6)
     for k in range(12):
         assert player.chance_to_win(at[[k]])[0] == pytest.approx(chances[k], abs=1e-6)
@@ -190,21 +190,21 @@ POOR = Position(
 
 def test_nobody_fouls_on_purpose():
     """Where every safety leaves something: as it is intended, each stroke meets a ball on."""
-    search = sn.player("tactician").at(OPTIONS | {"noise": "professional", "miss": "clear_path"}).search
+    player = sn.player("tactician").at(OPTIONS | {"noise": "professional", "miss": "clear_path"})
     at, every = frame_of(POOR, scores=(14, 1))[np.zeros(60, int)], np.arange(60)
-    strokes = np.stack([one.strokes[0] for one in search.rank(at, every)])
-    after = search.outcomes(at, every, strokes, np.zeros((60, 5)))
+    strokes = np.stack([one.strokes.values[0] for one in player.search.rank(at, every)])
+    after = player.judge.outcomes(at, every, strokes, np.zeros((60, 5)))
     assert (after.game[:, columns.SCORE_1] > 1).sum() == 0
 
 
 def test_a_called_miss_is_worth_no_more_than_the_best_stroke_and_its_penalty():
     """The best is missed half of the time; one that always is would leave the other nothing."""
-    search = sn.player("tactician_30").at(OPTIONS).search
+    judge = sn.player("tactician_30").at(OPTIONS).judge
     parts = np.zeros((1, 3, 7))
     parts[0, 0, :2] = 0.5, 6.0
     parts[0, 1] = 0.3, 5.0, 0.5, 0.45, 40.0, -0.02, -2.0  # as often missed, for 4 points
     parts[0, 2, 2:] = 1.0, 0.9, 60.0, -0.04, -4.0  # on purpose
-    chances, points = search._replayed(parts)[0].T
+    chances, points = judge._replayed(parts)[0].T
     best = (0.3 - 0.02) / 0.5, (5.0 - 2.0) / 0.5  # the second, played until no miss is called
     assert (chances[1], points[1]) == pytest.approx(best)
     assert (chances[2], points[2]) == pytest.approx((best[0] - 0.04, best[1] - 4.0))
@@ -215,7 +215,7 @@ def test_a_foul_that_wins_the_frame_may_be_played():
     """8 ahead with the black alone: a foul ends the frame one point ahead. Every stroke wins it."""
     at = frame_of(HARD_BLACK, scores=(60, 52))
     (tried,) = sn.player("tactician_30").at(OPTIONS).search.rank(at, [0])
-    assert (tried.chances == 1.0).all()
+    assert (tried.scores == 1.0).all()
 
 
 def test_a_frame_that_is_over_is_won_or_lost():
@@ -229,7 +229,7 @@ def test_a_frame_that_is_over_is_won_or_lost():
 def test_the_chance_after_a_foul_is_that_of_the_best_decision():
     player = sn.player("tactician_30").at(OPTIONS)
     # whoever plays from the lower half is worth 20 points more than the other
-    player.search.worth = lambda at: np.where(at.positions[:, 0, 1] < 1.5, 20.0, -20.0)
+    player.judge.worth = lambda at: np.where(at.positions[:, 0, 1] < 1.5, 20.0, -20.0)
     easy = Position(cue=(0.3, 1.0), reds=[(0.6, 1.4)], black=(0.0, 1.4605), on="red")
     at = frame_of(easy, scores=(4, 0))
     at.game[:, columns.PHASE] = columns.CHOICE

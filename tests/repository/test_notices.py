@@ -131,7 +131,8 @@ LONG = {
     "snooker_env.game.paths": ["best_paths"],
     "snooker_env.game.snookered": ["_snookered"],
     "snooker_env.planning.learned.pot_view": ["_add_pots"],
-    "snooker_env.planning.strokes": ["_pot_aim", "_strike"],
+    "snooker_env.planning.aims": ["_pot_aim"],
+    "snooker_env.planning.trials": ["_strike"],
     "snooker_env.planning.geometry": ["_pots", "_clear_paths"],
 }
 """The kernels that were seen to take over a second, each compiled first in a fresh process."""

@@ -65,7 +65,6 @@ TRAINED_FOR = (
     *(f"snooker_env.render.diagrams: {name}_of" for name in ("bandwidth", "density", "level")),
     "snooker_env.players",
     "snooker_env.planning.learned",
-    "snooker_env.planning.frame_search: LEAST",
     "snooker_env.planning.worth",
     "snooker_env.game.sides: strikers_own",
     "snooker_env.game: frame_columns",

@@ -206,7 +206,7 @@ def test_choices_over_cushions_are_the_same_strokes_as_actions():
         env.reset(seed=seed)
         at = sn.planning.Positions.of(env)
         picks = np.flatnonzero(env.action_masks())[::50]
-        aims = sn.planning.as_actions(at, np.zeros(len(picks), int), picks)[:, 3] * np.pi
+        aims = sn.Planner(env).strokes_of(at, np.zeros(len(picks), int), picks)[0][:, 3]
         state = env.get_state()
         for pick, aim in zip(picks, aims, strict=True):
             env.set_state(state)

@@ -13,12 +13,15 @@ from ..._types import Bools, Floats, Integers, Ints
 from ...game import frame_columns as columns
 from ...game.balls import BLACK, N_BALLS, PINK, VALUES
 from ...tasks.options import Rules
-from ..frame_search import EASY, Tried
+from ..aims import Dynamics, law_of
+from ..frame_judge import EASY
 from ..positions import Positions, PositionsLike, check_played, seeds_of
 from ..proposals import safeties
 from ..prospects import in_parts
+from ..search import Ranked
 from ..sobol import normal_points
-from ..strokes import COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
+from ..stroke_columns import COLUMNS, SIDE, SPEED, TOP
+from ..strokes import Strokes
 from ..worth import SPREAD, Chance, breaks_off, lead_of, left_of, passed
 from . import cue_ball_path as path
 from .dense_layers import Layers
@@ -38,7 +41,6 @@ FOUL = 8.0
 """What a predicted foul costs beside what the balls as they lie bring the other [points]."""
 POTTED = 0.5
 """Of the safeties that are predicted to pot a ball that is on, about so many do."""
-_NONE = np.empty(0), np.empty(0), np.empty(0, np.int64), np.empty(0, np.int64)
 _SEED = 7  # of the errors, which are the same for all
 _CHANCE = 2  # the column of what ``stroke_value`` sees that is the pot's chance
 
@@ -75,8 +77,8 @@ class FrameStrokes:
         self._errors = normal_points(SAMPLES, _SEED)
         self._errors[0] = 0.0
 
-    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Tried]:
-        """Strokes in n positions of frames, as ``FrameSearch.rank``: none met a noise sample, the chances are 0. None
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
+        """Rank strokes in n positions of frames by their points, as ``Search.rank``: none met a noise sample. None
         before a break-off, and where neither a pot nor a ball on is seen."""
         at = Positions.of(positions).known_to(self.rules)
         keys, rows = seeds_of(seeds, len(at)), np.flatnonzero(~breaks_off(at))
@@ -85,12 +87,13 @@ class FrameStrokes:
         there &= self._sensible(at[rows], there, seen)
         scores = np.where(there, self.scores(seen), -np.inf)
         order, counts = np.argsort(-scores, axis=1, kind="stable"), there.sum(axis=1).tolist()
-        tried = [Tried(np.empty((0, COLUMNS)), *_NONE)] * len(at)
+        none = np.zeros(0)
+        ranked = [Ranked(Strokes(np.empty((0, COLUMNS))), none, none, none.astype(np.int64))] * len(at)
         for j, k in enumerate(rows.tolist()):
-            best, none = order[j, : counts[j]], np.zeros(counts[j])
+            best = order[j, : counts[j]]
             points, kinds = scores[j, best].astype(np.float64), (best >= LOOKS).astype(np.int64)
-            tried[k] = Tried(strokes[j, best], none, points, none.astype(np.int64), kinds)
-        return tried
+            ranked[k] = Ranked(Strokes(strokes[j, best]), points, points, np.zeros_like(best), kinds)
+        return ranked
 
     def _sensible(self, at: Positions, there: Bools, seen: NDArray[np.float32]) -> Bools:
         """Which strokes do not foul on purpose, nor lose the frame by potting the pink, where there are others: (n, STROKES)."""

@@ -13,7 +13,7 @@ from ...physics.cue_room import NO_RAILS
 from ...tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from ...tasks.discrete_actions import SIZE as CHOICES
 from ..positions import Positions
-from ..proposals import Proposals, strokes_at
+from ..proposals import Asking, Proposals, strokes_at
 from ..sobol import sobol_points
 from ..strokes import available
 from .pot_view import with_pots
@@ -26,7 +26,7 @@ _SIDE_STEP, _TOP_STEP = _SIDES[1] - _SIDES[0], _TOPS[1] - _TOPS[0]
 
 
 class PolicyProposals:
-    """The proposals of a ``StrokeSearch`` by a ``StrokePolicy`` on tables as ``with_pots`` shows them."""
+    """The proposals of a ``Search`` by a ``StrokePolicy`` on tables as ``with_pots`` shows them."""
 
     def __init__(self, policy: Any):
         self.policy = policy
@@ -37,8 +37,8 @@ class PolicyProposals:
         masks = available(at, rails)
         return self.policy.scores(with_pots(at.observations()), masks), masks
 
-    def __call__(self, search: Any, at: Positions, m: int, seeds: Any) -> Proposals:
-        """m strokes for each position, as ``StrokeSearch`` wants them."""
+    def __call__(self, search: Asking, at: Positions, m: int, seeds: Ints) -> Proposals:
+        """m strokes for each position, see ``Propose``."""
         scores, masks = self.scores(at, search.dynamics.rails)
         picks, tips = drawn(scores, masks, m, seeds)
         return strokes_at(at, picks // STROKES, tips, search.spread, search.dynamics)

@@ -16,12 +16,13 @@ from ...game.frame_columns import BALL_ON, VISIT_COLUMNS
 from ...geometry import AIM_X, AIM_Y, IS_MIDDLE, POCKET_AIMS
 from ...tasks.discrete_actions import STROKES
 from ...tasks.noise import Noise
+from ..aims import Dynamics, law_of
 from ..geometry import Pots, pots
 from ..positions import Positions
 from ..proposals import strokes_at
 from ..prospects import in_parts
 from ..sobol import normal_points
-from ..strokes import COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
+from ..stroke_columns import COLUMNS, SIDE, SPEED, TOP
 from ..worth import SPREAD
 from . import cue_ball_path as path
 from .dense_layers import Layers

@@ -5,9 +5,10 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.planning import Planner, Position, Positions, pots
+from snooker_env.planning.aims import Dynamics, law_of
 from snooker_env.planning.learned import cue_ball_path
 from snooker_env.planning.learned.value_features import value_features
-from snooker_env.planning.strokes import AIM, Dynamics, law_of
+from snooker_env.planning.stroke_columns import AIM
 from snooker_env.players import VISITS
 from snooker_env.tasks import STROKES, Noise
 
@@ -37,7 +38,7 @@ def pots_of_600(request):
     rows = np.flatnonzero(pots(at).ball[:, 0] >= 0)
     planner, choices = Planner({"action": "discrete", **options}), rng.integers(STROKES, size=len(rows))
     strokes, _ = planner.strokes_of(at, rows, choices)
-    return at, rows, strokes, planner.stops(at, rows, choices), predicted(at, rows, strokes, options)
+    return at, rows, strokes, planner.play(at, rows, choices), predicted(at, rows, strokes, options)
 
 
 def test_the_path_is_the_engines_as_long_as_nothing_else_is_met(pots_of_600):

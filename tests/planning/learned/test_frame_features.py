@@ -20,7 +20,7 @@ from snooker_env.planning.learned.frame_features import (
     frame_features,
 )
 from snooker_env.planning.learned.value_features import SIZE as VISIT_SIZE
-from tests.planning.test_frame_search import frame_of
+from tests.planning.test_frame_judge import frame_of
 
 COLOURS = VISIT_SIZE + NEAREST * RED_ENTRIES
 SHARED = COLOURS + 6

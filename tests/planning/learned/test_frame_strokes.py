@@ -5,11 +5,11 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env.planning import Position, Positions
+from snooker_env.planning.aims import law_of
 from snooker_env.planning.learned import cue_ball_path as path
 from snooker_env.planning.learned.frame_strokes import POT_SIZE, SAFETIES, SHARED
 from snooker_env.planning.learned.stroke_value import LOOKS
 from snooker_env.planning.proposals import safeties
-from snooker_env.planning.strokes import law_of
 from snooker_env.planning.worth import lead_of
 from snooker_env.players.stroke_value import StrokeValuePlayer
 from snooker_env.players.tactician import Tactician
@@ -51,7 +51,7 @@ def compared(n):
     rows, which = np.nonzero(made.chances > 0.0)
     strokes, m = made.strokes[rows, which], len(rows)
     out, places, told = predicted(player.search, at, rows, strokes)
-    after = Tactician(30).at(frame).search.outcomes(at, rows, strokes, np.zeros((m, 5)))
+    after = Tactician(30).at(frame).judge.outcomes(at, rows, strokes, np.zeros((m, 5)))
     return at, rows, out, (places, *told), after
 
 
@@ -82,7 +82,7 @@ def test_what_strokes_seem_to_be_worth_is_about_what_they_are_worth():
     frame.reset(seed=3)
     at, rng = Positions.of(frame), np.random.default_rng(4)
     search = StrokeValuePlayer(StrokeLayers(learned_strokes().visits)).at(frame).search
-    looked, judge = search.look(at, np.arange(len(at))), Tactician(30).at(frame).search
+    looked, judge = search.look(at, np.arange(len(at))), Tactician(30).at(frame).judge
     seems = search.scores(looked.seen)
     for kind, alike in ((slice(0, LOOKS), 0.75), (slice(LOOKS, None), 0.45)):
         rows, which = np.nonzero(looked.there[:, kind])
@@ -109,7 +109,7 @@ def test_what_is_predicted_to_foul_is_not_played_where_anything_else_is_there():
     fouls = looked.there & (looked.seen[..., SHARED + POT_SIZE + 4] > 0.5)
     some = 0
     for k, one in enumerate(search.rank(at, keys)):
-        ranked = {stroke.tobytes() for stroke in one.strokes}
+        ranked = {stroke.tobytes() for stroke in one.strokes.values}
         poor = [stroke.tobytes() in ranked for stroke in looked.strokes[k, fouls[k]]]
         some += len(poor)
         assert not any(poor) or fouls[k].sum() == looked.there[k].sum()

@@ -5,17 +5,17 @@ import pytest
 from positions import chances_by_width, tables
 
 from agents.learning.models import PRETRAINED, load_trained
-from snooker_env.planning import Position, Positions, StrokeSearch, action_masks, as_actions, pots
+from snooker_env.planning import Planner, Position, Positions, Search, VisitJudge, action_masks, pots
 from snooker_env.planning.learned.policy_proposals import TEMPERATURE, PolicyProposals
 from snooker_env.planning.proposals import AIM, MOST_POTS, RIM, SIDE, SPEED, TOP
 from snooker_env.tasks import CHOICES, POTS, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
-SEARCH = StrokeSearch({"noise": "professional", "fidelity": "fast"}, 30, threads=1)
+JUDGE = VisitJudge({"noise": "professional", "fidelity": "fast"}, threads=1)
 
 
 def spread_at(speed):
     """The player's error of direction in a stroke at that speed [rad]."""
-    return np.radians(SEARCH.noise.direction_deg(speed=speed))
+    return np.radians(JUDGE.noise.direction_deg(speed=speed))
 
 
 class Preferring:
@@ -51,7 +51,7 @@ def learned():
 def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():
     """The second pot at 2.9 m/s, left side, below the middle."""
     at, m = some(), 64
-    strokes, chances = preferring(_1_4_0_1=5.0)(SEARCH, at, m, np.arange(6))
+    strokes, chances = preferring(_1_4_0_1=5.0)(JUDGE, at, m, np.arange(6))
     assert strokes.shape == (6, m, 5) and chances.shape == (6, m)
     step = np.gradient(np.log(SPEEDS))[4]
     off = np.log(strokes[..., SPEED] / SPEEDS[4]) / step
@@ -64,17 +64,18 @@ def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():
     for k, i in zip(np.arange(m) % 6, np.arange(m), strict=True):
         expected = chances_by_width(at[[k]], spread_at(strokes[k, i, SPEED]))[0, 1]
         assert chances[k, i] == pytest.approx(expected, rel=1e-9)
-    middle = as_actions(at, np.arange(6), np.full(6, choice_of(1, 4, 0, 1)))[:, 3] * np.pi
+    choices = np.full(6, choice_of(1, 4, 0, 1))
+    middle = Planner({"action": "discrete"}).strokes_of(at, np.arange(6), choices)[0][:, AIM]
     apart = (strokes[..., AIM] - middle[:, None] + np.pi) % (2 * np.pi) - np.pi
     assert np.abs(apart).max() < 0.05  # throw depends on the stroke within the cell
 
 
 def test_half_of_the_plain_strokes_have_no_side_at_all():
-    strokes = preferring(_0_4_1_2=5.0)(SEARCH, some(), 400, np.arange(6)).strokes
+    strokes = preferring(_0_4_1_2=5.0)(JUDGE, some(), 400, np.arange(6)).strokes
     assert (strokes[..., SIDE] == 0.0).mean(axis=1) == pytest.approx(np.full(6, 0.5), abs=0.03)
     assert np.abs(strokes[..., SIDE]).max() <= 0.15 + 1e-9 and strokes[..., SIDE].max() > 0.1
     assert strokes[..., SIDE].min() < -0.1
-    sided = preferring(_0_4_2_2=5.0)(SEARCH, some(), 400, np.arange(6)).strokes
+    sided = preferring(_0_4_2_2=5.0)(JUDGE, some(), 400, np.arange(6)).strokes
     assert (sided[..., SIDE] > 0.14).all()
 
 
@@ -82,7 +83,7 @@ def test_shares_are_the_softmax_at_its_temperature():
     """Three choices of distinct speed: each gets its share of the strokes, to one stroke."""
     scores = {"_0_0_1_2": 2.0, "_0_4_1_2": 0.0, "_2_8_1_2": 3.0}
     m = 100
-    strokes = preferring(**scores)(SEARCH, some(), m, np.arange(6)).strokes
+    strokes = preferring(**scores)(JUDGE, some(), m, np.arange(6)).strokes
     weights = np.exp(np.array(list(scores.values())) / TEMPERATURE)
     nearest = np.abs(np.log(strokes[..., SPEED, None] / np.array(SPEEDS)[[0, 4, 8]])).argmin(axis=2)
     for column, share in enumerate(weights / weights.sum()):
@@ -99,7 +100,7 @@ def test_only_available_choices_are_proposed():
     policy = PolicyProposals(Preferring(scores))
     direct, masks = policy.scores(at)
     assert direct.shape == masks.shape == (1, CHOICES) and masks.sum() == many * STROKES
-    strokes, proposed = policy(SEARCH, at, 50, np.array([3]))
+    strokes, proposed = policy(JUDGE, at, 50, np.array([3]))
     for stroke, one in zip(strokes[0], proposed[0], strict=True):
         chances = chances_by_width(at, spread_at(stroke[SPEED]))[0, :many]
         assert np.isclose(chances, one, rtol=1e-9).any()
@@ -108,26 +109,26 @@ def test_only_available_choices_are_proposed():
 def test_without_a_pot_the_policy_proposes_nothing(learned):
     at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0)))
     assert pots(at).ball[0, 0] == -1
-    assert not learned(SEARCH, at, 30, np.array([5])).chances.any()
+    assert not learned(JUDGE, at, 30, np.array([5])).chances.any()
 
 
 @pytest.mark.parametrize("layout", ["opened", "break_off", "colours", "random:1"])
 def test_a_trained_policys_strokes_can_be_played(learned, layout):
     at = Positions.of(tables(5, layout=layout, seed=1))
-    strokes, chances = learned(SEARCH, at, 40, np.arange(5))
+    strokes, chances = learned(JUDGE, at, 40, np.arange(5))
     present = pots(at).ball[:, 0] >= 0
     assert np.isfinite(strokes).all() and (strokes[present][..., SPEED] >= 0.748).all()
     assert (strokes[..., SPEED] <= 6.88).all()  # half a cell beyond the grid
     assert (np.hypot(strokes[present][..., SIDE], strokes[present][..., TOP]) <= RIM + 1e-12).all()
     assert ((chances > 0) == present[:, None]).all() and (chances <= 1).all()
-    search = StrokeSearch({"noise": "professional", "fidelity": "fast"}, 30, threads=1, propose=learned)
-    ranked = search.rank(at, np.arange(5))
-    assert ranked.strokes.shape == (5, 16, 5) and search.shots <= 5 * 30
+    before = JUDGE.shots
+    ranked = Search(JUDGE, 30, learned).rank(at, np.arange(5))
+    assert [len(one.strokes) for one in ranked] == [16] * 5 and JUDGE.shots - before <= 5 * 30
 
 
 def test_each_position_is_proposed_for_by_itself(learned):
     at, seeds, order = some(8), np.arange(8), np.array([6, 1, 3])
-    whole, part = learned(SEARCH, at, 50, seeds), learned(SEARCH, at[order], 50, seeds[order])
+    whole, part = learned(JUDGE, at, 50, seeds), learned(JUDGE, at[order], 50, seeds[order])
     assert all(np.array_equal(one, every[order]) for one, every in zip(part, whole, strict=True))
-    other = learned(SEARCH, at, 50, seeds + 90)
+    other = learned(JUDGE, at, 50, seeds + 90)
     assert all(not np.array_equal(other.strokes[k], whole.strokes[k]) for k in range(8))

@@ -4,15 +4,18 @@ import numpy as np
 import pytest
 
 from snooker_env.game import frame_columns as columns
+from snooker_env.game.sides import swapped
 from snooker_env.planning import Planner, Positions
-from snooker_env.planning.frame_trials import FrameTrials, turned
+from snooker_env.planning.trials import FrameTrials, turned
 from snooker_env.players import Strokes
 from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.frame import Frames, Seat
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.threads import Threads
+from tests.kernels import from_python
 
 GAME = {"task": "frame", "miss": "clear_path", "fidelity": "fast", "elevation": True, "placement": True}
+choose = from_python(columns.choose)
 
 
 def frames_in_play(n, options, strokes, seed=0):
@@ -26,9 +29,7 @@ def frames_in_play(n, options, strokes, seed=0):
         play(tables, random_strokes(n, rng), crew)
     tables.game[:, columns.PHASE] = np.minimum(tables.game[:, columns.PHASE], columns.CHOICE)
     for k in np.flatnonzero(tables.game[:, columns.PHASE] == columns.CHOICE):
-        columns.choose(tables.game[k], columns.PLAY) if not hasattr(columns.choose, "py_func") else (
-            columns.choose.py_func(tables.game[k], columns.PLAY)
-        )
+        choose(tables.game[k], columns.PLAY)
     return tables
 
 
@@ -79,8 +80,6 @@ def test_a_trial_leads_to_what_the_frame_itself_would(miss, cue):
 
 def turned_to(game, striker):
     """Rows of frames with ``striker`` (n,) as player 0."""
-    from snooker_env.game.sides import swapped
-
     return np.where(striker[:, None] == 1, swapped(game), game)
 
 
@@ -89,7 +88,7 @@ def test_in_a_visit_it_scores_as_the_planner_says():
     tables = frames_in_play(30, GAME, strokes=3, seed=3)
     at, rng = positions_of(tables), np.random.default_rng(1)
     strokes, errors = random_strokes(30, rng), rng.standard_normal((30, 5))
-    outcomes = Planner(options, threads=1).play(at.as_visits(), np.arange(30), strokes=strokes, errors=errors)
+    outcomes = Planner(options, threads=1).play_strokes(at.as_visits(), np.arange(30), strokes, errors=errors)
     trials = FrameTrials(Options(**GAME | {"noise": "club"}).rules, Threads(1))
     after = trials.play(at, np.arange(30), strokes, errors)
     scored = after.game[:, columns.SCORE_0] - at.game[:, columns.SCORE_0]

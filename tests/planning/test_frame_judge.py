@@ -5,9 +5,11 @@ import pytest
 
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import touching_balls as touching_kernel
-from snooker_env.planning import Position, Positions, at_pots, prospects_of, spread_of
-from snooker_env.planning.frame_search import AVERAGE, PLANS, FrameSearch
+from snooker_env.planning import FrameJudge, Position, Positions, Search, at_pots, prospects_of, spread_of
+from snooker_env.planning.frame_judge import PLANS
 from snooker_env.planning.proposals import EDGE, safeties
+from snooker_env.planning.search import BUDGET
+from snooker_env.planning.trials import turned
 from snooker_env.planning.worth import (
     NARROWEST,
     WIDEST,
@@ -23,9 +25,10 @@ from snooker_env.planning.worth import (
 from snooker_env.planning.worth import SPREAD as MIDDLE
 from snooker_env.players.weights import learned_worth
 from snooker_env.tasks import LEVELS
+from snooker_env.tasks.threads import Threads
 from snooker_env.tasks.windows import MOST_EDGES, open_windows
 from tests.kernels import from_python
-from tests.planning.test_frame_trials import GAME, frames_in_play, positions_of
+from tests.planning.test_trials import GAME, frames_in_play, play, positions_of, random_strokes
 
 OPTIONS = GAME | {"noise": "club", "cue": "real"}
 windows_of, touching_balls = from_python(open_windows), from_python(touching_kernel)
@@ -49,47 +52,50 @@ def frame_of(position, scores=(0, 0)):
     return Positions(at.positions, at.on_table, game)
 
 
-def search(**more):
-    return FrameSearch(OPTIONS, by_rule, at_pots, **{"threads": 1} | more)
+def judge(options=OPTIONS, worth=by_rule, **more):
+    return FrameJudge(options, worth, **{"threads": 1} | more)
+
+
+def most(plan):
+    """Shots that a plan takes at most."""
+    return sum(plan.looks) + sum(many * each for many, each in plan.rounds)
 
 
 def test_a_pot_that_is_easy_is_played_and_hard_positions_get_more_shots():
     easy = frame_of(Position(cue=(0.3, 1.3), reds=[(0.6, 1.6)], black=(0.0, 1.4605), on="red"))
-    one = search()
-    (tried,) = one.rank(easy, [3])
-    assert tried.kinds[0] == 0 and one.shots <= sum(PLANS[0][:3]) + sum(a * b for a, b in PLANS[0].rounds)
+    one = judge()
+    (tried,) = Search(one).rank(easy, [3])
+    assert tried.kinds[0] == 0 and one.shots <= most(PLANS[0])
     hard = positions_of(frames_in_play(6, OPTIONS, strokes=0))  # before the break-off
-    two = search()
-    for tried in two.rank(hard, np.arange(6)):
+    two = judge()
+    for tried in Search(two).rank(hard, np.arange(6)):
         assert tried.kinds[0] in (1, 2) and (np.diff(tried.samples) <= 0).all()
-    assert 1.5 * AVERAGE < two.shots / 6 <= sum(PLANS[1][:3]) + sum(a * b for a, b in PLANS[1].rounds)
+    assert 1.5 * BUDGET < two.shots / 6 <= most(PLANS[1])
 
 
 def test_many_positions_are_judged_as_each_alone():
     at = positions_of(frames_in_play(12, OPTIONS, strokes=5, seed=11))
     at = at[np.flatnonzero(~at.over)]
     keys = np.arange(len(at)) + 70
-    together = search().rank(at, keys)
+    together = Search(judge()).rank(at, keys)
     for k in range(len(at)):
-        (alone,) = search().rank(at[[k]], keys[[k]])
-        for one, other in zip(together[k], alone, strict=True):
-            assert np.array_equal(one, other)
+        (alone,) = Search(judge()).rank(at[[k]], keys[[k]])
+        assert np.array_equal(together[k].strokes.values, alone.strokes.values)
+        assert all(map(np.array_equal, together[k][1:], alone[1:]))
 
 
 def test_the_score_is_what_the_stroke_brings_and_leaves():
     """Without errors, the best stroke's points are those of the trial it was: recomputed one by one."""
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
-    one = search(noise="none")
-    for k, tried in enumerate(one.rank(at, np.arange(len(at)))):
-        after = one.outcomes(at, np.full(3, k), tried.strokes[:3], np.zeros((3, 5)))
+    one = judge(noise="none")
+    for k, tried in enumerate(Search(one).rank(at, np.arange(len(at)))):
+        after = one.outcomes(at, np.full(3, k), tried.strokes.values[:3], np.zeros((3, 5)))
         for j in range(3):
             row = after.game[j]
             points = float(lead_of(after[[j]])[0] - lead_of(at[[k]])[0])
             if not row[columns.OVER]:
                 mine = row[columns.STRIKER] == 0
-                from snooker_env.planning.frame_trials import turned
-
                 left = turned(after[[j]])
                 worth = (
                     decide(by_rule, left)[1][0] if row[columns.PHASE] == columns.CHOICE else by_rule(left)[0]
@@ -127,20 +133,20 @@ def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
     assert np.array_equal(errs(now, ten, left, open_table, 0.0), errs(now, ten, left, open_table, NARROWEST))
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
-    one, every = search(chance=LAW), np.arange(len(at))
+    one, every = judge(chance=LAW), np.arange(len(at))
     both = one.gains(at, every, np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5)))
     assert ((both[:, 0] > 0.0) & (both[:, 0] < 1.0)).all()
-    one = search(chance=errs, noise="professional")
+    one = judge(chance=errs, noise="professional")
     ahead, none = one.valued(np.full(len(at), 5.0), at), np.zeros(len(at), np.bool_)
     rest = 5.0 + ahead[:, 1] - lead_of(at)
     assert np.array_equal(ahead[:, 0], errs(lead_of(at), rest, left_of(at), none, one.spread))
-    assert not np.array_equal(ahead, search(chance=errs).valued(np.full(len(at), 5.0), at))
+    assert not np.array_equal(ahead, judge(chance=errs).valued(np.full(len(at), 5.0), at))
     far, sign = at.copy(), np.where(every % 2, 1, -1)
     # one of both needs snookers, whatever the stroke does
     far.game[:, columns.SCORE_0] += np.maximum(sign, 0) * 200
     far.game[:, columns.SCORE_1] += np.maximum(-sign, 0) * 200
-    for tried, ahead in zip(search(chance=LAW).rank(far, every), sign > 0, strict=True):
-        assert (tried.chances > 0.99).all() if ahead else (tried.chances < 0.01).all()
+    for tried, ahead in zip(Search(judge(chance=LAW)).rank(far, every), sign > 0, strict=True):
+        assert (tried.scores > 0.99).all() if ahead else (tried.scores < 0.01).all()
 
 
 def test_with_the_black_alone_the_rules_say_who_wins():
@@ -169,7 +175,7 @@ def test_the_time_that_is_left_bounds_what_may_be_scored():
     open_table = Position(cue=(0.3, 0.4), reds=[(0.6, 1.0), (-0.3, 0.2)], black=(0.0, 1.4605), on="red")
     at = frame_of(open_table, scores=(30, 10))
     game = OPTIONS | {"game": "shoot_out", "miss": "off"}
-    one = FrameSearch(game, by_rule, at_pots, chance=LAW, threads=1)
+    one = judge(game, chance=LAW)
     early, (now, worth) = at.copy(), (lead_of(at), np.zeros(1))
     at.game[:, columns.CLOCK] = 600_000 - 1
     assert one.chances(now, worth, early)[0] < 0.99 < one.chances(now, worth, at)[0]
@@ -180,7 +186,7 @@ def test_safeties_meet_a_ball_on_first_and_every_other_one_thinly():
     free = {"noise": "none", "cue": "free"}  # under a raised cue an aim is turned back by the swerve
     at = positions_of(frames_in_play(10, OPTIONS | free, strokes=6, seed=31))
     at = at[np.flatnonzero(~at.over & ~at.in_hand)]
-    one = FrameSearch(OPTIONS | free, by_rule, at_pots, threads=1)
+    one = judge(OPTIONS | free)
     made, met, tried, near = safeties(one, at.as_visits(), 64, np.arange(len(at))), 0, 0, []
     assert (made.strokes[..., 0] >= 0.45).all() and (made.strokes[..., 0] <= 6.0).all()
     assert (np.hypot(made.strokes[..., 1], made.strokes[..., 2]) <= 0.5).all()
@@ -202,9 +208,6 @@ def test_safeties_meet_a_ball_on_first_and_every_other_one_thinly():
 def test_after_a_foul_all_choices_are_compared():
     either_way = lambda some: by_rule(some) - 12.0  # noqa: E731 - also worths below 0
     tables = frames_in_play(60, OPTIONS, strokes=0, seed=41)
-    from snooker_env.tasks.threads import Threads
-    from tests.planning.test_frame_trials import play, random_strokes
-
     play(tables, random_strokes(60, np.random.default_rng(2)), Threads(1))
     at = positions_of(tables)
     at = at[np.flatnonzero(at.choice & at.miss_called)]
@@ -258,6 +261,15 @@ def test_who_comes_next_decides_the_sign():
 
 def test_a_lot_decides_who_begins_at_the_black_that_makes_it_level():
     at = frame_of(Position(cue=(0.377, 1.327), black=(0.0, 1.4605), on="black"), (53, 60))
-    one = FrameSearch(OPTIONS | {"noise": "none"}, lambda some: np.full(len(some), 5.0), at_pots, chance=LAW)
-    (tried,) = one.rank(at, [0])
-    assert tried.kinds[0] == 0 and tried.chances[0] == 0.5 and tried.points[0] == 7.0
+    one = judge(OPTIONS | {"noise": "none"}, lambda some: np.full(len(some), 5.0), chance=LAW)
+    (tried,) = Search(one).rank(at, [0])
+    assert tried.kinds[0] == 0 and tried.scores[0] == 0.5 and tried.points[0] == 7.0
+
+
+def test_a_visit_is_not_judged_as_a_frame_nor_with_several_generators():
+    at, one = Position(cue=(0.377, 1.327), black=(0.0, 1.4605), on="black"), judge()
+    with pytest.raises(ValueError, match=r"^positions = those of visits: must be of frames"):
+        Search(one).rank(at, [0])
+    with pytest.raises(ValueError, match=r"^propose = 2 generators: must be one"):
+        Search(one, propose=(at_pots, at_pots)).rank(frame_of(at), [0])
+    assert one.shots == 0

@@ -14,16 +14,20 @@ from snooker_env.planning import (
     Planner,
     Position,
     Positions,
-    StrokeSearch,
+    Search,
+    Strokes,
+    VisitJudge,
     at_pots,
     clear_paths,
     pots,
     prospects_of,
 )
 from snooker_env.planning.proposals import Proposals
+from snooker_env.planning.search import PRIOR
 from snooker_env.planning.sobol import normal_points
-from snooker_env.planning.stroke_search import FEWEST, FOUL, LEFT, PRIOR, schedule
+from snooker_env.planning.visit_judge import FOUL, LEFT, schedule
 from snooker_env.tasks.noise import errors_of
+from snooker_env.tasks.options import Options
 
 OPTIONS = {"noise": "club", "fidelity": "fast"}
 LOUD = {"aim_deg": 0.3, "speed_rel": 0.05, "speed_abs": 0.05, "offset_mm": 5.0, "elevation_deg": 2.0}
@@ -34,12 +38,27 @@ def some(n=6, layout="random:6", seed=2):
     return Positions.of(tables(n, layout=layout, seed=seed))
 
 
-def search(budget=30, options=OPTIONS, **more):
-    return StrokeSearch(options, budget, **{"threads": 1} | more)
+def search(budget=30, options=OPTIONS, propose=at_pots, **more):
+    return Search(VisitJudge(options, **{"threads": 1} | more), budget, propose)
+
+
+def told(ranked):
+    """What a ranking of one position tells."""
+    return ranked.strokes.values, ranked.scores, ranked.samples, ranked.kinds
 
 
 def same(one, other):
-    return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+    """Whether two rankings of positions are equal."""
+    return all(
+        np.array_equal(a, b)
+        for mine, theirs in zip(one, other, strict=True)
+        for a, b in zip(told(mine), told(theirs), strict=True)
+    )
+
+
+def first(ranked):
+    """The best strokes (n, 5) of rankings."""
+    return np.stack([one.strokes.values[0] for one in ranked])
 
 
 def by_place(at):
@@ -54,15 +73,6 @@ def random_strokes(m, rng):
     strokes = np.stack([speed, far * np.cos(way), far * np.sin(way), aim, np.zeros(m)], 1)
     mirrored = strokes[: m // 2] * [1, -1, 1, -1, 1] + [0, 0, 0, np.pi, 0]
     return np.concatenate([strokes[: m - m // 2], mirrored])
-
-
-def as_actions(strokes):
-    """The actions of ``aim="absolute"`` for strokes, in double precision, as ``Actions`` defines them."""
-    speed, side, top, aim, _ = strokes.T
-    turns = aim / np.pi
-    return np.stack(
-        [(speed - 0.2) / 3.4 - 1.0, 2.0 * side, 2.0 * top, turns - 2.0 * np.round(turns / 2.0)], 1
-    )
 
 
 EACH = {"offset_mm": 6.0}, {"elevation_deg": 4.0}, {"aim_deg": 2.0}, {"speed_abs": 0.1, "speed_rel": 0.03}
@@ -81,17 +91,17 @@ def test_strokes_under_errors_are_those_of_the_table_under_the_same_errors(noise
     options = {"noise": noise, "fidelity": "fast"}
     errors = errors_of(np.stack([keys, np.zeros(m, int)], 1).astype(np.uint64))
     kept = strokes.copy(), errors.copy()
-    played = search(options=options).outcomes(at, rows, strokes, errors)
-    table = Planner(options, threads=1).play(at, rows, as_actions(strokes), keys)
+    actions = Strokes(strokes).actions(Options(), at[rows])
+    planner = Planner(options, threads=1)
+    played = planner.play_strokes(at, rows, strokes, errors=errors)
+    table = planner.play(at, rows, actions, keys)
     apart = np.abs(played.afterstates.positions - table.afterstates.positions).max(axis=(1, 2))
     assert np.median(apart) < 1e-9 and (apart < 1e-4).mean() > 0.99
     alike = apart < 1e-4
     assert np.array_equal(played.points[alike], table.points[alike])
     assert np.array_equal(played.goes_on[alike], table.goes_on[alike])
     assert np.array_equal(strokes, kept[0]) and np.array_equal(errors, kept[1])
-    exact = (
-        Planner(options, noise="none", threads=1).play(at, rows, as_actions(strokes)).afterstates.positions
-    )
+    exact = Planner(options, noise="none", threads=1).play(at, rows, actions).afterstates.positions
     # the errors do matter
     assert (np.abs(exact - table.afterstates.positions).max(axis=(1, 2)) > 1e-3).mean() > 0.3
 
@@ -100,10 +110,10 @@ def test_a_tip_error_beyond_the_disc_is_drawn_in_along_its_radius():
     """A tip sent beyond the rim: the ball leaves as from the rim, turned by the squirt of the stroke."""
     at = Positions.of(Position(cue=(0.0, -1.2), black=(0.6, 1.6)))
     noise = {"offset_mm": 0.02625e3 * 0.2}  # a fifth of R
-    tool = search(options={"noise": noise})
+    tool = Planner({"noise": noise}, threads=1)
     strokes, errors = [[0.9, 0.4, 0.0, 1.5, 0.0]] * 2, [[0, 2.0, 0, 0, 0], [0, 0.5, 0, 0, 0]]
-    left = tool.outcomes(at, np.array([0, 0]), np.array(strokes), np.array(errors))
-    ratio = tool.dynamics[0].end_mass_ratio
+    left = tool.play_strokes(at, [0, 0], strokes, errors=errors)
+    ratio = tool.physics.end_mass_ratio
     # squirt [Alciatore, TP A.31]
     rim, meant = (atan(2.5 * b * sqrt(1 - b * b) / (1 + ratio + 2.5 * (1 - b * b))) for b in (0.5, 0.4))
     turned = rim - meant
@@ -114,8 +124,8 @@ def test_a_tip_error_beyond_the_disc_is_drawn_in_along_its_radius():
 
 
 def test_no_budget_is_exceeded_nor_left_unused():
-    for budget in range(FEWEST, 2501):
-        looks, rounds = schedule(budget)
+    for budget in range(VisitJudge.least, 2501):
+        (looks,), rounds = schedule(budget)
         total = looks + sum(many * each for many, each in rounds)
         assert 0.8 * budget < total <= budget, budget
         assert all(each >= 1 for _, each in rounds)
@@ -130,22 +140,23 @@ def test_as_many_strokes_are_played_as_the_schedule_says(budget, noise):
     at = some(2)
     tool = search(budget, {"noise": noise, "fidelity": "fast"})
     ranked = tool.rank(at, [1, 2])
-    looks, rounds = schedule(budget)
+    (looks,), rounds = schedule(budget)
     total = looks + sum(many * each for many, each in rounds)
     if noise == "none":
         looks, rounds, total = budget, (), budget
-    assert tool.shots == 2 * total and ranked.strokes.shape == (2, looks, 5)
-    assert ranked.scores.shape == ranked.samples.shape == (2, looks)
+    assert tool.judge.shots == 2 * total
     met = np.zeros(looks, int)
     for many, each in rounds:
         met[:many] += each
-    assert np.array_equal(ranked.samples, [met, met]) and ranked.samples.dtype == np.int64
+    for one in ranked:
+        assert len(one.strokes) == len(one.scores) == looks and np.array_equal(one.samples, met)
 
 
 def gains_by_hand(tool, at, strokes, errors, value):
     """Points and value of what is left for each stroke of one position under each error: (m, s)."""
     m, s = len(strokes), len(errors)
-    out = tool.outcomes(at, np.zeros(m * s, int), np.repeat(strokes, s, axis=0), np.tile(errors, (m, 1)))
+    rows, strokes, errors = np.zeros(m * s, int), np.repeat(strokes, s, axis=0), np.tile(errors, (m, 1))
+    out = tool.judge.planner.play_strokes(at, rows, strokes, errors=errors)
     left = [value(out.afterstates[[i]])[0] if on else 0.0 for i, on in enumerate(out.goes_on)]
     return (out.points + left).reshape(m, s)
 
@@ -158,7 +169,7 @@ def test_the_ranking_recomputed(budget, value):
     tool = search(budget, value=value)
     worth = value or (lambda left: prospects_of(left, tool.spread, RULE_OF_THUMB)[0])
     ranked = tool.rank(at, seeds)
-    looks, rounds = schedule(budget)
+    (looks,), rounds = schedule(budget)
     total = sum(each for _, each in rounds)
     for k, seed in enumerate(seeds):
         here = at[k : k + 1]
@@ -171,10 +182,10 @@ def test_the_ranking_recomputed(budget, value):
             for i in order[:many]:
                 score[i], met[i] = (PRIOR * look[i] + gains[i, :done].sum()) / (PRIOR + done), done
             order[:many] = sorted(order[:many], key=lambda i: -score[i])
-        assert np.array_equal(ranked.strokes[k], strokes[order])
-        assert ranked.samples[k].tolist() == [met[i] for i in order]
-        assert ranked.scores[k] == pytest.approx([score[i] for i in order], rel=1e-9, abs=1e-9)
-    assert PRIOR == 1.0 and ranked.scores.max() > 3.0
+        assert np.array_equal(ranked[k].strokes.values, strokes[order])
+        assert ranked[k].samples.tolist() == [met[i] for i in order]
+        assert ranked[k].scores == pytest.approx([score[i] for i in order], rel=1e-9, abs=1e-9)
+    assert PRIOR == 1.0 and max(one.scores.max() for one in ranked) > 3.0
 
 
 def test_for_pots_alone_a_score_is_a_rate_and_nothing_is_valued():
@@ -184,15 +195,17 @@ def test_for_pots_alone_a_score_is_a_rate_and_nothing_is_valued():
     at = some(5)
     tool = search(60, pots_only=True, value=never)
     ranked = tool.rank(at, np.arange(5))
-    assert ranked.scores.min() >= 0.0 and ranked.scores.max() <= 1.0 and (ranked.scores[:, 0] > 0.3).any()
-    for k in range(5):
-        best, met = ranked.strokes[k, 0], int(ranked.samples[k, 0])
+    assert all(one.scores.min() >= 0.0 and one.scores.max() <= 1.0 for one in ranked)
+    assert any(one.scores[0] > 0.3 for one in ranked)
+    for k, one in enumerate(ranked):
+        best, met = one.strokes.values[0], int(one.samples[0])
         errors = np.concatenate([np.zeros((1, 5)), normal_points(met, k)])
-        made = tool.outcomes(at, np.full(met + 1, k), np.tile(best, (met + 1, 1)), errors).points > 0
-        proposed = at_pots(tool, at[k : k + 1], schedule(60)[0], [k])
+        again = np.tile(best, (met + 1, 1))
+        made = tool.judge.planner.play_strokes(at, np.full(met + 1, k), again, errors=errors).points > 0
+        proposed = at_pots(tool, at[k : k + 1], *schedule(60).looks, [k])
         strokes, chances = (one[0] for one in proposed)
         chance = chances[np.flatnonzero((strokes == best).all(axis=1))[0]]
-        assert ranked.scores[k, 0] == pytest.approx((chance * made[0] + made[1:].sum()) / (1.0 + met))
+        assert one.scores[0] == pytest.approx((chance * made[0] + made[1:].sum()) / (1.0 + met))
 
 
 def test_without_errors_the_ranking_is_that_of_the_looks():
@@ -205,12 +218,12 @@ def test_without_errors_the_ranking_is_that_of_the_looks():
 
     tool = search(80, {"noise": "none", "fidelity": "fast"}, propose=sure)
     ranked = tool.rank(at, np.arange(6))
-    assert not ranked.samples.any() and (np.diff(ranked.scores) <= 0.0).all()
-    assert ranked.scores.shape == (6, 80)
-    best = as_actions(ranked.strokes[:, 0])
-    played = Planner({"noise": "none", "fidelity": "fast"}).play(at, np.arange(6), best)
+    for one in ranked:
+        assert not one.samples.any() and (np.diff(one.scores) <= 0.0).all() and len(one.scores) == 80
+    played = Planner({"fidelity": "fast"}).play_strokes(at, np.arange(6), first(ranked))
     worth = played.points + played.goes_on * prospects_of(played.afterstates, tool.spread, SURE)[0]
-    assert ranked.scores[:, 0] == pytest.approx(worth, rel=1e-6) and (played.points > 0).sum() >= 4
+    scores = [one.scores[0] for one in ranked]
+    assert scores == pytest.approx(worth, rel=1e-6) and (played.points > 0).sum() >= 4
 
 
 def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
@@ -229,8 +242,7 @@ def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
     whole = search(60, threads=2).rank(at[order], seeds[order])
     for k in range(len(at)):
         alone = search(60).rank(at[[k]], seeds[[k]])
-        for mine in np.flatnonzero(order == k):
-            assert all(np.array_equal(one[0], every[mine]) for one, every in zip(alone, whole, strict=True))
+        assert all(same(alone, [whole[mine]]) for mine in np.flatnonzero(order == k))
 
 
 @pytest.mark.parametrize("budget", [30, 120])
@@ -239,7 +251,7 @@ def test_a_fair_stroke_is_found_where_the_balls_on_are_hidden(noise, budget):
     at = some(100, layout="snookered", seed=9)
     assert clear_paths(at).any_part.mean() < 0.5
     ranked = search(budget, {"noise": noise, "fidelity": "fast"}).rank(at, np.arange(100))
-    played = Planner({"fidelity": "fast"}, threads=1).stops(at, np.arange(100), strokes=ranked.strokes[:, 0])
+    played = Planner({"fidelity": "fast"}, threads=1).play_strokes(at, np.arange(100), first(ranked))
     assert (played.penalty == 0).mean() >= 0.98
 
 
@@ -249,14 +261,16 @@ def test_without_a_pot_fouls_and_what_is_left_count():
     at = at[np.flatnonzero(pots(at).ball[:, 0] < 0)]
     tool = search(40, {"noise": "none", "fidelity": "fast"})
     ranked = tool.rank(at, np.arange(len(at)))
-    stops = tool.planner.stops(at, np.repeat(np.arange(len(at)), 40), strokes=ranked.strokes.reshape(-1, 5))
-    left, fouls = stops.afterstates, stops.penalty > 0
+    strokes = Strokes.join([one.strokes for one in ranked]).values
+    played = tool.judge.planner.play_strokes(at, np.repeat(np.arange(len(at)), 40), strokes)
+    left, fouls = played.afterstates, played.penalty > 0
     usual = {"on": None, "over": False, "points": 0, "in_hand": False, "table": None}
     theirs = [Position(**vars(one) | usual | {"cue": one.cue or tuple(SPOTS[0].tolist())}) for one in left]
-    gains = stops.points - stops.penalty - FOUL * fouls
-    whose = [mine if on else other for mine, other, on in zip(left, theirs, stops.goes_on, strict=True)]
-    gains += np.where(stops.goes_on, 1.0, -LEFT) * tool.value(Positions.of(whose))
-    assert ranked.scores.ravel() == pytest.approx(gains, abs=1e-6) and fouls.any() and not fouls.all()
+    gains = played.points - played.penalty - FOUL * fouls
+    whose = [mine if on else other for mine, other, on in zip(left, theirs, played.goes_on, strict=True)]
+    gains += np.where(played.goes_on, 1.0, -LEFT) * tool.judge.value(Positions.of(whose))
+    scores = np.concatenate([one.scores for one in ranked])
+    assert scores == pytest.approx(gains, abs=1e-6) and fouls.any() and not fouls.all()
 
 
 def test_generators_that_have_strokes_share_the_looks():
@@ -272,9 +286,9 @@ def test_generators_that_have_strokes_share_the_looks():
     tool = search(60, {"noise": "none", "fidelity": "fast"}, propose=(at_pots, soft))
     ranked = tool.rank(at, [1, 2, 3])
     usual = search(60, {"noise": "none", "fidelity": "fast"}).rank(at, [1, 2, 3])
-    assert (ranked.strokes[..., 0] == 1.0).sum(axis=1).tolist() == [30, 0, 30] and calls == [3]
-    assert np.array_equal(ranked.strokes[1], usual.strokes[1])
-    assert not np.array_equal(ranked.scores[0], usual.scores[0])
+    assert [int((one.strokes.speed == 1.0).sum()) for one in ranked] == [30, 0, 30] and calls == [3]
+    assert [int(one.kinds.sum()) for one in ranked] == [30, 0, 30] and same(ranked[1:2], usual[1:2])
+    assert not np.array_equal(ranked[0].scores, usual[0].scores)
 
 
 def test_the_low_32_bits_of_a_seed_decide_and_a_search_remembers_nothing():
@@ -283,7 +297,7 @@ def test_the_low_32_bits_of_a_seed_decide_and_a_search_remembers_nothing():
     assert same(one, tool.rank(at, seeds.tolist()))
     assert same(one, tool.rank(at, (seeds + 2**32).astype(np.uint64)))
     other = tool.rank(at, seeds + 50)
-    assert all(not np.array_equal(one.strokes[k], other.strokes[k]) for k in range(12))
+    assert not any(same(one[k : k + 1], other[k : k + 1]) for k in range(12))
 
 
 def test_nothing_given_is_changed_and_nothing_returned_is_shared():
@@ -296,34 +310,35 @@ def test_nothing_given_is_changed_and_nothing_returned_is_shared():
         return made
 
     tool = search(60, propose=propose)
-    first = tool.rank(at, seeds)
-    copies = [one.copy() for one in first]
+    ranked = tool.rank(at, seeds)
+    copies = [part.copy() for one in ranked for part in told(one)]
     for made, strokes, chances in proposed:
         assert np.array_equal(made.strokes, strokes) and np.array_equal(made.chances, chances)
     names = "positions", "on_table", "game"
     assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in names)
     assert np.array_equal(seeds, np.arange(5))
-    for one in first:
-        one[:] = 0
-    assert same(copies, tool.rank(at, seeds))
+    for one in ranked:
+        for part in told(one):
+            part[:] = 0
+    again = [part for one in tool.rank(at, seeds) for part in told(one)]
+    assert all(map(np.array_equal, copies, again))
 
 
 def test_physics_and_fidelity_are_the_tables_and_noise_given_takes_its_place():
     at = some(3)
     exact = search(30, noise="none")
-    assert exact.noise.silent and not exact.rank(at, [1, 2, 3]).samples.any()
+    assert exact.judge.noise.silent and not exact.rank(at, [1, 2, 3])[0].samples.any()
     loud = search(30, {"noise": "none", "fidelity": "fast"}, noise="club")
     assert same(loud.rank(at, [1, 2, 3]), search(30).rank(at, [1, 2, 3]))
     at = some(3)
     usual = search(30).rank(at, [1, 2, 3])
     for change in ({"physics": "match"}, {"fidelity": "standard"}, {"table": "tight"}):
         other = search(30, OPTIONS | change).rank(at, [1, 2, 3])
-        assert not np.array_equal(usual.scores, other.scores), change
+        assert not same(usual, other), change
 
 
 def test_no_position_is_no_decision():
-    ranked = search(30).rank(some(2)[np.zeros(0, int)], np.zeros(0, int))
-    assert ranked.strokes.shape == (0, 16, 5) and ranked.scores.shape == ranked.samples.shape == (0, 16)
+    assert search(30).rank(some(2)[np.zeros(0, int)], np.zeros(0, int)) == []
 
 
 @pytest.mark.parametrize(
@@ -333,7 +348,7 @@ def test_wrong_seeds_are_refused_before_anything_is_played(seeds):
     tool = search()
     with pytest.raises(ValueError, match=r"^seeds = .*: must be 2 integers, one for each position"):
         tool.rank(some(2), seeds)
-    assert tool.shots == 0
+    assert tool.judge.shots == 0
 
 
 SPOILT = {
@@ -351,15 +366,16 @@ def test_a_position_without_a_stroke_is_refused_by_its_row(kind):
     SPOILT[kind](at)
     with pytest.raises(ValueError, match=r"^positions\[1\]") as info:
         tool.rank(at, [1, 2, 3])
-    assert type(info.value) is ValueError and tool.shots == 0
+    assert type(info.value) is ValueError and tool.judge.shots == 0
 
 
 def test_other_wrong_arguments_are_refused():
     for wrong, complaint in (
         (lambda: search(threads=0), "threads = 0"),
         (lambda: search(noise="loud"), "noise = 'loud'"),
-        (lambda: StrokeSearch(3), "env_or_options = "),
+        (lambda: VisitJudge(3), "env_or_options = "),
         (lambda: search().rank(3, [1]), "positions = "),
+        (lambda: Search(OPTIONS), "judge = a dict: must be a VisitJudge or a FrameJudge"),
         *((lambda b=budget: search(b), f"budget = {budget!r}") for budget in (7, -1, 30.0, "30", None)),
     ):
         with pytest.raises(ValueError, match=f"^{complaint}"):

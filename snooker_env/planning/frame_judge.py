@@ -1,0 +1,226 @@
+"""What is a stroke of a frame worth? Pots, safeties and escapes are judged alike, by the points that they bring and the
+worth of what they leave to the next player (``worth``), and by the chance to win that follows.
+
+The budget goes where the decision is hard. Where a pot is likely (``EASY``), few pots are looked at; elsewhere more
+pots, several times as many safeties, and escapes where hardly anything is seen."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from .._check import integer, refuse_what
+from .._types import Bools, Environment, Floats, Ints
+from ..game import frame_columns as columns
+from ..tasks.noise import Noise, NoiseLike
+from ..tasks.options import Options, Rules
+from ..tasks.threads import Threads, processors
+from .aims import Dynamics
+from .planner import options_in
+from .positions import Positions
+from .proposals import Proposals, at_balls, over_cushions, safeties
+from .prospects import spread_of
+from .search import BUDGET, Plan, Proposed, Search
+from .sobol import DIMENSIONS
+from .trials import FrameTrials
+from .worth import LAST, Chance, Worth, follows, in_one_stroke, last_of, lead_of, left_of, passed
+
+EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
+TIE = 2e-4
+"""What a point counts beside the chance to win, so that a frame that is won or lost is still played well."""
+PLANS = Plan((34, 0, 0, 0), ((6, 2), (3, 6))), Plan((24, 116, 20, 24), ((18, 3), (6, 7)))
+"""Where the decision is easy, and where it is hard, with ``BUDGET`` shots on average: looks at pots, safeties, contacts and
+escapes."""
+
+
+def scaled(plan: Plan, share: float) -> Plan:
+    """The same plan with about ``share`` times as many shots."""
+    root = share**0.5
+    looks = tuple(max(4, round(many * share)) if many else 0 for many in plan.looks)
+    return Plan(
+        looks, tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in plan.rounds)
+    )
+
+
+class FrameJudge:
+    """Judges strokes by the positions of a frame that they leave.
+
+    Parameters
+    ----------
+    env_or_options : Env, VectorEnv, AECEnv, Options or dict
+        Where strokes are played, see ``Planner``; the rules of frames count, too.
+    worth : callable
+        Points that the strikers of n ``Positions`` will score in the rest of the frame less the others': (n,).
+    chance : Chance, optional
+        The law of the chance to win of an expected lead, see ``planning.worth``. None (default): points alone count.
+    noise, threads : optional
+        As for ``Planner``.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import FrameJudge, prospects_of
+    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, 1e-3)[0]).shots
+    0
+    """
+
+    least = 30
+
+    def __init__(
+        self,
+        env_or_options: Environment | Options | Mapping[str, Any],
+        worth: Worth,
+        chance: Chance | None = None,
+        *,
+        noise: NoiseLike | None = None,
+        threads: int | None = None,
+    ):
+        rules = options_in(env_or_options).rules
+        self.noise: Noise = rules.noise if noise is None else Noise.of(noise)
+        self.rules: Rules = replace(rules, noise=self.noise)
+        usual = min(1024, processors())
+        self.threads: int = usual if threads is None else integer("threads", threads, 1, 1024)
+        self._trials = FrameTrials(self.rules, Threads(self.threads))
+        self.spread: float = spread_of(self.noise, rules.physics)
+        self.dynamics: Dynamics = Dynamics.of(self.rules)
+        self.worth: Worth = worth
+        self.chance: Chance | None = chance
+        self.shots: int = 0
+
+    def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
+        """See ``Judge.plans``: one where a likely pot makes the decision easy, one elsewhere."""
+        if not at.of_frames:
+            raise refuse_what("positions", "those of visits", "must be of frames, or judged by a VisitJudge")
+        if len(search.propose) != 1:
+            raise refuse_what(
+                "propose", f"{len(search.propose)} generators", "must be one: of strokes at pots"
+            )
+        easy, hard = (scaled(plan, search.budget / BUDGET) for plan in PLANS)
+        if self.noise.silent:
+            easy, hard = easy._replace(rounds=()), hard._replace(rounds=())
+        if not len(at):
+            return []
+        (propose,) = search.propose
+        pots = propose(search, at.as_visits(), hard.looks[0], seeds)
+        # a striker who would need snookers at the next visit must see more than pots
+        likely = (pots.chances.max(axis=1) >= EASY) & (lead_of(at) + left_of(passed(at)) >= 0.0)
+        return [(easy, np.flatnonzero(likely)), (hard, np.flatnonzero(~likely))]
+
+    def propose(self, search: Search, at: Positions, seeds: Ints, plan: Plan) -> Proposed:
+        """See ``Judge.propose``: so many of each kind as the plan says."""
+        made, visits = [], at.as_visits()
+        generators = (*search.propose, safeties, at_balls, over_cushions)
+        for kind, (generate, many) in enumerate(zip(generators, plan.looks, strict=True)):
+            if many:
+                made.append((*Proposals(*generate(search, visits, many, seeds)), kind))
+        strokes = np.concatenate([one[0] for one in made], axis=1)
+        chances = np.concatenate([one[1] for one in made], axis=1)
+        kinds = np.concatenate([np.full(one[1].shape, one[2]) for one in made], axis=1)
+        return Proposed(strokes, chances, kinds, np.full(len(at), plan.looks[1] > 0))
+
+    def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
+        """See ``Judge.look``, with the chance of each pot; what fouls as intended is played where it wins the frame, or where
+        nothing else was found."""
+        level = np.zeros((len(rows), DIMENSIONS))
+        after, before = self.outcomes(at, rows, proposed.strokes[rows, picks], level), lead_of(at)
+        foul = after.game[:, columns.SCORE_1] > at.game[rows, columns.SCORE_1]
+        foul &= (after.game[:, columns.OVER] == 0) | (after.game[:, columns.WINNER] != 0)
+        fair = np.zeros(len(at), np.bool_)
+        fair[rows[~foul]] = True
+        keep = ~(foul & fair[rows])
+        values = np.zeros((len(rows), 7))
+        rows, picks = rows[keep], picks[keep]
+        parts = self._parts(at, rows, after[np.flatnonzero(keep)])
+        if not self.noise.silent:  # a pot that is missed leaves the balls about as they lie
+            left = passed(at)
+            points = -self.worth(left).astype(np.float64)
+            missed = np.column_stack([1.0 - self.chances(-before, -points, left), points])[rows]
+            made = proposed.chances[rows, picks, None]
+            parts[:, :2] = made * parts[:, :2] + (1.0 - made) * missed
+        values[keep] = parts
+        return values, keep
+
+    def groups(self, kinds: Ints, looks: Floats) -> Ints:
+        """See ``Judge.groups``: the kinds themselves."""
+        return kinds
+
+    def sample(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints, errors: Floats) -> Floats:
+        """See ``Judge.sample``: the ``_parts`` of each."""
+        return self._parts(at, rows, self.outcomes(at, rows, proposed.strokes[rows, picks], errors))
+
+    def score(self, values: Floats) -> Floats:
+        """See ``Judge.score``, of (n, m, 7), see ``_parts``: the chance to win, and hardly the points."""
+        return self._one(self._replayed(values))
+
+    def figures(self, values: Floats) -> tuple[Floats, Floats]:
+        """See ``Judge.figures``: chances to win, without a law the points; and the points."""
+        both = self._replayed(values)
+        return both[..., 1 if self.chance is None else 0], both[..., 1]
+
+    def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Positions:
+        """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5), see ``FrameTrials.play``."""
+        self.shots += len(rows)
+        return self._trials.play(at, rows, strokes, errors)
+
+    def gains(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Floats:
+        """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m, 2), the chance to
+        win and the points."""
+        return self.valued(lead_of(at)[rows], self.outcomes(at, rows, strokes, errors))
+
+    def valued(self, before: Floats, after: Positions) -> Floats:
+        """What strokes that were played at the leads ``before`` (m,) and left ``after`` are worth to their strikers:
+        (m, 2), as ``gains``."""
+        points = follows(self.worth, after, before, self.rules.rule_set.code)
+        chance = self.chances(lead_of(after), before + points - lead_of(after), after)
+        over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
+        return np.column_stack([np.where(over, won, chance), points])
+
+    def chances(self, now: Floats, worth: Floats, at: Positions) -> Floats:
+        """The chances to win, (m,), of who leads by ``now`` and expects ``worth`` more than the other from the balls of
+        ``at``; without a law 0."""
+        if self.chance is None:
+            return np.zeros(len(now))
+        left, clock = left_of(at), self.rules.rule_set.clock
+        if not clock:
+            return self.chance(now, worth, left, last_of(at), self.spread)
+        # a stroke is played while there is time for one more, and takes at least the time to play it
+        strokes = np.maximum(1, -((at.game[:, columns.CLOCK] - clock) // self.rules.time_to_play) - 1)
+        each = np.maximum(LAST, at.on_table[:, 1:16].sum(axis=1))  # several reds at once
+        left = np.minimum(left, each * strokes)
+        worth = np.clip(worth, -left, left)
+        chances = self.chance(now, worth, left, last_of(at), self.spread)
+        ends = in_one_stroke(now, worth, each, at.game[:, columns.STRIKER] == 0)
+        return np.where((strokes == 1) & (at.game[:, columns.RESPOTTED_BLACK] == 0), ends, chances)
+
+    def _one(self, both: Floats) -> Floats:
+        """What strokes are compared by, of chances and points (..., 2)."""
+        return both[..., 1] if self.chance is None else both[..., 0] + TIE * both[..., 1]
+
+    def _parts(self, at: Positions, rows: Ints, after: Positions) -> Floats:
+        """What strokes on ``at[rows]`` that left ``after`` are worth, (k, 7): chance and points where no miss was called;
+        whether one was, and then chance and points if it is not played again, and what they lose by the penalty."""
+        before, parts = lead_of(at)[rows], np.zeros((len(rows), 7))
+        both, called = self.valued(before, after), after.game[:, columns.MISS_CALLED] != 0
+        parts[~called, :2], parts[called, 3:5], parts[:, 2] = both[~called], both[called], called
+        some = np.flatnonzero(called)
+        if len(some):
+            same = at[rows[some]]
+            worth, now = self.worth(same).astype(np.float64), lead_of(after)[some]
+            parts[some, 5] = self.chances(now, worth, same) - self.chances(before[some], worth, same)
+            parts[some, 6] = now - before[some]
+        return parts
+
+    def _replayed(self, parts: Floats) -> Floats:
+        """Chances and points (n, m, 2) of strokes with these ``_parts`` (n, m, 7) on average: a called miss may be played
+        again, so that it is worth no more than the best of the m strokes, less its penalty."""
+        fair, called, left, less = parts[..., :2], parts[..., 2:3], parts[..., 3:5], parts[..., 5:]
+        out, again = fair + left, fair + less
+        alone = np.where(called < 1.0, again / np.where(called < 1.0, 1.0 - called, 1.0), -np.inf)
+
+        def lower(one: Floats, other: Floats) -> Floats:
+            return np.where((self._one(one) <= self._one(other))[..., None], one, other)
+
+        worth = lower(out, alone)
+        best = np.take_along_axis(worth, self._one(worth).argmax(axis=1)[:, None, None], 1)
+        best = np.where(np.isfinite(best), best, 1e9)  # nothing but called misses: they are not bounded
+        return lower(out, again + called * best)

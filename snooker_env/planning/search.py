@@ -1,0 +1,234 @@
+"""Which stroke is best? One search over continuous strokes, one shot deep, for visits and for frames.
+
+1. A judge (``VisitJudge``, ``FrameJudge``) proposes strokes for each position, plays each once without error, and says what
+   it brings and what the position that it leaves is worth. A visit is a frame without an opponent: only that worth differs.
+2. The best meet noise samples, the better ones more of them (sequential halving, Karnin, Koren & Somekh 2013): scrambled
+   Sobol points, common to all strokes of a position. A stroke's figure is the mean over the samples, with the first look as
+   ``PRIOR`` of them. Without execution errors nothing is sampled."""
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from .._check import integer, refuse_what
+from .._types import Bools, Floats, Integers, Ints
+from ..tasks.options import Rules
+from .aims import Dynamics
+from .positions import Positions, PositionsLike, check_played, seeds_of
+from .proposals import Propose, at_pots
+from .sobol import DIMENSIONS, normal_points
+from .strokes import Strokes
+
+PRIOR = 1.0  # number of samples that the look without error counts as
+BUDGET, MOST = 120, 10**7  # simulated shots of a decision, by default and at most
+
+
+class Ranked(NamedTuple):
+    """The strokes that were considered in one position: most samples first, then best first.
+
+    A stroke that was left behind in an earlier round may keep a higher score: fewer samples flatter it.
+
+    Attributes
+    ----------
+    strokes : Strokes
+        The m strokes.
+    scores : numpy.ndarray or None
+        float64 (m,), by which they are ranked: in visits expected points of the stroke and of what follows, in frames the
+        chance to win, or the points if there is no law for it. None of a player that has no scores.
+    points : numpy.ndarray
+        float64 (m,), of a search, else empty: expected points, in frames less the opponent's.
+    samples, kinds : numpy.ndarray
+        int64 (m,), of a search, else empty: noise samples that each met, 0 if it had only the look without error; the
+        generator that proposed each, in frames 0 a pot, 1 a safety, 2 a contact, 3 an escape.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, Search, VisitJudge
+    >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> (one,) = Search(VisitJudge({"noise": "club"}), budget=30).rank(position, seeds=[7])
+    >>> one.samples[:5].tolist(), len(one.strokes)
+    ([5, 5, 2, 2, 0], 16)
+    """
+
+    strokes: Strokes
+    scores: Floats | None
+    points: Floats = np.empty(0)
+    samples: Ints = np.empty(0, np.int64)
+    kinds: Ints = np.empty(0, np.int64)
+
+
+class Plan(NamedTuple):
+    """How a budget is spent: ``looks`` at strokes of each kind, and (strokes, further samples) of each round."""
+
+    looks: tuple[int, ...]
+    rounds: tuple[tuple[int, int], ...]
+
+
+class Proposed(NamedTuple):
+    """Strokes (n, m, 5) for n positions, the chances of their pots (n, m), 1 without a pot and 0 for no stroke, the kind of
+    each (n, m), and whether a position has some without a pot (n,)."""
+
+    strokes: Floats
+    chances: Floats
+    kinds: Ints
+    safe: Bools
+
+
+class Judge(Protocol):
+    """What a search asks of a game: how to spend the budget, what to try, and what it is worth."""
+
+    rules: Rules
+    dynamics: Dynamics
+    spread: float  # standard deviation of the cue ball's direction [rad]
+    least: int  # smallest budget of a decision
+
+    def plans(self, search: "Search", at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
+        """How to spend the budget, and in which of the positions."""
+        ...
+
+    def propose(self, search: "Search", at: Positions, seeds: Ints, plan: Plan) -> Proposed:
+        """The strokes to try in n positions."""
+        ...
+
+    def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
+        """What proposed strokes are worth without error, (k, v), and which of them to go on with (k,)."""
+        ...
+
+    def groups(self, kinds: Ints, looks: Floats) -> Ints:
+        """Of which groups of strokes the best are sampled, (n, m), by their kinds and looks (n, m, v)."""
+        ...
+
+    def sample(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints, errors: Floats) -> Floats:
+        """What they are worth under errors (k, 5) in standard deviations: (k, v)."""
+        ...
+
+    def score(self, values: Floats) -> Floats:
+        """What such values of n positions, (n, m, v), are compared by: (n, m)."""
+        ...
+
+    def figures(self, values: Floats) -> tuple[Floats, Floats]:
+        """The scores and the points (n, m) of a ranking."""
+        ...
+
+
+class Search:
+    """Searches for the best stroke with a number of simulated shots.
+
+    Parameters
+    ----------
+    judge : VisitJudge or FrameJudge
+        What is played where, and what the position that a stroke leaves is worth.
+    budget : int, optional
+        Simulated shots of a decision: at most in visits, at least 8; on average in frames, at least 30. Default 120.
+    propose : callable or sequence of callable, optional
+        Generators of strokes at pots, ``propose(search, at, m, seeds)`` -> ``Proposals``; in frames one. Default: ``at_pots``.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, Search, VisitJudge
+    >>> search = Search(VisitJudge({"noise": "club"}), budget=30)
+    >>> (best,) = search.rank(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), seeds=[7])
+    >>> best.strokes.values.shape
+    (16, 5)
+    """
+
+    def __init__(self, judge: Judge, budget: int = BUDGET, propose: Propose | Sequence[Propose] = at_pots):
+        if not hasattr(judge, "plans"):
+            raise refuse_what("judge", f"a {type(judge).__name__}", "must be a VisitJudge or a FrameJudge")
+        self.judge = judge
+        self.budget: int = integer("budget", budget, judge.least, MOST)
+        self.propose: tuple[Propose, ...] = (propose,) if callable(propose) else tuple(propose)
+        self.spread, self.dynamics = judge.spread, judge.dynamics  # of which generators ask
+
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
+        """Try strokes in n positions and return them ``Ranked``: the first one of each is to be played.
+
+        ``seeds``, int (n,): of the proposals and noise samples; equal seeds give equal decisions. A cue ball in hand is
+        played from where it lies, decisions after a foul are behind the players. ValueError if a position is invalid or has
+        no stroke to play."""
+        rules, at = self.judge.rules, Positions.of(positions)
+        at, keys = at.known_to(rules), seeds_of(seeds, len(at))
+        check_played(at.as_visits(), np.arange(len(at)), rules.table, rules.physics.R)
+        ranked: dict[int, Ranked] = {}
+        for plan, rows in self.judge.plans(self, at, keys):
+            if len(rows):
+                ranked |= zip(rows.tolist(), self._ranked(at[rows], keys[rows], plan), strict=True)
+        return [ranked[k] for k in range(len(at))]
+
+    def _ranked(self, at: Positions, seeds: Ints, plan: Plan) -> list[Ranked]:
+        """The rankings of positions in which the budget is spent alike."""
+        judge, every = self.judge, np.arange(len(at))[:, None]
+        proposed = judge.propose(self, at, seeds, plan)
+        strokes, chances, kinds, safe = proposed
+        rows, picks = np.nonzero(chances > 0.0)
+        values, keep = judge.look(at, proposed, rows, picks)
+        rows, picks = rows[keep], picks[keep]
+        looks = np.zeros((*chances.shape, values.shape[1]))
+        looks[..., :2] = -np.inf
+        looks[rows, picks] = values[keep]
+        order = np.argsort(-judge.score(looks), axis=1, kind="stable")
+        if safe.any():  # a look without error flatters: the best of each kind are sampled
+            order[safe] = in_turn(order[safe], judge.groups(kinds[safe], looks[safe]))
+            there = np.isfinite(looks[every, order, 0])
+            order = np.take_along_axis(order, np.argsort(~there, axis=1, kind="stable"), 1)
+
+        def met(rows: Ints, picks: Ints, errors: Floats) -> Floats:
+            return judge.sample(at, proposed, rows, picks, errors)
+
+        order, means, samples = halve(looks, order, plan.rounds, seeds, met, judge.score)
+        scores, points = judge.figures(means)
+        counts = np.bincount(rows, minlength=len(at))
+        tried = np.arange(chances.shape[1]) < counts[:, None]  # what was not tried is last
+        flat = np.repeat(np.arange(len(at)), counts), order[tried]
+        told = Strokes(strokes[flat])
+        ranked = []
+        for start, end in pairwise([0, *np.cumsum(counts).tolist()]):
+            which = flat[0][start:end], flat[1][start:end]
+            figures = scores[which], points[which], samples[which], kinds[which]
+            ranked.append(Ranked(told[start:end], *figures))
+        return ranked
+
+
+def halve(
+    looks: Floats,
+    order: Ints,
+    rounds: Sequence[tuple[int, int]],
+    seeds: Ints,
+    met: Callable[[Ints, Ints, Floats], Floats],
+    score: Callable[[Floats], Floats],
+) -> tuple[Ints, Floats, Ints]:
+    """Sequential halving: of the strokes of n positions the best meet noise samples, the better ones more of them.
+    ``looks`` (n, m, v): the values of each stroke without error, -inf where there is none; they count as ``PRIOR``
+    samples. ``order`` (n, m): the strokes, best first. ``rounds``: how many go on, and their further samples.
+    ``met(rows, picks, errors)``: values (k, v) of the strokes ``picks`` of the positions ``rows`` under errors (k, 5).
+    ``score``: what values (..., v) are compared by. Returns the order then, means (n, m, v) and samples (n, m)."""
+    n, m = looks.shape[:2]
+    every, sums = np.arange(n)[:, None], PRIOR * looks
+    values, tries = looks.copy(), np.zeros((n, m), np.int64)
+    samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in seeds.tolist()])
+    done = 0
+    for many, each in rounds:
+        best = order[:, :many]
+        j, c = np.nonzero(np.isfinite(looks[every, best, 0]))
+        c = best[j, c]
+        errors = samples[:, done : done + each][j].reshape(-1, DIMENSIONS)
+        got = met(np.repeat(j, each), np.repeat(c, each), errors).reshape(len(j), each, -1)
+        sums[j, c] += np.ascontiguousarray(got.transpose(0, 2, 1)).sum(axis=2)  # rounded in a fixed order
+        tries[j, c] += each
+        done += each
+        values[j, c] = sums[j, c] / (PRIOR + tries[j, c])[:, None]
+        again = np.argsort(-score(values[every, best]), axis=1, kind="stable")
+        order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
+    return order, values, tries
+
+
+def in_turn(order: Ints, kinds: Ints) -> Ints:
+    """Rows (n, m) of indices, best first, as the best of each of ``kinds`` (n, m), the second best, ..."""
+    sorted_kinds = np.take_along_axis(kinds, order, 1)
+    place = np.zeros_like(order)
+    for kind in np.unique(kinds):
+        same = sorted_kinds == kind
+        place[same] = (np.cumsum(same, axis=1) - 1)[same]
+    return np.take_along_axis(order, np.argsort(place, axis=1, kind="stable"), 1)
