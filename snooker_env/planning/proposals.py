@@ -12,7 +12,7 @@ strokes for each position that it has any for.
   models of the engine."""
 
 from collections.abc import Callable
-from math import atan2, erf, exp, hypot, log, pi, sqrt
+from math import atan2, exp, hypot, log, pi
 from typing import NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -21,7 +21,7 @@ from .._jit import entry, kernel
 from .._types import Floats, Integers, Ints
 from ..game.balls import VALUES, balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
-from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from ..tasks.arrays import CueLaw
@@ -34,7 +34,8 @@ from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .aims import Dynamics, law_of
 from .positions import Positions
-from .prospects import FAR, FOLLOWS, raised_spread
+from .pot_chance import chance_of
+from .prospects import FOLLOWS, raised_spread
 from .sobol import sobol
 from .stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 
@@ -44,8 +45,6 @@ HIGHEST, WIDEST, RIM = 0.45, 0.35, 0.49
 """Largest tip offsets over R, up or down and to a side; radius of the disc that a corner is drawn in to."""
 PLAIN = 0.5
 """Share of the strokes without side."""
-LOST = 0.01
-"""Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly tells it."""
 POWER = 4.0  # power of the chance in a pot's share of the strokes
 GENTLEST, HARDEST, SAFE_TIP = 0.45, 6.0, 0.4
 """Of safeties: cue speeds [m/s], and the largest tip offset over R to each side."""
@@ -86,16 +85,6 @@ class Proposals(NamedTuple):
 
 Propose: TypeAlias = Callable[[Asking, Positions, int, Ints], Proposals]
 """A generator: proposals of m strokes for each position, of the search, the n positions, m and seeds (n,)."""
-
-
-@kernel
-def pot_chance(positions, pot, spread, far):
-    """Chance that the aim's error stays within the pot's tolerance, less exp(-``far`` [1/m] x paths)."""
-    ball, pocket = int(pot[POT_BALL]), int(pot[POT_POCKET])
-    path = hypot(pot[GHOST_X] - positions[0, 0], pot[GHOST_Y] - positions[0, 1])
-    tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
-    run = hypot(tx - positions[ball, 0], ty - positions[ball, 1])
-    return erf(pot[TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
 
 
 @kernel
@@ -146,7 +135,7 @@ def _propose(balls, seeds, which, spread, growth, law, strokes, chances):
             worth = VALUES[int(lines[j, POT_BALL])] + FOLLOWS
             aim = atan2(lines[j, GHOST_Y] - p[0, 1], lines[j, GHOST_X] - p[0, 0])
             wide = raised_spread(spread, 0.0, 0.0, aim, p, here, rails)
-            weights[j] = pot_chance(p, lines[j], wide, FAR) ** POWER * worth + 1e-12
+            weights[j] = chance_of(p, lines[j], wide) ** POWER * worth + 1e-12
             total += weights[j]
         j, reached = 0, weights[0] / total
         for i in range(m):
@@ -163,7 +152,7 @@ def _propose(balls, seeds, which, spread, growth, law, strokes, chances):
             aim = strokes[k, i, AIM] - squirt(side, its.end_mass_ratio)
             own_spread = spread * hypot(1.0, growth * strokes[k, i, SPEED]) / hypot(1.0, growth * POT_SPEED)
             wide = raised_spread(own_spread, side, top, aim, p, here, rails)
-            chances[k, i] = pot_chance(p, lines[j], wide, LOST)
+            chances[k, i] = chance_of(p, lines[j], wide)
 
 
 @kernel

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from math import atan2, erf, exp, radians, sqrt
+from math import atan2, exp, radians
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 from .._jit import entry, kernel
 from .._types import Floats
 from ..game.balls import N_BALLS, VALUES, BallOn, balls_on_kernel, bits
-from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
-from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, find_pots
+from ..geometry import BALL_RADIUS
 from ..physics.cue_room import NO_RAILS, STEEPEST, least_elevation
 from ..physics.parameters import PhysicsLike
 from ..tasks.discrete_actions import POTS
 from ..tasks.noise import TWICE, Noise
 from .positions import Positions
+from .pot_chance import chance_of
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
 WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost
@@ -24,10 +25,9 @@ FOLLOWS = 25.0
 """Points to expect after a made pot from the rest of the visit; fewer if fewer are left on the table."""
 SECOND, THIRD = 0.15, 0.05
 """Shares of the second and third best pot that count: they leave a choice of where to play next."""
-FAR = 0.1  # decay of the chance of a pot per metre of both balls' paths [1/m]
-RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, FAR)
-"""Constants of ``prospects_of`` for a player with execution errors: the four numbers above."""
-SURE = (1e4, 1e-3, 0.0, 0.0)
+RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD)
+"""Constants of ``prospects_of`` for a player with execution errors: the three numbers above."""
+SURE = (1e4, 1e-3, 0.0)
 """Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left."""
 
 
@@ -45,7 +45,7 @@ def raised_spread(spread, side, top, aim, positions, on_table, rails):
 def _prospects(positions, on_table, ball_on, spread, constants, rails, values, chances):
     """Fill ``values`` (n,) and ``chances`` (n, most) of ``prospects_of``."""
     lines = np.empty((16, POT_COLUMNS))
-    follows, second, third, far = constants
+    follows, second, third = constants
     for k in range(len(values)):
         chances[k, :] = 0.0
         values[k] = 0.0
@@ -58,14 +58,9 @@ def _prospects(positions, on_table, ball_on, spread, constants, rails, values, c
                 left += 8.0 if VALUES[i] == 1 else VALUES[i]
         a = b = c = 0.0
         for j in range(many):
-            ball, pocket = int(lines[j, POT_BALL]), int(lines[j, POT_POCKET])
-            gx, gy = lines[j, GHOST_X], lines[j, GHOST_Y]
-            path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
-            tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
-            run = sqrt((tx - p[ball, 0]) ** 2 + (ty - p[ball, 1]) ** 2)
-            aim = atan2(gy - p[0, 1], gx - p[0, 0])
-            its = raised_spread(spread, 0.0, 0.0, aim, p, on_table[k], rails)
-            chance = erf(lines[j, TOLERANCE] / (its * sqrt(2.0))) * exp(-far * (path + run))
+            ball = int(lines[j, POT_BALL])
+            aim = atan2(lines[j, GHOST_Y] - p[0, 1], lines[j, GHOST_X] - p[0, 0])
+            chance = chance_of(p, lines[j], raised_spread(spread, 0.0, 0.0, aim, p, on_table[k], rails))
             if j < chances.shape[1]:
                 chances[k, j] = chance
             rest = max(0.0, left - VALUES[ball])
@@ -119,14 +114,14 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
 def prospects_of(
     at: Positions,
     spread: float,
-    constants: tuple[float, float, float, float] = RULE_OF_THUMB,
+    constants: tuple[float, float, float] = RULE_OF_THUMB,
     most: int = POTS,
     threads: int = 1,
     rails: Floats = NO_RAILS,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Estimate the value of positions and the chances of their pots by a rule of thumb.
 
-    The chance of a pot is that of a normal error of the aim within its tolerance, less for long paths; its
+    The chance of a pot is that of an error within its tolerance (``pot_chance``); its
     value that times its points plus what may follow. Small shares of the second and third best pot count too.
 
     Parameters
@@ -134,7 +129,7 @@ def prospects_of(
     at : Positions
         The n positions.
     spread : float
-        Standard deviation of the cue ball's direction [rad], see ``spread_of``.
+        Standard deviation of the cue ball's direction [rad], see ``spread_of``; 0: a player who makes every pot.
     constants : tuple of float, optional
         ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
     most, threads : int, optional

@@ -1,7 +1,7 @@
 """How is the game described without a picture? In plain words, with the straight lines to each pocket."""
 
 from dataclasses import asdict, dataclass
-from math import acos, atan2, degrees, erf, hypot, radians, sqrt
+from math import acos, atan2, degrees, hypot, radians
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from ..game.frame import Frame
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS, POCKETS
 from ..planning.geometry import obstructions, pots
 from ..planning.positions import Positions
+from ..planning.pot_chance import pot_chances
 from ..replays.words import on_words, sentence
 from ..tasks.noise import LEVELS
 from .session import Act
@@ -91,7 +92,9 @@ def _line(which, ghost, aim, barred, places, tolerances, sigma):
     blocked = () if tolerance else tuple(NAMES[i] for i in np.flatnonzero(barred))
     why = "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
     why = "" if tolerance or blocked else why
-    chance = erf(tolerance / (sigma * sqrt(2.0))) if sigma and tolerance else None
+    chance = None
+    if sigma and tolerance:
+        chance = float(pot_chances(np.array([tolerance]), np.array([far + on]), sigma)[0])
     aim = atan2(run[1], run[0])
     return Line(ball, pocket, tolerance > 0.0, blocked, why, cut, far, on, aim, tolerance, chance)
 

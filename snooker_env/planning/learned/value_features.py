@@ -1,7 +1,7 @@
 """What does a learned value see of a position? The best pots, how open each ball is, where the balls lie, and
 the ball on. The table is nearly symmetric: it is read mirrored so that the cue ball is on the right."""
 
-from math import cos, erf, exp, log, log10, radians, sqrt
+from math import cos, log, log10, radians, sqrt
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from ...geometry import (
     IS_MIDDLE,
     POCKET_AIMS,
 )
+from ..pot_chance import pot_chance
 from ..prospects import in_parts
 
 POTS_SEEN = 6
@@ -27,7 +28,6 @@ POT_ENTRIES = 13
 COLOUR_ENTRIES = 6
 SHARED = 28  # entries of the whole position: see ``_fill``
 SIZE = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES + SHARED
-FAR = 0.01  # decay of a pot's chance per metre of both balls' paths [1/m]; of the published values
 LOGIT = SIZE - 1
 """The entry that holds the logit of the likeliest pot, where the network's own estimate begins."""
 _CORNER_EDGE, _MIDDLE_EDGE = cos(radians(50.0)), cos(radians(70.0))
@@ -139,7 +139,7 @@ def _fill(positions, on_table, ball_on, spread, opened, balls, open_to, best, ro
             if cut < 0.05:
                 continue
             tolerance = open_to[b, k] * d * cut / path
-            chance = erf(tolerance / (spread * sqrt(2.0))) * exp(-FAR * (path + run))
+            chance = pot_chance(tolerance, path + run, spread)
             worth = chance * (20.0 + VALUES[b])
             if not _clear(balls, many, cx, cy, gx, gy, b, d * (1.0 - 1e-9)):
                 continue

@@ -1,0 +1,47 @@
+"""How likely is a pot? The chance that an error of the cue ball's direction stays within what the pot allows."""
+
+from math import erf, exp, hypot, sqrt
+
+import numpy as np
+
+from .._jit import entry, kernel
+from .._types import Floats
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, TOLERANCE
+from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
+
+FAR = 0.01  # decay of the chance per metre of both balls' paths [1/m]: the width alone nearly tells it
+
+
+@kernel
+def pot_chance(tolerance, length, spread):
+    """The chance of a pot that allows errors of ``tolerance`` [rad], with paths of both balls of ``length`` [m] together.
+
+    The law of errors: normal, with the standard deviation ``spread`` [rad]. P(|error| < tolerance) = erf(tolerance /
+    (sqrt(2) spread)), times exp(-``FAR`` length). A player without errors, of spread 0, makes every pot.
+    """
+    if spread == 0.0:
+        return 1.0
+    return erf(tolerance / (spread * sqrt(2.0))) * exp(-FAR * length)
+
+
+@kernel
+def chance_of(positions, pot, spread):
+    """The chance of a row of ``find_pots`` for a stroke with this spread [rad]."""
+    ball, pocket = int(pot[POT_BALL]), int(pot[POT_POCKET])
+    path = hypot(pot[GHOST_X] - positions[0, 0], pot[GHOST_Y] - positions[0, 1])
+    tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
+    run = hypot(tx - positions[ball, 0], ty - positions[ball, 1])
+    return pot_chance(pot[TOLERANCE], path + run, spread)
+
+
+@entry
+def _fill(tolerances, lengths, spread, chances):
+    for k in range(len(chances)):
+        chances[k] = pot_chance(tolerances[k], lengths[k], spread)
+
+
+def pot_chances(tolerances: Floats, lengths: Floats, spread: float) -> Floats:
+    """``pot_chance`` of n pots: float64 (n,)."""
+    chances = np.empty(len(tolerances))
+    _fill(tolerances, lengths, spread, chances)
+    return chances
