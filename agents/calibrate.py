@@ -26,7 +26,7 @@ with needs("agents.calibrate"):
     from commands.provenance import provenance
     from commands.tables import TextTable, show
     from snooker_env.checks import choice, integer, number, refuse
-    from snooker_env.planning.frame_search import LEAST
+    from snooker_env.planning import FrameJudge
     from snooker_env.planning.learned.dense_layers import Layers
     from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, errors_seen
     from snooker_env.planning.learned.learned_worth import worth_of
@@ -241,7 +241,7 @@ def main(argv=None):
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
         integer("frames", args.frames, 2, 10**6)
-        integer("budget", args.budget, LEAST, 10**6)
+        integer("budget", args.budget, FrameJudge.least, 10**6)
         choice("conditions", args.conditions, CONDITIONS)
         for scale in args.scales:
             number("scales", scale, 0.01, 10.0)

@@ -22,7 +22,6 @@ with needs("agents.learn_worth"):
     import snooker_env
     from commands.files import packed_arrays, writable, write_atomic
     from snooker_env.checks import integer, refuse
-    from snooker_env.planning.frame_search import LEAST
     from snooker_env.planning.learned.dense_layers import Layers
     from snooker_env.planning.learned.frame_features import errors_seen
     from snooker_env.planning.learned.learned_worth import worth_of
@@ -161,7 +160,7 @@ def main(argv=None):
         integer("rounds", args.rounds, 1, 90)
         integer("frames", args.frames, TABLES, 100_000)
         integer("seed", args.seed, 0, 80)  # more would meet the tables of agents.calibrate
-        integer("budget", args.budget, LEAST, 10**6)
+        integer("budget", args.budget, FrameJudge.least, 10**6)
         if args.frames % TABLES:
             raise refuse("frames", args.frames, f"must be a multiple of {TABLES}")
         checked_ray(args.ray)

@@ -45,10 +45,12 @@ class Recording(BoundPlayer):
         return bound
 
     def play(self, positions, seeds):
-        at, search = Positions.of(positions), self._planner.search
-        constants = SURE if search.noise.silent else RULE_OF_THUMB
-        rule = prospects_of(at, search.spread, constants, rails=search.dynamics.rails)[0]
-        self.rows.append(np.column_stack([at.points, search.value(at), rule]))
+        at, judge = Positions.of(positions), self._planner.judge
+        constants = SURE if judge.noise.silent else RULE_OF_THUMB
+        rule = prospects_of(
+            at, 0.0 if judge.noise.silent else judge.spread, constants, rails=judge.dynamics.rails
+        )[0]
+        self.rows.append(np.column_stack([at.points, judge.value(at), rule]))
         return self._planner.play(at, seeds)
 
 

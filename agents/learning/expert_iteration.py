@@ -13,7 +13,7 @@ import numpy as np
 
 from snooker_env import SnookerVectorEnv
 from snooker_env.benchmark import simulated
-from snooker_env.planning import Positions, StrokeSearch, spread_of
+from snooker_env.planning import Positions, Search, VisitJudge, spread_of
 from snooker_env.planning.learned.policy_proposals import PolicyProposals
 from snooker_env.planning.learned.value_features import SIZE, value_features
 
@@ -92,9 +92,10 @@ class ExpertIteration(Part):
         rng = self._rng = np.random.default_rng((self._seed, 19))
         tables = venv.unwrapped.tables
         options = {name: getattr(tables.options, name) for name in SHOT_OPTIONS}
-        self._search = StrokeSearch(options, BUDGET, threads=threads)  # by the rule of thumb, even proposals
+        self._judge = VisitJudge(options, threads=threads)  # by the rule of thumb
+        self._search = Search(self._judge, BUDGET)  # even proposals
         self._starts = Starts(self._seed, tables.options.layout, options)
-        self._value = ValueLearning(self._model.policy.position_value, self._search.spread, n, rng)
+        self._value = ValueLearning(self._model.policy.position_value, self._judge.spread, n, rng)
         self._choices = JudgedChoices(self._model.policy, options, threads, n, rng)
         if before is None:
             venv.seed(self._seed)
@@ -122,10 +123,10 @@ class ExpertIteration(Part):
         hand, even = min(HAND, self.total // 8), min(EVEN, self.total // 5)
         remaining = 1.0 - self.done / self.total
         if self.done > hand:
-            self._search.value = self._value.value()
-            self._choices.round(self._at, self._search.value, remaining)
+            self._judge.value = self._value.value()
+            self._choices.round(self._at, self._judge.value, remaining)
         if self.done >= even:
-            self._search.propose = PolicyProposals(self._model.policy.fused)
+            self._search.propose = (PolicyProposals(self._model.policy.fused),)
         self._play()
         self._done += self._n
         if self.done > hand:
@@ -152,14 +153,16 @@ class ExpertIteration(Part):
 
     def _play(self):
         """Choose a stroke for each position, keep what its samples lead to, and go on with one of them."""
-        n, rng, at, search, every = self._n, self._rng, self._at, self._search, np.arange(self._n)
+        n, rng, at, every = self._n, self._rng, self._at, np.arange(self._n)
         seeds, explored = rng.integers(2**32, size=n), rng.random(n) < EXPLORED
-        pick = rng.integers(min(AMONG, search.strokes_tried), size=n)
-        errors, before = rng.standard_normal((n * (FRESH + 1), 5)), simulated()
-        ranked = search.rank(at, seeds)
-        best, picked = ranked.strokes[:, 0], ranked.strokes[every, pick]
+        before = simulated()
+        tried = [one.strokes.values[:AMONG] for one in self._search.rank(at, seeds)]
+        pick = rng.integers(min(map(len, tried)), size=n)
+        errors = rng.standard_normal((n * (FRESH + 1), 5))
+        strokes = [np.repeat([one[0] for one in tried], FRESH, axis=0)]
+        strokes.append(np.array([one[k] for one, k in zip(tried, pick.tolist(), strict=True)]))
         rows = np.concatenate([np.repeat(every, FRESH), every])
-        out = search.outcomes(at, rows, np.concatenate([np.repeat(best, FRESH, axis=0), picked]), errors)
+        out = self._judge.planner.play_strokes(at, rows, np.concatenate(strokes), errors=errors)
         self._shots += simulated() - before
         goes_on = out.goes_on[: n * FRESH]
         after = np.zeros((n * FRESH, SIZE), np.float16)
@@ -180,7 +183,7 @@ class ExpertIteration(Part):
         self._at.game[:, 2] = 0  # points of the visit so far: no break may exceed what a table allows
 
     def _features(self, at):
-        return value_features(at, self._search.spread, self._threads)
+        return value_features(at, self._judge.spread, self._threads)
 
 
 def judge_rewards(venv, policy, threads):

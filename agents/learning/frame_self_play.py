@@ -122,12 +122,12 @@ def play_frames(rules, seed, many, act, other, threads):
 def _judged(player, at, keys, rng):
     """What it does in n positions, in which of them it strikes (m,), and of these what is seen and what they are worth
     by search."""
-    decided, worth = player.decided(at, keys), player.search.worth
+    decided, worth = player.decided(at, keys), player.judge.worth
     here = np.flatnonzero([one is not None for one in decided.tried])
     seen = [worth.seen(each[here]) for each in (decided.start, at)]
     again, errors = np.repeat(here, FRESH), rng.standard_normal((FRESH * len(here), 5))
     strokes = np.repeat(decided.strokes.values[here], FRESH, 0)
-    judged = player.search.gains(decided.start, again, strokes, errors)[:, 1]
+    judged = player.judge.gains(decided.start, again, strokes, errors)[:, 1]
     return decided, here, {"seen": seen[0], "hand": seen[1], "worth": judged.reshape(-1, FRESH).mean(axis=1)}
 
 
@@ -141,9 +141,9 @@ def _replies(player, decided, here, rng):
         picks = rng.integers(many, size=REPLIES[hard])
         picks[rng.random(len(picks)) < 0.5] = 0  # of half of them, what the best one leaves
         rows += [j] * len(picks)
-        best += [tried.strokes[pick] for pick in picks.tolist()]
+        best += [tried.strokes.values[pick] for pick in picks.tolist()]
     rows, errors = np.array(rows), rng.standard_normal((len(rows), 5))
-    left = player.search.outcomes(decided.start, here[rows], np.array(best), errors)
+    left = player.judge.outcomes(decided.start, here[rows], np.array(best), errors)
     left.game[:] = strikers_own(left.game)
     on = np.flatnonzero(left.game[:, columns.OVER] == 0)
     _, played, row = _judged(player, left[on], rng.integers(2**31, size=len(on)), rng)

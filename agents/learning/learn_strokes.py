@@ -109,7 +109,7 @@ def visits_tried(layers, noise, cue, seeds, rng):
     plain, planner = sn.player("ghost_ball").at(env), Planner(env)
     expert: SearchPlayer = sn.player("planner_60").at(env)  # type: ignore[assignment]
     values.value.threads = planner.threads
-    judge = expert.search.value
+    judge = expert.judge.value
     kept_seen, kept_worth, kept_table, tried = [], [], [], BEST + OTHERS
     for _ in range(STROKES_EACH):
         at, keys = Positions.of(env), rng.integers(2**32, size=n)
@@ -122,11 +122,9 @@ def visits_tried(layers, noise, cue, seeds, rng):
         picks = np.concatenate([order[:, :BEST], rest], axis=1)
         rows = np.repeat(found.rows, tried * ERRORS)
         trials = np.repeat(found.strokes[every, picks].reshape(-1, 5), ERRORS, axis=0)
-        points, goes_on, left, _ = planner.play(
-            visits, rows, strokes=trials, errors=rng.standard_normal((len(rows), 5))
-        )
-        worth, on = points.astype(np.float64), np.flatnonzero(goes_on)
-        worth[on] += judge(left[on])
+        out = planner.play_strokes(visits, rows, trials, errors=rng.standard_normal((len(rows), 5)))
+        worth, on = out.points, np.flatnonzero(out.goes_on)
+        worth[on] += judge(out.afterstates[on])
         kept_seen.append(found.seen[every, picks].astype(np.float16))
         kept_worth.append(worth.reshape(-1, tried, ERRORS).mean(axis=2).astype(np.float32))
         kept_table.append(seeds[live[found.rows]])

@@ -24,7 +24,7 @@ def frames_tried(learned, noise, cue, seeds, other, tried, rng, threads):
     best, others, errors, explore, among = tried
     options = Options(task="frame", **FRAMES, cue=cue, miss="clear_path", noise=noise)
     known = options.but(conditions="fixed")  # a player does not know the constants of a table
-    player, judge = StrokeValuePlayer(learned).at(known), Tactician().at(known).search
+    player, judge = StrokeValuePlayer(learned).at(known), Tactician().at(known).judge
     search: FrameStrokes = player.search
     for value in (search.values.value, search.worth.value):
         value.threads = threads
@@ -48,7 +48,7 @@ def frames_tried(learned, noise, cue, seeds, other, tried, rng, threads):
             rows.append((seen, worth.mean(axis=2).astype(np.float32), seeds[mine[here]]))
         for k, one in enumerate(compared):
             if one is not None and rng.random() < explore:
-                strokes.values[k] = one.strokes[rng.integers(min(among, len(one.strokes)))]
+                strokes.values[k] = one.strokes.values[rng.integers(min(among, len(one.strokes)))]
         return strokes
 
     against = None if other is None else snooker_player(other).at(known)

@@ -9,7 +9,8 @@ from .._types import Bools, Floats, Ints
 from ..game.frame_columns import VISIT_COLUMNS
 from ..planning import Positions, pots
 from ..planning.positions import seeds_of
-from ..planning.strokes import available, meant, packed_under
+from ..planning.strokes import available, meant
+from ..planning.trials import packed_under
 from ..tasks.declarations import SAYS_NOTHING
 from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.frame import Asked

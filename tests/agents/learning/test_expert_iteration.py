@@ -123,8 +123,8 @@ def test_the_rule_and_even_proposals_come_first():
     for done in range(0, 80, N):
         assert run.done == done
         run.round()
-        assert isinstance(run._search.value, LearnedValue) == (done > 40)
-        assert isinstance(run._search.propose, PolicyProposals) == (done >= 64)
+        assert isinstance(run._judge.value, LearnedValue) == (done > 40)
+        assert isinstance(run._search.propose[0], PolicyProposals) == (done >= 64)
         assert bool(run._value.losses) == (done >= 40)  # the value is fitted
 
 
@@ -132,21 +132,21 @@ def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
     """Features before and after, points, ends; the next position is what the played stroke left."""
     model, venv = model_and_tables()
     run, added, played = begun(model, venv, STATES, 5, 1), [], []
-    search = run._search
-    spread, outcomes = search.spread, search.outcomes
+    planner, spread = run._judge.planner, run._judge.spread
+    play_strokes = planner.play_strokes
     monkeypatch.setattr(run._value, "add", lambda *one: added.append(one))
 
-    def watched(*given):
-        played.append((given, outcomes(*given)))
+    def watched(*given, errors):
+        played.append((given, play_strokes(*given, errors=errors)))
         return played[-1][1]
 
-    monkeypatch.setattr(search, "outcomes", watched)
+    monkeypatch.setattr(planner, "play_strokes", watched)
     monkeypatch.setattr(run._value, "fit", lambda remaining: None)
     followed = 0
     for _ in range(6):
         at = run._at.copy()
         run._play()
-        (given, rows, strokes, _), out = played[-1]
+        (given, rows, strokes), out = played[-1]
         seen, after, points, goes_on, follows = added[-1]
         assert np.array_equal(seen, value_features(at, spread).astype(np.float16))
         assert np.array_equal(given.positions, at.positions)

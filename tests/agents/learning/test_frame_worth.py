@@ -79,7 +79,9 @@ def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees(monkeypatch
     player, decided = decided_at_the_break("none")
     tried = decided.tried[0]
     many = len(tried.strokes)
-    left = player.search.outcomes(decided.start, np.zeros(many, int), tried.strokes, np.zeros((many, 5)))
+    left = player.judge.outcomes(
+        decided.start, np.zeros(many, int), tried.strokes.values, np.zeros((many, 5))
+    )
     k = np.flatnonzero(left.game[:, columns.STRIKER] == 1)[:1]  # a stroke after which the other comes
     decided.tried[0] = tried._replace(strokes=tried.strokes[k])
     left = turned(left[k])
@@ -90,7 +92,7 @@ def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees(monkeypatch
     assert hard and first.tolist() == [0] * frame_self_play.REPLIES[hard] and len(seen) == 1
     assert np.array_equal(seen[0].game, np.repeat(left.game, len(first), 0))
     assert np.array_equal(seen[0].positions, np.repeat(left.positions, len(first), 0))
-    again = player.search.worth.seen(player.decided(left, np.array([6])).start)
+    again = player.judge.worth.seen(player.decided(left, np.array([6])).start)
     assert np.array_equal(replies["seen"], np.repeat(again, len(first), 0))
 
 
@@ -98,23 +100,23 @@ def test_a_position_is_worth_what_its_best_stroke_brings():
     player, decided = decided_at_the_break("none")
     at, rng, errors = decided.start, np.random.default_rng(0), np.zeros((1, 5))
     again, here, row = frame_self_play._judged(player, at, np.array([5]), rng)
-    gains = player.search.gains(again.start, here, again.strokes.values, errors)
+    gains = player.judge.gains(again.start, here, again.strokes.values, errors)
     assert row["worth"] == pytest.approx(gains[:, 1], rel=1e-12)
 
 
 def test_replies_are_to_the_best_stroke_and_as_often_to_one_of_the_finalists(monkeypatch):
     player, decided = decided_at_the_break("professional")
-    outcomes, struck = player.search.outcomes, []
+    outcomes, struck = player.judge.outcomes, []
 
     def watched(at, rows, strokes, errors):
         if len(strokes) == 1200:
             struck.append(strokes)
         return outcomes(at, rows, strokes, errors)
 
-    monkeypatch.setattr(player.search, "outcomes", watched)
+    monkeypatch.setattr(player.judge, "outcomes", watched)
     monkeypatch.setattr(frame_self_play, "_judged", lambda *args: (None, np.arange(len(args[1])), {}))
     frame_self_play._replies(player, decided, np.zeros(200, np.int64), np.random.default_rng(0))
-    strokes, finalists = decided.tried[0].strokes, frame_self_play.FINALISTS
+    strokes, finalists = decided.tried[0].strokes.values, frame_self_play.FINALISTS
     pick = (struck[0][:, None] == strokes[None, :finalists]).all(axis=2).argmax(axis=1)
     assert np.array_equal(struck[0], strokes[pick])
     shares, other = np.bincount(pick, minlength=finalists) / 1200, 0.5 / finalists

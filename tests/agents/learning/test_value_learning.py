@@ -11,7 +11,7 @@ from positions import chances_by_width, tables
 from agents.learning import value_learning
 from agents.learning.value_learning import FIRST_GUESS, LAMBDA, RATE, ValueLearning
 from agents.learning.value_network import MEMBERS, POINTS, WIDTHS, ValueNetwork, value_of
-from snooker_env.planning import Positions, StrokeSearch, spread_of
+from snooker_env.planning import Positions, Search, VisitJudge, spread_of
 from snooker_env.planning.learned.value_features import LOGIT, SIZE, value_features
 from snooker_env.tasks import LEVELS
 
@@ -337,6 +337,7 @@ def test_a_search_takes_it_as_its_value():
     made, at = network(1, 2.0), some(3)
     options = {"noise": "professional", "fidelity": "fast"}
     value = value_of(made, ERRORS)
-    ranked = StrokeSearch(options, 30, value=value, threads=1).rank(at, [1, 2, 3])
-    usual = StrokeSearch(options, 30, threads=1).rank(at, [1, 2, 3])
-    assert np.isfinite(ranked.scores).all() and not np.allclose(ranked.scores, usual.scores)
+    ranked = Search(VisitJudge(options, value, threads=1), 30).rank(at, [1, 2, 3])
+    usual = Search(VisitJudge(options, threads=1), 30).rank(at, [1, 2, 3])
+    for one, other in zip(ranked, usual, strict=True):
+        assert np.isfinite(one.scores).all() and not np.allclose(one.scores, other.scores)
