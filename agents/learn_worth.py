@@ -22,6 +22,7 @@ with needs("agents.learn_worth"):
     import snooker_env
     from commands.files import packed_arrays, writable, write_atomic
     from snooker_env.checks import integer, refuse
+    from snooker_env.planning import FrameJudge
     from snooker_env.planning.learned.dense_layers import Layers
     from snooker_env.planning.learned.frame_features import errors_seen
     from snooker_env.planning.learned.learned_worth import worth_of

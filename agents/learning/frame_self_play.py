@@ -18,7 +18,7 @@ from snooker_env.players import player as snooker_player
 from snooker_env.players.tactician import Tactician
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.carry_out import carry_out
-from snooker_env.tasks.frame import Frames, Seat
+from snooker_env.tasks.frame import Asked, Frames, Seat
 from snooker_env.tasks.threads import Threads
 
 FRAME = {"cue": "real", "miss": "clear_path", "max_strokes": 200}
@@ -114,7 +114,8 @@ def play_frames(rules, seed, many, act, other, threads):
         for who, said in made:
             for whole, part in zip(parts, said.parts, strict=True):
                 whole[who] = part
-        tables.turn(lambda which, b, parts=parts: carry_out(tables, which, parts, b, 0), out, crew, going)
+        asked: Asked = parts  # type: ignore[assignment]
+        tables.turn(lambda which, b, asked=asked: carry_out(tables, which, asked, b, 0), out, crew, going)
         step += 1
     return tables
 

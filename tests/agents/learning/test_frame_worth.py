@@ -11,9 +11,9 @@ from agents.learning.frame_self_play import frames
 from agents.learning.frame_worth import TRACE, by_stage, calibration, fitted, fitted_chance, targets
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Positions
-from snooker_env.planning.frame_trials import turned
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
+from snooker_env.planning.trials import turned
 from snooker_env.planning.worth import SPREAD, Chance
 from snooker_env.players import FRAMES
 from snooker_env.players.tactician import Tactician
