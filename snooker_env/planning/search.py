@@ -137,10 +137,11 @@ class Search:
     def __init__(self, judge: Judge, budget: int = BUDGET, propose: Propose | Sequence[Propose] = at_pots):
         if not hasattr(judge, "plans"):
             raise refuse_what("judge", f"a {type(judge).__name__}", "must be a VisitJudge or a FrameJudge")
-        self.judge = judge
+        self.judge: Judge = judge
         self.budget: int = integer("budget", budget, judge.least, MOST)
         self.propose: tuple[Propose, ...] = (propose,) if callable(propose) else tuple(propose)
-        self.spread, self.dynamics = judge.spread, judge.dynamics  # of which generators ask
+        self.spread: float = judge.spread  # this and the dynamics are what generators ask for
+        self.dynamics: Dynamics = judge.dynamics
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """Try strokes in n positions and return them ``Ranked``: the first one of each is to be played.

@@ -93,7 +93,7 @@ class VisitJudge:
         self.value: Value = self._by_rule if value is None else value
         self.legal: bool = options.reward == "legal"
         self.doubtful: float = 1.0 if self.legal else number("doubtful", doubtful, 0.0, 1.0)
-        self.pots_only = pots_only
+        self.pots_only: bool = pots_only
 
     @property
     def shots(self) -> int:

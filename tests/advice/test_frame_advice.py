@@ -46,11 +46,11 @@ def test_the_tactician_is_asked_in_frames_and_the_planner_in_visits():
 
 
 def test_the_chance_to_win_is_that_of_other_samples_too():
-    search = sn.player("tactician").at({"task": "frame", "noise": "professional"}).search
+    judge = sn.player("tactician").at({"task": "frame", "noise": "professional"}).judge
     at, n = one_position(HIDDEN, (20, 24)), 2000
     for one in sn.advise(HIDDEN, n=3, **QUICK | {"samples": 400}):
         numbers = np.repeat(one.stroke.numbers()[None], n, 0)
-        gains = search.gains(at, np.zeros(n, np.int64), numbers, errors_of_another(n))
+        gains = judge.gains(at, np.zeros(n, np.int64), numbers, errors_of_another(n))
         mean, spread = gains[:, 0].mean(), gains[:, 0].std()
         assert abs(one.win - mean) < 4.0 * spread * np.sqrt(1 / 400 + 1 / n)
         low, high = one.win_interval

@@ -30,7 +30,7 @@ def test_visits_are_played_on_stroke_by_stroke(noise):
     asked = zip(positions, numbers.tolist(), strict=True)
     own = [one_by_one(position, visit, 4, 7, noise) for position, visit in asked]
     assert found.tolist() == [total for total, _ in own]
-    assert max(strokes for _, strokes in own) > 2 and len(set(found.tolist())) > 2
+    assert max(strokes for _, strokes in own) > 2 and found.max() > 5.0
 
 
 def test_no_visits_bring_no_points():

@@ -79,7 +79,7 @@ GOOD = (
     "strokes = sn.planning.Strokes(np.array([[3.6, 0.0, 0.25, aims[0], 0.0]]))",
     "acts: np.ndarray = strokes.actions(sn.Options(), states)",
     "apart = planner.play_strokes(states, [0], strokes.values, errors=np.zeros((1, 5))).places[0]",
-    "best = sn.planning.Search(sn.planning.VisitJudge({'noise': 'club'}), 30).rank(states, [1])[0].strokes.speed",
+    "speeds: np.ndarray = sn.planning.Search(sn.planning.VisitJudge({'noise': 'club'}), 30).rank(states, [1])[0].strokes.speed",
     "found = sn.planning.pots(envs, most=2).cut[0, 0] + sn.planning.clear_paths(position).full_ball[0]",
     "space = observation_space('balls', frame=True)",
     "sn.warmup()",

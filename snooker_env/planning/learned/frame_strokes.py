@@ -69,7 +69,9 @@ class FrameStrokes:
         worth: LearnedWorth,
         layers: Sequence[tuple[NDArray, NDArray]],
     ):
-        self.rules, self.values, self.worth = rules, values, worth
+        self.rules: Rules = rules
+        self.values: StrokeValue = values
+        self.worth: LearnedWorth = worth
         self.dynamics: Dynamics = values.dynamics
         self.spread: float = values.value.spread
         self._layers = Layers(layers, "relu") if layers else None

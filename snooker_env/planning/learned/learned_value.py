@@ -21,7 +21,8 @@ class LearnedValue:
 
     def __init__(self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: float, threads: int = 1):
         self._members = [Layers(member, "relu") for member in members]
-        self.spread, self.threads = spread, threads
+        self.spread: float = spread
+        self.threads: int = threads
 
     def __call__(self, at: Positions) -> NDArray[np.float32]:
         return self.of(value_features(at, self.spread, self.threads))

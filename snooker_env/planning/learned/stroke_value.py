@@ -61,7 +61,9 @@ class StrokeValue:
         noise: Noise,
         layers: Sequence[tuple[NDArray, NDArray]],
     ):
-        self.value, self.proposals, self.dynamics = value, PolicyProposals(policy), dynamics
+        self.value: LearnedValue = value
+        self.proposals: PolicyProposals = PolicyProposals(policy)
+        self.dynamics: Dynamics = dynamics
         self._layers = Layers(layers, "relu") if layers else None
         self._noise = replace(noise, speed_rel=max(noise.speed_rel, _LEAST_SPEED)).pack(
             dynamics.physics.R, real=len(dynamics.rails) > 0
