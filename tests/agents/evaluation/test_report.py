@@ -17,7 +17,7 @@ GHOST = {"from": "ghost_ball"}
 
 
 def run(seed, **changes):
-    """A training run as agents/evaluation/protocol.py keeps it."""
+    """A training run as agents/evaluate.py keeps it."""
     trained = {"from": f"m-{seed}", "recipe": "r", "seed": seed, "shots": 1000, "imitated": 0, "gamma": 0.95}
     under = {"layout": "opened", "noise": "none", "fidelity": "fast", "physics": "paper", "cue": "real"}
     return trained | under | {"seconds": 10.0} | changes
