@@ -144,10 +144,10 @@ class AgentTraining:
                 load_weights(self.model, Path(settings.start))
         self.model.tensorboard_log = str(out / "tb")
         *before, last = state["parts"] if state else [None]
-        self.expert = self.ppo = None
+        self.expert = None
         if recipe.imitation:
             expert = (self.model, self.tables, recipe.imitation, settings.seed, threads)
-            self.expert = ExpertIteration(*expert, before[0] if before else None)
+            self.expert = ExpertIteration(*expert, *before)
         self.ppo = PolicyGradient(recipe, self.model, threads, recipe.n_timesteps, last)
         self.ppo.running = state and state["running"]
         self.parts = [part for part in (self.expert, self.ppo) if part]

@@ -245,7 +245,7 @@ def test_an_incomplete_evaluation_says_so(capsys):
     assert "INCOMPLETE" in capsys.readouterr().out
 
 
-KEPT = sorted((Path(report.__file__).parents[1] / "results").glob("*.json"))
+KEPT = sorted((Path(report.__file__).parent / "results").glob("*.json"))
 
 
 def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
