@@ -20,6 +20,7 @@ import sys
 from commands.lifecycle import needs
 
 with needs("train.py"):
+    import numpy  # noqa: F401, I001 - PyTorch would warn if it is missing
     from agents.train import main
 
 if __name__ == "__main__":

@@ -115,12 +115,8 @@ def place(address, threads=None):
         yield Here(threads)
         return
     os.environ.setdefault("RAY_task_oom_retries", str(RETRIES))  # Ray tries for ever
-    try:
-        import ray
-    except ImportError:
-        raise ImportError(
-            'Ray is missing; in a clone of the repository:  pip install -e ".[cluster]"'
-        ) from None
+    import ray  # by whom it is asked for alone
+
     address = os.environ.get("RAY_ADDRESS", address) if address == "auto" else address
     try:
         if ":" in address:  # ray.init would wait for minutes

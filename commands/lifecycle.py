@@ -17,7 +17,7 @@ from pathlib import Path
 
 INTERRUPTED = 130
 """The exit code after Ctrl-C, as shells have it."""
-EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "rllib"}
+EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "cluster"}
 """The extra of pyproject.toml that brings a package which is not in [train]."""
 OUR_OWN = ("agents", "commands", "snooker_env", "train", "benchmarks")
 
@@ -106,13 +106,13 @@ def command(name):
 
 def in_one_line(kind, error, trace):
     """``sys.excepthook`` while a command is loaded: Ctrl-C and a missing library are one line."""
-    if isinstance(error, KeyboardInterrupt | ImportError):
+    if isinstance(error, KeyboardInterrupt):
+        print("interrupted", file=sys.stderr, flush=True)
+        os._exit(INTERRUPTED)  # Python itself would end an interrupted process by a signal
+    if isinstance(error, ImportError):
         with contextlib.suppress(
             ImportError
-        ):  # a mistake in a module of this repository is no missing library
-            stopped = isinstance(error, KeyboardInterrupt)
-            print("interrupted" if stopped else what_is_missing(error), file=sys.stderr, flush=True)
-            os._exit(
-                INTERRUPTED if stopped else 1
-            )  # Python itself would end an interrupted process by a signal
+        ):  # a mistake in a module of this repository: no library is missing
+            print(what_is_missing(error), file=sys.stderr)
+            return
     traceback.print_exception(kind, error, trace)

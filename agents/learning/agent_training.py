@@ -31,7 +31,9 @@ class PolicyGradient(Part):
         left = max(0, steps - model.num_timesteps)
         self.total = model.num_timesteps + self.rollout * -(-left // self.rollout)
         self.now = f"this rollout of {self.rollout:,} shots"
-        self.curve, self._spent = (before["curve"], before["seconds"]) if before else ([], 0.0)
+        self.curve, self._spent, self._begun = [], 0.0, False
+        if before:
+            self.curve, self._spent, self._begun = (before[name] for name in ("curve", "seconds", "begun"))
         self.running = None
         """Sums of the visits that ran on when the run was saved."""
 
@@ -41,7 +43,7 @@ class PolicyGradient(Part):
 
     def get_state(self):
         """The state beside the model and the tables."""
-        return {"curve": self.curve, "seconds": self.seconds}
+        return {"curve": self.curve, "seconds": self.seconds, "begun": self._begun}
 
     @property
     def figures(self):
@@ -62,8 +64,9 @@ class PolicyGradient(Part):
             judge_rewards(self._model.get_env(), self._model.policy, self._threads)
 
     def play(self, rest):
-        fresh, left = self.done == 0, self._steps - self.done
+        fresh, self._begun = not self._begun, True
         between = _Between(self, rest, None if fresh else self.running)
+        left = self._steps - self.done
         self._model.learn(left, between, tb_log_name=self._recipe.name, reset_num_timesteps=fresh)
 
     def note(self):
@@ -141,13 +144,15 @@ class AgentTraining:
                 load_weights(self.model, Path(settings.start))
         self.model.tensorboard_log = str(out / "tb")
         *before, last = state["parts"] if state else [None]
-        self.expert = self.ppo = None
+        self.expert = None
         if recipe.imitation:
             expert = (self.model, self.tables, recipe.imitation, settings.seed, threads)
-            self.expert = ExpertIteration(*expert, before[0] if before else None)
+            self.expert = ExpertIteration(*expert, *before)
         self.ppo = PolicyGradient(recipe, self.model, threads, recipe.n_timesteps, last)
         self.ppo.running = state and state["running"]
         self.parts = [part for part in (self.expert, self.ppo) if part]
+        if state and self.expert and self.expert.done >= self.expert.total and not last["begun"]:
+            self.tables.reset()  # takes the state that they were given: PPO begins with another reset
 
     def save(self):
         """Write the checkpoint."""

@@ -64,7 +64,7 @@ def kept_settings(out, kind):
     try:
         read = read_json("out", out / SETTINGS, wanted, checked=True)
         return kind(**{name: tuple(one) if isinstance(one, list) else one for name, one in read.items()})
-    except TypeError:
+    except (TypeError, AttributeError):
         raise refuse("out", str(out / SETTINGS), wanted) from None
 
 

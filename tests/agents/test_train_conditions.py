@@ -9,7 +9,7 @@ import train
 from agents.features.observed import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import ExpertIteration
-from agents.learning.hyperparameters import Recipe
+from agents.learning.hyperparameters import SHOT_OPTIONS, Recipe
 from agents.learning.model_files import packed, read
 from agents.learning.models import load_trained
 from agents.players.trained import load_player
@@ -82,7 +82,9 @@ def test_expert_iteration_plays_each_visit_on_a_table_of_its_own(few, monkeypatc
                 kept += 1
     assert kept > 40 and fresh > 2
     (at, value, rows, picks, keys), made = judged[-1]
-    options = run_._choices._planner.options
+    options = sn.Options(
+        action="discrete", **{name: getattr(venv.unwrapped.tables.options, name) for name in SHOT_OPTIONS}
+    )
     played = Planner(options, threads=1).play(at, rows, picks, keys)
     values = played.points.astype(np.float32)
     values[played.goes_on] += value(played.afterstates[np.flatnonzero(played.goes_on)])

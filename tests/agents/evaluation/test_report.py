@@ -17,7 +17,7 @@ GHOST = {"from": "ghost_ball"}
 
 
 def run(seed, **changes):
-    """A training run as agents/evaluation/protocol.py keeps it."""
+    """A training run as agents/evaluate.py keeps it."""
     trained = {"from": f"m-{seed}", "recipe": "r", "seed": seed, "shots": 1000, "imitated": 0, "gamma": 0.95}
     under = {"layout": "opened", "noise": "none", "fidelity": "fast", "physics": "paper", "cue": "real"}
     return trained | under | {"seconds": 10.0} | changes
@@ -245,7 +245,7 @@ def test_an_incomplete_evaluation_says_so(capsys):
     assert "INCOMPLETE" in capsys.readouterr().out
 
 
-KEPT = sorted((Path(report.__file__).parents[1] / "results").glob("*.json"))
+KEPT = sorted((Path(report.__file__).parent / "results").glob("*.json"))
 
 
 def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
