@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 import snooker_env as sn
-from snooker_env.advice import destinations
-from snooker_env.render.diagrams import compare, density, fan
-from snooker_env.render.fan_diagram import Strokes, fan_options
+from snooker_env.advice import destinations, fan
+from snooker_env.advice.fan import Strokes, fan_options
+from snooker_env.render.diagrams import compare, density
 from snooker_env.tasks import LEVELS
 
 from ._common.command import Command, at_least, run, save_figure, save_json

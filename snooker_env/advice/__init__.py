@@ -7,6 +7,7 @@ from .ask import advise
 from .coach import Coaching, coach
 from .destinations import Destinations, destinations
 from .errors import PlayerErrors, estimate_errors
+from .fan import fan
 from .recorded import Recorded, read_strokes, strokes_of, write_strokes
 from .room import Room
 from .strokes import Advice, CueStroke, Suggestion
@@ -26,6 +27,7 @@ __all__ = [
     "coach",
     "destinations",
     "estimate_errors",
+    "fan",
     "read_strokes",
     "strokes_of",
     "write_strokes",

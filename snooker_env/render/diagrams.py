@@ -1,4 +1,4 @@
-"""Which diagrams are there? One shot, shots side by side, a fan over top and side, where a ball stops, chances to win.
+"""Which diagrams are there? One shot, shots side by side, where a ball stops, chances to win.
 
 They draw with matplotlib on the axes that they are given, or on a new figure, and return the axes; tables with baulk left
 and black right, y [m] to the right and x [m] down."""
@@ -8,7 +8,6 @@ from .density_diagram import bandwidth_of as bandwidth_of
 from .density_diagram import density
 from .density_diagram import density_of as density_of
 from .density_diagram import level_of as level_of
-from .fan_diagram import fan
 from .shot_diagram import compare, plot
 
-__all__ = ["compare", "density", "fan", "plot", "win_chance"]
+__all__ = ["compare", "density", "plot", "win_chance"]

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env.advice.fan import Strokes, fan, fan_options, shade
 from snooker_env.render import palette, shot_paths
 from snooker_env.render.density_diagram import bandwidth_of, density_of, level_of
-from snooker_env.render.diagrams import compare, density, fan, plot, win_chance
-from snooker_env.render.fan_diagram import Strokes, fan_options, shade
+from snooker_env.render.diagrams import compare, density, plot, win_chance
 from tests.pictures import unreadable
 from tests.refusals import refused
 from tests.render.test_shot_paths import R, played

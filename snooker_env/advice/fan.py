@@ -12,13 +12,16 @@ from ..impacts import strike
 from ..physics.engine import EventKind
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
-from ..simulation import Shot, simulate, simulate_batch
-from .shot_diagram import SLIDES, View, places_of, region_of
-from .shot_paths import contacts, cue_ball, paths
-from .sketch import CAPTIONS, Sketch, rgb
+from ..render.shot_diagram import SLIDES, View, places_of, region_of
+from ..render.shot_paths import contacts, cue_ball, paths
+from ..render.sketch import CAPTIONS, Sketch, rgb
+from ..shot import Shot
+from ..simulation import simulate, simulate_batch
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+else:  # matplotlib is loaded at its first use
+    Axes = Any
 
 TOPS, SIDES = (-0.4, -0.2, 0.0, 0.2, 0.4), (-0.25, 0.0, 0.25)  # default tip offsets over R
 SHADES = ((58, 132, 240), (150, 205, 255), (255, 255, 255), (255, 190, 120), (240, 84, 46))
@@ -50,7 +53,7 @@ def fan(
     position: Any,
     ball: int | None = None,
     pocket: int | None = None,
-    ax: "Axes | None" = None,
+    ax: Axes | None = None,
     *,
     speed: float = 2.0,
     tops: Sequence[float] = TOPS,
@@ -63,7 +66,7 @@ def fan(
     view: View = "shot",
     labels: bool = False,
     title: str = "",
-) -> "Axes":
+) -> Axes:
     """Draw the cue ball's paths of one pot, played with every pair of a top and a side.
 
     As in Fig. 1 of the paper. Of the aims that pot the ball, which squirt and throw change, the middle one is
@@ -97,7 +100,7 @@ def fan(
 
     Examples
     --------
-    >>> from snooker_env.render.diagrams import fan
+    >>> from snooker_env.advice import fan
     >>> ax = fan([(0.45, 0.85), (0.62, 1.45)], tops=(-0.3, 0.3), sides=(0.0,))
     >>> len([line for line in ax.get_lines() if line.get_gid() == "fan"])
     2
