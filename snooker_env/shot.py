@@ -92,7 +92,7 @@ class Shot:
         times = array("t", [t] if single else t, (-1,))
         if times.size and times.min() < 0:
             raise refuse("t", float(times.min()), "must not be negative")
-        check_path(self)
+        trajectory.check_path(self.segments)
         n, m = len(self.positions), len(times)
         space = 3 if self.physics.flight else 2
         out = np.zeros((m, n, space)), np.zeros((m, n, space)), np.zeros((m, n, 3))
@@ -108,16 +108,9 @@ class Shot:
 
         ``options``: see ``snooker_env.render.diagrams.plot``. ValueError for a wrong option or a shot without
         a path, ImportError without matplotlib."""
-        from .render.diagrams import plot
+        from .render.shot_diagram import plot
 
         return plot(self, ax, **options)
-
-
-def check_path(shot: Shot) -> None:
-    """Raise ValueError unless the shot has its path."""
-    if not len(shot.segments):
-        allowed = "must be there: simulate() keeps them, environments with keep_history = True"
-        raise refuse("shot.segments", "none", allowed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,6 @@ from .physics.impact import contact
 from .physics.parameters import FARTHEST, FASTEST, MOST_SPIN, Physics, PhysicsLike
 from .physics.table import Table, TableLike
 from .shot import EVENT, Shot, ShotBatch, SimulationError
-from .shot import check_path as check_path  # for the layers above
 
 MAX_EVENTS = 100_000
 MAX_BALLS = 4096  # of one shot: the times of all pairs are stored (134 MB)

@@ -5,6 +5,8 @@ A position is judged by *search*, not by luck: the best stroke that is found mee
 is what the position is worth. A frame's outcome alone varies by 60 points and would drown it. A search finds what
 a worth is wrong about, so what the best strokes of a position may leave is judged as well, in ``REPLIES`` cases."""
 
+from typing import Any
+
 import numpy as np
 
 from commands.noise_option import scaled
@@ -110,7 +112,7 @@ def play_frames(rules, seed, many, act, other, threads):
         made = [(mine, act(tables, mine, _seen_by_strikers(tables, mine), keys[~theirs]))]
         if other is not None and theirs.any():
             made.append((going[theirs], other.play(_seen_by_strikers(tables, going[theirs]), keys[theirs])))
-        parts = tuple(np.zeros((many, *part.shape[1:]), part.dtype) for part in made[0][1].parts)
+        parts: Any = tuple(np.zeros((many, *part.shape[1:]), part.dtype) for part in made[0][1].parts)
         for who, said in made:
             for whole, part in zip(parts, said.parts, strict=True):
                 whole[who] = part

@@ -2,7 +2,9 @@
 
 import numpy as np
 
+from .._check import refuse
 from .._jit import entry
+from .._types import Floats
 from . import cloth, flight
 
 
@@ -31,3 +33,10 @@ def states_at(segments, n_balls, times, phys, positions, velocities, spins):
             if positions.shape[2] == 3:
                 positions[m, i, 2], velocities[m, i, 2] = flight.height(segments, state, current[i], t, phys)
             spins[m, i, 0], spins[m, i, 1], spins[m, i, 2] = w
+
+
+def check_path(segments: Floats) -> None:
+    """Raise ValueError unless a shot has its path."""
+    if not len(segments):
+        allowed = "must be there: simulate() keeps them, environments with keep_history = True"
+        raise refuse("shot.segments", "none", allowed)

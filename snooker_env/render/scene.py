@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,9 +12,13 @@ from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind
 from ..physics.table import Table, TableLike
-from ..simulation import Shot
 from .outline import outline as outline
 from .outline import scene_data as scene_data
+
+if TYPE_CHECKING:
+    from ..shot import Shot
+else:  # a shot draws itself: its module stands above this one
+    Shot = Any
 
 TURN_STEP = 1 / 240  # time between stored rotations [s]: at 100 rad/s a quarter of a right angle
 

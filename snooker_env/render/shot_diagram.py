@@ -10,13 +10,16 @@ from .._types import Bools, Floats, Ints, Place, Vectors
 from ..game.balls import N_BALLS, NAMES
 from ..physics.engine import EventKind
 from ..physics.table import Table
-from ..simulation import Shot
 from .palette import PALE, Colour
 from .shot_paths import Piece, Tip, arrow_places, contacts, cue_ball, paths, tip_of
 from .sketch import CAPTIONS, PATH_WIDTH, WIDTH, Region, Sketch, flip, is_closed, pyplot, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from ..shot import Shot
+else:  # a shot draws itself: its module stands above this one
+    Shot = Any
 
 View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
 """The part to show: all, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""

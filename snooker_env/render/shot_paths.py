@@ -1,7 +1,7 @@
 """What does a diagram show of a shot? Paths within ``STRAY``, contacts, speeds, and the tip."""
 
 from collections.abc import Iterator
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -10,7 +10,12 @@ from ..physics.cloth import AIR, AX, AY, BEND, FALLING, ROLL, SEGMENT_BALL, SEGM
 from ..physics.columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 from ..physics.engine import EventKind
 from ..physics.parameters import Physics
-from ..simulation import Shot, check_path
+from ..physics.trajectory import check_path
+
+if TYPE_CHECKING:
+    from ..shot import Shot
+else:  # a shot draws itself: its module stands above this one
+    Shot = Any
 
 STRAY = 1e-4  # the largest distance of a path from the lines that are drawn [m]
 STILL = 1e-3  # A ball that moved less than this is drawn as one that did not move [m]
@@ -83,7 +88,7 @@ def _steps(row, duration):
 
 def paths(shot: Shot) -> dict[int, list[Piece]]:
     """The pieces of each ball that moved, by its id."""
-    check_path(shot)
+    check_path(shot.segments)
     every = {ball: pieces(shot, ball) for ball in range(len(shot.positions))}
     return {ball: parts for ball, parts in every.items() if any(map(_moves, parts))}
 
