@@ -8,13 +8,14 @@ import numpy as np
 from .._check import choice, number, refuse
 from ..advice import CueStroke, Suggestion, advise, destinations
 from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
+from ..game.frame import CHOICES
 from ..geometry import BAULK_Y, POCKET_AIMS, POCKETS
 from ..physics.engine import EventKind
 from ..planning import Planner
 from ..render.scene import ball_paths
 from ..replays.encode import packed
 from ..shot import Shot
-from .service import DECIDED, Seats, Service
+from .service import Seats, Service
 from .session import Session
 
 
@@ -107,7 +108,7 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
         win = chance if chance is None or seat == 0 else 1.0 - chance
         found.append({"choice": what, "win": win})
     decided = service.seats.decided(agent, session)
-    return {"choice": DECIDED.get(int(decided.decision[0]), "play"), "choices": found}
+    return {"choice": CHOICES[int(decided.decision[0])], "choices": found}
 
 
 def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:

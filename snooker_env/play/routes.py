@@ -64,23 +64,15 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     if not strikes and "choice" not in fields:
         raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
     nominated = colour_named("nominate", fields["nominate"]) if "nominate" in fields else AUTO
-    stroke = struck = None
+    struck = None
     with service.acting(_revision(fields)) as session:
-        twin = session.twin()  # errors occur on the copy first, so that a refused request has changed nothing
         if "choice" in fields:
             if strikes and fields["choice"] != "play":
                 allowed = 'must be "play" in a request that holds a stroke too'
                 raise refuse("choice", fields["choice"], allowed)
-            twin.choose(fields["choice"])
-        if strikes:
-            stroke = stroke_asked(twin, fields)
-            twin.check_stroke(nominated)
-        if "choice" in fields:
             session.choose(fields["choice"])
-        if stroke is not None:
-            if "place" in fields:
-                session.place(*fields["place"])
-            session.play(stroke, nominated=nominated)
+        if strikes:
+            session.play(stroke_asked(session, fields), nominated=nominated)
             struck = stroke_report(service, session.at - 1)
     with service.reading():
         return {"stroke": struck, "state": report(service)}

@@ -4,6 +4,8 @@ Each stroke and decision is an ``Act`` in a list; undo and redo move in it. A st
 that is undone and played again meets the same execution errors."""
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -14,15 +16,14 @@ from .._types import CueKind, NoiseName
 from ..advice import CueStroke, Room
 from ..advice.room import room_for
 from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
-from ..game.frame import Frame, write_frame
+from ..game.frame import Choice, Frame, write_frame
 from ..game.frame_columns import STROKES
 from ..game.in_hand import place_cue
 from ..game.rule_sets import RULES, RulesName, rule_set
 from ..game.ruling import AUTO
 from ..planning.position import Position
-from ..planning.positions import Positions
+from ..planning.positions import Positions, of_tables
 from ..players import Strokes
-from ..simulation import SimulationError
 from ..tasks.frame import Frames, Seat
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES, Options
@@ -31,7 +32,6 @@ from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew
 
-DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0, "anywhere": 1.0}  # last component of an action
 DECLINED = 0  # the nomination of a player who does not use a free ball
 MOST_FRAMES = 99  # the longest match
 STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
@@ -74,7 +74,6 @@ class Session:
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
         self._with: dict[str, Options] = {}
-        self.tables = Frames(self._options.rules, 1)
         self.new(layout=layout, seed=seed)
 
     @property
@@ -89,8 +88,10 @@ class Session:
 
     @cue.setter
     def cue(self, kind: CueKind) -> None:
-        self._options, self._with = self._options.but(cue=kind), {}
-        self.tables.rules = self._options.rules
+        if kind != self.cue:
+            state = self.state
+            self._play_by(self._options.but(cue=kind))
+            self._set(state)
 
     @property
     def game(self) -> RulesName:
@@ -140,7 +141,7 @@ class Session:
     @property
     def position(self) -> Positions:
         """The frame as its striker sees it."""
-        return Positions.of(cast(Any, self))  # it has tables, as environments have
+        return of_tables(self.tables)
 
     def planned(self, *, free_ball: bool = False) -> Positions:
         """The next stroke's position, as one of a visit; with ``free_ball`` every colour is on instead."""
@@ -157,6 +158,18 @@ class Session:
         if noise not in self._with:
             self._with[noise] = self._options.but(noise=noise)
         return self._with[noise]
+
+    @contextmanager
+    def as_a_whole(self) -> Iterator["Session"]:
+        """What is done in this context is done as a whole: after an exception the session is as it was before."""
+        state, kept = self.state, self.__dict__.copy()
+        kept |= {name: list(kept[name]) for name in ("acts", "noise", "won")}
+        try:
+            yield self
+        except BaseException:
+            self.__dict__.update(kept)
+            self._set(state)
+            raise
 
     def twin(self) -> "Session":
         """A copy for another thread; of the acts it holds the last one only."""
@@ -198,11 +211,9 @@ class Session:
         return self._options.but(layout=layout or self._options.layout, game=game, miss=miss)
 
     def _play_by(self, options: Options) -> None:
-        """Take these options, on an empty table if it is another game."""
-        if options.game != self.game:
-            self.tables = Frames(options.rules, 1)
+        """Take these options, on an empty table."""
         self._options, self._with = options, {}
-        self.tables.rules = options.rules
+        self.tables = Frames(options.rules, 1)
 
     def _deal(self, options: Options, seed: int, breaker: int) -> None:
         integer("seed", seed, 0, 2**63 - 1)
@@ -232,19 +243,13 @@ class Session:
         striker = self.frame.striker
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
-        tables.nominated[0] = nominated
         self._played, room = None, self.room(stroke)
         asked = {**stroke.to_dict(), "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
         asked["place"] = before["positions"][CUE] if self.frame.in_hand else None
         asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
-        try:
-            crew = Crew(self._buffers, (), self._watch)
-            tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
-        except SimulationError:
-            self._set(before)
-            raise
-        finally:
-            tables.nominated[0] = AUTO
+        tables.nominated[0] = nominated
+        crew = Crew(self._buffers, (), self._watch)
+        tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
         if self.practice:
             self._hand_back()
         words = NAMES[nominated] if nominated > CUE else ""
@@ -266,8 +271,10 @@ class Session:
         frame = self.frame
         if frame.phase != "choice":
             raise refuse("choice", what, "must be left out: the other player has not just fouled")
-        choice("choice", what, frame.choices)
-        self.tables.decide(np.zeros(1, np.int64), np.array([[*[0.0] * 7, DECISIONS[what]]]))
+        self._write(frame.choose(cast(Choice, what)), int(self.tables.game[0, STROKES]))
+        if what == "replace":
+            kept = self.tables.saved
+            self.tables.positions[:], self.tables.on_table[:] = kept.positions, kept.on_table
         return self._did(Act("choice", self.state, frame.striker, detail=what, asked={"choice": what}))
 
     def concede(self) -> Act:
