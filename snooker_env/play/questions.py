@@ -29,19 +29,19 @@ def stroke_in(fields: dict[str, Any], aim: float | None = None) -> CueStroke:
     return CueStroke(aim=number("aim", fields["aim"], -1e6, 1e6) if aim is None else aim, **parts)
 
 
-def place_asked(field: str, value: Any) -> tuple[float, float]:
+def place_asked(field: str, value: object) -> tuple[float, float]:
     """Two numbers [m]; ValueError for anything else."""
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise refuse(field, value, "must be [x, y] in metres")
     return number(f"{field}[0]", value[0], -10, 10), number(f"{field}[1]", value[1], -10, 10)
 
 
-def colour_named(field: str, value: Any) -> int:
+def colour_named(field: str, value: object) -> int:
     """Id of the colour with a name."""
     return colour(choice(field, value, COLOUR_NAMES))
 
 
-def pocket_named(field: str, value: Any) -> int:
+def pocket_named(field: str, value: object) -> int:
     """Index of the pocket with a name; "right middle" is "middle right"."""
     if isinstance(value, str):
         for k, name in enumerate(POCKETS):
@@ -55,7 +55,7 @@ MOST_SUGGESTIONS = 10
 RIVALS = 2  # further strokes judged for each suggestion after the first: many are other ways of one pot
 
 
-def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
+def aim_at(session: Session, asked: object, stroke: CueStroke) -> float:
     """The direction of the cue ball that pots a ball, with throw; ``asked``: {"pot": [ball, pocket]}."""
     pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:

@@ -90,12 +90,12 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     try:
         if not isinstance(scores, list) or len(scores) != 2:
             raise refuse("scores", scores, "must be two integers")
-        points = tuple(integer(f"scores[{k}]", score, 0, MOST) for k, score in enumerate(scores))
+        one, other = (integer(f"scores[{k}]", score, 0, MOST) for k, score in enumerate(scores))
         striker = integer("striker", fields.get("striker", 0), 0, 1)
         free = truth("free_ball", fields.get("free_ball", False))
         position = position_of(fields.get("position"))
         with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
-            session.set_up(position, scores=points, striker=striker, free_ball=free, check=check)
+            session.set_up(position, scores=(one, other), striker=striker, free_ball=free, check=check)
     except ValueError as error:
         if not check:
             raise
@@ -103,7 +103,7 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     return {"sound": True, "error": None} if check else None
 
 
-def position_of(fields: Any) -> Position:
+def position_of(fields: object) -> Position:
     """A ``Position`` from JSON types; ValueError, with the name of the ball or field, if it is invalid."""
     names = tuple(Position.__dataclass_fields__)
     if not isinstance(fields, dict):

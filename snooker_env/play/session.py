@@ -64,10 +64,10 @@ class Session:
     def __init__(
         self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
     ):
-        box: Any = {"placement": True, "decision": True, "elevation": True, "max_strokes": None}
+        box = Options(task="frame", placement=True, decision=True, elevation=True, max_strokes=None)
         if flight:
-            box |= {"elevation": 70, "physics": {"flight": True}}
-        self._options = Options(task="frame", miss="clear_path", layout=layout, cue=cue, **box)
+            box = box.but(elevation=70, physics={"flight": True})
+        self._options = box.but(miss="clear_path", layout=layout, cue=cue)
         self.noise, self.practice = ["none", "none"], False
         self.best_of, self.won, self.begun = 1, [0, 0], 0
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
@@ -187,7 +187,7 @@ class Session:
         layout: str | None = None,
         seed: int = 0,
         breaker: int = 0,
-        game: Any = None,
+        game: str | None = None,
         best_of: int = 1,
     ) -> None:
         """Begin a match of an odd number of frames; ``layout`` and ``game`` stay unless they are given."""
@@ -204,11 +204,11 @@ class Session:
         self._deal(self._options, seed, 1 - self.frame.breaker)
         self.won = won
 
-    def _but(self, layout: str | None, game: Any) -> Options:
+    def _but(self, layout: str | None, game: str | None) -> Options:
         """The options with another layout and game; the Shoot Out has no miss rule."""
-        game = self.game if game is None else choice("game", game, RULES)
-        miss = "off" if rule_set(game).anywhere else "clear_path"
-        return self._options.but(layout=layout or self._options.layout, game=game, miss=miss)
+        rules = self.game if game is None else cast(RulesName, choice("game", game, RULES))
+        miss = "off" if rule_set(rules).anywhere else "clear_path"
+        return self._options.but(layout=layout or self._options.layout, game=rules, miss=miss)
 
     def _play_by(self, options: Options) -> None:
         """Take these options, on an empty table."""
@@ -304,7 +304,13 @@ class Session:
         return px, py
 
     def set_up(
-        self, position: Position, *, scores: Any, striker: int, free_ball: bool, check: bool = False
+        self,
+        position: Position,
+        *,
+        scores: tuple[int, int],
+        striker: int,
+        free_ball: bool,
+        check: bool = False,
     ) -> None:
         """Put the balls as in a position, or only ``check`` it. ValueError names the ball or the field."""
         positions, on_table, _ = position.arrays()
@@ -334,7 +340,7 @@ class Session:
         game = {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
         return {"format": "snooker-game", "version": 1, **game}
 
-    def load(self, saved: Any) -> None:
+    def load(self, saved: object) -> None:
         """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
         fields = ("format", "version", "practice", "noise", "cue", "state")
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
