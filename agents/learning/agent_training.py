@@ -151,7 +151,7 @@ class AgentTraining:
         self.ppo = PolicyGradient(recipe, self.model, threads, recipe.n_timesteps, last)
         self.ppo.running = state and state["running"]
         self.parts = [part for part in (self.expert, self.ppo) if part]
-        if state and self.expert and self.expert.done >= self.expert.total and not last["begun"]:
+        if state and self.expert and self.expert.done >= self.expert.total and not (last and last["begun"]):
             self.tables.reset()  # takes the state that they were given: PPO begins with another reset
 
     def save(self):

@@ -37,12 +37,12 @@ REPLACED = ("on_table", "ball_on", "in_hand", "free_ball", "anywhere")
 """The fields that are restored with a position that is replaced."""
 
 
-def is_plain(value: Any, high: int) -> bool:
+def is_plain(value: object, high: int) -> bool:
     """Whether it is an int in [0, high]: a quick test that nearly always spares the full check."""
     return type(value) is int and 0 <= value <= high
 
 
-def faults(frame: Any) -> Iterator[tuple[bool, str, str]]:
+def faults(frame: "Frame") -> Iterator[tuple[bool, str, str]]:
     """Pairs of fields that the rules forbid: (whether this is so, the field, what is allowed)."""
     stroke, after_foul, missing = frame.phase == "stroke", frame.phase == "choice", frame.miss != "off"
     rules = frame.rule_set
@@ -96,21 +96,21 @@ def faults(frame: Any) -> Iterator[tuple[bool, str, str]]:
         gone = frame.saved.on_table ^ frame.on_table
         lost = gone & ~REDS_MASK or gone & frame.on_table
         allowed = "must have the balls on_table after the foul, and no others except reds"
-        yield after_foul and lost, "saved", allowed
+        yield after_foul and lost != 0, "saved", allowed
         for name in REPLACED:
             other = getattr(frame.saved, name) != getattr(frame, name)
             allowed = f'must have the present {name}: in phase "stroke" it has just been restored'
             yield stroke and other, "saved", allowed
 
 
-def check_fit(frame: Any) -> None:
+def check_fit(frame: "Frame") -> None:
     """Raise ValueError if the rules forbid a combination of the fields of a ``Frame``."""
     for wrong, name, allowed in faults(frame):
         if wrong:
             raise refuse_what(name, "a position" if name == "saved" else repr(getattr(frame, name)), allowed)
 
 
-def check_fields(field: str, plain: Any, kind: type) -> None:
+def check_fields(field: str, plain: object, kind: type) -> None:
     """Raise ValueError unless ``plain`` is a dict with exactly the fields of the dataclass ``kind``."""
     names = [part.name for part in fields(kind)]
     if not isinstance(plain, dict):
@@ -274,8 +274,10 @@ class Frame:
         balls = rule_set(rules).on_table
         if on_table is not None:
             balls = integer("on_table", on_table, 0, ALL_MASK) & ~CUE_BIT
-        held: Any = {"on_table": balls, "rack": balls, "ball_on": BallOn(next_on(balls))}
-        return cls(striker=breaker, breaker=breaker, rules=rules, miss=miss, **held)
+        on = BallOn(next_on(balls))
+        return cls(
+            striker=breaker, breaker=breaker, rules=rules, miss=miss, on_table=balls, rack=balls, ball_on=on
+        )
 
     @property
     def rule_set(self) -> RuleSet:
@@ -439,15 +441,19 @@ def _unpacked(row, rules, miss, layout):
     saved = None
     if at[columns.SAVED]:
         placed, kept = at[columns.SAVED_IN_HAND], layout if at[columns.SAVED_LAYOUT] else None
-        on: Any = {"on_table": at[columns.SAVED_ON_TABLE], "ball_on": BallOn(at[columns.SAVED_BALL_ON])}
-        free = bool(at[columns.SAVED_FREE_BALL])
-        saved = Saved(**on, in_hand=placed > 0, anywhere=placed == 2, free_ball=free, layout=kept)
-    numbers: Any = dict(zip(_INTEGERS, _integers(at), strict=True))
-    truths: Any = dict(zip(_FLAGS, map(bool, _flags(at)), strict=True))
-    numbers |= {"scores": (at[columns.SCORE_0], at[columns.SCORE_1]), "ball_on": BallOn(at[columns.BALL_ON])}
-    winner = None if at[columns.WINNER] < 0 else at[columns.WINNER]
-    game: Any = {"phase": PHASES[at[columns.PHASE]], "winner": winner, "rules": rules, "miss": miss}
-    return Frame(**numbers, **truths, **game, saved=saved)
+        saved = Saved(
+            on_table=at[columns.SAVED_ON_TABLE],
+            ball_on=BallOn(at[columns.SAVED_BALL_ON]),
+            in_hand=placed > 0,
+            free_ball=bool(at[columns.SAVED_FREE_BALL]),
+            anywhere=placed == 2,
+            layout=kept,
+        )
+    fields = dict(zip(_INTEGERS, _integers(at), strict=True))
+    fields |= zip(_FLAGS, map(bool, _flags(at)), strict=True)
+    fields |= {"scores": (at[columns.SCORE_0], at[columns.SCORE_1]), "ball_on": BallOn(at[columns.BALL_ON])}
+    fields |= {"phase": PHASES[at[columns.PHASE]], "rules": rules, "miss": miss, "saved": saved}
+    return Frame(**fields, winner=None if at[columns.WINNER] < 0 else at[columns.WINNER])
 
 
 def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesName = "snooker") -> Frame:

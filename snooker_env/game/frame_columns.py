@@ -2,7 +2,7 @@
 
 A row (int64, ``COLUMNS`` wide) holds a frame between two strokes; ``frame.Frame`` is its readable face.
 ``after_stroke``, ``choose``, ``draw``, ``claim`` and ``concede`` change it; the caller first asks whether
-they may. What "replace" restores is in ``Layouts``. A visit without a frame has the first five only."""
+they may. What "replace" restores is in ``Layouts``. A visit without a frame has ``VISIT_COLUMNS`` only."""
 
 from typing import NamedTuple
 
@@ -12,19 +12,49 @@ from .balls import BLACK, COLOURS_MASK, available, balls_on_kernel, next_on_kern
 from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED
 from .ruling import FOUL, OUTCOME
 
-(BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
-"""A ``BallOn``; cue ball in hand; points of the break; whether the episode has ended by the rules; steps."""
+# Columns of visits and frames.
+BALL_ON = 0  # a ``BallOn``: what must be struck first
+IN_HAND = 1  # whether the cue ball is in hand
+POINTS = 2  # of the break
+OVER = 3  # whether the episode has ended by the rules
+STEPS = 4  # of the episode so far
 VISIT_COLUMNS = 5
-FREE_BALL, ON_TABLE, PHASE, STRIKER, BREAKER, SCORE_0, SCORE_1, WINNER = range(5, 13)
-RESPOTTED_BLACK, MISS_CALLED, FAILURES, WARNED = range(13, 17)
-SAVED, SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT = range(17, 23)
-STROKES, PAID, FRAMES_0, FRAMES_1, FIRST_BREAK, CLOCK, MISSES, ANYWHERE, OPPONENT, RACK = range(23, 33)
-"""The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether a frame has one;
-SAVED_IN_HAND: 2 for anywhere). Of tables only: strokes of both players; the agent's lead that rewards have
-already paid; frames won in a match and who broke in its first frame; which of a pool plays, from 1."""
+
+# Columns of frames.
+FREE_BALL = 5  # whether the striker may nominate one
+ON_TABLE = 6  # mask of the object balls
+PHASE = 7  # ``STROKE`` to ``FINISHED``
+STRIKER = 8  # who plays next, 0 or 1; in the phase ``CHOICE`` who chooses, in ``LOT`` the last striker
+BREAKER = 9  # who broke off, 0 or 1
+SCORE_0 = 10  # the score of player 0
+SCORE_1 = 11  # the score of player 1
+WINNER = 12  # 0 or 1; -1: the frame goes on
+RESPOTTED_BLACK = 13  # whether scores were level, so that the black was re-spotted
+MISS_CALLED = 14  # whether the last stroke was a foul and a miss
+FAILURES = 15  # misses in succession from one position with a clear full-ball path
+WARNED = 16  # whether one more failure loses the frame
+SAVED = 17  # whether the position before a foul is kept
+SAVED_ON_TABLE = 18  # its mask of the object balls
+SAVED_BALL_ON = 19  # its ``BALL_ON``
+SAVED_IN_HAND = 20  # its cue ball: 0 lay on the table, 1 was in hand in the D, 2 anywhere
+SAVED_FREE_BALL = 21  # its ``FREE_BALL``
+SAVED_LAYOUT = 22  # whether the places of its balls are kept, in ``Layouts``
+STROKES = 23  # of both players
+PAID = 24  # the agent's lead that rewards have already paid
+FRAMES_0 = 25  # frames of the match that player 0 has won
+FRAMES_1 = 26  # frames of the match that player 1 has won
+FIRST_BREAK = 27  # who broke off in the first frame of the match
+CLOCK = 28  # time played in a game with a clock [ms]
+MISSES = 29  # in six-red snooker: misses in succession
+ANYWHERE = 30  # whether the cue ball in hand may go anywhere on the table
+OPPONENT = 31  # which player of a pool is the opponent, from 1; 0: there is no pool
+RACK = 32  # mask of the object balls that the frame began with
 COLUMNS = 33
+
 (STROKE, CHOICE, LOT, FINISHED) = range(4)  # Phases, in the order of ``frame.PHASES``
-(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(4)  # choices after a foul
+(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(
+    4
+)  # decisions after a foul, in the order of ``frame.CHOICES``
 (NO_MISSES, CLEAR_PATHS, ATTEMPTS) = range(3)  # miss rules, in the order of ``frame.MISS_RULES``
 MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 
@@ -197,6 +227,16 @@ def may_place_anywhere(row, rules):
     """Whether the cue ball may go anywhere: after the last miss in succession, unless snookers are needed."""
     last = row[PHASE] == CHOICE and row[MISS_CALLED] and rules == SIX_RED and row[MISSES] >= MOST_MISSES
     return last and abs(lead_of(row, 0)) <= available(row[ON_TABLE], row[BALL_ON], 0)
+
+
+@kernel
+def allowed_choice(row, what, rules):
+    """The decision ``what``; in place of REPLACE and PLACE_ANYWHERE the one of them that is allowed, else PLAY."""
+    if what == PLAY or what == PLAY_AGAIN:
+        return what
+    if may_replace(row, rules):
+        return REPLACE
+    return PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
 
 
 @kernel

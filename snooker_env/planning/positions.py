@@ -108,7 +108,7 @@ class Positions:
             return cls(np.stack(positions), np.stack(on_table), np.stack(game))
         tables = getattr(bare(source), "tables", None)
         if isinstance(tables, Tables):
-            return _of_tables(tables)
+            return of_tables(tables)
         allowed = "must be Positions, a Position, a state, a list of these, or an environment"
         raise refuse_what("positions", f"a {type(source).__name__}", allowed)
 
@@ -278,7 +278,7 @@ def bare(env: Any) -> Any:
     return env if inner is None or isinstance(inner, Tables) else inner
 
 
-def _of_tables(tables: Tables) -> Positions:
+def of_tables(tables: Tables) -> Positions:
     """The positions of an environment's tables, those of frames as their strikers see them."""
     game, own = tables.game.copy(), tables.conditions if tables.rules.drawn else None
     saved: columns.Layouts | None = getattr(tables, "saved", None)

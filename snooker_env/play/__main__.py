@@ -4,7 +4,7 @@ import argparse
 import sys
 import webbrowser
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .._check import integer, refuse_what
 from .._command import until_closed
@@ -12,6 +12,10 @@ from .._files import read_json
 from ..players.model_options import add_model_options, options_of_words
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
+
+if TYPE_CHECKING:
+    from .server import PlayServer
+    from .service import Service
 
 PORT = 8147  # unless another is named: always the same, since a browser keeps scores by the page's address
 
@@ -40,7 +44,7 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def service_of(args: argparse.Namespace) -> Any:
+def service_of(args: argparse.Namespace) -> "Service":
     """The game for the command line's arguments; ValueError or OSError if something is invalid."""
     import numpy as np
 
@@ -67,7 +71,7 @@ def service_of(args: argparse.Namespace) -> Any:
     return Service(session, seats)
 
 
-def warm_up(service: Any) -> None:
+def warm_up(service: "Service") -> None:
     """Compile what a stroke and a question need, so that nobody waits in the middle of a game."""
     from ..advice import CueStroke
     from . import questions
@@ -83,7 +87,7 @@ def warm_up(service: Any) -> None:
         report(service)
 
 
-def _server(service: Any, port: int | None) -> Any:
+def _server(service: "Service", port: int | None) -> "PlayServer":
     """The server on a port; by default on ``PORT``, where a browser finds again what it has kept, unless it is taken."""
     from .server import PlayServer
 

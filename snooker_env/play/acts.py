@@ -33,7 +33,7 @@ def written(session: Session) -> dict[str, Any]:
     return begun | {"acts": [act.asked | {"left": _left(before, after)} for act, before, after in asked]}
 
 
-def opened(session: Session, saved: Any) -> None:
+def opened(session: Session, saved: object) -> None:
     """Restore a result of ``written`` or ``Session.save``; ValueError if it is invalid, nothing has changed."""
     if not isinstance(saved, dict) or "acts" not in saved:
         session.load(saved)
@@ -60,8 +60,7 @@ def opened(session: Session, saved: Any) -> None:
 
 def _do(session: Session, act: dict[str, Any]) -> None:
     """Do what was asked for; ValueError names the field that is invalid."""
-    says: Any = {"concede": session.concede, "claim": session.claim}
-    declare = lambda what: says[choice("declare", what, says)]()  # noqa: E731
+    declare = lambda what: getattr(session, choice("declare", what, ("concede", "claim")))()  # noqa: E731
     for one, do in (("choice", session.choose), ("declare", declare)):
         if one in act:
             for name in act:
@@ -100,7 +99,7 @@ def _places(state: dict[str, Any]) -> dict[str, Any]:
     return {"scores": list(state["frame"]["scores"])} | places
 
 
-def _compare(left: Any, before: dict[str, Any], after: dict[str, Any]) -> None:
+def _compare(left: object, before: dict[str, Any], after: dict[str, Any]) -> None:
     """ValueError names what an act was said to leave and does not leave here."""
     if not isinstance(left, dict):
         raise refuse("left", left, 'must be an object: {"scores": [0, 0], "cue": [x, y], ...}')
@@ -112,7 +111,7 @@ def _compare(left: Any, before: dict[str, Any], after: dict[str, Any]) -> None:
             raise refuse(f"left.{name}", place, allowed)
 
 
-def _alike(one: Any, other: Any) -> bool:
+def _alike(one: object, other: object) -> bool:
     """Whether these are the same scores, or the same place to within ``NEAR``."""
     if not isinstance(one, list) or not isinstance(other, list) or len(one) != len(other):
         return one is other

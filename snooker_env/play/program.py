@@ -2,7 +2,7 @@
 
 It is started at the first question. For each stroke it gets one line, the object of ``GET api/state`` with a "seed", and
 answers with one, as ``POST api/stroke`` takes it, without "nominate". In phase "choice" of a frame it answers with a
-"choice"; after "play" alone it gets the state once more, for its stroke. Its standard error is that of this process.
+"choice"; after "play" or "anywhere" alone it gets the state once more, for its stroke. Its standard error is that of this process.
 """
 
 import contextlib
@@ -19,7 +19,8 @@ import numpy as np
 
 from .._check import choice, number, refuse
 from ..game.balls import CUE
-from ..game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
+from ..game.frame import CHOICES
+from ..game.frame_columns import PLAY
 from ..planning import Positions
 from ..planning.positions import seeds_of
 from ..players.player import BoundPlayer, Strokes
@@ -34,7 +35,6 @@ from .service import Seats, Service
 from .session import STATE, Session
 
 LONGEST = 1 << 20  # the longest answer [bytes]
-DECISIONS = {"play": PLAY, "play_again": PLAY_AGAIN, "replace": REPLACE}  # what the words of a "choice" mean
 
 
 class AgentError(RuntimeError):
@@ -96,22 +96,28 @@ class ProgramPlayer(BoundPlayer):
     def _stroke(self, at: Positions, k: int, seed: int) -> Strokes:
         """What the program does in the position k."""
         self._stand(at, k)
-        answer = self._asked(seed)
-        if answer == {"choice": "play"} and self._session.frame.phase == "choice":
-            self._session.choose("play")  # its stroke comes with the next answer
+        answer, decided = self._asked(seed), "play"
+        if (
+            answer in ({"choice": "play"}, {"choice": "anywhere"})
+            and answer["choice"] in self._session.frame.choices
+        ):
+            decided = answer["choice"]
+            self._session.choose(decided)  # its stroke comes with the next answer
             self._service.revision += 1
             answer = self._asked(seed)
         try:
             for name in answer:
                 choice("field", name, (*STROKE, "revision", *(("choice",) if at.of_frames else ())))
             twin = self._session.twin()
-            what = answer.get("choice", "play")
+            what = answer.get("choice", decided)
             if "choice" in answer or twin.frame.phase == "choice":
                 twin.choose(what)
-            if what != "play":
-                return _struck(decision=DECISIONS[what])
+            decision = CHOICES.index(what)
+            if what in ("play_again", "replace"):
+                return _struck(decision=decision)
             stroke = stroke_asked(twin, answer)
-            return _struck(stroke.numbers(), twin.tables.positions[0, CUE] if twin.frame.in_hand else None)
+            place = twin.tables.positions[0, CUE] if twin.frame.in_hand else None
+            return _struck(stroke.numbers(), place, decision)
         except ValueError as error:
             what = f"answered {_short(json.dumps(answer))}, which is refused: {error}"
             raise AnswerError(f"the program {self._lines.command!r} {what}") from None

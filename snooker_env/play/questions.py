@@ -8,13 +8,14 @@ import numpy as np
 from .._check import choice, number, refuse
 from ..advice import CueStroke, Suggestion, advise, destinations
 from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
+from ..game.frame import CHOICES
 from ..geometry import BAULK_Y, POCKET_AIMS, POCKETS
 from ..physics.engine import EventKind
 from ..planning import Planner
 from ..render.scene import ball_paths
 from ..replays.encode import packed
 from ..shot import Shot
-from .service import DECIDED, Seats, Service
+from .service import Seats, Service
 from .session import Session
 
 
@@ -28,19 +29,19 @@ def stroke_in(fields: dict[str, Any], aim: float | None = None) -> CueStroke:
     return CueStroke(aim=number("aim", fields["aim"], -1e6, 1e6) if aim is None else aim, **parts)
 
 
-def place_asked(field: str, value: Any) -> tuple[float, float]:
+def place_asked(field: str, value: object) -> tuple[float, float]:
     """Two numbers [m]; ValueError for anything else."""
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise refuse(field, value, "must be [x, y] in metres")
     return number(f"{field}[0]", value[0], -10, 10), number(f"{field}[1]", value[1], -10, 10)
 
 
-def colour_named(field: str, value: Any) -> int:
+def colour_named(field: str, value: object) -> int:
     """Id of the colour with a name."""
     return colour(choice(field, value, COLOUR_NAMES))
 
 
-def pocket_named(field: str, value: Any) -> int:
+def pocket_named(field: str, value: object) -> int:
     """Index of the pocket with a name; "right middle" is "middle right"."""
     if isinstance(value, str):
         for k, name in enumerate(POCKETS):
@@ -54,7 +55,7 @@ MOST_SUGGESTIONS = 10
 RIVALS = 2  # further strokes judged for each suggestion after the first: many are other ways of one pot
 
 
-def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
+def aim_at(session: Session, asked: object, stroke: CueStroke) -> float:
     """The direction of the cue ball that pots a ball, with throw; ``asked``: {"pot": [ball, pocket]}."""
     pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:
@@ -107,7 +108,7 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
         win = chance if chance is None or seat == 0 else 1.0 - chance
         found.append({"choice": what, "win": win})
     decided = service.seats.decided(agent, session)
-    return {"choice": DECIDED.get(int(decided.decision[0]), "play"), "choices": found}
+    return {"choice": CHOICES[int(decided.decision[0])], "choices": found}
 
 
 def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:

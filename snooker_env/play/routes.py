@@ -64,23 +64,15 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     if not strikes and "choice" not in fields:
         raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
     nominated = colour_named("nominate", fields["nominate"]) if "nominate" in fields else AUTO
-    stroke = struck = None
+    struck = None
     with service.acting(_revision(fields)) as session:
-        twin = session.twin()  # errors occur on the copy first, so that a refused request has changed nothing
         if "choice" in fields:
             if strikes and fields["choice"] != "play":
                 allowed = 'must be "play" in a request that holds a stroke too'
                 raise refuse("choice", fields["choice"], allowed)
-            twin.choose(fields["choice"])
-        if strikes:
-            stroke = stroke_asked(twin, fields)
-            twin.check_stroke(nominated)
-        if "choice" in fields:
             session.choose(fields["choice"])
-        if stroke is not None:
-            if "place" in fields:
-                session.place(*fields["place"])
-            session.play(stroke, nominated=nominated)
+        if strikes:
+            session.play(stroke_asked(session, fields), nominated=nominated)
             struck = stroke_report(service, session.at - 1)
     with service.reading():
         return {"stroke": struck, "state": report(service)}
@@ -98,12 +90,12 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     try:
         if not isinstance(scores, list) or len(scores) != 2:
             raise refuse("scores", scores, "must be two integers")
-        points = tuple(integer(f"scores[{k}]", score, 0, MOST) for k, score in enumerate(scores))
+        one, other = (integer(f"scores[{k}]", score, 0, MOST) for k, score in enumerate(scores))
         striker = integer("striker", fields.get("striker", 0), 0, 1)
         free = truth("free_ball", fields.get("free_ball", False))
         position = position_of(fields.get("position"))
         with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
-            session.set_up(position, scores=points, striker=striker, free_ball=free, check=check)
+            session.set_up(position, scores=(one, other), striker=striker, free_ball=free, check=check)
     except ValueError as error:
         if not check:
             raise
@@ -111,7 +103,7 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     return {"sound": True, "error": None} if check else None
 
 
-def position_of(fields: Any) -> Position:
+def position_of(fields: object) -> Position:
     """A ``Position`` from JSON types; ValueError, with the name of the ball or field, if it is invalid."""
     names = tuple(Position.__dataclass_fields__)
     if not isinstance(fields, dict):

@@ -52,7 +52,9 @@ HEADERS = {
 class RefusedError(Exception):
     """A request that is refused, with its status and the JSON error."""
 
-    def __init__(self, status: int, message: str, field: Any = None, value: Any = None, **headers: str):
+    def __init__(
+        self, status: int, message: str, field: str | None = None, value: object = None, **headers: str
+    ):
         super().__init__(message)
         self.status, self.body = status, {"field": field, "value": value, "message": message}
         self.headers: dict[str, str] = headers
@@ -129,7 +131,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         finally:
             self.server.answered(self.connection)
 
-    def log_message(self, format: str, *args: Any) -> None:
+    def log_message(self, format: str, *args: object) -> None:
         """Log nothing: a path holds the token."""
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
@@ -246,10 +248,12 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise self._last(400, "the body ended before its Content-Length")
         return parsed(raw)
 
-    def _last(self, *refused: Any, **headers: str) -> RefusedError:
+    def _last(
+        self, status: int, message: str, field: str | None = None, value: object = None, **headers: str
+    ) -> RefusedError:
         """A refusal that closes the connection, because the rest of the request may not have been read."""
         self.close_connection = True
-        return RefusedError(*refused, **headers)
+        return RefusedError(status, message, field, value, **headers)
 
     def _file(self, name):
         path = WEB / (name or "play.html")

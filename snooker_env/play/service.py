@@ -15,8 +15,8 @@ from .._check import choice, refuse, refuse_what
 from .._types import NoiseName
 from ..advice.ask import AGENT
 from ..advice.strokes import cue_strokes
-from ..game.frame import Frame
-from ..game.frame_columns import PLACE_ANYWHERE, PLAY_AGAIN, REPLACE, STROKES
+from ..game.frame import CHOICES, Frame
+from ..game.frame_columns import STROKES
 from ..game.ruling import AUTO
 from ..players import Player, Strokes, player
 from ..replays.chances import Judge, Standing, win_chances
@@ -91,7 +91,6 @@ class Seats:
         return decided
 
 
-DECIDED = {PLAY_AGAIN: "play_again", REPLACE: "replace", PLACE_ANYWHERE: "anywhere"}  # other than to play
 LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 
 
@@ -146,12 +145,14 @@ class Service:
     def acting(
         self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False
     ) -> Iterator[Session]:
-        """The game, for changing it. ``pause``: agents then wait; ``any_turn``: also in an agent's turn."""
+        """The game, for changing it: after an exception it is as it was before. ``pause``: agents then wait; ``any_turn``:
+        also in an agent's turn."""
         with self.reading(revision) as session:
             if not any_turn and self.agent_to_play():
                 whose = self.seats.label(session.frame.striker)
                 raise refuse("turn", whose, "must be a person's: an agent is to play")
-            yield session
+            with session.as_a_whole():
+                yield session
             self.paused, self.trouble = pause, ""
             self._moved()
 
@@ -239,16 +240,17 @@ class Service:
     def _carry_out(self, decided: Strokes) -> str:
         """What an agent has decided; why it could not be carried out, or ""."""
         session, frame = self.session, self.session.frame
-        declared, what = int(decided.declare[0]), DECIDED.get(int(decided.decision[0]), "play")
+        declared, what = int(decided.declare[0]), CHOICES[int(decided.decision[0])]
         try:
-            if declared == CONCEDES:
-                session.concede()
-            elif declared == CLAIMS and frame.may_claim:
-                session.claim()
-            elif frame.phase == "choice" and what != "play" and what in frame.choices:
-                session.choose(what)
-            else:
-                self._play(decided)
+            with session.as_a_whole():
+                if declared == CONCEDES:
+                    session.concede()
+                elif declared == CLAIMS and frame.may_claim:
+                    session.claim()
+                elif frame.phase == "choice" and what != "play" and what in frame.choices:
+                    session.choose(what)
+                else:
+                    self._play(decided)
         except (ValueError, SimulationError) as error:
             return str(error)
         return ""

@@ -4,6 +4,8 @@ Each stroke and decision is an ``Act`` in a list; undo and redo move in it. A st
 that is undone and played again meets the same execution errors."""
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -14,15 +16,14 @@ from .._types import CueKind, NoiseName
 from ..advice import CueStroke, Room
 from ..advice.room import room_for
 from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
-from ..game.frame import Frame, write_frame
+from ..game.frame import Choice, Frame, write_frame
 from ..game.frame_columns import STROKES
 from ..game.in_hand import place_cue
 from ..game.rule_sets import RULES, RulesName, rule_set
 from ..game.ruling import AUTO
 from ..planning.position import Position
-from ..planning.positions import Positions
+from ..planning.positions import Positions, of_tables
 from ..players import Strokes
-from ..simulation import SimulationError
 from ..tasks.frame import Frames, Seat
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES, Options
@@ -31,7 +32,6 @@ from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew
 
-DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0, "anywhere": 1.0}  # last component of an action
 DECLINED = 0  # the nomination of a player who does not use a free ball
 MOST_FRAMES = 99  # the longest match
 STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
@@ -64,17 +64,16 @@ class Session:
     def __init__(
         self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
     ):
-        box: Any = {"placement": True, "decision": True, "elevation": True, "max_strokes": None}
+        box = Options(task="frame", placement=True, decision=True, elevation=True, max_strokes=None)
         if flight:
-            box |= {"elevation": 70, "physics": {"flight": True}}
-        self._options = Options(task="frame", miss="clear_path", layout=layout, cue=cue, **box)
+            box = box.but(elevation=70, physics={"flight": True})
+        self._options = box.but(miss="clear_path", layout=layout, cue=cue)
         self.noise, self.practice = ["none", "none"], False
         self.best_of, self.won, self.begun = 1, [0, 0], 0
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
         self._with: dict[str, Options] = {}
-        self.tables = Frames(self._options.rules, 1)
         self.new(layout=layout, seed=seed)
 
     @property
@@ -89,8 +88,10 @@ class Session:
 
     @cue.setter
     def cue(self, kind: CueKind) -> None:
-        self._options, self._with = self._options.but(cue=kind), {}
-        self.tables.rules = self._options.rules
+        if kind != self.cue:
+            state = self.state
+            self._play_by(self._options.but(cue=kind))
+            self._set(state)
 
     @property
     def game(self) -> RulesName:
@@ -140,7 +141,7 @@ class Session:
     @property
     def position(self) -> Positions:
         """The frame as its striker sees it."""
-        return Positions.of(cast(Any, self))  # it has tables, as environments have
+        return of_tables(self.tables)
 
     def planned(self, *, free_ball: bool = False) -> Positions:
         """The next stroke's position, as one of a visit; with ``free_ball`` every colour is on instead."""
@@ -158,6 +159,18 @@ class Session:
             self._with[noise] = self._options.but(noise=noise)
         return self._with[noise]
 
+    @contextmanager
+    def as_a_whole(self) -> Iterator["Session"]:
+        """What is done in this context is done as a whole: after an exception the session is as it was before."""
+        state, kept = self.state, self.__dict__.copy()
+        kept |= {name: list(kept[name]) for name in ("acts", "noise", "won")}
+        try:
+            yield self
+        except BaseException:
+            self.__dict__.update(kept)
+            self._set(state)
+            raise
+
     def twin(self) -> "Session":
         """A copy for another thread; of the acts it holds the last one only."""
         other = object.__new__(Session)
@@ -174,7 +187,7 @@ class Session:
         layout: str | None = None,
         seed: int = 0,
         breaker: int = 0,
-        game: Any = None,
+        game: str | None = None,
         best_of: int = 1,
     ) -> None:
         """Begin a match of an odd number of frames; ``layout`` and ``game`` stay unless they are given."""
@@ -191,18 +204,16 @@ class Session:
         self._deal(self._options, seed, 1 - self.frame.breaker)
         self.won = won
 
-    def _but(self, layout: str | None, game: Any) -> Options:
+    def _but(self, layout: str | None, game: str | None) -> Options:
         """The options with another layout and game; the Shoot Out has no miss rule."""
-        game = self.game if game is None else choice("game", game, RULES)
-        miss = "off" if rule_set(game).anywhere else "clear_path"
-        return self._options.but(layout=layout or self._options.layout, game=game, miss=miss)
+        rules = self.game if game is None else cast(RulesName, choice("game", game, RULES))
+        miss = "off" if rule_set(rules).anywhere else "clear_path"
+        return self._options.but(layout=layout or self._options.layout, game=rules, miss=miss)
 
     def _play_by(self, options: Options) -> None:
-        """Take these options, on an empty table if it is another game."""
-        if options.game != self.game:
-            self.tables = Frames(options.rules, 1)
+        """Take these options, on an empty table."""
         self._options, self._with = options, {}
-        self.tables.rules = options.rules
+        self.tables = Frames(options.rules, 1)
 
     def _deal(self, options: Options, seed: int, breaker: int) -> None:
         integer("seed", seed, 0, 2**63 - 1)
@@ -232,19 +243,13 @@ class Session:
         striker = self.frame.striker
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
-        tables.nominated[0] = nominated
         self._played, room = None, self.room(stroke)
         asked = {**stroke.to_dict(), "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
         asked["place"] = before["positions"][CUE] if self.frame.in_hand else None
         asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
-        try:
-            crew = Crew(self._buffers, self._watch)
-            tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
-        except SimulationError:
-            self._set(before)
-            raise
-        finally:
-            tables.nominated[0] = AUTO
+        tables.nominated[0] = nominated
+        crew = Crew(self._buffers, self._watch)
+        tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
         if self.practice:
             self._hand_back()
         words = NAMES[nominated] if nominated > CUE else ""
@@ -266,8 +271,10 @@ class Session:
         frame = self.frame
         if frame.phase != "choice":
             raise refuse("choice", what, "must be left out: the other player has not just fouled")
-        choice("choice", what, frame.choices)
-        self.tables.decide(np.zeros(1, np.int64), np.array([[*[0.0] * 7, DECISIONS[what]]]))
+        self._write(frame.choose(cast(Choice, what)), int(self.tables.game[0, STROKES]))
+        if what == "replace":
+            kept = self.tables.saved
+            self.tables.positions[:], self.tables.on_table[:] = kept.positions, kept.on_table
         return self._did(Act("choice", self.state, frame.striker, detail=what, asked={"choice": what}))
 
     def concede(self) -> Act:
@@ -297,7 +304,13 @@ class Session:
         return px, py
 
     def set_up(
-        self, position: Position, *, scores: Any, striker: int, free_ball: bool, check: bool = False
+        self,
+        position: Position,
+        *,
+        scores: tuple[int, int],
+        striker: int,
+        free_ball: bool,
+        check: bool = False,
     ) -> None:
         """Put the balls as in a position, or only ``check`` it. ValueError names the ball or the field."""
         positions, on_table, _ = position.arrays()
@@ -327,7 +340,7 @@ class Session:
         game = {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
         return {"format": "snooker-game", "version": 1, **game}
 
-    def load(self, saved: Any) -> None:
+    def load(self, saved: object) -> None:
         """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
         fields = ("format", "version", "practice", "noise", "cue", "state")
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":

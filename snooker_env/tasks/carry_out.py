@@ -13,8 +13,8 @@ from ..physics.cue import squirt
 from . import declarations
 from .arrays import StruckArrays, TableArrays
 from .box_actions import tip_on_disc
-from .declarations import A_DECISION, declaration_of, nomination_of
-from .frame_kernels import choose_as, give_up
+from .declarations import decision_of, declaration_of, nomination_of
+from .frame_kernels import choose, give_up
 from .options import Rules
 from .rewards import MATCH_REWARDS
 from .stroke import ShotBuffers, place, row_of, strike
@@ -47,9 +47,8 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
             if other:
                 continue
         elif row[columns.PHASE] == columns.CHOICE:
-            what = decisions[k]
-            wish = 0.0 if what == columns.PLAY else -1.0 if what == columns.PLAY_AGAIN else 1.0
-            if not choose_as(k, wish, rules, tables, saved):
+            what = columns.allowed_choice(row, decisions[k], rules)
+            if not choose(k, what, tables, saved):
                 continue
         colour = max(0, nominate[k] - YELLOW + 1)
         tables.nominated[k] = AUTO if nominate[k] < 0 else declarations.nominated_ball(colour, row)
@@ -80,13 +79,7 @@ def _said(actions, options, game, rules, nominated, decisions, declared):
     for k in range(len(game)):
         row, a = game[k], actions[k]
         declared[k] = declaration_of(a, options, row)
-        asked = options[A_DECISION] >= 0 and row[columns.PHASE] == columns.CHOICE
-        wish = a[int(options[A_DECISION])] if asked else 0.0
-        decisions[k] = columns.PLAY_AGAIN if wish < -1.0 / 3.0 else columns.PLAY
-        if wish > 1.0 / 3.0 and columns.may_replace(row, rules):
-            decisions[k] = columns.REPLACE
-        elif wish > 1.0 / 3.0 and columns.may_place_anywhere(row, rules):
-            decisions[k] = columns.PLACE_ANYWHERE
+        decisions[k] = decision_of(a, options, row, rules)
         nominated[k] = nomination_of(a, options, row)
 
 

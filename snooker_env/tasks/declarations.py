@@ -1,16 +1,29 @@
-"""What does a player say beside its stroke? The colour that it nominates, and whether it concedes, claims or
-lets the other begin. The packed options of an action space say where: ``A_NOMINATE``, ``A_DECISION``,
-``A_DECLARATION`` hold the index of a component of a box action, or -1; of choices, 0 or -1."""
+"""What does a player say beside its stroke? The colour that it nominates, what it decides after a foul, and whether it
+concedes, claims or lets the other begin: the one place where the numbers of an action become these codes."""
 
 from .._jit import kernel
 from ..game import frame_columns as columns
 from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
 from ..game.ruling import AUTO
 
-# Columns of the packed options of an action space.
-A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_E_T, A_DISCRETE = range(8)
-A_NOMINATE, A_DECISION, A_DECLARATION, A_CONCEDE, A_CLAIM, A_LOT = range(8, 14)
-A_RAILS = 14  # from here on, the rails that a real cue passes over (``cue_room.rails_of``); none: it is free
+# Columns of the row of options that kernels take: what an action holds and says,
+A_TARGET = 0  # whether the aim of a box action is measured from a line at a ball
+A_ELEVATION = 1  # the elevation that 1 means [rad]; 0: an action holds none
+A_PLACEMENT = 2  # whether a box action holds the place of a cue ball in hand
+A_DISCRETE = 7  # whether an action is a choice
+A_NOMINATE = 8  # of a box action, the component that nominates; of choices 0; -1: none
+A_DECISION = 9  # the component that decides after a foul; -1: none
+A_DECLARATION = 10  # the component that declares; -1: none
+A_CONCEDE = 11  # whether an action can concede
+A_CLAIM = 12  # whether it can claim the frame
+A_LOT = 13  # whether it can let the other player begin after the lot
+# and the cue, of which each table may have its own.
+A_END_MASS = 3  # ``Physics.end_mass_ratio``
+A_MAX_OFFSET = 4  # ``Physics.max_offset``
+A_MU_S = 5  # ``Physics.mu_s``: what a ball that a raised cue strikes rubs against
+A_E_T = 6  # ``Physics.thrown``
+A_RAILS = 14  # from here on the rails that it passes over (``cue_room.rails_of``); none: it is free
+
 SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
 (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)  # declarations
 COLOURS = 6
@@ -55,6 +68,18 @@ def nomination_of(a, options, row):
     if row[columns.BALL_ON] == 0:
         return nominated_ball(1 + min(COLOURS - 1, int(COLOURS * x)), row)
     return nominated_ball(min(COLOURS, int((1 + COLOURS) * x)), row)
+
+
+@kernel
+def decision_of(a, options, row, rules):
+    """What the striker decides after a foul with the action ``a``, if there is a choice, as a code. A number below -1/3:
+    the offender plays again; above 1/3: from the position before, or the striker from anywhere, where that may be."""
+    if options[A_DECISION] < 0 or row[columns.PHASE] != columns.CHOICE:
+        return columns.PLAY
+    x = a[int(options[A_DECISION])]
+    if x < -1.0 / 3.0:
+        return columns.PLAY_AGAIN
+    return columns.allowed_choice(row, columns.REPLACE, rules) if x > 1.0 / 3.0 else columns.PLAY
 
 
 @kernel

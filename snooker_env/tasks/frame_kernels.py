@@ -52,14 +52,9 @@ class Setting(NamedTuple):
 
 
 @kernel
-def choose_as(k, wish, rules, tables, saved):
-    """Make the decision ``wish`` in [-1, 1] after a foul (see ``decide``); whether a stroke follows."""
-    row = tables.game[k]
-    what = columns.PLAY_AGAIN if wish < -1.0 / 3.0 else columns.PLAY
-    if wish > 1.0 / 3.0:
-        anywhere = columns.PLACE_ANYWHERE if columns.may_place_anywhere(row, rules) else columns.PLAY
-        what = columns.REPLACE if columns.may_replace(row, rules) else anywhere
-    columns.choose(row, what)
+def choose(k, what, tables, saved):
+    """Carry the allowed decision ``what`` after a foul out; whether a stroke of the same player follows."""
+    columns.choose(tables.game[k], what)
     if what == columns.REPLACE:
         p, on, back, back_on = tables.positions[k], tables.on_table[k], saved.positions[k], saved.on_table[k]
         for i in range(N_BALLS):
@@ -77,8 +72,7 @@ def give_up(row, reward):
 
 @entry(what="the decisions of frames", seconds=2)
 def decide(which, actions, tables, saved, setting, plays):
-    """What strikers say before a stroke; ``plays[j]``: one follows. A decision below -1/3: the offender plays
-    again; above 1/3: from the position before, or by the striker from anywhere, where that may be."""
+    """What strikers say before a stroke; ``plays[j]``: one follows."""
     tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     options = setting.options
     for j in range(which.shape[0]):
@@ -95,8 +89,7 @@ def decide(which, actions, tables, saved, setting, plays):
             other = declared == declarations.OTHER_BEGINS
             columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
         elif row[columns.PHASE] == columns.CHOICE:
-            wish = a[int(options[declarations.A_DECISION])] if options[declarations.A_DECISION] >= 0 else 0.0
-            plays[j] = choose_as(k, wish, setting.rules, tables, saved)
+            plays[j] = choose(k, declarations.decision_of(a, options, row, setting.rules), tables, saved)
         if plays[j] and options[declarations.A_NOMINATE] >= 0:
             tables.nominated[k] = declarations.nomination_of(a, options, row)
 

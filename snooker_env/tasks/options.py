@@ -111,7 +111,7 @@ _ONLY: dict[str, str] = {**dict.fromkeys(_OF_FRAMES, "frame"), "frames": "match"
 """The only task that has an option; what is of a frame is of a match, too."""
 
 
-def _said(says: Any, flags: Mapping[str, Any]) -> tuple[str, ...]:
+def _said(says: object, flags: Mapping[str, Any]) -> tuple[str, ...]:
     """The option ``says`` with the flags that are its other spelling, in the order of ``SAYS``."""
     if isinstance(says, str) or not isinstance(says, Collection):
         raise refuse("says", says, f"must be a sequence of some of {', '.join(map(repr, SAYS))}")
@@ -238,7 +238,7 @@ class Options:
     lot: InitVar[bool] = _UNSAID
     rules: Rules = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self, *flags: Any) -> None:
+    def __post_init__(self, *flags: object) -> None:
         object.__setattr__(self, "says", _said(self.says, dict(zip(SAYS, flags, strict=True))))
         frame = choice("task", self.task, TASKS) != "visit"
         physics, table = self._physics(), table_of(self.table)

@@ -19,7 +19,9 @@ from snooker_env.play import routes
 from snooker_env.play.program import ProgramPlayer
 from snooker_env.play.words import lines_of, where
 from snooker_env.players import Strokes, player
+from snooker_env.simulation import SimulationError
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
+from snooker_env.tasks.frame import Frames
 from snooker_env.tasks.options import Options
 from tests.playing import COVERED, EASY, FROZEN, STRAIGHT
 from tests.processes import ROOT
@@ -284,6 +286,24 @@ def test_a_request_that_is_refused_has_changed_nothing(game):
         with pytest.raises(ValueError, match=words):
             game("stroke", **fields)
     assert game.get("state") == before
+
+
+def test_a_request_that_is_refused_in_its_middle_or_cannot_be_computed_has_changed_nothing(game, monkeypatch):
+    game("position", position=COVERED)
+    game("stroke", speed=1.0, aim=1.57)
+    before, acts = game.get("state"), list(game.session.acts)
+
+    def fails(*_):
+        raise SimulationError("too many events")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Frames, "run", fails)  # after the choice, with the cue ball struck
+        with pytest.raises(SimulationError):
+            game("stroke", choice="play", speed=1.0, aim=1.0)
+    with pytest.raises(ValueError, match="nominate = 'blue'"):
+        game("stroke", choice="play", speed=1.0, aim=1.0, nominate="blue")
+    assert game.get("state") == before and game.session.acts == acts
+    assert game("stroke", choice="play", speed=1.0, aim=1.0)["stroke"]["player"] == 1
 
 
 def test_a_position_that_cannot_be_is_refused_by_the_ball(game):
