@@ -17,6 +17,7 @@ from ..game.balls import YELLOW
 from ..game.frame_columns import BALL_ON, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPLACE
 from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..planning.ghost_ball import put_in_hand
 from ..planning.planner import options_in
 from ..planning.positions import Positions, PositionsLike, seeds_of
 from ..planning.prospects import prospects_of, spread_of
@@ -25,7 +26,6 @@ from ..planning.worth import chosen, decide
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, STEEPEST, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options
-from .ghost_ball import put_in_hand
 
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]  # a dict: fields of ``Options``
 CODES: dict[str, tuple[int, ...]] = {
