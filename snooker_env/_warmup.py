@@ -87,6 +87,7 @@ def warmup() -> None:
             for seed in range(3):
                 env.reset(seed=seed)
                 env.step(action)
+        env.reset(seed=0, options={"breaker": 0})
         match = SnookerEnv(task="match", opponent="ghost_ball", concede=True)
         match.reset(seed=0)
         match.step([0.0] * 4 + [-1.0])

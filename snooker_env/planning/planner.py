@@ -161,7 +161,7 @@ class Planner:
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
         SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
         at, which = self._asked(positions, rows)
-        told = self._rules.actions.check_many(actions, len(which))
+        told = self._rules.actions.check_many(np.asarray(actions), len(which))
         return self._played(at[which], told, _streams(keys, len(which), self.noise.silent), None)
 
     def play_strokes(
@@ -221,7 +221,7 @@ class Planner:
         with a cue ball in hand on the place that the action names."""
         at = Positions.of(positions)
         which = rows_of(at, rows)
-        return decode(self._rules, at, which, self._rules.actions.check_many(actions, len(which)))
+        return decode(self._rules, at, which, self._rules.actions.check_many(np.asarray(actions), len(which)))
 
     def pot_aim(
         self,

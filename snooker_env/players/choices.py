@@ -8,6 +8,7 @@ from .._check import refuse_what
 from .._types import Bools, Floats, Ints
 from ..game.frame_columns import VISIT_COLUMNS
 from ..planning import Positions, pots
+from ..planning.ghost_ball import geometric_strokes
 from ..planning.positions import seeds_of
 from ..planning.strokes import available, meant
 from ..planning.trials import packed_under
@@ -16,7 +17,6 @@ from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_
 from ..tasks.frame import Asked
 from ..tasks.options import Options, Rules
 from ..tasks.stroke import ShotBuffers, address
-from .ghost_ball import geometric_strokes
 from .player import BoundPlayer, Ranked, Strokes, streams_of
 
 MOST = 100  # most strokes of a ranking
@@ -122,7 +122,7 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; all else as in ``ghost_ball.py``."""
+    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; all else as in ``planning.ghost_ball``."""
 
     name, training_shots = "ghost_ball", 0
 

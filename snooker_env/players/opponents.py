@@ -5,15 +5,13 @@ from pathlib import Path
 import numpy as np
 
 from .._check import refuse, refuse_what
-from .._jit import entry
 from .._types import Floats, Ints
 from ..game.frame_columns import OPPONENT, Layouts
-from ..game.philox import pair
 from ..game.sides import strikers_own
 from ..planning import Positions
 from ..tasks.frame import Asked, Frames, Opponent
 from ..tasks.options import OPPONENTS, Options
-from ..tasks.tables import Crew
+from ..tasks.tables import Crew, uniform
 from .choices import GhostBall
 from .model_options import of_others
 from .opponent_pool import OpponentPool
@@ -25,18 +23,11 @@ from .seen import SeenPlayer
 _KINDS = (ValueError, TypeError, ImportError)
 
 
-@entry
-def _drawn(which, streams, out):
-    """One uniform number in [0, 1) from the stream of each of the tables ``which``: out (len(which),)."""
-    for j in range(which.shape[0]):
-        out[j], _ = pair(streams[which[j]])
-
-
 def drawn(frames: Frames, which: Ints) -> Floats:
     """Uniform numbers in [0, 1), from the streams of the tables ``which``."""
-    numbers = np.empty(len(which))
-    _drawn(which, frames.streams, numbers)
-    return numbers
+    numbers = np.empty((len(which), 2))  # they come in pairs
+    uniform(which, frames.streams, numbers)
+    return numbers[:, 0]
 
 
 class PlayerOpponent:

@@ -12,6 +12,7 @@ import numpy as np
 from .._check import refuse
 from .._types import Bools, Environment, Floats, Integers, Ints
 from ..game.frame_columns import PLACE_ANYWHERE, PLAY
+from ..planning.ghost_ball import put_in_hand
 from ..planning.planner import options_in
 from ..planning.positions import Positions, PositionsLike, seeds_of
 from ..planning.prospects import prospects_of, spread_of
@@ -19,7 +20,6 @@ from ..planning.search import Ranked
 from ..planning.strokes import Strokes
 from ..planning.worth import chosen, decide
 from ..tasks.options import Options
-from .ghost_ball import put_in_hand
 
 __all__ = ["FRAMES", "VISITS", "BoundPlayer", "Player", "Ranked", "Strokes", "decided", "decision_seeds"]
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]  # a dict: fields of ``Options``

@@ -76,7 +76,7 @@ def write_empty_info(k, out, ball_on):
 
 
 @entry
-def _shares(which, streams, out):
+def uniform(which, streams, out):
     """Uniform numbers in [0, 1) from the streams of the tables ``which``: one row of ``out`` each."""
     for j in range(which.shape[0]):
         for c in range(0, out.shape[1], 2):
@@ -309,7 +309,7 @@ class Tables(ABC):
         """Draw the constants of the tables ``which`` from their own streams; nothing if they are fixed."""
         if self.rules.drawn and len(which):
             shares = np.empty((len(which), CONDITIONS))
-            _shares(which, self.streams, shares)
+            uniform(which, self.streams, shares)
             self.set_conditions(which, drawn(shares))
 
     def set_conditions(self, which: Ints, values: Floats) -> None:

@@ -125,7 +125,7 @@ LONG = {
         "show",
         "remember",
     ],
-    "snooker_env.players.ghost_ball": ["geometric_strokes"],
+    "snooker_env.planning.ghost_ball": ["geometric_strokes"],
     "snooker_env.game.layouts": ["deal_tables"],
     "snooker_env.game.apply_ruling": ["settle_one"],
     "snooker_env.game.paths": ["best_paths"],

@@ -1,4 +1,4 @@
-"""How does the opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain stroke."""
+"""How does "ghost_ball" play? The widest direct pot, softly; without one, a plain stroke."""
 
 from math import atan2, cos, hypot, sin, sqrt
 
