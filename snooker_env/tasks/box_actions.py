@@ -5,7 +5,6 @@ from math import atan2, hypot, pi, radians, sqrt
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import ArrayLike
 
 from .._check import choice, number, refuse, refuse_what, truth
 from .._jit import kernel
@@ -128,7 +127,7 @@ class Actions:
             raise refuse("action", a, _BOUNDS)
         return [min(max(x, -1.0), 1.0) for x in a]
 
-    def check_many(self, actions: ArrayLike, n: int) -> Floats:
+    def check_many(self, actions: object, n: int) -> Floats:
         """The actions of n tables, float64 (n, size), as ``check``; ValueError names the first invalid one."""
         a = self._read("actions", actions, (n, self.size))
         sound = np.abs(a) <= 1.0 + ROUNDING  # NaN is not
@@ -137,7 +136,7 @@ class Actions:
             raise refuse(f"actions[{k}]", a[k].tolist(), _BOUNDS)
         return a.clip(-1.0, 1.0, out=a)
 
-    def _read(self, field: str, actions: ArrayLike, shape: tuple[int, ...]) -> Floats:
+    def _read(self, field: str, actions: object, shape: tuple[int, ...]) -> Floats:
         allowed = f"must have shape {shape}, real numbers"
         try:
             a = np.asarray(actions)
