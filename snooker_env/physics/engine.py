@@ -456,7 +456,7 @@ def _meet_on_bed(paths, aloft, lift, i, j, t, met, setup, series):
     return events.OK if solved else events.IMPACT_UNSOLVED
 
 
-@inlined
+@kernel
 def _over_pocket(paths, i, kind, j, t, boundaries, phys):
     """Ball i comes over a pocket; or there it meets a jaw, or comes back: write its next phase."""
     motion, state, over = paths
@@ -504,7 +504,7 @@ def _rebound_on_bed(paths, aloft, lift, i, kind, j, t, law, boundaries, series):
     return events.OK if solved else events.IMPACT_UNSOLVED
 
 
-@inlined
+@kernel
 def _leave(paths, i, kind, j, t, potted, reach, boundaries, forecast, phys):
     """Ball i is potted, or forced off the table: remove all its events -> a status."""
     motion, state, _ = paths
