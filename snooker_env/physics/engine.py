@@ -42,7 +42,6 @@ from .meetings import lost, meet, meet_in_air, rebound, rebound_in_air
 from .parameters import FARTHEST, FASTEST, MOST_SPIN
 from .placement import SOUND, layout_fault, place_fault
 
-NOT_IN_AIR, SOLVED, UNSOLVED = range(3)
 _LIFTS = -1
 """Status of a run without flight that has stopped where a ball would fly."""
 _LATEST = 1.7e308
@@ -94,7 +93,7 @@ def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
 
 @kernel
 def _meet_in_air(paths, i, j, t, law, boundaries, series):
-    """Balls i and j meet, one or both in the air: write their next phases; whether the impact was solved."""
+    """Balls i and j meet, one or both in the air: write their next phases; OK, or IMPACT_UNSOLVED."""
     motion, state, falls = paths
     phys = law.phys
     zi, ui = flight.height(motion, state, i, t, phys)
@@ -124,19 +123,13 @@ def _meet_in_air(paths, i, j, t, law, boundaries, series):
     else:
         u, spin, up = flight.pressed(b, wb, press, phys)
         flight.leave(motion, state, j, t, (x2, y2), u, spin, up, phys)
-    return solved
+    return events.OK if solved else events.IMPACT_UNSOLVED
 
 
 @kernel
-def _in_air(paths, i, kind, j, t, law, boundaries, series):
-    """Balls meet, one of them in the air; or ball i in the air meets a nose, a jaw, the bed, a rail or a fall at t: write the
-    next phases, and say whether it was solved. ``NOT_IN_AIR``: it is another event, or the ball is lost."""
+def _in_air(paths, i, kind, j, t, boundaries, phys):
+    """Ball i in the air meets a nose, a jaw, the bed, a rail or a fall at t: write its next phase."""
     motion, state, falls = paths
-    phys = law.phys
-    if kind == events.BALL_BALL:
-        return SOLVED if _meet_in_air(paths, i, j, t, law, boundaries, series) else UNSOLVED
-    if kind == events.POT or kind == events.OFF:
-        return NOT_IN_AIR
     (x, y), (vx, vy), w = flight.evaluate(motion, state, i, t, phys)
     z, u = flight.height(motion, state, i, t, phys)
     if kind == events.CUSHION or kind == events.JAW:
@@ -169,22 +162,20 @@ def _in_air(paths, i, kind, j, t, law, boundaries, series):
             j,
         )
         pocket.next_leg(paths, i, t, (x, y, 0.0), (vx, vy, -u), w, boundaries, phys)
-    return SOLVED
 
 
 @kernel
-def _earliest(times, start):
-    """The least of a row of times, from ``start`` in the array on, and its first index in the row."""
-    size = times.shape[-1]
-    least = lanes_at(times, start)
-    for k in range(start + LANES, start + size, LANES):
+def _earliest(times):
+    """The least of these times, and its first index."""
+    least = lanes_at(times, 0)
+    for k in range(LANES, times.shape[0], LANES):
         least = lesser(lanes_at(times, k), least)
     t = min(min(lane(least, 0), lane(least, 1)), min(lane(least, 2), lane(least, 3)))
     latest, k = lanes(t, t, t, t), 0
-    which = no_more(lanes_at(times, start), latest)
+    which = no_more(lanes_at(times, 0), latest)
     while which == 0:
         k += LANES
-        which = no_more(lanes_at(times, start + k), latest)
+        which = no_more(lanes_at(times, k), latest)
     while which & 1 == 0:
         which >>= 1
         k += 1
@@ -194,7 +185,7 @@ def _earliest(times, start):
 @kernel
 def _rescan(pair, best_time, best_ball, i):
     """Ball i's earliest partner from the stored pair times; in a tie the lower index."""
-    time, ball = _earliest(pair, i * pair.shape[1])
+    time, ball = _earliest(pair[i])
     best_time[i], best_ball[i] = time, ball if time < inf else -1
 
 
@@ -336,21 +327,6 @@ def _lands_off(motion, state, i, t, clear, reach, boundaries):
 
 
 @kernel
-def _leave(state, i, forecast):
-    """Ball i is off the table: remove all its events."""
-    bounds, pair, best_time, best_ball, alone_time, _kind, _index = forecast
-    state[i] = GONE
-    _bound(bounds, i, inf, -inf, inf, -inf)
-    n = pair.shape[0]
-    for j in range(n):
-        pair[i, j] = pair[j, i] = inf
-    best_time[i], best_ball[i], alone_time[i] = inf, -1, inf
-    for j in range(n):
-        if best_ball[j] == i:
-            _rescan(pair, best_time, best_ball, j)
-
-
-@kernel
 def _lie(motion, i, x, y):
     """Ball i is out of play: it lies at (x, y) [m]."""
     for c in range(cloth.COLUMNS):
@@ -370,10 +346,43 @@ def _record(segments, n_segments, motion, state, i):
 
 
 @inlined
-def _next_event(best_time, best_ball, alone_time, alone_kind, alone_index):
+def _begin(balls, aloft, segments, paths, boundaries, clear, forecast, phys):
+    """Write the first phase of each ball and predict its events -> the number of segments."""
+    positions, velocities, spins, on_table, potted = balls
+    motion, state, _ = paths
+    bounds, pair, best_time, best_ball, alone_time, _, _ = forecast
+    n_segments = np.int64(0)  # (typed: with a literal numba would compile ``_record`` twice)
+    for i in range(state.shape[0]):
+        potted[i] = -1
+        best_time[i], best_ball[i], alone_time[i] = inf, -1, inf
+        for j in range(pair.shape[1]):
+            pair[i, j] = inf
+        if on_table[i]:
+            r, v = (positions[i, 0], positions[i, 1]), (velocities[i, 0], velocities[i, 1])
+            w = spins[i, 0], spins[i, 1], spins[i, 2]
+            motion[i, Z] = motion[i, UZ] = 0.0
+            cloth.begin(motion, state, i, 0.0, r, v, w, phys)
+            if aloft is not None and (aloft[i, 0] > 0.0 or aloft[i, 1] != 0.0):
+                r3, v3 = (r[0], r[1], aloft[i, 0]), (v[0], v[1], aloft[i, 1])
+                flight.take_off(motion, state, i, 0.0, r3, v3, w, phys)
+            _bound(bounds, i, motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y])
+        else:
+            state[i] = GONE
+            _lie(motion, i, positions[i, 0], positions[i, 1])
+            _bound(bounds, i, inf, -inf, inf, -inf)
+        n_segments = _record(segments, n_segments, motion, state, i)
+    for i in range(state.shape[0]):
+        if state[i] > REST:
+            _predict(paths, i, 0.0, boundaries, clear, forecast, phys, aloft)
+    return n_segments
+
+
+@inlined
+def _next_event(forecast):
     """The earliest event: time [s], kind, ball, partner; ties: the lowest kind, then the lowest ball."""
-    t, i = _earliest(best_time, 0)
-    s, k = _earliest(alone_time, 0)
+    _bounds, _pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
+    t, i = _earliest(best_time)
+    s, k = _earliest(alone_time)
     if t <= s:
         kind, j = np.int64(events.NONE if t == inf else events.BALL_BALL), best_ball[i]
     else:
@@ -383,6 +392,159 @@ def _next_event(best_time, best_ball, alone_time, alone_kind, alone_index):
                 i, kind = k, alone_kind[k]
         j = alone_index[i]
     return t, kind, i, j
+
+
+@inlined
+def _kind_now(paths, aloft, t, kind, i, j, setup):
+    """The kind of an event, now that it comes: a ball at a fall may fly on; one may come down where no bed is."""
+    motion, state, _ = paths
+    law, _, boundaries, reach, clear = setup
+    if kind == events.POT and state[i] != FALLING and state[i] != AIR:
+        (x, y), (vx, vy), _ = cloth.evaluate(motion, state, i, t, law.phys)
+        if pocket.ahead(x, y, vx, vy, boundaries.falls, j, boundaries.jaws, law.phys)[0] < inf:
+            return np.int64(events.DROP)
+    if (
+        aloft is not None
+        and (kind == events.LAND or kind == events.RETURN)
+        and _lands_off(motion, state, i, t, clear, reach, boundaries)
+    ):
+        return np.int64(events.OFF if kind == events.LAND else events.POT)
+    return kind
+
+
+@inlined
+def _note(log, n_events, n_segments, max_events, t, kind, i, j):
+    """Write an event to the log -> OK, or why there may be no more."""
+    time, what, segments = log
+    if n_events == max_events:
+        return events.TOO_MANY_EVENTS
+    if time.shape[0] > 0:
+        if n_events == time.shape[0] or (segments.shape[0] > 0 and n_segments + 2 > segments.shape[0]):
+            return events.LOG_FULL
+        time[n_events] = t
+        what[n_events, events.LOG_KIND] = kind
+        what[n_events, events.LOG_I], what[n_events, events.LOG_J] = i, j
+    return events.OK
+
+
+@inlined
+def _meet_on_bed(paths, aloft, lift, i, j, t, met, setup, series):
+    """Balls i and j meet, neither in the air: write their next phases -> a status."""
+    motion, state, over = paths
+    law, first, boundaries, _, _ = setup
+    phys = law.phys
+    r1, v1, w1 = cloth.evaluate(motion, state, i, t, phys)
+    r2, v2, w2 = cloth.evaluate(motion, state, j, t, phys)
+    if state[i] == FALLING:
+        v1 = pocket.aloft(motion, over, i, t, v1, phys)
+    if state[j] == FALLING:
+        v2 = pocket.aloft(motion, over, j, t, v2, phys)
+    nx, ny = r2[0] - r1[0], r2[1] - r1[1]
+    d = sqrt(nx * nx + ny * ny)
+    nx, ny = nx / d, ny / d
+    u1, s1, u2, s2, solved = meet(v1, w1, v2, w2, (nx, ny), law if met else first, series)
+    if max(u1[2], u2[2]) >= lift:
+        if aloft is None:
+            return _LIFTS
+        else:
+            before = (v1[0], v1[1], 0.0), w1, (v2[0], v2[1], 0.0), w2
+            _part(paths, i, j, t, (r1, u1, s1), (r2, u2, s2), before, boundaries, phys)
+    else:
+        _begin_again(paths, i, t, (r1, u1, s1), (nx, ny), u2, boundaries, phys)
+        other = motion[i, VX], motion[i, VY]
+        _begin_again(paths, j, t, (r2, u2, s2), (-nx, -ny), other, boundaries, phys)
+    return events.OK if solved else events.IMPACT_UNSOLVED
+
+
+@kernel
+def _over_pocket(paths, i, kind, j, t, boundaries, phys):
+    """Ball i comes over a pocket; or there it meets a jaw, or comes back: write its next phase."""
+    motion, state, over = paths
+    r, v, w = cloth.evaluate(motion, state, i, t, phys)
+    if kind == events.DROP:
+        over[i, pocket.IN_X] = r[0] - boundaries.falls[j, FALL_X]
+        over[i, pocket.IN_Y] = r[1] - boundaries.falls[j, FALL_Y]
+        over[i, pocket.POCKET] = j
+        pocket.next_leg(paths, i, t, (r[0], r[1], 0.0), (v[0], v[1], 0.0), w, boundaries, phys)
+        return
+    v = over[i, pocket.END_VX], over[i, pocket.END_VY]
+    if kind == events.JAW:
+        at = r[0], r[1], over[i, pocket.Z1]
+        _, nx, ny, sin_phi, _ = pocket.jaw_gap(at, boundaries.jaws, j, boundaries.R, phys[P_SIN])
+        cos_phi = sqrt(1.0 - sin_phi * sin_phi)
+        normal, falls_at = (nx * cos_phi, ny * cos_phi, sin_phi), (v[0], v[1], -over[i, pocket.U1])
+        u, w = free.against(falls_at, w, normal, phys[P_MU_C], phys[P_E_J], boundaries.R)
+        pocket.next_leg(paths, i, t, at, (u[0], u[1], -u[2]), w, boundaries, phys)
+    else:  # back on the bed, which stops the vertical motion
+        cloth.begin(motion, state, i, t, r, v, w, phys)
+        motion[i, Z] = motion[i, UZ] = 0.0
+
+
+@inlined
+def _rebound_on_bed(paths, aloft, lift, i, kind, j, t, law, boundaries, series):
+    """Ball i on the bed meets a nose or a jaw: write its next phase -> a status."""
+    motion, state, _ = paths
+    noses, jaws, phys = boundaries.noses, boundaries.jaws, law.phys
+    r, v, w = cloth.evaluate(motion, state, i, t, phys)
+    if kind == events.CUSHION:
+        side, across = noses[j, NOSE_SIDE], noses[j, NOSE_AXIS] == AXIS_X
+        nx, ny = (side, 0.0) if across else (0.0, side)
+    else:
+        nx, ny = jaws[j, JAW_X] - r[0], jaws[j, JAW_Y] - r[1]
+        d = sqrt(nx * nx + ny * ny)
+        nx, ny = nx / d, ny / d
+    u, w, solved = rebound(v, w, (nx, ny), kind == events.JAW, law, series)
+    if u[2] >= lift:
+        if aloft is None:
+            return _LIFTS
+        else:
+            flight.take_off(motion, state, i, t, (r[0], r[1], 0.0), u, w, phys)
+    else:
+        cloth.begin(motion, state, i, t, r, (u[0], u[1]), w, phys)
+    return events.OK if solved else events.IMPACT_UNSOLVED
+
+
+@kernel
+def _leave(paths, i, kind, j, t, potted, reach, boundaries, forecast, phys):
+    """Ball i is potted, or forced off the table: remove all its events -> a status."""
+    motion, state, _ = paths
+    bounds, pair, best_time, best_ball, alone_time, _, _ = forecast
+    (x, y), _v, _w = cloth.evaluate(motion, state, i, t, phys)
+    _lie(motion, i, x, y)
+    if _is_astray(motion, state, i, reach, boundaries):
+        return events.ASTRAY
+    potted[i] = j if kind == events.POT else events.OFF_TABLE
+    motion[i, T0], motion[i, T_END] = t, inf
+    state[i] = GONE
+    _bound(bounds, i, inf, -inf, inf, -inf)
+    n = pair.shape[0]
+    for k in range(n):
+        pair[i, k] = pair[k, i] = inf
+    best_time[i], best_ball[i], alone_time[i] = inf, -1, inf
+    for k in range(n):
+        if best_ball[k] == i:
+            _rescan(pair, best_time, best_ball, k)
+    return events.OK
+
+
+@inlined
+def _end(balls, paths, status, last, phys):
+    """Write where the balls are after the last event -> the shot's duration [s]."""
+    positions, velocities, spins, on_table, _potted = balls
+    motion, state, _ = paths
+    end = last
+    for i in range(state.shape[0]):
+        if state[i] == GONE:
+            positions[i, 0], positions[i, 1] = motion[i, X], motion[i, Y]
+            on_table[i] = False
+        else:
+            r, v, w = cloth.evaluate(motion, state, i, max(end, motion[i, T0]), phys)
+            positions[i, 0], positions[i, 1] = r[0], r[1]
+            velocities[i, 0], velocities[i, 1] = v[0], v[1]
+            spins[i, 0], spins[i, 1], spins[i, 2] = w[0], w[1], w[2]
+            if status == events.OK and phys[P_SPIN] > 0.0:  # at rest a ball may still spin on the spot
+                end = max(end, motion[i, T0] + abs(motion[i, WZ]) / phys[P_SPIN])
+    return end
 
 
 @kernel
@@ -398,193 +560,72 @@ def run(balls, aloft, lift, setup, max_events, log, paths, forecast, series, so_
     ``paths``, ``forecast`` and ``series``: work space. Not inlined into ``run_batch``, which makes arrays:
     numba would count references to the arrays of a tuple at every use (4 % of a shot of two balls).
     """
-    positions, velocities, spins, on_table, potted = balls
     law, first, boundaries, reach, clear = setup
-    phys, (noses, jaws, falls, R) = law.phys, boundaries
-    time, what, segments = log
-    motion, state, over = paths
-    bounds, pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
-    n = positions.shape[0]
-    n_segments = n_events = np.int64(0)  # (typed: with a literal numba would compile every callee twice)
-    end, met, begins = 0.0, False, True
+    phys, segments, (motion, state, over) = law.phys, log.segments, paths
+    n_segments = n_events = np.int64(0)
+    status, end, met, begins = events.OK, 0.0, False, True
     if aloft is not None:
         over[0, flight.STRUCK], over[0, flight.WATCHED], over[0, flight.JUMPED] = -1.0, 0.0, 0.0
-        status, n_events, n_segments, end = so_far
-        if status == _LIFTS:
+        before, n_events, n_segments, end = so_far
+        if before == _LIFTS:
             begins, n_events, met = False, n_events - 1, over[0, flight.MET] != 0.0
             if met:
                 over[0, flight.WATCHED] = -1.0
     if begins:
-        for i in range(n):
-            potted[i] = -1
-            best_time[i], best_ball[i], alone_time[i] = inf, -1, inf
-            for j in range(pair.shape[1]):
-                pair[i, j] = inf
-            if on_table[i]:
-                r, v = (positions[i, 0], positions[i, 1]), (velocities[i, 0], velocities[i, 1])
-                w = spins[i, 0], spins[i, 1], spins[i, 2]
-                motion[i, Z] = motion[i, UZ] = 0.0
-                cloth.begin(motion, state, i, 0.0, r, v, w, phys)
-                if aloft is not None and (aloft[i, 0] > 0.0 or aloft[i, 1] != 0.0):
-                    r3, v3 = (r[0], r[1], aloft[i, 0]), (v[0], v[1], aloft[i, 1])
-                    flight.take_off(motion, state, i, 0.0, r3, v3, w, phys)
-                _bound(bounds, i, motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y])
-            else:
-                state[i] = GONE
-                _lie(motion, i, positions[i, 0], positions[i, 1])
-                _bound(bounds, i, inf, -inf, inf, -inf)
-            n_segments = _record(segments, n_segments, motion, state, i)
-        for i in range(n):
-            if state[i] > REST:
-                _predict(paths, i, 0.0, boundaries, clear, forecast, phys, aloft)
-    status = events.OK
+        n_segments = _begin(balls, aloft, segments, paths, boundaries, clear, forecast, phys)
     while True:
-        t, kind, i, j = _next_event(best_time, best_ball, alone_time, alone_kind, alone_index)
+        t, kind, i, j = _next_event(forecast)
         if t == inf:
             break
-        if kind == events.POT and state[i] != FALLING and state[i] != AIR:
-            r, v, w = cloth.evaluate(motion, state, i, t, phys)
-            if pocket.ahead(r[0], r[1], v[0], v[1], falls, j, jaws, phys)[0] < inf:
-                kind = np.int64(events.DROP)
-        if (
-            aloft is not None
-            and (kind == events.LAND or kind == events.RETURN)
-            and _lands_off(motion, state, i, t, clear, reach, boundaries)
-        ):
-            kind = np.int64(events.OFF if kind == events.LAND else events.POT)
-        if n_events == max_events:
-            status = events.TOO_MANY_EVENTS
+        kind = _kind_now(paths, aloft, t, kind, i, j, setup)
+        status = _note(log, n_events, n_segments, max_events, t, kind, i, j)
+        if status != events.OK:
             break
-        if time.shape[0] > 0:
-            if n_events == time.shape[0] or (segments.shape[0] > 0 and n_segments + 2 > segments.shape[0]):
-                status = events.LOG_FULL
-                break
-            time[n_events] = t
-            what[n_events, events.LOG_KIND], what[n_events, events.LOG_I], what[n_events, events.LOG_J] = (
-                kind,
-                i,
-                j,
-            )
-        n_events += 1
-        end = t
-        in_air = NOT_IN_AIR
+        n_events, end = n_events + 1, t
+        pair, leaves = kind == events.BALL_BALL, kind == events.POT or kind == events.OFF
+        flies = False
         if aloft is None:
             # also where a ball over a pocket comes back or meets one: ``pocket.aloft`` cannot begin an impact twice
             if lift < inf and (
-                kind == events.RETURN
-                or (kind == events.BALL_BALL and (state[i] == FALLING or state[j] == FALLING))
+                kind == events.RETURN or (pair and (state[i] == FALLING or state[j] == FALLING))
             ):
                 status = _LIFTS
                 break
         else:
+            flies = not leaves and (state[i] == AIR or (pair and state[j] == AIR))
             if i == 0 and over[0, flight.WATCHED] >= 0.0:
                 _watch(paths, kind, j, t, phys)
-            if state[i] == AIR or (kind == events.BALL_BALL and state[j] == AIR):
-                in_air = _in_air(paths, i, kind, j, t, law if met else first, boundaries, series)
-        if in_air != NOT_IN_AIR:
-            solved, met = in_air == SOLVED, met or kind == events.BALL_BALL
-        elif kind == events.BALL_BALL:
-            r1, v1, w1 = cloth.evaluate(motion, state, i, t, phys)
-            r2, v2, w2 = cloth.evaluate(motion, state, j, t, phys)
-            if state[i] == FALLING:
-                v1 = pocket.aloft(motion, over, i, t, v1, phys)
-            if state[j] == FALLING:
-                v2 = pocket.aloft(motion, over, j, t, v2, phys)
-            nx, ny = r2[0] - r1[0], r2[1] - r1[1]
-            d = sqrt(nx * nx + ny * ny)
-            u1, s1, u2, s2, solved = meet(v1, w1, v2, w2, (nx / d, ny / d), law if met else first, series)
-            if max(u1[2], u2[2]) >= lift:
-                if aloft is None:
-                    status = _LIFTS
-                    break
-                else:
-                    before = (v1[0], v1[1], 0.0), w1, (v2[0], v2[1], 0.0), w2
-                    _part(paths, i, j, t, (r1, u1, s1), (r2, u2, s2), before, boundaries, phys)
-            else:
-                nx, ny = nx / d, ny / d
-                _begin_again(paths, i, t, (r1, u1, s1), (nx, ny), u2, boundaries, phys)
-                other = motion[i, VX], motion[i, VY]
-                _begin_again(paths, j, t, (r2, u2, s2), (-nx, -ny), other, boundaries, phys)
-            met = True
+            if flies and pair:
+                status = _meet_in_air(paths, i, j, t, law if met else first, boundaries, series)
+            elif flies:
+                _in_air(paths, i, kind, j, t, boundaries, phys)
+        if flies:
+            pass
+        elif pair:
+            status = _meet_on_bed(paths, aloft, lift, i, j, t, met, setup, series)
         elif kind == events.ROLL or kind == events.STOP or kind == events.BEND:
             cloth.next_phase(motion, state, i, phys)
-            solved = True
-        elif kind == events.POT or kind == events.OFF:
-            r, v, w = cloth.evaluate(motion, state, i, t, phys)
-            _lie(motion, i, r[0], r[1])
-            if _is_astray(motion, state, i, reach, boundaries):
-                status = events.ASTRAY
-                break
-            potted[i] = j if kind == events.POT else events.OFF_TABLE
-            _leave(state, i, forecast)
-            motion[i, T0], motion[i, T_END] = t, inf
+        elif leaves:
+            status = _leave(paths, i, kind, j, t, balls.potted, reach, boundaries, forecast, phys)
+        elif kind == events.DROP or state[i] == FALLING:
+            _over_pocket(paths, i, kind, j, t, boundaries, phys)
+        else:
+            status = _rebound_on_bed(paths, aloft, lift, i, kind, j, t, law, boundaries, series)
+        if status != events.OK:
+            break
+        if leaves:
             n_segments = _record(segments, n_segments, motion, state, i)
             continue
-        elif kind == events.DROP:
-            r, v, w = cloth.evaluate(motion, state, i, t, phys)
-            over[i, pocket.IN_X], over[i, pocket.IN_Y] = r[0] - falls[j, FALL_X], r[1] - falls[j, FALL_Y]
-            over[i, pocket.POCKET] = j
-            pocket.next_leg(paths, i, t, (r[0], r[1], 0.0), (v[0], v[1], 0.0), w, boundaries, phys)
-            solved = True
-        elif state[i] == FALLING:
-            r, _, w = cloth.evaluate(motion, state, i, t, phys)
-            v = over[i, pocket.END_VX], over[i, pocket.END_VY]
-            if kind == events.JAW:
-                at = r[0], r[1], over[i, pocket.Z1]
-                _, nx, ny, sin_phi, _ = pocket.jaw_gap(at, jaws, j, R, phys[P_SIN])
-                cos_phi = sqrt(1.0 - sin_phi * sin_phi)
-                normal = nx * cos_phi, ny * cos_phi, sin_phi
-                u, w = free.against(
-                    (v[0], v[1], -over[i, pocket.U1]), w, normal, phys[P_MU_C], phys[P_E_J], R
-                )
-                pocket.next_leg(paths, i, t, at, (u[0], u[1], -u[2]), w, boundaries, phys)
-            else:  # back on the bed, which stops the vertical motion
-                cloth.begin(motion, state, i, t, r, v, w, phys)
-                motion[i, Z] = motion[i, UZ] = 0.0
-            solved = True
-        else:
-            r, v, w = cloth.evaluate(motion, state, i, t, phys)
-            if kind == events.CUSHION:
-                nx, ny = (
-                    (noses[j, NOSE_SIDE], 0.0)
-                    if noses[j, NOSE_AXIS] == AXIS_X
-                    else (0.0, noses[j, NOSE_SIDE])
-                )
-            else:
-                nx, ny = jaws[j, JAW_X] - r[0], jaws[j, JAW_Y] - r[1]
-                d = sqrt(nx * nx + ny * ny)
-                nx, ny = nx / d, ny / d
-            u, w, solved = rebound(v, w, (nx, ny), kind == events.JAW, law, series)
-            if u[2] >= lift:
-                if aloft is None:
-                    status = _LIFTS
-                    break
-                else:
-                    flight.take_off(motion, state, i, t, (r[0], r[1], 0.0), u, w, phys)
-            else:
-                cloth.begin(motion, state, i, t, r, (u[0], u[1]), w, phys)
-        if not solved:
-            status = events.IMPACT_UNSOLVED
-            break
         if not _is_clear(motion, i, clear) and _is_astray(motion, state, i, reach, boundaries):
             status = events.ASTRAY
             break
         n_segments = _record(segments, n_segments, motion, state, i)
         _predict(paths, i, t, boundaries, clear, forecast, phys, aloft)
-        if kind == events.BALL_BALL:
+        if pair:
+            met = True
             n_segments = _record(segments, n_segments, motion, state, j)
             _predict(paths, j, t, boundaries, clear, forecast, phys, aloft)
-    for i in range(n):
-        if state[i] == GONE:
-            positions[i, 0], positions[i, 1] = motion[i, X], motion[i, Y]
-            on_table[i] = False
-        else:
-            r, v, w = cloth.evaluate(motion, state, i, max(end, motion[i, T0]), phys)
-            positions[i, 0], positions[i, 1] = r[0], r[1]
-            velocities[i, 0], velocities[i, 1] = v[0], v[1]
-            spins[i, 0], spins[i, 1], spins[i, 2] = w[0], w[1], w[2]
-            if status == events.OK and phys[P_SPIN] > 0.0:  # at rest a ball may still spin on the spot
-                end = max(end, motion[i, T0] + abs(motion[i, WZ]) / phys[P_SPIN])
+    end = _end(balls, paths, status, end, phys)
     if aloft is not None:
         aloft[0, 0] = over[0, flight.JUMPED]
     else:
