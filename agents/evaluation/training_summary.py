@@ -37,7 +37,7 @@ def held_out(players, visits, loop, **shared):
     """Figures of held-out visits of players {name: player} under environment options; the loop's last part."""
     seeds = tables_of("held_out", visits)
     figures = {}
-    with loop.last("evaluation", visits * len(players), "visits") as progress:
+    with loop.progress("evaluation", visits * len(players), "visits") as progress:
         for k, (name, one) in enumerate(players.items()):
 
             def each(going, done=(k + 1) * visits, name=name):

@@ -149,9 +149,9 @@ class AgentTraining:
             expert = (self.model, self.tables, recipe.imitation, settings.seed, threads)
             self.expert = ExpertIteration(*expert, *before)
         self.ppo = PolicyGradient(recipe, self.model, threads, recipe.n_timesteps, last)
-        self.ppo.running = state and state["running"]
+        self.ppo.running = state["running"] if state else None
         self.parts = [part for part in (self.expert, self.ppo) if part]
-        if state and self.expert and self.expert.done >= self.expert.total and not (last and last["begun"]):
+        if last and self.expert and self.expert.done >= self.expert.total and not last["begun"]:
             self.tables.reset()  # takes the state that they were given: PPO begins with another reset
 
     def save(self):

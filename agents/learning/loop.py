@@ -88,18 +88,10 @@ class Loop:
         self.name, self.again = name, again
         self._parts, self._save, self._many, self._quiet = parts, save, len(parts) + more, quiet
 
-    def progress(self, number, what, total, unit, done=0):
-        """The ``Progress`` of part ``number``."""
-        what = (
-            f"{self.name}, part {number} of {self._many}, {what}"
-            if self._many > 1
-            else f"{self.name}, {what}"
-        )
-        return Progress(what, total, unit, done=done, to=sys.stdout, quiet=self._quiet)
-
-    def last(self, what, total, unit):
-        """The ``Progress`` of the part that follows those of learning."""
-        return self.progress(self._many, what, total, unit)
+    def progress(self, what, total, unit, done=0, number=None):
+        """The ``Progress`` of part ``number``; by default of the last one, which follows those of learning."""
+        head = f"{self.name}, part {number or self._many} of {self._many}" if self._many > 1 else self.name
+        return Progress(f"{head}, {what}", total, unit, done=done, to=sys.stdout, quiet=self._quiet)
 
     def run(self):
         """Play all parts that are left. The signal that stopped it, or None."""
@@ -116,7 +108,7 @@ class Loop:
         stop.now, part._began = part.now, time.perf_counter()
         part.begin()
         last, cost = time.perf_counter(), 0.0
-        with self.progress(number, part.what, part.total, part.unit, part.done) as progress:
+        with self.progress(part.what, part.total, part.unit, part.done, number) as progress:
 
             def rest():
                 nonlocal last, cost

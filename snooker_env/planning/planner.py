@@ -4,10 +4,10 @@ import copy
 import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .._check import array, integer, refuse, refuse_what
 from .._types import Environment, Floats, Integers, Ints, Scalars, Vectors, Words
@@ -161,7 +161,7 @@ class Planner:
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
         SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
         at, which = self._asked(positions, rows)
-        told = self._rules.actions.check_many(np.asarray(actions), len(which))
+        told = self._rules.actions.check_many(cast(ArrayLike, actions), len(which))
         return self._played(at[which], told, _streams(keys, len(which), self.noise.silent), None)
 
     def play_strokes(
@@ -221,7 +221,9 @@ class Planner:
         with a cue ball in hand on the place that the action names."""
         at = Positions.of(positions)
         which = rows_of(at, rows)
-        return decode(self._rules, at, which, self._rules.actions.check_many(np.asarray(actions), len(which)))
+        return decode(
+            self._rules, at, which, self._rules.actions.check_many(cast(ArrayLike, actions), len(which))
+        )
 
     def pot_aim(
         self,
