@@ -1,6 +1,6 @@
 """How does one compile everything in advance? ``warmup`` calls each kernel of this package once."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -8,6 +8,9 @@ from ._jit import ENTRIES
 from ._notices import warming_up
 from .impacts import collide_balls, collide_cushion, strike
 from .simulation import simulate
+
+if TYPE_CHECKING:
+    from .envs.snooker import SnookerEnv
 
 
 class _Still:
@@ -32,8 +35,53 @@ def warmup() -> None:
     >>> import snooker_env as sn
     >>> sn.warmup()  # doctest: +SKIP
     """
-    from .advice.room import room_for
+    with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
+        simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
+        strike(1.0, 0.0)
+        collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
+        collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))
+        env, match = _play_environments()
+        _ask_rules(env)
+        _plan(env, match)
+
+
+def _play_environments() -> "tuple[SnookerEnv, SnookerEnv]":
+    """Visits, frames against opponents, a match: the last frame, and the match."""
     from .envs.snooker import SnookerEnv
+    from .planning import Position
+
+    env = SnookerEnv(action="discrete", conditions="drawn")
+    env.reset(seed=0)
+    env.action_masks()
+    env.step(0)
+    all_of_frames = {"placement": True, "decision": True, "miss": "attempt", "opponent": "ghost_ball"}
+    env = SnookerEnv(task="frame", **all_of_frames)
+    for seed in range(3):  # in one of them the opponent breaks off
+        env.reset(seed=seed)
+        env.step([0.0] * 7)
+    snookered = Position(cue=(0.0, 0.0), pink=(0.0, 1.0), black=(0.0, 0.5), on="pink")
+    env.reset(seed=0, options={"position": snookered})
+    env.step([0.0] * 7)
+    env = SnookerEnv(task="frame", game="shoot_out")
+    env.reset(seed=0)
+    env.step([0.0] * 4)
+    for action in (0, [0.0] * 4):
+        options: Any = {"opponent": "random", "action": "discrete" if action == 0 else "box"}
+        env = SnookerEnv(task="frame", **options)
+        for seed in range(3):
+            env.reset(seed=seed)
+            env.step(action)
+    env.reset(seed=0, options={"breaker": 0})
+    match = SnookerEnv(task="match", opponent="ghost_ball", concede=True)
+    match.reset(seed=0)
+    match.step([0.0] * 4 + [-1.0])
+    tables: Any = match.tables
+    tables.info_of(0, None)
+    return env, match
+
+
+def _ask_rules(env: "SnookerEnv") -> None:
+    """The referee, and what rules ask of a table."""
     from .game.apply_ruling import settle_table
     from .game.balls import REDS_MASK
     from .game.frame import Frame
@@ -42,83 +90,47 @@ def warmup() -> None:
     from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
-    from .planning import (
-        Planner,
-        Position,
-        Positions,
-        Search,
-        VisitJudge,
-        clear_paths,
-        obstructions,
-        prospects_of,
-    )
-    from .planning import pots as direct_pots
+
+    frame = Frame.start()
+    frame.play(Stroke())
+    frame.concede(0)
+    pots(env.positions, env.on_table, REDS_MASK)
+    place_cue(env.positions, env.on_table, 0.0, 0.0)
+    settle_table(env.positions, env.on_table, Situation(), Stroke())
+    judge(Situation(), Stroke())
+    is_snookered(env.positions, env.on_table, REDS_MASK)
+    spot_colours(env.positions, env.on_table, 0)
+
+
+def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
+    """Planning, players and advice."""
+    from .advice.room import room_for
+    from .planning import Planner, Positions, clear_paths, obstructions, pots, prospects_of
+    from .planning.pot_chance import pot_chances
     from .planning.proposals import at_balls, over_cushions
+    from .planning.visit_judge import VisitJudge
     from .planning.worth import best_places, decide
     from .players import player
     from .tasks.options import Options
 
-    with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
-        simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
-        strike(1.0, 0.0)
-        collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
-        collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))
-        env = SnookerEnv(action="discrete", conditions="drawn")
-        env.reset(seed=0)
-        env.action_masks()
-        env.step(0)
-        all_of_frames = {"placement": True, "decision": True, "miss": "attempt", "opponent": "ghost_ball"}
-        env = SnookerEnv(task="frame", **all_of_frames)
-        for seed in range(3):  # in one of them the opponent breaks off
-            env.reset(seed=seed)
-            env.step([0.0] * 7)
-        snookered = Position(cue=(0.0, 0.0), pink=(0.0, 1.0), black=(0.0, 0.5), on="pink")
-        env.reset(seed=0, options={"position": snookered})
-        env.step([0.0] * 7)
-        env = SnookerEnv(task="frame", game="shoot_out")
-        env.reset(seed=0)
-        env.step([0.0] * 4)
-        frame = Frame.start()
-        frame.play(Stroke())
-        frame.concede(0)
-        for action in (0, [0.0] * 4):
-            options: Any = {"opponent": "random", "action": "discrete" if action == 0 else "box"}
-            env = SnookerEnv(task="frame", **options)
-            for seed in range(3):
-                env.reset(seed=seed)
-                env.step(action)
-        env.reset(seed=0, options={"breaker": 0})
-        match = SnookerEnv(task="match", opponent="ghost_ball", concede=True)
-        match.reset(seed=0)
-        match.step([0.0] * 4 + [-1.0])
-        tables: Any = match.tables
-        tables.info_of(0, None)
-        pots(env.positions, env.on_table, REDS_MASK)
-        place_cue(env.positions, env.on_table, 0.0, 0.0)
-        settle_table(env.positions, env.on_table, Situation(), Stroke())
-        judge(Situation(), Stroke())
-        is_snookered(env.positions, env.on_table, REDS_MASK)
-        spot_colours(env.positions, env.on_table, 0)
-        env.reset(seed=0)
-        at, planner = Positions.of(env), Planner({"action": "discrete"})
-        planner.play(at, [0], [0])
-        planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
-        obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
-        room_for(np.zeros(5), at, Options(cue="real").rules)
-        prospects_of(at, 1e-3)
-        both = Positions.of(match)
-        player("ghost_ball").at({"task": "frame"}).play(both, [0])
-        player(_Still(task="frame", decision=True)).at({"task": "frame"}).play(both, [0])
-        for name in ("planner_30", "planner_policy", "stroke_value"):
-            player(name).at({"noise": "club"}).play(at, [0])
-        for name in ("tactician_30", "stroke_value"):
-            player(name).at({"task": "frame", "noise": "club", "miss": "clear_path"}).play(both, [0])
-        decide(lambda some: np.zeros(len(some)), both)
-        best_places(lambda some: np.zeros(len(some)), both)
-        search = Search(VisitJudge({"noise": "club"}), budget=30)
-        search.rank(at, seeds=[0])
-        Planner({"noise": "club"}).play_strokes(at, [0], [[1.0, 0.0, 0.0, 0.0, 0.0]], [0])
-        for generate in (at_balls, over_cushions):
-            generate(search, at, 1, [0])
-        for call in (direct_pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
-            call(at)
+    env.reset(seed=0)
+    at, both, planner = Positions.of(env), Positions.of(match), Planner({"action": "discrete"})
+    planner.play(at, [0], [0])
+    planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
+    Planner({"noise": "club"}).play_strokes(at, [0], [[1.0, 0.0, 0.0, 0.0, 0.0]], [0])
+    obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
+    room_for(np.zeros(5), at, Options(cue="real").rules)
+    prospects_of(at, 1e-3)
+    pot_chances(np.ones(1), np.ones(1), 1e-3)
+    player("ghost_ball").at({"task": "frame"}).play(both, [0])
+    player(_Still(task="frame", decision=True)).at({"task": "frame"}).play(both, [0])
+    for name in ("search_30", "planner_30", "planner_policy", "stroke_value"):
+        player(name).at({"noise": "club"}).play(at, [0])
+    for name in ("tactician_30", "stroke_value"):
+        player(name).at({"task": "frame", "noise": "club", "miss": "clear_path"}).play(both, [0])
+    decide(lambda some: np.zeros(len(some)), both)
+    best_places(lambda some: np.zeros(len(some)), both)
+    for generate in (at_balls, over_cushions):
+        generate(VisitJudge({"noise": "club"}), at, 1, np.zeros(1, np.int64))
+    for call in (pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
+        call(at)

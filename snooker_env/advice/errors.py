@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .._check import integer, refuse_what
-from .._types import Floats
+from .._types import Bools, Floats
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
 from ..planning import Positions
 from ..planning.aims import STEEPEST_CUE
@@ -116,7 +116,7 @@ class Pots(NamedTuple):
 
     rows: list[int]
     chances: Floats  # (n, scales)
-    made: Any  # bool (n,)
+    made: Bools  # (n,)
     paces: Floats  # (n,) cue speeds [m/s]
 
 
@@ -255,7 +255,7 @@ def guesses(e: Floats, widths: Floats, more: Floats) -> tuple[Floats, Any]:
     return np.logaddexp.reduce(log_l, axis=1), meant
 
 
-def outcome(chances: Floats, made: Any) -> Floats:
+def outcome(chances: Floats, made: Bools) -> Floats:
     """Log-likelihoods (n, scales) of pots made or missed, whose chances are (n, scales)."""
     p = np.clip(chances, 1e-3, 1.0 - 1e-3)  # a fluke or a slip is never impossible
     return np.where(np.asarray(made)[:, None], np.log(p), np.log1p(-p))

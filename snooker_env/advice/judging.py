@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from math import hypot, sqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -77,7 +77,7 @@ def joined(positions: list[Positions]) -> Positions:
 
 
 def _trial(
-    practice: Practice, starts: Positions, trial: Outcomes, k: int, stroke: CueStroke, hidden: Any, lie: str
+    practice: Practice, starts: Positions, trial: Outcomes, k: int, stroke: CueStroke, hidden: Bools, lie: str
 ) -> Tried:
     """Stroke k; ``hidden``: no straight path leads to a ball on; ``lie``: where it leaves the cue ball, in words."""
     room = room_for(stroke.numbers(), starts[k : k + 1], practice.options.rules)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .._check import choice, integer, refuse, refuse_what
-from .._types import Floats, Words
+from .._types import Floats, Ints, Words
 from ..game import frame_columns as columns
 from ..game.in_hand import place_cue
 from ..planning import FrameJudge, Outcomes, Planner, Positions, Search, VisitJudge
@@ -48,7 +48,7 @@ class Practice:
         """A fast search, with which visits are played on."""
         return Search(VisitJudge(self.options), QUICK)
 
-    def play(self, at: Positions, rows: Any, strokes: Floats, keys: Words | None = None) -> Outcomes:
+    def play(self, at: Positions, rows: Ints, strokes: Floats, keys: Words | None = None) -> Outcomes:
         """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without.
 
         Of positions of frames the points, the penalty and what is left are those of a frame, and whoever played is

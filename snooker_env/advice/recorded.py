@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 from math import atan2, hypot, pi, radians, remainder
 from pathlib import Path
 from typing import Any
@@ -104,7 +105,7 @@ class Recorded:
     table: TableLike = None
 
     def __post_init__(self) -> None:
-        put: Any = lambda name, value: object.__setattr__(self, name, value)  # noqa: E731
+        put = partial(object.__setattr__, self)
         for name in ("position", "after"):
             here = getattr(self, name)
             if not isinstance(here, Position) and (name == "position" or here is not None):

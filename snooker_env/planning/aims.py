@@ -63,8 +63,8 @@ ROUNDING = 1e-9  # how far beyond its bounds a number may be
 
 
 @entry(what="the solving of aims", uses=(solved_aim,))
-def _pot_aim(positions, on_table, rows, balls, targets, ghosts, strokes, law, aims):
-    (phys, ratios, fidelity, n_steps, most, rails), work = law, new_work()
+def _pot_aim(table, rows, balls, targets, ghosts, strokes, law, aims):
+    (positions, on_table), (phys, ratios, fidelity, n_steps, most, rails), work = table, law, new_work()
     for i in range(len(rows)):
         own = row_of(rows[i], phys)
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
@@ -157,7 +157,7 @@ def solved_aims(
         played[:, SPEED] = array("strokes", strokes, (n,) if depth else ())
     most = (np.inf, offset, offset, np.inf, STEEPEST_CUE)
     check_columns(played, (0.0, -offset, -offset, -np.inf, 0.0), most)
-    _pot_aim(at.positions, at.on_table, which, ids, to, behind, played, law_of(dynamics, at), aims)
+    _pot_aim((at.positions, at.on_table), which, ids, to, behind, played, law_of(dynamics, at), aims)
     return aims
 
 

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import InitVar, asdict, dataclass, fields
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any
 
@@ -80,7 +80,7 @@ class Position:
     table: InitVar[TableLike] = "match"
 
     def __post_init__(self, table: TableLike) -> None:
-        put: Any = lambda name, value: object.__setattr__(self, name, value)  # noqa: E731
+        put = partial(object.__setattr__, self)
         put("in_hand", truth("in_hand", self.in_hand))
         put("over", truth("over", self.over))
         put("points", integer("points", self.points, 0, MOST_BREAK))

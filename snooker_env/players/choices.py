@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse_what
-from .._types import Bools, Floats, Ints
+from .._types import Bools, Floats, Integers, Ints
 from ..game.frame_columns import VISIT_COLUMNS
 from ..planning import Positions, pots
 from ..planning.ghost_ball import geometric_strokes
-from ..planning.positions import seeds_of
+from ..planning.positions import PositionsLike, seeds_of
 from ..planning.strokes import available, meant
 from ..planning.trials import packed_under
 from ..tasks.declarations import SAYS_NOTHING
@@ -55,12 +55,12 @@ class ChoicePlayer(BoundPlayer):
         """What a ranking shows of one position's scores (m,), highest first: float64 (m,), or None."""
         return scores.astype(np.float64)
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
         visits, places, decisions, scores = self._scored(positions, seeds)
         return Strokes(self._meant(visits, scores.argmax(axis=1)), places, decision=decisions)
 
-    def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """Rank the choices of each position: at most 100 strokes, highest score first."""
         visits, places, decisions, scores = self._scored(positions, seeds)
         ranked = []
@@ -85,7 +85,7 @@ class ChoicePlayer(BoundPlayer):
         )
         return meant(buffers, packed[0])
 
-    def _scored(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Ints, Floats]:
+    def _scored(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints, Floats]:
         """The visits with placed cue balls, their places, the decisions after fouls, and the scores."""
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))
@@ -126,11 +126,11 @@ class GhostBall(ChoicePlayer):
 
     name, training_shots = "ghost_ball", 0
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
         return self._played(positions, seeds)[0]
 
-    def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """Its stroke, then the same at the other direct pots, with the tolerance of each pot [mrad]."""
         strokes, start = self._played(positions, seeds)
         direct = pots(start)
@@ -145,7 +145,7 @@ class GhostBall(ChoicePlayer):
             ranked.append(Ranked(joined, 1e3 * direct.tolerance[k, :many]))
         return ranked
 
-    def _played(self, positions: Any, seeds: Any) -> tuple[Strokes, Positions]:
+    def _played(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, Positions]:
         """What it plays, and from where: visits with placed cue balls."""
         at = Positions.of(positions)
         own = at.positions.copy(), at.on_table.copy(), at.game.copy()

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Floats, Ints
+from .._types import Floats, Integers, Ints
 from ..game import frame_columns as columns
 from ..planning import Positions
+from ..planning.positions import PositionsLike
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.discrete_actions import SIZE
 from .choices import ChoicePlayer, GhostBall
@@ -27,7 +28,7 @@ class Straight(BoundPlayer):
     def __init__(self, speed: float, away: bool):
         self.speed, self.away = speed, away
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
         at = Positions.of(positions)
         x, y = np.moveaxis(at.positions - at.positions[:, :1], -1, 0)
@@ -42,7 +43,7 @@ class Straight(BoundPlayer):
 class PlayAgain(GhostBall):
     """``ghost_ball``, who has the other play again after every foul."""
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
         at = Positions.of(positions)
         return replace(

@@ -1,10 +1,11 @@
 """What does a player do in a frame who can say what strokes and positions are worth? All decisions by one worth: the
 stroke, what to do after a foul, where the cue ball in hand goes, who begins at a re-spotted black."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from .._types import Integers
 from ..game import frame_columns as columns
 from ..planning import Positions, Search
 from ..planning.frame_judge import FrameJudge
@@ -35,7 +36,7 @@ class FramePlayer(BoundPlayer):
     judge: FrameJudge | FrameStrokes
     _plain: GhostBall
 
-    def decided(self, at: Positions, seeds: Any) -> Decided:
+    def decided(self, at: Positions, seeds: Integers) -> Decided:
         """What it does in n positions of frames, what it tried in those in which it strikes, and from where."""
         options, judge, seeds = self.options, self.judge, seeds_of(seeds, len(at))
         worth = judge.worth
@@ -77,7 +78,7 @@ class FramePlayer(BoundPlayer):
             declare[some[behind]] = CONCEDES
         return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)
 
-    def _considered(self, at: Positions, seeds: Any) -> list[Ranked]:
+    def _considered(self, at: Positions, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, else all, at most ``RANKED``, best first, with chances or points."""
         strokes, tried, _ = self.decided(at, seeds)
         own = [strokes[k : k + 1] for k in range(len(tried))]

@@ -87,7 +87,7 @@ class BoundPlayer:
         spread = spread_of(rules.noise, rules.physics)
         return 2.0 * prospects_of(visits, spread, most=_POTS, rails=rules.rails)[1].max(axis=1) - 1.0
 
-    def started(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Ints]:
+    def started(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints]:
         """From where it plays in n positions: visits after its decisions, with placed cue balls; their places (n, 2), else
         NaN; and the decisions (n,), the best by ``worth``."""
         at, code = Positions.of(positions), self.options.rules.rule_set.code
@@ -110,14 +110,14 @@ class BoundPlayer:
 _POTS = 16  # the most direct pots of a position that are looked at, the widest first
 
 
-def streams_of(seeds: Any) -> np.ndarray:
+def streams_of(seeds: Integers) -> np.ndarray:
     """A random stream for each seed: uint64 (n, 2)."""
     streams = np.zeros((len(seeds), 2), np.uint64)
     streams[:, 0] = seeds
     return streams
 
 
-def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
+def placed(at: Positions, seeds: Integers) -> tuple[Positions, np.ndarray]:
     """Visits with cue balls in hand put where ``ghost_ball`` does, and these places (n, 2), else NaN."""
     places, keys = np.full((len(at), 2), np.nan), seeds_of(seeds, len(at))
     if not at.in_hand.any():

@@ -6,13 +6,13 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from .._check import choice, refuse_what
-from .._types import Bools, Floats, Ints, Observation, Singles
+from .._types import Bools, Floats, Integers, Ints, Observation, Singles
 from ..game import frame_columns as columns
 from ..game.balls import mask_of_present
 from ..physics.conditions import normalised
 from ..physics.parameters import nominal
 from ..planning import Positions
-from ..planning.positions import seeds_of
+from ..planning.positions import PositionsLike, seeds_of
 from ..planning.strokes import decode
 from ..tasks.carry_out import sayings
 from ..tasks.declarations import SAYS
@@ -101,7 +101,7 @@ class SeenPlayer(BoundPlayer):
             same |= {name: getattr(options, name) for name in Options.group("frame")}
         self._rules = Options(**same | self.sees).rules
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
         at = Positions.of(positions).known_to(self.options.rules)
         keys = seeds_of(seeds, len(at))

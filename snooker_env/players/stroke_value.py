@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Floats
+from .._types import Floats, Integers
 from ..planning import Positions, spread_of
 from ..planning.aims import Dynamics
 from ..planning.learned.frame_strokes import FOULS, FrameStrokes
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.stroke_value import LOOKS, Candidates, StrokeValue
-from ..planning.positions import seeds_of
+from ..planning.positions import PositionsLike, seeds_of
 from ..planning.proposals import over_cushions
 from ..planning.stroke_columns import COLUMNS
 from ..tasks.options import Options
@@ -46,7 +46,7 @@ class StrokeValuePlayer(FramePlayer):
             rules, self.values, LearnedWorth(worth, learned_worth()[0]), layers.frames
         )
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
         at = Positions.of(positions)
         if at.of_frames:
@@ -62,7 +62,7 @@ class StrokeValuePlayer(FramePlayer):
             values[others], places[others] = plain.values, plain.place
         return Strokes(values, places)
 
-    def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """Its strokes, best first, with what they are worth [points]; the one that need only be fair alone."""
         at = Positions.of(positions)
         if at.of_frames:
@@ -78,7 +78,7 @@ class StrokeValuePlayer(FramePlayer):
             made[k] = Ranked(Strokes(found.strokes[j, order], where), scores[j, order].astype(np.float64))
         return made
 
-    def _fairest(self, positions: Positions, seeds: Any) -> Strokes:
+    def _fairest(self, positions: Positions, seeds: Integers) -> Strokes:
         """Strokes that need only be fair: at a ball that is seen, if it is likely to be struck, else over cushions; where
         there is neither those of ``ghost_ball``."""
         at, keys = positions.known_to(self.options.rules), seeds_of(seeds, len(positions))
@@ -92,7 +92,7 @@ class StrokeValuePlayer(FramePlayer):
         values = np.where(some > 0.0, over[:, 0], np.where(fair > 0.0, found, plain))
         return Strokes(np.where(fair >= LIKELY, found, values), places)
 
-    def _scored(self, at: Positions, seeds: Any) -> tuple[Positions, Floats, Candidates, Any]:
+    def _scored(self, at: Positions, seeds: Integers) -> tuple[Positions, Floats, Candidates, Any]:
         """Positions of visits, the places of cue balls in hand, the strokes that are looked at, and their values."""
         options, values = self.options, self.values  # it must be bound
         assert values is not None, options

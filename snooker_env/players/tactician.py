@@ -1,12 +1,10 @@
 """How does the planner of the whole game play? One search for pots, safeties and escapes, one worth for both
 players, and all decisions of a frame by that worth (``frame_decisions``)."""
 
-from typing import Any
-
 import numpy as np
 
 from .._check import integer, refuse, refuse_what
-from .._types import Floats, Singles
+from .._types import Floats, Integers, Singles
 from ..game import frame_columns as columns
 from ..planning import FrameJudge, Positions, Search, processors, spread_of
 from ..planning.learned.learned_value import LearnedValue
@@ -46,12 +44,12 @@ class Tactician(FramePlayer):
         self.judge = FrameJudge(options, worth, chance)
         self.search = Search(self.judge, self.budget, PolicyProposals(learned.policy))
 
-    def play(self, positions: Any, seeds: Any) -> Strokes:
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
         at = Positions.of(positions)
         return self.decided(at, seeds).strokes if at.of_frames else self._visits.play(at, seeds)
 
-    def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their chances to win; in visits their points."""
         at = Positions.of(positions)
         return self._considered(at, seeds) if at.of_frames else self._visits.rank(at, seeds)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..._jit import entry
+from ..._types import Singles
 
 
 @entry(what="the layers of networks", seconds=2)
@@ -66,7 +67,7 @@ class Layers:
         """(out, in) and (out,) of each layer, as they were given: float32."""
         return [(np.ascontiguousarray(weight.T), bias) for weight, bias in self._layers]
 
-    def __call__(self, rows: Any) -> Any:
+    def __call__(self, rows: Singles) -> Singles:
         """The last layer's results (n, out) for rows (n, in): float32."""
         for k, (weight, bias) in enumerate(self._layers):
             if k:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..._types import Floats, Ints
+from ..._types import Bools, Floats, Ints, Singles
 from ...physics.cue_room import NO_RAILS
 from ...tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from ...tasks.discrete_actions import SIZE as CHOICES
@@ -17,6 +17,7 @@ from ..proposals import Asking, Proposals, strokes_at
 from ..sobol import sobol_points
 from ..strokes import available
 from .pot_view import with_pots
+from .stroke_policy import StrokePolicy
 
 TEMPERATURE = 4.0
 """Of the scores: above 1, so that less likely ones are tried too (``python -m benchmarks.temperature``)."""
@@ -28,7 +29,7 @@ _SIDE_STEP, _TOP_STEP = _SIDES[1] - _SIDES[0], _TOPS[1] - _TOPS[0]
 class PolicyProposals:
     """The proposals of a ``Search`` by a ``StrokePolicy`` on tables as ``with_pots`` shows them."""
 
-    def __init__(self, policy: Any):
+    def __init__(self, policy: StrokePolicy):
         self.policy = policy
 
     def scores(self, at: Positions, rails: Floats = NO_RAILS) -> Any:
@@ -44,7 +45,7 @@ class PolicyProposals:
         return strokes_at(at, picks // STROKES, tips, search.spread, search.dynamics)
 
 
-def drawn(scores: Any, masks: Any, m: int, seeds: Any) -> tuple[Ints, Floats]:
+def drawn(scores: Floats | Singles, masks: Bools, m: int, seeds: Ints) -> tuple[Ints, Floats]:
     """m choices of each position, drawn by their scores (n, CHOICES), and speeds and tips near them: (n, m), (n, m, 3)."""
     likely = np.where(masks, np.exp((scores - scores.max(axis=1, keepdims=True)) / TEMPERATURE), 0.0)
     sums = np.cumsum(likely, axis=1)

@@ -1,12 +1,12 @@
 """What does a learned policy see of a table? The flat observation, then features of direct pots."""
 
 from math import hypot, log10
-from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 
 from ..._jit import entry
+from ..._types import Singles
 from ...game.balls import N_BALLS, VALUES
 from ...game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
 from ...game.pots import TOLERANCE as POT_TOLERANCE
@@ -56,7 +56,7 @@ def _add_pots(observations, shown):
                 row[c] = min(1.0, max(-1.0, row[c]))
 
 
-def with_pots(observations: Any) -> Any:
+def with_pots(observations: Singles) -> Singles:
     """Flat observations (n, OBSERVATION_SIZE), then ``POT_ENTRIES`` of each of the four widest pots.
 
     1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the

@@ -28,6 +28,7 @@ from . import cue_ball_path as path
 from .dense_layers import Layers
 from .learned_value import LearnedValue
 from .policy_proposals import PolicyProposals, drawn
+from .stroke_policy import StrokePolicy
 
 SIZE = 33
 POINTS = 10.0  # unit of the network's results [points]
@@ -56,7 +57,7 @@ class StrokeValue:
     def __init__(
         self,
         value: LearnedValue,
-        policy: Any,
+        policy: StrokePolicy,
         dynamics: Dynamics,
         noise: Noise,
         layers: Sequence[tuple[NDArray, NDArray]],
