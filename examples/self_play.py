@@ -157,7 +157,7 @@ def add(pool, weights):
 
 
 def judge(policy, opponent, frames, threads):
-    """Frames won against a built-in opponent by the most probable choices. The agent breaks in every other
+    """Frames won against an opponent by the most probable choices. The agent breaks in every other
     frame."""
     tables = snooker_env.SnookerVectorEnv(frames, opponent=opponent, threads=threads, **GAME)
     breaker = np.arange(frames) % 2

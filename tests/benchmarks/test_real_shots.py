@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from benchmarks.real_shots import against_pooltool, cma, command, constants, strikes, tracks, verdict
+from benchmarks.real_shots import __main__ as command
+from benchmarks.real_shots import against_pooltool, cma, constants, strikes, tracks, verdict
 from benchmarks.real_shots.paths import AIM, SPEED, Judge
 
 PHYSICS = sn.Physics.preset("carom", tables=False)

@@ -21,8 +21,8 @@ def test_a_replay_that_differs_is_noticed():
     table = frames.FrameTable("off")
     table.start(0)
     text = table.as_json()
-    table.turn(frames.PLAYERS["random"])
+    table.turn("random")
     want = table.as_json()
-    frames.check_replay(text, [want], frames.PLAYERS["random"], "off")
+    frames.check_replay(text, [want], "random", "off")
     with pytest.raises(AssertionError, match="played on otherwise"):
-        frames.check_replay(text, [want.replace("0.", "0.1", 1)], frames.PLAYERS["random"], "off")
+        frames.check_replay(text, [want.replace("0.", "0.1", 1)], "random", "off")

@@ -9,6 +9,7 @@ import torch
 
 from examples import self_play
 from snooker_env import SnookerVectorEnv
+from snooker_env.players import SeenPlayer
 from tests.flips import flipped
 
 SHORT = ("--shots", "640", "--tables", "4", "--frames", "6", "--checked", "2", "--threads", "1")
@@ -93,5 +94,5 @@ def test_without_a_pot_the_nearest_ball_on_stands_first():
 
 
 def test_the_published_agent_is_an_opponent_that_a_constant_choice_does_not_beat():
-    against = self_play.judge(self_play.Softly(), self_play.SelfPlayed(), 200, 1)
+    against = self_play.judge(self_play.Softly(), SeenPlayer(self_play.SelfPlayed()), 200, 1)
     assert against["won"] < 0.45

@@ -1,5 +1,7 @@
 """Does the window do what its keys say, and does it refuse where nobody would see it?"""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -121,9 +123,10 @@ def test_letters_and_paths_are_shown_at_will(dummy_screen):
     given = {"paths": {CUE: [(0.0, -1.0), (0.0, 1.0)]}}
     presses = {1: [dummy_screen.K_l], 2: [dummy_screen.K_p], 3: [dummy_screen.K_l]}
     window = Pressed(dummy_screen, presses, size=(518, 300))
-    for wanted in (given, {**given, "lettered": True}, {"lettered": True}, {}):
+    for paths, lettered in ((given, False), (given, True), ({}, True), ({}, False)):
         window.draw(scene("match", SPOTS, **given))
-        expected = rgb_array(scene("match", SPOTS, **wanted), size=(518, 300))
+        wanted = replace(scene("match", SPOTS, **paths), lettered=lettered)
+        expected = rgb_array(wanted, size=(518, 300))
         assert np.array_equal(picture(dummy_screen), expected)
     window.close()
 
