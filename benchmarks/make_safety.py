@@ -3,7 +3,7 @@ which no pot is on. Writes ``game/safety.npz``.
 
     python -m benchmarks.make_safety [--tables 1024] [--player tactician_30] [--seed 0] [--json FILE] [--out FOLDER]
 
-A position is kept if a red is on and can be struck, no direct pot is likelier than 30 %, three reds or more and the six
+A position is kept if a red is on and can be struck, no direct pot is likelier than 40 %, three reds or more and the six
 colours are on the table, the cue ball is not in hand and no ball is free; of a frame at most three of them. The later
 half of the tables is held out; no frame has tables in both halves.
 """
@@ -23,7 +23,7 @@ from ._common.command import Command, at_least, run, save_bytes, save_json
 
 FILE = "safety.npz"
 RULES = {"task": "frame", "noise": "professional", "cue": "real", "miss": "clear_path", "elevation": True}
-LIKELY = 0.3
+LIKELY = 0.4
 """Chance of a direct pot, by its width, above which a position is none for a safety."""
 REDS, SIDE_BY_SIDE, A_FRAME = 3, 32, 3
 """The fewest reds; frames that are played side by side; the most positions that are kept of one."""

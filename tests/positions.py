@@ -1,7 +1,12 @@
-"""How does a test of an agent get tables?"""
+"""How does a test of an agent get tables, and the chances of their pots in plain Python?"""
+
+from math import erf, exp, hypot, sqrt
+
+import numpy as np
 
 from snooker_env import SnookerVectorEnv
-from snooker_env.planning import prospects_of
+from snooker_env.geometry import POCKET_AIMS
+from snooker_env.planning import pots
 from tests.tables import begun
 
 
@@ -10,5 +15,11 @@ def tables(n, seed=0, **options):
 
 
 def chances_by_width(at, spread):
-    """Chances of the pots, widest first, with the loss of 0.01 a metre of a stroke's score: (n, 16)."""
-    return prospects_of(at, spread, (25.0, 0.15, 0.05, 0.01), most=16)[1]
+    """Chances of the pots, in their order, with the loss of 0.01 a metre, in plain Python: (n, 16)."""
+    direct, chances = pots(at, most=16), np.zeros((len(at), 16))
+    for k, j in np.argwhere(direct.ball >= 0):
+        (gx, gy), (cx, cy) = direct.ghost[k, j], at.positions[k, 0]
+        (px, py), (x, y) = POCKET_AIMS[direct.pocket[k, j], :2], at.positions[k, direct.ball[k, j]]
+        run = hypot(gx - cx, gy - cy) + hypot(px - x, py - y)
+        chances[k, j] = erf(direct.tolerance[k, j] / (spread * sqrt(2.0))) * exp(-0.01 * run)
+    return chances

@@ -72,7 +72,7 @@ def frames(shared, args, threads):
             explored = rng.random(len(here)) < shared["explore"]
             for k in here[explored].tolist():
                 met = max(1, int((tried[k].samples > 0).sum()))
-                strokes.values[k] = tried[k].strokes[rng.integers(met)]
+                strokes.values[k] = tried[k].strokes.values[rng.integers(met)]
             rows.append(
                 row
                 | {

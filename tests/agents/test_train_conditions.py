@@ -48,20 +48,20 @@ def test_expert_iteration_plays_each_visit_on_a_table_of_its_own(few, monkeypatc
     model, venv = model_and_tables()
     run_, searched, judged = ExpertIteration(model, venv, 96, 5, 1), [], []
     run_.begin()
-    search, gains_of = run_._search, run_._choices._gains
-    outcomes = search.outcomes
+    planner, gains_of = run_._judge.planner, run_._choices._gains
+    play_strokes = planner.play_strokes
 
-    def watched(at, *given):
-        searched.append((at.conditions.copy(), outcomes(at, *given)))
+    def watched(at, *given, **errors):
+        searched.append((at.conditions.copy(), play_strokes(at, *given, **errors)))
         return searched[-1][1]
 
     def counted(*given):
         judged.append((given, gains_of(*given)))
         return judged[-1][1]
 
-    monkeypatch.setattr(search, "outcomes", watched)
+    monkeypatch.setattr(planner, "play_strokes", watched)
     monkeypatch.setattr(run_._choices, "_gains", counted)
-    assert search.planner.rules.drawn
+    assert planner.rules.drawn
     starts = {
         row.tobytes(): own.tobytes()
         for pool in run_._starts._pools

@@ -19,18 +19,21 @@ VALUE = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 """Points of each ball."""
 
 
-def by_plain_python(positions, on_table, ball_on, spread, follows, second, third, far):
-    """The value of a position and the chances of its pots, from the pots of ``game.pots``."""
+def by_plain_python(positions, on_table, ball_on, spread, follows, second, third):
+    """The value of a position and the chances of its pots, from the 16 widest pots of ``game.pots``."""
     present = [ball for ball in VALUE if on_table[ball]]
     balls = [ball for ball in present if (VALUE[ball] == 1) == (ball_on == BallOn.RED)]
     left = sum(8 if VALUE[ball] == 1 else VALUE[ball] for ball in present)
     left += 7 * (ball_on == BallOn.ANY_COLOUR)
     chances, worths = [], [0.0, 0.0, 0.0]
-    for ball, pocket, gx, gy, _, tolerance in pots(positions, on_table, mask_of(balls)):
+    for ball, pocket, gx, gy, _, tolerance in pots(positions, on_table, mask_of(balls))[:16]:
         (cx, cy), (bx, by), (px, py) = positions[CUE], positions[int(ball)], POCKET_AIMS[int(pocket), :2]
         run = hypot(gx - cx, gy - cy) + hypot(px - bx, py - by)
-        within = norm.cdf(tolerance, scale=spread) - norm.cdf(-tolerance, scale=spread)
-        chances.append(within * exp(-far * run))
+        if spread == 0.0:  # who makes every pot
+            chances.append(1.0)
+        else:
+            within = norm.cdf(tolerance, scale=spread) - norm.cdf(-tolerance, scale=spread)
+            chances.append(within * exp(-0.01 * run))
         more = follows * (1 - exp(-max(0, left - VALUE[int(ball)]) / follows))
         worths.append(chances[-1] * (VALUE[int(ball)] + more))
     best = sorted(worths, reverse=True)
@@ -38,12 +41,12 @@ def by_plain_python(positions, on_table, ball_on, spread, follows, second, third
 
 
 @pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
-@pytest.mark.parametrize("constants", [prospects.RULE_OF_THUMB, prospects.SURE, (8.0, 0.4, 0.3, 0.5)])
+@pytest.mark.parametrize("constants", [prospects.RULE_OF_THUMB, prospects.SURE, (8.0, 0.4, 0.3)])
 def test_prospects_recomputed(ball_on, constants):
     env = tables(30, layout="random:3", seed=2)
     at = Positions.of(env)
     at.game[:, BALL_ON] = int(ball_on)
-    for spread in (5e-4, 6e-3):
+    for spread in (0.0, 5e-4, 6e-3):
         values, chances = prospects.prospects_of(at, spread, constants, most=6)
         for k in range(30):
             value, all_of = by_plain_python(at.positions[k], at.on_table[k], ball_on, spread, *constants)
