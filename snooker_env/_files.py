@@ -31,7 +31,11 @@ def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], objec
     target, data = Path(os.path.realpath(path)), content.encode() if isinstance(content, str) else content
     write = data if callable(data) else lambda file: file.write_bytes(data)
     if target.exists() and not target.is_file():
-        write(target)
+        try:
+            write(target)
+        except OSError as error:
+            error.filename = error.filename or str(path)
+            raise
         return
     name = f".{target.stem}.{os.urandom(8).hex()}.tmp{target.suffix}"  # that no machine uses twice
     temporary = target.with_name(name)

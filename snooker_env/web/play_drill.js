@@ -49,7 +49,7 @@ export class Drills {
   async begin(key) {
     const { app } = this;
     this.before ??= app.state.practice ? null : { players: app.state.players, noise: app.state.noise, practice: false };
-    Object.assign(this, { now: key, tries: 0, score: 0, over: false });
+    Object.assign(this, { now: key, tries: 0, score: 0, over: false, dealing: true });  // no stroke on the table before
     by("drills").open = false;
     this.show();
     await app.try(() => ask("players", { players: ["person", "person"], practice: true }));
@@ -58,8 +58,8 @@ export class Drills {
   }
 
   async deal() {
-    if (!this.now) return;
-    this.dealing = true;  // no stroke on the table of the last try
+    this.dealing = Boolean(this.now);  // no stroke on the table of the last try
+    if (!this.dealing) return;
     await this.app.try(DRILLS[this.now].table);
     this.dealing = false;
     this.counted = this.app.state.strokes;
