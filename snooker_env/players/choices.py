@@ -7,6 +7,7 @@ import numpy as np
 from .._check import refuse_what
 from .._types import Bools, Floats, Integers, Ints
 from ..game.frame_columns import VISIT_COLUMNS
+from ..game.ruling import AUTO
 from ..planning import Positions, pots
 from ..planning.ghost_ball import geometric_strokes
 from ..planning.positions import PositionsLike, seeds_of
@@ -162,6 +163,10 @@ class GhostBall(ChoicePlayer):
         (nominated, decisions), solves = np.empty((2, n), np.int64), np.empty(n, np.bool_)
         out = values, places, nominated, decisions, visits, solves
         geometric_strokes(positions, on_table, game, code, streams_of(seeds), *out)
+        if (
+            "nominate" not in self.options.says
+        ):  # as of the other side, the colour first struck is the one nominated
+            nominated[:] = AUTO
         start, rows = Positions(positions, on_table, visits, None, conditions), np.flatnonzero(solves)
         if len(rows):
             values[rows] = self._meant(start[rows], np.full(len(rows), _PLAIN))

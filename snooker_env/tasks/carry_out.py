@@ -64,11 +64,8 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
 
 
 def carry_out(frames: "Frames", which: Ints, asked: "Asked", buffers: ShotBuffers, side: int) -> Ints:
-    """Carry out the strokes ``asked`` up to the strike, with the errors of the seat ``side``, and without nominations where
-    its actions hold none; returns the tables with a stroke."""
-    if not frames.seats[side].actions.nominate:
-        values, places, nominate, decisions, declared = asked
-        asked = values, places, np.full_like(nominate, AUTO), decisions, declared
+    """Carry out the strokes ``asked`` up to the strike, with the errors of the seat ``side``; returns the tables with a
+    stroke."""
     codes = frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)
     playing, tables = np.empty(len(which), np.int64), (frames.arrays, frames.saved_arrays)
     m = _carry_out(which, asked, *tables, frames.packs[side][:2], codes, buffers.struck, playing)
