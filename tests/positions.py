@@ -14,12 +14,12 @@ def tables(n, seed=0, **options):
     return begun(SnookerVectorEnv(n, **options), seed)
 
 
-def chances_by_width(at, spread):
-    """Chances of the pots, in their order, with the loss of 0.01 a metre, in plain Python: (n, 16)."""
+def chances_by_width(at, spread, decay=0.01):
+    """Chances of the pots, in their order, with this loss a metre, in plain Python: (n, 16)."""
     direct, chances = pots(at, most=16), np.zeros((len(at), 16))
     for k, j in np.argwhere(direct.ball >= 0):
         (gx, gy), (cx, cy) = direct.ghost[k, j], at.positions[k, 0]
         (px, py), (x, y) = POCKET_AIMS[direct.pocket[k, j], :2], at.positions[k, direct.ball[k, j]]
         run = hypot(gx - cx, gy - cy) + hypot(px - x, py - y)
-        chances[k, j] = erf(direct.tolerance[k, j] / (spread * sqrt(2.0))) * exp(-0.01 * run)
+        chances[k, j] = erf(direct.tolerance[k, j] / (spread * sqrt(2.0))) * exp(-decay * run)
     return chances

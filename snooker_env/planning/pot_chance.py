@@ -25,13 +25,18 @@ def pot_chance(tolerance, length, spread):
 
 
 @kernel
-def chance_of(positions, pot, spread):
-    """The chance of a row of ``find_pots`` for a stroke with this spread [rad]."""
+def length_of(positions, pot):
+    """The paths of both balls together [m] at a row of ``find_pots``."""
     ball, pocket = int(pot[POT_BALL]), int(pot[POT_POCKET])
     path = hypot(pot[GHOST_X] - positions[0, 0], pot[GHOST_Y] - positions[0, 1])
     tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
-    run = hypot(tx - positions[ball, 0], ty - positions[ball, 1])
-    return pot_chance(pot[TOLERANCE], path + run, spread)
+    return path + hypot(tx - positions[ball, 0], ty - positions[ball, 1])
+
+
+@kernel
+def chance_of(positions, pot, spread):
+    """The chance of a row of ``find_pots`` for a stroke with this spread [rad]."""
+    return pot_chance(pot[TOLERANCE], length_of(positions, pot), spread)
 
 
 @entry

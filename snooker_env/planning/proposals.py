@@ -2,7 +2,7 @@
 are seen, over cushions. Each is called with a search, n positions, a number m and n seeds, and returns m
 strokes for each position that it has any for.
 
-* ``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth.
+* ``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to (chance x nearness)^4 x worth.
   The strokes at a pot are consecutive points of one scrambled Sobol sequence over the logarithm of the speed,
   the height of the tip and its side; half of them have no side.
 * ``at_balls``: to the places where a ball on is met first (``tasks.windows``), evenly. Every other
@@ -34,8 +34,8 @@ from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .aims import Dynamics, law_of
 from .positions import Positions
-from .pot_chance import chance_of
-from .prospects import FOLLOWS, raised_spread
+from .pot_chance import chance_of, length_of
+from .prospects import DISTANT, FOLLOWS, raised_spread
 from .sobol import sobol
 from .stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 
@@ -135,7 +135,8 @@ def _propose(balls, seeds, which, spread, growth, law, strokes, chances):
             worth = VALUES[int(lines[j, POT_BALL])] + FOLLOWS
             aim = atan2(lines[j, GHOST_Y] - p[0, 1], lines[j, GHOST_X] - p[0, 0])
             wide = raised_spread(spread, 0.0, 0.0, aim, p, here, rails)
-            weights[j] = chance_of(p, lines[j], wide) ** POWER * worth + 1e-12
+            near = exp(-DISTANT * length_of(p, lines[j]))
+            weights[j] = (chance_of(p, lines[j], wide) * near) ** POWER * worth + 1e-12
             total += weights[j]
         j, reached = 0, weights[0] / total
         for i in range(m):

@@ -17,7 +17,7 @@ from ..physics.parameters import PhysicsLike
 from ..tasks.discrete_actions import POTS
 from ..tasks.noise import TWICE, Noise
 from .positions import Positions
-from .pot_chance import chance_of
+from .pot_chance import chance_of, length_of
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
 WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost
@@ -25,9 +25,11 @@ FOLLOWS = 25.0
 """Points to expect after a made pot from the rest of the visit; fewer if fewer are left on the table."""
 SECOND, THIRD = 0.15, 0.05
 """Shares of the second and third best pot that count: they leave a choice of where to play next."""
-RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD)
-"""Constants of ``prospects_of`` for a player with execution errors: the three numbers above."""
-SURE = (1e4, 1e-3, 0.0)
+DISTANT = 0.09
+"""Decay of what a pot is worth per metre of both balls' paths [1/m], beside its chance: from far the cue ball is hard to place."""
+RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, DISTANT)
+"""Constants of ``prospects_of`` for a player with execution errors: the four numbers above."""
+SURE = (1e4, 1e-3, 0.0, 0.0)
 """Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left."""
 
 
@@ -45,7 +47,7 @@ def raised_spread(spread, side, top, aim, positions, on_table, rails):
 def _prospects(positions, on_table, ball_on, spread, constants, rails, values, chances):
     """Fill ``values`` (n,) and ``chances`` (n, most) of ``prospects_of``."""
     lines = np.empty((16, POT_COLUMNS))
-    follows, second, third = constants
+    follows, second, third, distant = constants
     for k in range(len(values)):
         chances[k, :] = 0.0
         values[k] = 0.0
@@ -65,6 +67,7 @@ def _prospects(positions, on_table, ball_on, spread, constants, rails, values, c
                 chances[k, j] = chance
             rest = max(0.0, left - VALUES[ball])
             worth = chance * (VALUES[ball] + follows * (1.0 - exp(-rest / follows)))
+            worth *= exp(-distant * length_of(p, lines[j]))
             if worth > a:
                 a, b, c = worth, a, b
             elif worth > b:
@@ -114,7 +117,7 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
 def prospects_of(
     at: Positions,
     spread: float,
-    constants: tuple[float, float, float] = RULE_OF_THUMB,
+    constants: tuple[float, float, float, float] = RULE_OF_THUMB,
     most: int = POTS,
     threads: int = 1,
     rails: Floats = NO_RAILS,
@@ -122,7 +125,7 @@ def prospects_of(
     """Estimate the value of positions and the chances of their pots by a rule of thumb.
 
     The chance of a pot is that of an error within its tolerance (``pot_chance``); its
-    value that times its points plus what may follow. Small shares of the second and third best pot count too.
+    value that times its points plus what may follow, less from far. Small shares of the second and third best pot count too.
 
     Parameters
     ----------

@@ -82,9 +82,9 @@ def test_strokes_stay_within_their_limits_and_fill_them():
 
 
 def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
-    """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``."""
+    """Shares in plain Python, of near pots more (0.09 a metre beside the chance's 0.01); aims by ``Planner.pot_aim``."""
     at, m, several = some(), 150, 0
-    direct, likely = planning.pots(at, most=MOST_POTS), planning.prospects_of(at, SPREAD, most=MOST_POTS)[1]
+    direct, likely = planning.pots(at, most=MOST_POTS), chances_by_width(at, SPREAD, 0.1)
     chances = chances_by_width(at, SPREAD)
     proposed = at_pots(Hand(), at, m, seeds(20))
     for k in range(20):

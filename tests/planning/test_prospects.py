@@ -19,7 +19,7 @@ VALUE = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 """Points of each ball."""
 
 
-def by_plain_python(positions, on_table, ball_on, spread, follows, second, third):
+def by_plain_python(positions, on_table, ball_on, spread, follows, second, third, distant):
     """The value of a position and the chances of its pots, from the 16 widest pots of ``game.pots``."""
     present = [ball for ball in VALUE if on_table[ball]]
     balls = [ball for ball in present if (VALUE[ball] == 1) == (ball_on == BallOn.RED)]
@@ -35,13 +35,13 @@ def by_plain_python(positions, on_table, ball_on, spread, follows, second, third
             within = norm.cdf(tolerance, scale=spread) - norm.cdf(-tolerance, scale=spread)
             chances.append(within * exp(-0.01 * run))
         more = follows * (1 - exp(-max(0, left - VALUE[int(ball)]) / follows))
-        worths.append(chances[-1] * (VALUE[int(ball)] + more))
+        worths.append(chances[-1] * (VALUE[int(ball)] + more) * exp(-distant * run))
     best = sorted(worths, reverse=True)
     return best[0] + second * best[1] + third * best[2], chances
 
 
 @pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
-@pytest.mark.parametrize("constants", [prospects.RULE_OF_THUMB, prospects.SURE, (8.0, 0.4, 0.3)])
+@pytest.mark.parametrize("constants", [prospects.RULE_OF_THUMB, prospects.SURE, (8.0, 0.4, 0.3, 0.5)])
 def test_prospects_recomputed(ball_on, constants):
     env = tables(30, layout="random:3", seed=2)
     at = Positions.of(env)
@@ -56,18 +56,20 @@ def test_prospects_recomputed(ball_on, constants):
 
 
 def test_what_is_left_of_a_last_black():
-    """Nothing follows: the pots are worth their chance times 7."""
+    """Nothing follows: the pots are worth their chance times 7, less from far."""
     at = Positions.of(tables(1))
     at.on_table[0, 1:] = False
     at.on_table[0, BLACK] = True
     at.positions[0, CUE], at.positions[0, BLACK] = (0.0, 0.8), (0.4, 1.3)
     at.game[0, BALL_ON] = int(BallOn.BLACK)
-    (value,), (chances,) = prospects.prospects_of(at, 2e-3)
+    (value,), (chances,) = prospects.prospects_of(at, 2e-3, near := (25.0, 0.15, 0.05, 0.0))
     best = 7.0 * np.sort(chances)[::-1]
     assert value == pytest.approx(best[0] + 0.15 * best[1] + 0.05 * best[2]) and value > 1.0
     at.on_table[0, PINK] = True  # but is not on: it follows
     at.positions[0, PINK] = (-0.6, -1.0)
-    assert prospects.prospects_of(at, 2e-3)[0][0] == pytest.approx(value * (7 + 25 * (1 - exp(-6 / 25))) / 7)
+    assert prospects.prospects_of(at, 2e-3, near)[0][0] == pytest.approx(
+        value * (7 + 25 * (1 - exp(-6 / 25))) / 7
+    )
 
 
 @pytest.mark.parametrize("level", ["professional", "club", "olympiad"])
