@@ -47,9 +47,7 @@ class Recording(BoundPlayer):
     def play(self, positions, seeds):
         at, judge = Positions.of(positions), self._planner.judge
         constants = SURE if judge.noise.silent else RULE_OF_THUMB
-        rule = prospects_of(
-            at, 0.0 if judge.noise.silent else judge.spread, constants, rails=judge.dynamics.rails
-        )[0]
+        rule = prospects_of(at, judge.spread, constants, rails=judge.dynamics.rails)[0]
         self.rows.append(np.column_stack([at.points, judge.value(at), rule]))
         return self._planner.play(at, seeds)
 

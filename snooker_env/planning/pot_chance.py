@@ -17,10 +17,8 @@ def pot_chance(tolerance, length, spread):
     """The chance of a pot that allows errors of ``tolerance`` [rad], with paths of both balls of ``length`` [m] together.
 
     The law of errors: normal, with the standard deviation ``spread`` [rad]. P(|error| < tolerance) = erf(tolerance /
-    (sqrt(2) spread)), times exp(-``FAR`` length). A player without errors, of spread 0, makes every pot.
+    (sqrt(2) spread)), times exp(-``FAR`` length).
     """
-    if spread == 0.0:
-        return 1.0
     return erf(tolerance / (spread * sqrt(2.0))) * exp(-FAR * length)
 
 

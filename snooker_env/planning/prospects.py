@@ -17,7 +17,7 @@ from ..physics.parameters import PhysicsLike
 from ..tasks.discrete_actions import POTS
 from ..tasks.noise import TWICE, Noise
 from .positions import Positions
-from .pot_chance import chance_of, length_of
+from .pot_chance import FAR, chance_of, length_of
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
 WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost
@@ -29,8 +29,9 @@ DISTANT = 0.09
 """Decay of what a pot is worth per metre of both balls' paths [1/m], beside its chance: from far the cue ball is hard to place."""
 RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, DISTANT)
 """Constants of ``prospects_of`` for a player with execution errors: the four numbers above."""
-SURE = (1e4, 1e-3, 0.0, 0.0)
-"""Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left."""
+SURE = (1e4, 1e-3, 0.0, -FAR)
+"""Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left: the
+last one undoes the loss that the chance has by the paths."""
 
 
 @kernel
@@ -132,7 +133,7 @@ def prospects_of(
     at : Positions
         The n positions.
     spread : float
-        Standard deviation of the cue ball's direction [rad], see ``spread_of``; 0: a player who makes every pot.
+        Standard deviation of the cue ball's direction [rad], see ``spread_of``.
     constants : tuple of float, optional
         ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
     most, threads : int, optional

@@ -102,9 +102,9 @@ class VisitJudge:
 
     def _by_rule(self, at: Positions) -> Floats:
         """Values of positions by the rule of thumb [points]: float64 (n,)."""
-        spread, constants = (0.0, SURE) if self.noise.silent else (self.spread, RULE_OF_THUMB)
+        constants = SURE if self.noise.silent else RULE_OF_THUMB
         rails, threads = self.dynamics.rails, self.planner.threads
-        return prospects_of(at, spread, constants, threads=threads, rails=rails)[0]
+        return prospects_of(at, self.spread, constants, threads=threads, rails=rails)[0]
 
     def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
         """One for all positions; without execution errors the first look takes the whole budget."""

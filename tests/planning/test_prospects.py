@@ -29,11 +29,8 @@ def by_plain_python(positions, on_table, ball_on, spread, follows, second, third
     for ball, pocket, gx, gy, _, tolerance in pots(positions, on_table, mask_of(balls))[:16]:
         (cx, cy), (bx, by), (px, py) = positions[CUE], positions[int(ball)], POCKET_AIMS[int(pocket), :2]
         run = hypot(gx - cx, gy - cy) + hypot(px - bx, py - by)
-        if spread == 0.0:  # who makes every pot
-            chances.append(1.0)
-        else:
-            within = norm.cdf(tolerance, scale=spread) - norm.cdf(-tolerance, scale=spread)
-            chances.append(within * exp(-0.01 * run))
+        within = norm.cdf(tolerance, scale=spread) - norm.cdf(-tolerance, scale=spread)
+        chances.append(within * exp(-0.01 * run))
         more = follows * (1 - exp(-max(0, left - VALUE[int(ball)]) / follows))
         worths.append(chances[-1] * (VALUE[int(ball)] + more) * exp(-distant * run))
     best = sorted(worths, reverse=True)
@@ -46,7 +43,7 @@ def test_prospects_recomputed(ball_on, constants):
     env = tables(30, layout="random:3", seed=2)
     at = Positions.of(env)
     at.game[:, BALL_ON] = int(ball_on)
-    for spread in (0.0, 5e-4, 6e-3):
+    for spread in (5e-4, 6e-3):
         values, chances = prospects.prospects_of(at, spread, constants, most=6)
         for k in range(30):
             value, all_of = by_plain_python(at.positions[k], at.on_table[k], ball_on, spread, *constants)
@@ -56,7 +53,7 @@ def test_prospects_recomputed(ball_on, constants):
 
 
 def test_what_is_left_of_a_last_black():
-    """Nothing follows: the pots are worth their chance times 7, less from far."""
+    """Nothing follows: the pots are worth their chance times 7, here as much from far."""
     at = Positions.of(tables(1))
     at.on_table[0, 1:] = False
     at.on_table[0, BLACK] = True

@@ -221,7 +221,7 @@ def test_without_errors_the_ranking_is_that_of_the_looks():
     for one in ranked:
         assert not one.samples.any() and (np.diff(one.scores) <= 0.0).all() and len(one.scores) == 80
     played = Planner({"fidelity": "fast"}).play_strokes(at, np.arange(6), first(ranked))
-    worth = played.points + played.goes_on * prospects_of(played.afterstates, 0.0, SURE)[0]
+    worth = played.points + played.goes_on * prospects_of(played.afterstates, tool.judge.spread, SURE)[0]
     scores = [one.scores[0] for one in ranked]
     assert scores == pytest.approx(worth, rel=1e-6) and (played.points > 0).sum() >= 4
 
