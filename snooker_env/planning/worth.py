@@ -84,11 +84,14 @@ def chosen(at: Positions, what: int) -> Positions:
 
 
 def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
-    """The best decision after a foul for n strikers who have that choice, and its worth to them: (n,), (n,)."""
+    """The best decision after a foul for n strikers who have that choice, and its worth to them: (n,), (n,).
+
+    A striker who leads by more than is left plays on: further fouls of the other would bring points without use."""
     allowed, values = np.zeros((len(at), 4), np.bool_), np.full((len(at), 4), -np.inf)
     _allowed(at.game, rules, allowed)
     if at.saved is None:
         allowed[:, columns.REPLACE] = False
+    allowed[np.ix_(lead_of(at) > left_of(at), (columns.PLAY_AGAIN, columns.REPLACE))] = False
     for what in range(4):
         rows = np.flatnonzero(allowed[:, what])
         if len(rows):

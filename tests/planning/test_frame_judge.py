@@ -229,6 +229,17 @@ def test_after_a_foul_all_choices_are_compared():
     assert np.array_equal(lead_of(replaced), -lead_of(at))
 
 
+def test_who_leads_by_more_than_is_left_plays_on():
+    tables = frames_in_play(60, OPTIONS, strokes=0, seed=41)
+    play(tables, random_strokes(60, np.random.default_rng(2)), Threads(1))
+    at = positions_of(tables)
+    at = at[np.flatnonzero(at.choice)]
+    bad = lambda some: np.full(len(some), -100.0)  # noqa: E731 - each player wants the other to play
+    for lead, sent_back in (0.0, True), (1.0, False):
+        at.game[:, columns.SCORE_0] = at.game[:, columns.SCORE_1] + left_of(at) + lead
+        assert np.all((decide(bad, at)[0] != columns.PLAY) == sent_back), lead
+
+
 def test_a_miss_leaves_the_other_the_same_balls():
     at = frame_of(
         Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], blue=(0.3, -0.3), black=(0.0, 1.4605), on="any_colour"),
