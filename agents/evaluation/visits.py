@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from commands.physics_option import physics_option
-from snooker_env.benchmark import Strokes, play_visits
+from snooker_env.benchmark import PlayedStrokes, play_visits
 
 from .travel import arrived
 
@@ -37,11 +37,11 @@ def play(shared, args, threads):
 
 
 def joined(results, total):
-    """The ``Strokes`` of all visits from their parts, in the order in which one machine plays them."""
+    """The ``PlayedStrokes`` of all visits from their parts, in the order in which one machine plays them."""
     columns = {name: np.concatenate([one[name] for one in results]) for name in COLUMNS}
     columns["visit"] = np.concatenate([one["visit"] + SIZE * n for n, one in enumerate(results)])
     order = np.lexsort((columns["visit"], columns["number"]))
     seconds, simulated = (sum(one[name].item() for one in results) for name in ("seconds", "simulated"))
-    return Strokes(
+    return PlayedStrokes(
         total, *(columns[name][order] for name in COLUMNS), decision_seconds=seconds, simulated=simulated
     )

@@ -7,7 +7,7 @@ from .checking import faults
 from .leaderboard import page
 from .playing import COLUMNS
 from .results import read_result, write_result
-from .rollouts import CENTURY, FIGURES, MAXIMUM, Strokes, play_visits, summary
+from .rollouts import CENTURY, FIGURES, MAXIMUM, PlayedStrokes, play_visits, summary
 from .run import judge
 from .statistics import interval, iqm
 from .tasks import HELD_OUT_SEED, TASKS, Task
@@ -22,7 +22,7 @@ __all__ = [
     "Agent",
     "AgentError",
     "ProgramPlayer",
-    "Strokes",
+    "PlayedStrokes",
     "Task",
     "faults",
     "interval",

@@ -35,7 +35,7 @@ FIGURES = {
 
 
 @dataclass
-class Strokes:
+class PlayedStrokes:
     """All strokes of a number of visits, in the order of play, as ``play_visits`` returns them.
 
     Attributes
@@ -111,7 +111,7 @@ def play_visits(
     threads: int | None = None,
     each: Callable[[int], None] | None = None,
     **options: Any,
-) -> Strokes:
+) -> PlayedStrokes:
     """Play visits side by side and record every stroke.
 
     Parameters
@@ -132,7 +132,7 @@ def play_visits(
 
     Returns
     -------
-    Strokes
+    PlayedStrokes
 
     Examples
     --------
@@ -160,10 +160,10 @@ def play_visits(
             each(int(asked.sum() - done.sum()))
     tables.close()
     columns = [np.concatenate(column) for column in zip(*log, strict=True)]
-    return Strokes(visits, *columns, decision_seconds=decide.seconds, simulated=decide.simulated)
+    return PlayedStrokes(visits, *columns, decision_seconds=decide.seconds, simulated=decide.simulated)
 
 
-def counts(s: Strokes) -> dict[str, Floats]:
+def counts(s: PlayedStrokes) -> dict[str, Floats]:
     """Points, pots, fouls and more of each visit (visits,): both terms of every ratio of ``FIGURES``."""
     next_points = np.append(s.points, 0.0)[s.following]  # of the stroke after; 0 after the last
     red, colour = s.made & (s.ball_on == BallOn.RED), s.made & (s.ball_on == BallOn.ANY_COLOUR)
@@ -188,12 +188,12 @@ def counts(s: Strokes) -> dict[str, Floats]:
     return sums | {"visits": np.ones(s.visits)}
 
 
-def summary(strokes: Strokes) -> dict[str, Any]:
+def summary(strokes: PlayedStrokes) -> dict[str, Any]:
     """Mean figures of visits.
 
     Parameters
     ----------
-    strokes : Strokes
+    strokes : PlayedStrokes
         All strokes of the visits.
 
     Returns

@@ -163,9 +163,7 @@ class GhostBall(ChoicePlayer):
         (nominated, decisions), solves = np.empty((2, n), np.int64), np.empty(n, np.bool_)
         out = values, places, nominated, decisions, visits, solves
         geometric_strokes(positions, on_table, game, code, streams_of(seeds), *out)
-        if (
-            "nominate" not in self.options.says
-        ):  # as of the other side, the colour first struck is the one nominated
+        if "nominate" not in self.options.says:  # the colour first struck is the one nominated
             nominated[:] = AUTO
         start, rows = Positions(positions, on_table, visits, None, conditions), np.flatnonzero(solves)
         if len(rows):

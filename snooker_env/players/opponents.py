@@ -41,9 +41,7 @@ class PlayerOpponent:
         seeds, asked = np.zeros(frames.n, np.int64), _room(frames.n)
         seeds[which] = drawn(frames, which) * 2**32
         player = self.player
-        if isinstance(
-            player, GhostBall
-        ):  # all of it are kernels: on several threads, without looking at what it answers
+        if isinstance(player, GhostBall):  # kernels alone, on several threads: its answer needs no check
 
             def ask(part, _):
                 tables = frames.positions[part], frames.on_table[part], frames.game[part]

@@ -157,11 +157,6 @@ def _conditions_known(at: Positions, rules: Rules) -> Floats:
     return np.tile(nominal(rules.physics), (len(at), 1)) if own is None else own
 
 
-def conditions_seen(at: Positions, rules: Rules) -> Singles:
-    """The same as observations show them: float32 (n, 8) in [-1, 1]."""
-    return normalised(_conditions_known(at, rules)).astype(np.float32)
-
-
 def begun(at: Positions) -> Positions:
     """Positions of visits as those of frames: the striker's points alone have been scored."""
     game = np.zeros((len(at), columns.COLUMNS), np.int64)

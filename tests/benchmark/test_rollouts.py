@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 from agents import evaluate
 from snooker_env.benchmark import HELD_OUT_SEED, play_visits, rollouts
-from snooker_env.benchmark.rollouts import FIGURES, Strokes, counts, summary
+from snooker_env.benchmark.rollouts import FIGURES, PlayedStrokes, counts, summary
 from snooker_env.benchmark.tasks import tables_of
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BallOn
@@ -29,11 +29,11 @@ class Watched:
 
 
 def strokes(**columns):
-    """``Strokes`` of these columns, with nothing in the others."""
+    """``PlayedStrokes`` of these columns, with nothing in the others."""
     n = len(columns["visit"])
     usual = {"cleared": np.zeros(n, bool), "cue": np.zeros((n, 2)), "tolerance": np.zeros(n)}
     arrays = {name: np.array(column) for name, column in columns.items()}
-    return Strokes(visits=max(columns["visit"]) + 1, decision_seconds=0.0, **usual | arrays)
+    return PlayedStrokes(visits=max(columns["visit"]) + 1, decision_seconds=0.0, **usual | arrays)
 
 
 def test_counts_of_a_visit_by_hand():
