@@ -6,10 +6,9 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from .._check import choice, refuse_what
-from .._types import Bools, Floats, Integers, Ints, Observation, Singles
+from .._types import Bools, Floats, Integers, Ints, Observation
 from ..game import frame_columns as columns
 from ..game.balls import mask_of_present
-from ..physics.conditions import normalised
 from ..physics.parameters import nominal
 from ..planning import Positions
 from ..planning.positions import PositionsLike, seeds_of
