@@ -13,7 +13,6 @@ any version:
 * ``snooker_env.checks``: reporting bad input as the package does
 * ``snooker_env.progress``: how far a long command is, for your own commands too
 * ``snooker_env.render``: the scene of a table, and its pictures
-* ``snooker_env.render.diagrams``: shots, where a ball stops and chances to win, drawn with matplotlib
 * ``snooker_env.replays``: what was played, as a page, as data and as a film
 * ``snooker_env.benchmark``: named tasks with frozen options, and how agents are judged on them
 * ``snooker_env.sb3``: many tables for Stable-Baselines3

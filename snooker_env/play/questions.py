@@ -12,7 +12,7 @@ from ..game.frame import CHOICES
 from ..geometry import BAULK_Y, POCKET_AIMS, POCKETS
 from ..physics.engine import EventKind
 from ..planning import Planner
-from ..render.scene import ball_paths
+from ..render.scene import trace_paths
 from ..replays.encode import packed
 from ..shot import Shot
 from .service import Seats, Service
@@ -83,9 +83,9 @@ def paths(shot: Shot) -> dict[str, Any]:
     """Paths of a shot's balls [m], rounded to 0.1 mm; the ball struck first, the pots and the duration."""
     events = shot.events
     hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
-    lines = ball_paths(shot, range(len(shot.positions)), step=0.04)
+    lines = trace_paths(shot, range(len(shot.positions)), step=0.04)
     return {
-        "paths": {str(ball): np.round(points, 4).tolist() for ball, points in lines.items()},
+        "paths": {str(ball): np.round(points, 4).tolist() for ball, (points, _) in lines.items()},
         "first": NAMES[hits["j"][0]] if len(hits) else None,
         "pots": [[NAMES[ball], POCKETS[shot.potted[ball]]] for ball in np.flatnonzero(shot.potted >= 0)],
         "duration": shot.duration,

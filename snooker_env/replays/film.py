@@ -16,11 +16,11 @@ from .._install import missing
 from .._jit import entry
 from .._types import Bytes
 from ..physics.table import Table
-from ..render.scene import Film, Scene, ScoreBar, scene
+from ..render.scene import UNTURNED, Film, Scene, ScoreBar, scene
 from ..render.table_picture import SIZE, Size
 from ..simulation import Shot
 from ..tasks.played import Played
-from .words import bars, pots_of
+from .words import bars
 
 if TYPE_CHECKING:
     from .document import Replay
@@ -54,7 +54,6 @@ def to_video(picture: Bytes) -> Bytes:
 
 
 PAUSE = 0.8  # how long the table is shown after each stroke [s of the film]
-UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 HD = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
 """Options that declare the colour space of ``to_video`` (BT.709, limited range)."""
 USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 15.0)}
@@ -75,12 +74,11 @@ def film_stroke(
 ) -> tuple[Film, Scene]:
     """A stroke as a film, and the table after it; ``during`` and ``after`` are the bars of ``bars``."""
     shot, judged = (stroke.shot, True) if isinstance(stroke, Played) else (stroke, False)
-    film = Film(table, shot, trail=(0, *pots_of(shot)), spots=(0,), faded=(0,), bar=during, text=text)
+    film = Film(table, shot, bar=during, text=text)
     last = film.at(shot.duration)
     where, on_table = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
     placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
-    turns = {0: UNTURNED} if placed else last.turns
-    over = {"paths": last.paths, "ghosts": last.ghosts, "turns": turns}
+    over = {"paths": last.paths, "ghosts": last.ghosts, "turn": UNTURNED if placed else last.turn}
     still = scene(table, where, on_table, bar=after, text=text, **over)
     return film, replace(still, ball_radius=last.ball_radius)
 

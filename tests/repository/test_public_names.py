@@ -62,7 +62,6 @@ TRAINED_FOR = (
     "snooker_env.benchmark.statistics",
     "snooker_env.benchmark.tasks",
     "snooker_env.game.layouts: plan_of",
-    *(f"snooker_env.render.diagrams: {name}_of" for name in ("bandwidth", "density", "level")),
     "snooker_env.players",
     "snooker_env.planning.learned",
     "snooker_env.planning.worth",
