@@ -25,17 +25,17 @@ from gymnasium.envs import registration as _gymnasium
 from ._registration import register as _register
 from ._warmup import warmup
 from .geometry import POCKETS, Pocket
-from .impacts import collide_balls, collide_cushion, strike
-from .match import match_env
 from .physics.engine import EventKind
 from .physics.parameters import Physics
 from .physics.table import Table
-from .shot import Shot, ShotBatch, SimulationError
 from .simulation import simulate, simulate_batch
+from .simulation.impacts import collide_balls, collide_cushion, strike
+from .simulation.shot import Shot, ShotBatch, SimulationError
 
 if _typing.TYPE_CHECKING:
     from . import planning
     from .advice import advise
+    from .envs import match_env
     from .envs.match_vector import MatchVectorEnv
     from .envs.snooker import SnookerEnv
     from .envs.vector import SnookerVectorEnv
@@ -79,7 +79,7 @@ __all__ = [
 ]
 
 _LATER = {"Options": "tasks.options", "advise": "advice", "player": "players", "SnookerEnv": "envs.snooker"}
-_LATER |= {"SnookerVectorEnv": "envs.vector", "MatchVectorEnv": "envs.match_vector"}
+_LATER |= {"SnookerVectorEnv": "envs.vector", "MatchVectorEnv": "envs.match_vector", "match_env": "envs"}
 _LATER |= dict.fromkeys(("Planner", "Position", "Positions"), "planning")
 _LATER |= dict.fromkeys(("RecordReplay", "Replay", "replay"), "replays")
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""

@@ -28,8 +28,8 @@ _WRITE_GROUP, _WRITE_OTHERS, _STICKY = 0o020, 0o002, 0o1000
 _LARGE = 2**21  # bytes: twice the machine code of the largest kernel
 
 
-_FILES = "_inner.py", "_jit.py", "_lanes.py", "geometry.py", "impacts.py", "simulation.py"
-KERNEL_ROOMS = (*_FILES, "game", "physics", "planning", "tasks")
+_FILES = "_inner.py", "_jit.py", "_lanes.py", "geometry.py"
+KERNEL_ROOMS = (*_FILES, "game", "physics", "planning", "simulation", "tasks")
 """What holds kernels, and all that their kernels take from (tests/repository/test_kernel_rooms.py)."""
 
 

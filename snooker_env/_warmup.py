@@ -6,8 +6,8 @@ import numpy as np
 
 from ._jit import ENTRIES
 from ._notices import warming_up
-from .impacts import collide_balls, collide_cushion, strike
 from .simulation import simulate
+from .simulation.impacts import collide_balls, collide_cushion, strike
 
 if TYPE_CHECKING:
     from .envs.snooker import SnookerEnv

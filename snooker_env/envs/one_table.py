@@ -11,7 +11,7 @@ from ..game.frame import Frame
 from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..shot import Shot
+from ..simulation.shot import Shot
 from ..tasks.frame import Frames
 from ..tasks.noise import Noise
 from ..tasks.options import Options

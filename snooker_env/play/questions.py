@@ -14,7 +14,7 @@ from ..physics.engine import EventKind
 from ..planning import Planner
 from ..render.scene import trace_paths
 from ..replays.encode import packed
-from ..shot import Shot
+from ..simulation.shot import Shot
 from .service import Seats, Service
 from .session import Session
 

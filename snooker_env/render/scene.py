@@ -16,7 +16,7 @@ from .outline import outline as outline
 from .outline import scene_data as scene_data
 
 if TYPE_CHECKING:
-    from ..shot import Shot
+    from ..simulation.shot import Shot
 else:  # a shot draws itself: its module stands above this one
     Shot = Any
 

@@ -19,7 +19,7 @@ from .table_picture import View, table_picture
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..shot import Shot
+    from ..simulation.shot import Shot
 else:  # a shot draws itself: its module stands above this one
     Shot = Any
 

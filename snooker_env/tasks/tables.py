@@ -17,7 +17,7 @@ from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import END_MASS_RATIO, drawn, normalised
 from ..physics.conditions import NAMES as CONDITION_NAMES
 from ..physics.parameters import Physics, nominal, pack_into, physics_with
-from ..shot import Shot
+from ..simulation.shot import Shot
 from . import discrete_actions, stroke
 from .box_actions import Actions
 from .declarations import A_END_MASS

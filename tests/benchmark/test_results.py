@@ -168,7 +168,7 @@ def test_simulated_shots_are_counted():
 @pytest.mark.parametrize("log", [2, 512])
 def test_a_shot_that_is_played_twice_counts_once(monkeypatch, log):
     from snooker_env import simulation
-    from snooker_env._shots import simulated
+    from snooker_env.simulation.count import simulated
     from snooker_env.tasks import stroke
 
     monkeypatch.setattr(simulation, "_FIRST_LOG", log)

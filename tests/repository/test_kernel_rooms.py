@@ -10,7 +10,7 @@ from snooker_env import _cache
 
 PACKAGE = Path(snooker_env.__file__).resolve().parent
 INSIDE = [p for p in sorted(PACKAGE.rglob("*.py")) if p.relative_to(PACKAGE).parts[0] in _cache.KERNEL_ROOMS]
-NO_CONSTANTS = {"_cache", "_check", "_files", "_install", "_notices", "_shots", "_tables", "_types", "shot"}
+NO_CONSTANTS = {"_cache", "_check", "_files", "_install", "_notices", "_tables", "_types", "render"}
 """What the rooms import besides themselves, of which no kernel takes anything."""
 
 

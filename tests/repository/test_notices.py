@@ -113,7 +113,7 @@ def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
 
 LONG = {
     "snooker_env.physics.engine": ["run_batch"],
-    "snooker_env.impacts": ["_collide_balls", "_collide_cushion"],
+    "snooker_env.simulation.impacts": ["_collide_balls", "_collide_cushion"],
     "snooker_env.tasks.stroke": ["address"],
     "snooker_env.tasks.visit": ["_conclude", "_begin"],
     "snooker_env.tasks.frame_kernels": [

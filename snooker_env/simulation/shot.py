@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._check import array, refuse
-from ._types import Bools, Floats, Ints, Real, Vector
-from .physics import trajectory
-from .physics.parameters import Physics
-from .physics.table import Table
+from .._check import array, refuse
+from .._types import Bools, Floats, Ints, Real, Vector
+from ..physics import trajectory
+from ..physics.parameters import Physics
+from ..physics.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -111,7 +111,7 @@ class Shot:
         the angle between its direction and the line of centres. Baulk is left and black right: the horizontal axis is
         y [m], the vertical one x [m] downwards, so that your own marks are drawn by ``ax.plot(y, x)``. ValueError for a shot
         without a path or with more than 22 balls, ImportError without matplotlib."""
-        from .render.shot_diagram import draw_shot
+        from ..render.shot_diagram import draw_shot
 
         return draw_shot(self, ax)
 

@@ -4,15 +4,15 @@ from typing import Any
 
 import numpy as np
 
-from ._check import array, refuse
-from ._jit import entry
-from ._types import Fidelity, Floats, Real, Vector
-from .physics import cue
-from .physics.arrays import Law
-from .physics.columns import P_E_B
-from .physics.impact import contact
-from .physics.impact.polynomial import WORK
-from .physics.parameters import FASTEST_IMPACT, MOST_SPIN_IMPACT, Physics, PhysicsLike
+from .._check import array, refuse
+from .._jit import entry
+from .._types import Fidelity, Floats, Real, Vector
+from ..physics import cue
+from ..physics.arrays import Law
+from ..physics.columns import P_E_B
+from ..physics.impact import contact
+from ..physics.impact.polynomial import WORK
+from ..physics.parameters import FASTEST_IMPACT, MOST_SPIN_IMPACT, Physics, PhysicsLike
 from .shot import SimulationError
 
 
