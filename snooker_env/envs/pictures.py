@@ -11,7 +11,7 @@ import numpy as np
 from .._types import Bytes
 from ..physics.table import Table
 from ..render.table_picture import SIZE as SIZE
-from ..render.table_picture import checked_size
+from ..render.table_picture import check_size
 from ..tasks.played import Played
 from ..tasks.tables import Tables
 
@@ -61,7 +61,7 @@ class Pictures:
     def __init__(self, table: Table, mode: str | None, size: Any = SIZE, players: tuple[str, ...] = ()):
         self.table, self.mode = table, mode
         self.players: tuple[str, ...] = players
-        self.size: tuple[int, int] = checked_size(size, "render_size")
+        self.size: tuple[int, int] = check_size(size, "render_size")
         self._window, self._source = None, PictureSource()
 
     def __getstate__(self) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from ..geometry import BAULK_Y, POCKET_AIMS, POCKETS
 from ..physics.engine import EventKind
 from ..planning import Planner
 from ..render.scene import trace_paths
-from ..replays.encode import packed
+from ..replays.encode import pack
 from ..simulation.shot import Shot
 from .service import Seats, Service
 from .session import Session
@@ -97,7 +97,7 @@ def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any
     shot = exact(session, stroke)
     stops = destinations(session.planned(), stroke, **errors, options={"cue": session.cue})
     figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
-    return paths(shot) | figures | {"cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4")}
+    return paths(shot) | figures | {"cue": pack(stops.cue, "f4"), "ball": pack(stops.ball, "f4")}
 
 
 def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from .palette import PALETTE
 from .pygame_balls import BOLD, MEDIUM, pygame_, typeset
 from .pygame_view import draw
 from .scene import Film, Scene
-from .table_picture import SIZE, Size, View, checked_size
+from .table_picture import SIZE, Size, View, check_size
 
 if TYPE_CHECKING:
     from pygame import Surface
@@ -45,7 +45,7 @@ class Window:
     """A window with a table, opened by the first ``draw``; once closed by its user, shut until ``close``."""
 
     def __init__(self, *, size: Size | None = None):
-        self._size = None if size is None else checked_size(size)
+        self._size = None if size is None else check_size(size)
         self._screen: Surface | None = None
         self.speed: float = 1.0  # as the user has chosen; in multiples of that of ``play``
         self.paused: bool = False

@@ -35,7 +35,7 @@ class Standing(NamedTuple):
     on_table: Bools
 
 
-def checked_judge(judge: object) -> Judge | None:
+def check_judge(judge: object) -> Judge | None:
     """A judge, or None for none."""
     if judge is not None and not isinstance(judge, Judge):
         allowed = 'must have chance_to_win(positions), as snooker_env.player("tactician").at(env) has'

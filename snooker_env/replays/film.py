@@ -60,7 +60,7 @@ USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif":
 """Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
 
-def shown(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
+def film_strokes(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
     """For each stroke of a ``Replay`` its film, and the table after it with the referee's words."""
     judged = [stroke for stroke in replay.strokes if isinstance(stroke, Played)]
     its = iter(bars(judged, replay.players, replay.win_chance))
@@ -84,7 +84,7 @@ def film_stroke(
 
 
 def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Size) -> Iterator[Bytes]:
-    """The pictures of what ``shown`` gives."""
+    """The pictures of what ``film_strokes`` gives."""
     from ..render.pygame_view import rgb_array
 
     fps, speed = _rate("fps", fps), _rate("speed", speed)
