@@ -22,8 +22,7 @@ import typing as _typing
 
 from gymnasium.envs import registration as _gymnasium
 
-from ._registration import register as _register
-from ._warmup import warmup
+from ._lib.registration import register as _register
 from .geometry import POCKETS, Pocket
 from .physics.engine import EventKind
 from .physics.parameters import Physics
@@ -35,6 +34,7 @@ from .simulation.shot import Shot, ShotBatch, SimulationError
 if _typing.TYPE_CHECKING:
     from . import planning
     from .advice import advise
+    from .benchmark.warmup import warmup
     from .envs import match_env
     from .envs.match_vector import MatchVectorEnv
     from .envs.snooker import SnookerEnv
@@ -79,7 +79,12 @@ __all__ = [
 ]
 
 _LATER = {"Options": "tasks.options", "advise": "advice", "player": "players", "SnookerEnv": "envs.snooker"}
-_LATER |= {"SnookerVectorEnv": "envs.vector", "MatchVectorEnv": "envs.match_vector", "match_env": "envs"}
+_LATER |= {
+    "SnookerVectorEnv": "envs.vector",
+    "MatchVectorEnv": "envs.match_vector",
+    "match_env": "envs",
+    "warmup": "benchmark.warmup",
+}
 _LATER |= dict.fromkeys(("Planner", "Position", "Positions"), "planning")
 _LATER |= dict.fromkeys(("RecordReplay", "Replay", "replay"), "replays")
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""

@@ -14,8 +14,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ._check import number, refuse, truth
-from ._types import Floats
+from ._lib.check import number, refuse, truth
+from ._lib.types import Floats
 
 __all__ = [
     "AIM_X",

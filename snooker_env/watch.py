@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ._check import integer, number, refuse
-from ._command import exit_code
+from ._lib.check import integer, number, refuse
+from ._lib.command import exit_code
 from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
 from .planning import Positions

@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
-from .._install import missing
-from .._types import RenderMode
+from .._lib.install import missing
+from .._lib.types import RenderMode
 
 if TYPE_CHECKING:
     from ..tasks.options import Options

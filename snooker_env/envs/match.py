@@ -10,8 +10,8 @@ from gymnasium.utils import seeding
 from numpy.typing import NDArray
 from pettingzoo import AECEnv
 
-from .._check import choice, refuse
-from .._types import Action, Observation, RenderMode
+from .._lib.check import choice, refuse
+from .._lib.types import Action, Observation, RenderMode
 from ..game.frame import Frame
 from ..game.frame_columns import STRIKER, STROKES
 from ..simulation.shot import Shot

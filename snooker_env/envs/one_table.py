@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import truth
-from .._types import Bools, Floats
+from .._lib.check import truth
+from .._lib.types import Bools, Floats
 from ..game.balls import BallOn
 from ..game.frame import Frame
 from ..game.frame_columns import BALL_ON, IN_HAND, POINTS

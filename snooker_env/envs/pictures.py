@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import gymnasium
 import numpy as np
 
-from .._types import Bytes
+from .._lib.types import Bytes
 from ..physics.table import Table
 from ..render.table_picture import SIZE as SIZE
 from ..render.table_picture import check_size

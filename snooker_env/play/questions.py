@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, number, refuse
+from .._lib.check import choice, number, refuse
 from ..advice import CueStroke, Suggestion, advise, destinations
 from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
 from ..game.frame import CHOICES

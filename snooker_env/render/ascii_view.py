@@ -7,7 +7,7 @@ from textwrap import wrap
 
 import numpy as np
 
-from .._check import integer
+from .._lib.check import integer
 from .outline import BAULK_LINE, D_ARC, SPOT_MARKS, extent, has_lines
 from .palette import LETTERS
 from .scene import Scene

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Floats
+from .._lib.types import Floats
 from ..game.balls import NAMES, VALUES
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.columns import JAW_RADIUS

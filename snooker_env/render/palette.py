@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._types import Bytes
+from .._lib.types import Bytes
 
 PALETTE: dict[str, tuple[int, int, int]] = {
     "floor": (17, 18, 21),

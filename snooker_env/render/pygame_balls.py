@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._install import missing
-from .._types import Floats
+from .._lib.install import missing
+from .._lib.types import Floats
 from ..game.balls import CUE
 from .palette import COLOURS, PALETTE
 from .scene import Scene

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._check import number
-from .._types import Flags, Floats, Ints, Vectors
+from .._lib.check import number
+from .._lib.types import Flags, Floats, Ints, Vectors
 from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind

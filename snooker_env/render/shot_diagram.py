@@ -4,9 +4,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._check import refuse
-from .._install import missing
-from .._types import Floats, Vector
+from .._lib.check import refuse
+from .._lib.install import missing
+from .._lib.types import Floats, Vector
 from ..game.balls import CUE, N_BALLS
 from ..physics.cloth import SEGMENT_BALL, SEGMENT_STATE, SLIDE, T0
 from ..physics.engine import EventKind

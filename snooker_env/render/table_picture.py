@@ -7,8 +7,8 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from .._check import integer, refuse
-from .._types import Bytes, Floats
+from .._lib.check import integer, refuse
+from .._lib.types import Bytes, Floats
 from ..geometry import BAULK_Y, D_RADIUS
 from ..physics.table import Table
 from .outline import BAULK_LINE, CUSHION, RAIL, SPOT_MARKS, Outline, extent, has_lines, outline

@@ -4,7 +4,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from .._check import number
+from .._lib.check import number
 from .palette import PALETTE
 from .pygame_balls import BOLD, MEDIUM, pygame_, typeset
 from .pygame_view import draw

@@ -5,8 +5,8 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from .._check import refuse_what
-from .._types import Bools, Floats
+from .._lib.check import refuse_what
+from .._lib.types import Bools, Floats
 from ..game import frame_columns as columns
 from ..game.balls import BLACK, mask_of_present
 from ..game.frame import Frame, write_frame

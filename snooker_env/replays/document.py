@@ -10,17 +10,17 @@ from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
-from .._check import choice, refuse, refuse_what
-from .._files import write_atomic
-from .._types import Bytes, Environment
+from .._lib.check import choice, refuse, refuse_what
+from .._lib.files import write_atomic
+from .._lib.types import Bytes, Environment
 from ..physics.table import Table, TableLike
 from ..planning import Position
 from ..render.scene import scene_data
 from ..simulation import Shot, simulate
 from ..tasks.played import Played
-from ..web import WEB, table_js
 from .chances import Judge, check_judge, standings_of, win_chances
 from .encode import encode_stroke, physics_data, table_data
+from .web import WEB, table_js
 
 FORMAT, VERSION = "snooker-replay", 2
 SUFFIXES = (".html", ".json", ".mp4", ".gif")

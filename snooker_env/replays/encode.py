@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._check import refuse_what
+from .._lib.check import refuse_what
 from ..game.balls import N_BALLS
 from ..physics import cloth
 from ..physics.parameters import PRESETS, Physics

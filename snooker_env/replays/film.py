@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._check import number, refuse
-from .._files import write_atomic
-from .._install import missing
-from .._types import Bytes
+from .._lib.check import number, refuse
+from .._lib.files import write_atomic
+from .._lib.install import missing
+from .._lib.types import Bytes
 from ..physics.table import Table
 from ..render.scene import UNTURNED, Film, Scene, ScoreBar, scene
 from ..render.table_picture import SIZE, Size

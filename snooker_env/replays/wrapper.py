@@ -6,8 +6,8 @@ from typing import Any
 
 import gymnasium
 
-from .._check import choice, refuse, refuse_what
-from .._types import Action
+from .._lib.check import choice, refuse, refuse_what
+from .._lib.types import Action
 from .chances import Judge, check_judge
 from .document import SUFFIXES, Replay, check_players, read_path
 

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._check import array, flags, integer, refuse, refuse_what, truth
-from .._types import Batches, Fidelity, FlagRows, Flags, Solver, Vectors
+from .._lib.check import array, flags, integer, refuse, refuse_what, truth
+from .._lib.types import Batches, Fidelity, FlagRows, Flags, Solver, Vectors
 from ..physics import cloth, engine
 from ..physics.arrays import Ends, Log
 from ..physics.events import LOG_FULL, OK, UNSOUND, EventKind, Status

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from .._check import array, refuse
-from .._jit import entry
-from .._types import Fidelity, Floats, Real, Vector
+from .._lib.check import array, refuse
+from .._lib.jit import entry
+from .._lib.types import Fidelity, Floats, Real, Vector
 from ..physics import cue
 from ..physics.arrays import Law
 from ..physics.columns import P_E_B

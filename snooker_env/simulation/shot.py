@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import array, refuse
-from .._types import Bools, Floats, Ints, Real, Vector
+from .._lib.check import array, refuse
+from .._lib.types import Bools, Floats, Ints, Real, Vector
 from ..physics import trajectory
 from ..physics.parameters import Physics
 from ..physics.table import Table

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import entry, kernel
-from .._types import Bools, Floats, Ints
+from .._lib.jit import entry, kernel
+from .._lib.types import Bools, Floats, Ints
 from ..game.balls import CUE, N_BALLS, TOUCH, bits, touching_balls
 from ..game.frame_columns import ANYWHERE, IN_HAND
 from ..game.in_hand import nearest_anywhere, nearest_place

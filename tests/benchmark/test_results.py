@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 import snooker_env as sn
-from snooker_env._files import with_checksum
+from snooker_env._lib.files import with_checksum
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, interval, judge, page
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.leaderboard import LEGEND, board, lines

@@ -8,7 +8,7 @@ from snooker_env.game import layout
 from snooker_env.physics import cloth
 from snooker_env.render.scene import scene_data
 from snooker_env.replays.encode import pack
-from snooker_env.web import table_js
+from snooker_env.replays.web import table_js
 from tests.web.chromium import chromium, module_page  # noqa: F401
 from tests.web.replay_data import MATCH, doubles, hit
 
