@@ -4,15 +4,17 @@ from typing import TYPE_CHECKING, Any
 
 from .._lib.install import missing
 from .._lib.types import RenderMode
+from ..tasks.options import Options
 
 if TYPE_CHECKING:
-    from ..tasks.options import Options
     from .match import MatchEnv
+else:  # PettingZoo is loaded at its first use
+    MatchEnv = Any
 
 
 def match_env(
-    options: "Options | None" = None, *, render_mode: RenderMode | None = None, **keywords: Any
-) -> "MatchEnv":
+    options: Options | None = None, *, render_mode: RenderMode | None = None, **keywords: Any
+) -> MatchEnv:
     """Make a frame or match of snooker between "player_0" and "player_1", as a PettingZoo AEC environment.
 
     Parameters
