@@ -39,7 +39,7 @@ def made(shot, size, fps):
     bar = ScoreBar(
         ("a player", "another"), (0, 0), striker=0, break_points=0, reds_left=15, points_on=147, ball_on="red"
     )
-    scenes = Film("match", shot, spots=(CUE,), faded=(CUE,), bar=bar).scenes(fps)
+    scenes = Film("match", shot, bar=bar).scenes(fps)
     times = []
     while True:
         begin = time.perf_counter()

@@ -12,7 +12,7 @@ from snooker_env.game.layouts import layout
 from snooker_env.game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, pots
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.render.palette import PALE
-from snooker_env.render.sketch import Region, Sketch
+from snooker_env.render.shot_diagram import draw_ball, draw_path, draw_table
 
 from ._common.command import Command, run, save_json
 
@@ -42,18 +42,19 @@ def table(ax, name, seed):
     """Draw one layout; a single pot with its line and ghost ball, a snooker with the lines to the red's
     edges."""
     positions, on_table = layout(name, np.random.default_rng(seed))
-    rim = Region(-HALF_WIDTH - RIM, HALF_WIDTH + RIM, -HALF_LENGTH - RIM, HALF_LENGTH + RIM)
-    sketch = Sketch(Table.preset("match"), LARGER * BALL_RADIUS, rim, ax)
+    draw_table(Table.preset("match"), ax)
+    high, wide = HALF_WIDTH + RIM, HALF_LENGTH + RIM
+    ax.set(xlim=(-wide, wide), ylim=(high, -high))
     if name.startswith("pots:"):
         pot = pots(positions, on_table, REDS_MASK, most=1)[0]
         place, goal = positions[int(pot[POT_BALL])], POCKET_AIMS[int(pot[POT_POCKET]), :2]
-        sketch.line(np.array([positions[0], pot[[GHOST_X, GHOST_Y]]]), "text")
-        sketch.line(np.array([place, goal]), PALE[1])
+        draw_path(ax, np.array([positions[0], pot[[GHOST_X, GHOST_Y]]]), PALE[0])
+        draw_path(ax, np.array([place, goal]), PALE[1])
     elif name == "snookered":
         for red, points in sight(positions, on_table).items():
-            sketch.line(points, PALE[red], width=1.0)
+            draw_path(ax, points, PALE[red], width=1.0)
     for ball in np.flatnonzero(on_table):
-        sketch.ball(int(ball), positions[ball])
+        draw_ball(ax, int(ball), positions[ball], LARGER * BALL_RADIUS)
 
 
 def placed(name, seed):

@@ -7,17 +7,12 @@ import numpy as np
 
 import snooker_env as sn
 from commands import picture_style
-from snooker_env import Table
 from snooker_env.game.layouts import layout
 from snooker_env.game.pots import GHOST_X, GHOST_Y, POT_BALL, pots
-from snooker_env.render.pygame_view import View, rgb_array
-from snooker_env.render.scene import ball_paths, contacts, scene
 
 from ._common.command import Command, run, save_json
 
 FILE = "shot.png"
-SIZE = 3500, 2000
-"""Pixels of the whole table's drawing."""
 SHOWN = (-0.30, 0.08), (1.05, 1.96)
 """Two corners of the part that is shown [m]."""
 STRIP = 0.36
@@ -49,18 +44,15 @@ def pot(seed):
         seed += 1
 
 
-def draw(positions, ball, shot, file):
+def draw(shot, file):
     """The part of the table where the shot is, large; the words below."""
-    paths, ghosts = ball_paths(shot, balls=(0, ball)), {0: contacts(shot)}
-    view = View.of(Table.preset("match"), size=SIZE)
-    image = rgb_array(scene("match", positions, paths=paths, ghosts=ghosts), size=SIZE)
-    (left, top), (right, bottom) = np.round(view(np.array(SHOWN))).astype(int)
-    words = "A red potted with screw and right-hand side: the balls before the shot, and the paths of the cue ball and the red"
+    words = "A red potted with screw and right-hand side: the balls before the shot, faint at a contact and at rest"
     with picture_style.drawing() as plt:
+        (top, left), (bottom, right) = SHOWN
         inches = picture_style.WIDTH * (bottom - top) / (right - left)
         figure = plt.figure(figsize=(picture_style.WIDTH, inches + STRIP))
-        axes = figure.add_axes((0, STRIP / (inches + STRIP), 1, inches / (inches + STRIP)))
-        axes.imshow(image[top:bottom, left:right], interpolation="lanczos", aspect="auto")
+        axes = shot.plot(figure.add_axes((0, STRIP / (inches + STRIP), 1, inches / (inches + STRIP))))
+        axes.set(xlim=(left, right), ylim=(bottom, top))
         axes.set_axis_off()
         figure.text(
             0.016, 0.5 * STRIP / (inches + STRIP), words, size=picture_style.PANEL, va="center_baseline"
@@ -77,7 +69,7 @@ def main():
         {"seed": options.seed, "ball": ball, "before": positions.tolist(), "after": shot.positions.tolist()},
     )
     if options.pictures:
-        draw(positions, ball, shot, options.folder / FILE)
+        draw(shot, options.folder / FILE)
         print(options.folder / FILE)
 
 

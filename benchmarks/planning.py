@@ -20,7 +20,7 @@ from dataclasses import replace
 import numpy as np
 
 import snooker_env as sn
-from snooker_env._jit import ENTRIES
+from snooker_env._lib.jit import ENTRIES
 from snooker_env.benchmark import play_visits
 from snooker_env.physics import engine
 from snooker_env.planning import Planner, Positions

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from snooker_env import _files
-from snooker_env._files import (
+from snooker_env._lib import files
+from snooker_env._lib.files import (
     MOST_NPZ,
     UNFINISHED,
     arrays_in,
@@ -18,7 +18,7 @@ from snooker_env._files import (
     without_checksum,
     write_atomic,
 )
-from snooker_env._seal import sealed, unsealed
+from snooker_env._lib.seal import sealed, unsealed
 from snooker_env.checks import refuse
 
 __all__ = [
@@ -59,7 +59,7 @@ def read_json(name, file, wanted, checked=False):
     """The content of a JSON file, with its checksum if ``checked``. ValueError that says what is ``wanted`` if it cannot be
     read."""
     try:
-        return _files.read_json(file, name, wanted, checked=checked)
+        return files.read_json(file, name, wanted, checked=checked)
     except OSError as error:
         raise refuse(name, str(file), f"{wanted} ({error.strerror})") from None
 

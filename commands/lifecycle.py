@@ -83,7 +83,7 @@ def _of_thread(uncaught):
 
 
 def command(name):
-    """A decorator for ``main(argv)`` of the command ``name``: it ends as ``snooker_env._command.exit_code`` says."""
+    """A decorator for ``main(argv)`` of the command ``name``: it ends as ``snooker_env._lib.command.exit_code`` says."""
 
     def made(main):
         @functools.wraps(main)
@@ -91,7 +91,7 @@ def command(name):
             any_terminal()
             before, threading.excepthook = threading.excepthook, _of_thread
             try:
-                from snooker_env._command import exit_code  # here: what it needs may be missing
+                from snooker_env._lib.command import exit_code  # here: what it needs may be missing
 
                 return exit_code(name, lambda: main(argv), what_is_missing)
             except ImportError as error:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from textwrap import fill
 
-from snooker_env._tables import markdown_table, shown, text_table
+from snooker_env._lib.tables import markdown_table, shown, text_table
 
 __all__ = ["WIDTH", "TextTable", "markdown_table", "page", "show", "shown", "text_table"]
 

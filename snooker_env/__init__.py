@@ -13,7 +13,6 @@ any version:
 * ``snooker_env.checks``: reporting bad input as the package does
 * ``snooker_env.progress``: how far a long command is, for your own commands too
 * ``snooker_env.render``: the scene of a table, and its pictures
-* ``snooker_env.render.diagrams``: shots, where a ball stops and chances to win, drawn with matplotlib
 * ``snooker_env.replays``: what was played, as a page, as data and as a film
 * ``snooker_env.benchmark``: named tasks with frozen options, and how agents are judged on them
 * ``snooker_env.sb3``: many tables for Stable-Baselines3
@@ -23,20 +22,20 @@ import typing as _typing
 
 from gymnasium.envs import registration as _gymnasium
 
-from ._registration import register as _register
-from ._warmup import warmup
+from ._lib.registration import register as _register
 from .geometry import POCKETS, Pocket
-from .impacts import collide_balls, collide_cushion, strike
-from .match import match_env
 from .physics.engine import EventKind
 from .physics.parameters import Physics
 from .physics.table import Table
-from .shot import Shot, ShotBatch, SimulationError
 from .simulation import simulate, simulate_batch
+from .simulation.impacts import collide_balls, collide_cushion, strike
+from .simulation.shot import Shot, ShotBatch, SimulationError
 
 if _typing.TYPE_CHECKING:
     from . import planning
     from .advice import advise
+    from .benchmark.warmup import warmup
+    from .envs import match_env
     from .envs.match_vector import MatchVectorEnv
     from .envs.snooker import SnookerEnv
     from .envs.vector import SnookerVectorEnv
@@ -80,7 +79,12 @@ __all__ = [
 ]
 
 _LATER = {"Options": "tasks.options", "advise": "advice", "player": "players", "SnookerEnv": "envs.snooker"}
-_LATER |= {"SnookerVectorEnv": "envs.vector", "MatchVectorEnv": "envs.match_vector"}
+_LATER |= {
+    "SnookerVectorEnv": "envs.vector",
+    "MatchVectorEnv": "envs.match_vector",
+    "match_env": "envs",
+    "warmup": "benchmark.warmup",
+}
 _LATER |= dict.fromkeys(("Planner", "Position", "Positions"), "planning")
 _LATER |= dict.fromkeys(("RecordReplay", "Replay", "replay"), "replays")
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""

@@ -14,8 +14,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ._check import number, refuse, truth
-from ._types import Floats
+from ._lib.check import number, refuse, truth
+from ._lib.types import Floats
 
 __all__ = [
     "AIM_X",
@@ -298,7 +298,7 @@ _TIGHT = Pocket(**_fields(False, 0.0934916, 0.0889, 45.0, 0.047625, 0.0889))
 _MIDDLE = Pocket(**_fields(True, 0.109185, 0.0669, 90.0, 0.05159, 0.05319))
 
 
-def scaled(pocket: Pocket, factor: float) -> Pocket:
+def scale_pocket(pocket: Pocket, factor: float) -> Pocket:
     """A pocket of the same shape, ``factor`` times as large."""
     sizes = {name: getattr(pocket, name) * (1.0 if name == "turn" else factor) for name in _SIZES}
     return Pocket(is_middle=pocket.is_middle, **sizes)
@@ -306,7 +306,7 @@ def scaled(pocket: Pocket, factor: float) -> Pocket:
 
 _POOL_CORNER = Pocket.corner(mouth=4.5875 * _INCH, shelf=1.125 * _INCH, fall_radius=2.75 * _INCH, cut=142.0)
 _POOL_MIDDLE = Pocket.middle(mouth=5.0625 * _INCH, shelf=0.1875 * _INCH, fall_radius=3.0 * _INCH, cut=104.0)
-_UK_CORNER, _UK_MIDDLE = (scaled(pocket, _INCH / BALL_RADIUS) for pocket in (_CORNER, _MIDDLE))
+_UK_CORNER, _UK_MIDDLE = (scale_pocket(pocket, _INCH / BALL_RADIUS) for pocket in (_CORNER, _MIDDLE))
 _POOL_BALL = {"M": 0.163, "sin_theta": 0.27}
 _BEDS = {
     # throats of the corners 86.0 and 80.14 mm

@@ -6,7 +6,7 @@ release the GIL. In a mask of balls, bit i stands for ball i. The functions ``ba
 ``clear_segment``, ``executed``, ``find_pots``, ``line_of`` and ``window`` are inner kernels: call them from
 an ``entry`` of your own."""
 
-from ._jit import entry, kernel
+from ._lib.jit import entry, kernel
 from .game.balls import balls_on_kernel as balls_on
 from .game.balls import bits
 from .game.pots import (

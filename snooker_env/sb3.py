@@ -14,15 +14,15 @@ try:
 except ModuleNotFoundError as error:
     if (error.name or "").split(".")[0] != "stable_baselines3":
         raise
-    from ._install import missing
+    from ._lib.install import missing
 
     raise missing("snooker_env.sb3 needs Stable-Baselines3", "train") from error
 
 from collections.abc import Sequence
 from typing import Any
 
-from ._check import choice, integer, refuse
-from ._types import Bools, Floats, Ints, Observation, Singles
+from ._lib.check import choice, integer, refuse
+from ._lib.types import Bools, Floats, Ints, Observation, Singles
 from .envs.vector import SnookerVectorEnv
 
 __all__ = ["SnookerVecEnv"]

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ._check import integer, number, refuse
-from ._command import exit_code
+from ._lib.check import integer, number, refuse
+from ._lib.command import exit_code
 from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
 from .planning import Positions
@@ -22,7 +22,7 @@ from .players import FRAMES, VISITS, Player, decision_seeds, player
 from .players.model_options import add_model_options, of_others, options_of_words
 from .players.resolver import named
 from .replays import Replay, replay
-from .replays.chances import checked_judge
+from .replays.chances import check_judge
 from .replays.film import encoder_file
 
 NAME = "snooker_env.watch"
@@ -32,7 +32,7 @@ USUAL, TACTICIAN = "planner", "tactician"  # who plays a visit and a frame unles
 FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}  # options of a frame that is watched
 
 
-def episode(who: Player, seed: int, **options: Any) -> SnookerEnv:
+def play_episode(who: Player, seed: int, **options: Any) -> SnookerEnv:
     """A ``SnookerEnv`` after a whole visit or frame, with its history; a visit is that of ``play_visits``."""
     env = SnookerEnv(**{**VISITS, **options})
     bound, decision = who.at(env), 0
@@ -118,7 +118,7 @@ def _film_options(args: argparse.Namespace) -> dict[str, Any]:
     return film
 
 
-def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
+def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
     """The environment after the visit or frame that is wanted, or the longest visit; its seed and its players."""
     name = args.agent or (TACTICIAN if args.frame else USUAL)
     other = args.opponent or name
@@ -129,11 +129,11 @@ def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
     if args.frame:
         opposite = players[other] if of_others(other) else other
         options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": opposite, "trust": args.trust}
-        env = episode(who, args.seed, **options)
+        env = play_episode(who, args.seed, **options)
         return env, args.seed, [f"{label} A", f"{label} B"] if other == name else [label, other]
     longest, its = None, args.seed
     for seed in range(args.seed, args.seed + args.tries):
-        env = episode(who, seed, layout=args.layout, noise=args.noise, cue="real")
+        env = play_episode(who, seed, layout=args.layout, noise=args.noise, cue="real")
         if longest is None or env.points > longest.points:
             longest, its = env, seed
         if env.points >= args.at_least:
@@ -144,7 +144,7 @@ def sought(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
 
 def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     """Play, print, write."""
-    env, seed, names = sought(args)
+    env, seed, names = find_episode(args)
     if args.frame:
         scores = env.tables.standing(0)["scores"]
         made = f"{names[0]} {scores[0]} - {scores[1]} {names[1]}"
@@ -153,7 +153,7 @@ def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
         made = f"{names[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
     title = f"{made}, {args.noise}'s errors, {where.split(',')[0]}"
-    judge = checked_judge(player(TACTICIAN).at(env)) if args.frame else None
+    judge = check_judge(player(TACTICIAN).at(env)) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
     print(*describe(played), sep="\n")
     print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")

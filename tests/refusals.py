@@ -39,6 +39,22 @@ def refused(call, field, value, allowed):
     assert allowed in rest, f"does not say {allowed!r}: {message}"
 
 
+def refuse_each(table, names):
+    """Each line of a table is refused: ``call | field | value | what is allowed``, and maybe ``| wrong; wrong``, each of
+    which takes the place of ``?``. ``names``: those that the calls use."""
+    for line in filter(str.strip, table.splitlines()):
+        call, *said, wrongs = (part.strip() for part in f"{line} | ".split(" | ", 4))
+        for wrong in wrongs.removesuffix(" |").split(";"):
+            one = call.replace("?", wrong.strip())
+            print(one)  # pytest shows it if it is not refused
+            shown = repr(eval(wrong, names)) if wrong else ""
+            refused(lambda one=one: _call(eval(one, names)), *(part.replace("?", shown) for part in said))
+
+
+def _call(made):
+    return made() if callable(made) else made
+
+
 # The calls, each with arguments that are right but for the changes
 
 

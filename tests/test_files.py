@@ -16,7 +16,7 @@ from agents.learning.run_folder import SETTINGS, keep_settings, kept_settings
 from agents.learning.settings import Settings
 from agents.players.trained import load_player
 from commands.files import kept_arrays, read_json
-from snooker_env._files import MOST_JSON, MOST_NPZ, read_npz, strict_json, with_checksum
+from snooker_env._lib.files import MOST_JSON, MOST_NPZ, read_npz, strict_json, with_checksum
 from snooker_env.advice import read_strokes
 from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, text
 from snooker_env.play.__main__ import _read as read_position

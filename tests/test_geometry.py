@@ -9,7 +9,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import Pocket, Table, geometry
 from snooker_env.game import balls
-from tests.refusals import refused
+from tests.refusals import refuse_each
 
 PACKAGE = Path(sn.__file__).resolve().parent
 INCH = 0.0254
@@ -136,46 +136,36 @@ def test_snookers_pockets_have_the_throats_that_are_quoted():
 
 SMALL = {"mouth": 0.12, "shelf": 0.02, "fall_radius": 0.06}
 CORNER, MIDDLE = Pocket.corner(**SMALL), Pocket.middle(**SMALL)
-NUMBER = "must be a finite number in "
+WRONG = """
+table(length=0) | table.length | 0 | must be a finite number in (0, 100]
+table(width=INF) | table.width | inf | must be a finite number in (0, 100]
+table(pockets=?) | table.pockets | ? | must be 6, 4 or 0 | 5; "six"
+table(corner=MIDDLE) | table.corner | is_middle=True | must be a Pocket made by Pocket.corner
+table(middle=0.1) | table.middle | 0.1 | must be a Pocket made by Pocket.middle
+table(pockets=0, corner=CORNER) | table.corner | Pocket | must be None on a table with 0 pockets
+table(pockets=4, middle=MIDDLE) | table.middle | Pocket | must be None on a table with 4 pockets
+table(width=0.15) | table.width | 0.15 | must be more than 0.19527
+table(length=0.4) | table.length | 0.4 | must be more than 0.41364
+table(ball_radius=0.05) | table.ball_radius | 0.05 | half the throat of the corner pockets
+table(ball_radius=0.0) | table.ball_radius | 0.0 | must be a finite number in [0.001, 1]
+table(name=None) | table.name | None | must be a str
+corner(mouth=-1) | pocket.corner.mouth | -1 | must be a finite number in (0, 1]
+corner(cut=100) | pocket.corner.cut | 100 | must be a finite number in [135, 180]
+middle(cut=80) | pocket.middle.cut | 80 | must be a finite number in [90, 180]
+middle(cut=180) | pocket.middle.turn | 0.0 | must be a finite number in (0, 90]
+middle(jaw_radius=0.07) | pocket.middle | Pocket( | must leave an opening between its jaws
+middle(fall_radius=0.03) | pocket.middle | Pocket( | a fall at least as wide as the throat
+replace(CORNER, is_middle="no") | pocket.is_middle | 'no' | must be True or False
+named(("a", "b")) | table.pockets | ('a', 'b') | must be a tuple of 1 names
+"""
 
 
-NOT_MADE = "must be a Pocket made by Pocket."
-RECTANGULAR = [
-    ({"length": 0}, "table.length", "0", NUMBER + "(0, 100]"),
-    ({"width": np.inf}, "table.width", "inf", NUMBER + "(0, 100]"),
-    ({"pockets": 5}, "table.pockets", "5", "must be 6, 4 or 0"),
-    ({"pockets": "six"}, "table.pockets", "'six'", "must be 6, 4 or 0"),
-    ({"corner": MIDDLE}, "table.corner", "is_middle=True", NOT_MADE + "corner"),
-    ({"middle": 0.1}, "table.middle", "0.1", NOT_MADE + "middle"),
-    ({"pockets": 0, "corner": CORNER}, "table.corner", "Pocket", "must be None on a table with 0 pockets"),
-    ({"pockets": 4, "middle": MIDDLE}, "table.middle", "Pocket", "must be None on a table with 4 pockets"),
-    ({"width": 0.15}, "table.width", "0.15", "must be more than 0.19527"),
-    ({"length": 0.4}, "table.length", "0.4", "must be more than 0.41364"),
-    ({"ball_radius": 0.05}, "table.ball_radius", "0.05", "half the throat of the corner pockets"),
-    ({"ball_radius": 0.0}, "table.ball_radius", "0.0", NUMBER + "[0.001, 1]"),
-    ({"name": None}, "table.name", "None", "must be a str"),
-]
-POCKET = [
-    ("corner", {"mouth": -1}, "pocket.corner.mouth", "-1", NUMBER + "(0, 1]"),
-    ("corner", {"cut": 100}, "pocket.corner.cut", "100", NUMBER + "[135, 180]"),
-    ("middle", {"cut": 80}, "pocket.middle.cut", "80", NUMBER + "[90, 180]"),
-    ("middle", {"cut": 180}, "pocket.middle.turn", "0.0", NUMBER + "(0, 90]"),
-    ("middle", {"jaw_radius": 0.07}, "pocket.middle", "Pocket(", "must leave an opening between its jaws"),
-    ("middle", {"fall_radius": 0.03}, "pocket.middle", "Pocket(", "a fall at least as wide as the throat"),
-]
-
-
-@pytest.mark.parametrize("wrong", RECTANGULAR, ids=str)
-def test_a_table_that_does_not_fit_together_is_refused(wrong):
-    refused(lambda: Table.rectangular(**{"length": 2, "width": 1} | wrong[0]), *wrong[1:])
-
-
-@pytest.mark.parametrize("wrong", POCKET, ids=str)
-def test_a_pocket_that_does_not_fit_together_is_refused(wrong):
-    refused(lambda: getattr(Pocket, wrong[0])(**SMALL | wrong[1]), *wrong[2:])
-    is_middle = "pocket.is_middle", "'no'", "must be True or False"
-    refused(lambda: dataclasses.replace(CORNER, is_middle="no"), *is_middle)
-    parts, names = [np.zeros((0, 5)), np.zeros((0, 6)), np.ones((1, 3))], ("a", "b")
-    refused(
-        lambda: Table("a", *parts, pockets=names), "table.pockets", str(names), "must be a tuple of 1 names"
-    )
+def test_tables_and_pockets_that_do_not_fit_together_are_refused():
+    names = {"CORNER": CORNER, "MIDDLE": MIDDLE, "INF": np.inf, "replace": dataclasses.replace}
+    names |= {
+        kind: lambda kind=kind, **sizes: getattr(Pocket, kind)(**SMALL | sizes)
+        for kind in ("corner", "middle")
+    }
+    parts = np.zeros((0, 5)), np.zeros((0, 6)), np.ones((1, 3))
+    names |= {"table": lambda **sizes: Table.rectangular(**{"length": 2, "width": 1} | sizes)}
+    refuse_each(WRONG, names | {"named": lambda pockets: Table("a", *parts, pockets=pockets)})

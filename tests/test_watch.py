@@ -15,7 +15,7 @@ SHORT = ["--agent", "ghost_ball", "--noise", "club"]
 @pytest.mark.parametrize("name", ["ghost_ball", "ppo_value"])
 def test_the_visit_is_the_one_that_the_protocol_plays(name):
     seed = HELD_OUT_SEED + 3
-    env, _, _ = watch.sought(watch.parser().parse_args(["--agent", name, "--seed", str(seed)]))
+    env, _, _ = watch.find_episode(watch.parser().parse_args(["--agent", name, "--seed", str(seed)]))
     strokes = play_visits(player(name), 1, first_seed=seed, threads=1, noise="professional", cue="real")
     assert [p.points for p in env.history] == strokes.points.tolist()
     cue = np.array([p.positions[0] for p in env.history if p.on_table[0]])
@@ -42,7 +42,7 @@ def test_without_a_file_the_browser_is_opened(monkeypatch, capsys):
 @pytest.mark.parametrize("module", ["imageio_ffmpeg", "pygame"])
 def test_what_a_film_needs_is_said_before_anything_is_played(tmp_path, monkeypatch, capsys, module):
     monkeypatch.setitem(sys.modules, module, None)
-    monkeypatch.setattr(watch, "episode", None)
+    monkeypatch.setattr(watch, "play_episode", None)
     assert watch.main([*SHORT, "--out", str(tmp_path / "visit.mp4")]) == 1
     out, err = capsys.readouterr()
     assert (
@@ -58,7 +58,7 @@ def test_films_last_as_long_as_the_play(tmp_path, suffix):
     moviepy = pytest.importorskip("moviepy")
     file = tmp_path / f"visit{suffix}"
     args = watch.parser().parse_args([*SHORT, "--out", str(file)])
-    env, _, _ = watch.sought(args)
+    env, _, _ = watch.find_episode(args)
     watch.main([*SHORT, "--out", str(file), "--size", "320x180", "--speed", "2", "--fps", "10"])
     seconds = sum(p.shot.duration / 2 + 0.8 for p in env.history)
     with moviepy.VideoFileClip(str(file)) as clip:
@@ -67,17 +67,17 @@ def test_films_last_as_long_as_the_play(tmp_path, suffix):
 
 def test_the_first_visit_that_is_long_enough_is_taken(capsys):
     args = watch.parser().parse_args([*SHORT, "--at-least", "1", "--seed", str(HELD_OUT_SEED)])
-    env, seed, _ = watch.sought(args)
+    env, seed, _ = watch.find_episode(args)
     assert env.points >= 1
     for earlier in range(HELD_OUT_SEED, seed):
         options = {"layout": "held_out", "noise": "club", "cue": "real"}
-        assert watch.episode(player("ghost_ball"), earlier, **options).points < 1
+        assert watch.play_episode(player("ghost_ball"), earlier, **options).points < 1
 
 
 def test_the_longest_visit_is_shown_where_none_is_long_enough(tmp_path, capsys):
     seeds, out = range(HELD_OUT_SEED, HELD_OUT_SEED + 6), tmp_path / "visit.json"
     options = {"layout": "held_out", "noise": "club", "cue": "real"}
-    points = [watch.episode(player("ghost_ball"), seed, **options).points for seed in seeds]
+    points = [watch.play_episode(player("ghost_ball"), seed, **options).points for seed in seeds]
     assert 0 < max(points) > points[0]
     assert watch.main([*SHORT, "--at-least", "140", "--tries", "6", "--out", str(out)]) == 0
     said = capsys.readouterr().out

@@ -7,6 +7,8 @@ Maps: how densely the cue ball came to rest after first strokes that potted a re
 since all agents play these from the same positions. Bars: what followed any pot, with 95 % intervals.
 """
 
+from functools import partial
+
 import numpy as np
 from matplotlib.backend_bases import FigureCanvasBase
 
@@ -15,10 +17,11 @@ from snooker_env import Table
 from snooker_env.game import BallOn
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from snooker_env.render import BAULK_LINE, COLOURS, CUSHION, D_ARC, SPOT_MARKS, outline
-from snooker_env.render.diagrams import bandwidth_of, density_of, level_of
 
 from .metrics import main_condition
 
+CELL = 0.01
+"""Size of the cells of the maps [m]."""
 MOST = 3
 """Agents side by side."""
 DENSEST = 4.0
@@ -42,6 +45,33 @@ def first_reds(strokes):
     """Where the cue ball lay after first strokes that potted a red, (n, 2) [m]; whether the next scored."""
     chosen = (strokes.number == 0) & strokes.made & (strokes.ball_on == BallOn.RED)
     return strokes.cue[chosen], strokes.made[strokes.following[chosen]]
+
+
+def bandwidth_of(points):
+    """The bandwidth [m] by Scott's rule: standard deviation times m^(-1/6), at least 1 cm and at most 15 cm."""
+    spread = float(np.sqrt(points.var(axis=0).mean()))
+    return float(np.clip(spread * len(points) ** (-1 / 6), 0.01, 0.15))
+
+
+def density_of(points, low, high, bandwidth):
+    """A density (nx, ny) [1/m^2] with Gaussian kernels from corner ``low`` to ``high``, in cells of 1 cm."""
+    # tails beyond the corners are folded back: the sum is the share of points inside
+    n = np.maximum(1, np.round((high - low) / CELL).astype(int))
+    size = (high - low) / n
+    counts, _, _ = np.histogram2d(*points.T, bins=n.tolist(), range=[(low[0], high[0]), (low[1], high[1])])
+    values = counts / (len(points) * size.prod())
+    for axis in range(2):
+        half = int(min(np.ceil(3.0 * bandwidth / size[axis]), n[axis]))
+        bell = np.exp(-0.5 * (np.arange(-half, half + 1) * size[axis] / bandwidth) ** 2)
+        wide = np.pad(values, [(half, half) if k == axis else (0, 0) for k in range(2)], mode="symmetric")
+        values = np.apply_along_axis(partial(np.convolve, v=bell / bell.sum(), mode="valid"), axis, wide)
+    return values
+
+
+def level_of(values, share):
+    """The density above which a share of the total lies."""
+    ranked = np.sort(values.ravel())[::-1]
+    return float(ranked[min(np.searchsorted(np.cumsum(ranked), share * ranked.sum()), len(ranked) - 1)])
 
 
 def figures_of(report, strokes):
@@ -95,7 +125,7 @@ def table(axes, label, places, went_in):
     axes.add_patch(Rectangle(tuple(-high), *(2 * high), fc="white", lw=0))
     inner, shown = high - BALL_RADIUS, None
     if len(places):
-        density, _ = density_of(np.clip(places, -inner, inner), -inner, inner, bandwidth_of(places))
+        density = density_of(np.clip(places, -inner, inner), -inner, inner, bandwidth_of(places))
         times = density * 4 * inner.prod()
     else:
         times = np.zeros((2, 2))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from snooker_env._files import read_json
+from snooker_env._lib.files import read_json
 
 R = 0.03075
 HALF = (0.71, 1.42)

@@ -31,7 +31,7 @@ import numpy as np
 import snooker_env as sn
 from commands import provenance
 from commands.tables import text_table
-from snooker_env._jit import entry
+from snooker_env._lib.jit import entry
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics.arrays import Law
 from snooker_env.physics.columns import P_E_B

@@ -22,7 +22,7 @@ from numba.extending import intrinsic
 
 import snooker_env as sn
 from snooker_env import simulation
-from snooker_env._jit import entry
+from snooker_env._lib.jit import entry
 from snooker_env.physics.arrays import Law
 from snooker_env.physics.columns import P_E_B
 from snooker_env.physics.impact import contact

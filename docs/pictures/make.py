@@ -1,8 +1,7 @@
 """How are the screenshots in docs made? ``python docs/pictures/make.py`` in a clone with the extra ``test``,
 and Chromium, makes them anew.
 
-The page of ``snooker_env.play`` with advice, and the replay of a frame, each as a browser shows it; and the chance to
-win of that frame as a diagram.
+The page of ``snooker_env.play`` with advice, and the replay of a frame, each as a browser shows it.
 """
 
 import argparse
@@ -15,8 +14,6 @@ import time
 from pathlib import Path
 
 from playwright.sync_api import sync_playwright
-
-from snooker_env.render.diagrams import win_chance
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -71,7 +68,7 @@ def page_to_play(browser, out):
 
 
 def replay(browser, out):
-    """The replay of a frame, paths on, at a desk and on a phone, and its chance to win."""
+    """The replay of a frame, paths on, at a desk and on a phone."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "frame.html"
         command = [sys.executable, "-m", "snooker_env.watch", "--frame", "--seed", "3", "--out", str(file)]
@@ -84,10 +81,6 @@ def replay(browser, out):
                 page.keyboard.press("Shift+ArrowRight")
             time.sleep(3.5)
             shoot(page, out / name)
-        chances, players = page.evaluate("[player.replay.win_chance, player.replay.players]")
-    ax = win_chance(chances, players=players, title="A frame")
-    ax.figure.savefig(out / "win_chance.png", dpi=100)
-    print(out / "win_chance.png")
 
 
 if __name__ == "__main__":

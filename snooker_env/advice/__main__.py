@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from .._command import until_closed
+from .._lib.command import until_closed
 from ..physics.parameters import PRESETS as PHYSICS
 from ..planning import Position
 from ..players import players

@@ -4,7 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from .._check import integer, refuse
+from .._lib.check import integer, refuse
 from ..planning.positions import PositionsLike
 from ..players import Player
 from ..players import player as player_of

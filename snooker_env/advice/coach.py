@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice
-from .._types import Floats
+from .._lib.check import choice
+from .._lib.types import Floats
 from ..planning import clear_paths, pots
 from ..tasks.noise import LEVELS, NoiseLike
 from .costs import PARTS, lost

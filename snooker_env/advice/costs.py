@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._types import Floats, Ints
+from .._lib.types import Floats, Ints
 from ..planning import Positions, Proposals, Search, pots
 from ..planning.proposals import Asking, strokes_at
 from ..planning.sobol import sobol_points

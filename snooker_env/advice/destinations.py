@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import integer
-from .._types import Floats
+from .._lib.check import integer
+from .._lib.types import Floats
 from ..game.balls import CUE
 from ..planning.positions import PositionsLike
 from ..tasks.noise import NoiseLike

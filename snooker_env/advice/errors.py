@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._check import integer, refuse_what
-from .._types import Bools, Floats
+from .._lib.check import integer, refuse_what
+from .._lib.types import Bools, Floats
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
 from ..planning import Positions
 from ..planning.aims import STEEPEST_CUE

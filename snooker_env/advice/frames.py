@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._types import Floats, Ints
+from .._lib.types import Floats, Ints
 from ..game import frame_columns as columns
 from ..game.balls import CUE
 from ..planning import Outcomes, Positions, clear_paths, obstructions

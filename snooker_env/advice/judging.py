@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._types import Bools, Floats
+from .._lib.types import Bools, Floats
 from ..game.balls import CUE
 from ..game.frame_columns import Layouts
 from ..geometry import BALL_RADIUS

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, integer, refuse, refuse_what
-from .._types import Floats, Ints, Words
+from .._lib.check import choice, integer, refuse, refuse_what
+from .._lib.types import Floats, Ints, Words
 from ..game import frame_columns as columns
 from ..game.in_hand import place_cue
 from ..planning import FrameJudge, Outcomes, Planner, Positions, Search, VisitJudge

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, integer, number, refuse, refuse_what, truth
-from .._files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
-from .._types import CueKind, Floats
+from .._lib.check import choice, integer, number, refuse, refuse_what, truth
+from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
+from .._lib.types import CueKind, Floats
 from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
 from ..physics import cloth

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Floats
+from .._lib.types import Floats
 from ..game.balls import NAMES
 from ..physics.conditions import END_MASS_RATIO
 from ..physics.cue_room import MOVED, OVER_NOTHING, OVER_RAIL, RAISED, UNPLAYABLE, in_room_over

@@ -8,8 +8,8 @@ from typing import Any, TypeAlias, overload
 
 import numpy as np
 
-from .._check import array, choice, number, refuse_what
-from .._types import Floats, Place
+from .._lib.check import array, choice, number, refuse_what
+from .._lib.types import Floats, Place
 from ..game.in_hand import within_d
 from ..planning import Position, Positions
 from ..planning.stroke_columns import FARTHEST, LEAST, MOST, NAMES

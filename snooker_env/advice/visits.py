@@ -3,7 +3,7 @@ of thumb as its value and few simulated shots. A stronger player makes more of t
 
 import numpy as np
 
-from .._types import Floats, Ints
+from .._lib.types import Floats, Ints
 from ..planning import Positions
 from .practice import GOING_ON, Practice, keys
 

@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from .._check import integer, refuse
-from .._command import exit_code
-from .._files import write_atomic
-from .._tables import shown, text_table
-from .._warmup import warmup
+from .._lib.check import integer, refuse
+from .._lib.command import exit_code
+from .._lib.files import write_atomic
+from .._lib.tables import shown, text_table
 from ..play.program import AgentError
 from ..players.model_options import add_model_options, options_of_words
 from ..progress import Progress
@@ -27,6 +26,7 @@ from .results import missing, read_result
 from .run import judge
 from .tasks import FREE, FRESH_SEED, SEEDS_END, TASKS, Task, task_of
 from .text import VISITS, judge_text
+from .warmup import warmup
 
 NAME = "python -m snooker_env.benchmark"
 NOTHING = 0.02

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from .._check import integer, number, refuse
+from .._lib.check import integer, number, refuse
 from ..play.program import ProgramPlayer
 from ..players import Player
 from ..players import player as player_named

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import refuse
+from .._lib.check import refuse
 from ..players import player as player_named
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES

@@ -2,7 +2,7 @@
 
 from typing import Any, ClassVar
 
-from .._types import RenderMode
+from .._lib.types import RenderMode
 from ..envs.pictures import SIZE
 from ..envs.snooker import SnookerEnv
 from ..envs.vector import SnookerVectorEnv

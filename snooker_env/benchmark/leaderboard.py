@@ -5,7 +5,7 @@ from html import escape
 from textwrap import wrap
 from typing import Any
 
-from .._tables import markdown_table, shown, text_table
+from .._lib.tables import markdown_table, shown, text_table
 from .playing import STROKES
 from .tasks import TASKS, Task
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._shots import simulated
-from .._types import Bools, Floats, Ints
+from .._lib.types import Bools, Floats, Ints
 from ..envs.vector import SnookerVectorEnv
 from ..players import FRAMES, VISITS, Player, decided, decision_seeds
 from ..players import player as player_named
+from ..simulation.count import simulated
 from .tasks import Task
 
 BATCH = 100  # episodes that are played side by side

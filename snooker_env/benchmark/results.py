@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from .._check import refuse, refuse_what
-from .._files import read_json, with_checksum, write_atomic
-from .._types import Floats
+from .._lib.check import refuse, refuse_what
+from .._lib.files import read_json, with_checksum, write_atomic
+from .._lib.types import Floats
 from ..players import FRAMES, VISITS
 from ..players.degenerate import is_degenerate
 from ..players.resolver import PROGRAM

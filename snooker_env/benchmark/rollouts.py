@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Bools, Floats, Ints, Singles
+from .._lib.types import Bools, Floats, Ints, Singles
 from ..envs.vector import SnookerVectorEnv
 from ..game.balls import BallOn
 from ..game.layouts import POT_WINDOWS

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from .._check import refuse
+from .._lib.check import refuse
 from ..play.program import AgentError
 from .agents import Agent, seated
 from .checking import faults

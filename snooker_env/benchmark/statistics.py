@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._types import Floats
+from .._lib.types import Floats
 
 RESAMPLES = 2000  # number of bootstrap samples
 

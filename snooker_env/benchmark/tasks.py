@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, integer, refuse, refuse_what
+from .._lib.check import choice, integer, refuse, refuse_what
 from ..game.balls import N_REDS, VALUES
 from ..game.banks import HELD_OUT
 from ..game.layouts import layout as deal

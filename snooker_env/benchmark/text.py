@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import integer, refuse
-from .._files import read_json, with_checksum, write_atomic
+from .._lib.check import integer, refuse
+from .._lib.files import read_json, with_checksum, write_atomic
 from ..planning import Positions
 from ..play.program import AnswerError, ProgramPlayer
 from ..players import Player, Strokes, decided, decision_seeds

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import choice, integer, refuse, refuse_what
-from .._types import Bools, Floats, Ints
+from .._lib.check import choice, integer, refuse, refuse_what
+from .._lib.types import Bools, Floats, Ints
 from ..game.balls import mask_of_present, points_available
 from ..game.frame import MOST_BREAK
 from ..game.frame_columns import BALL_ON, POINTS

@@ -10,11 +10,11 @@ from gymnasium.utils import seeding
 from numpy.typing import NDArray
 from pettingzoo import AECEnv
 
-from .._check import choice, refuse
-from .._types import Action, Observation, RenderMode
+from .._lib.check import choice, refuse
+from .._lib.types import Action, Observation, RenderMode
 from ..game.frame import Frame
 from ..game.frame_columns import STRIKER, STROKES
-from ..shot import Shot
+from ..simulation.shot import Shot
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames

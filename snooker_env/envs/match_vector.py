@@ -8,8 +8,8 @@ from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from .._check import refuse, refuse_what
-from .._types import Bools, Floats, Ints, Observation
+from .._lib.check import refuse, refuse_what
+from .._lib.types import Bools, Floats, Ints, Observation
 from ..game.frame_columns import STRIKER
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames

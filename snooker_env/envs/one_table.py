@@ -4,14 +4,14 @@ from typing import Any
 
 import numpy as np
 
-from .._check import truth
-from .._types import Bools, Floats
+from .._lib.check import truth
+from .._lib.types import Bools, Floats
 from ..game.balls import BallOn
 from ..game.frame import Frame
 from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..shot import Shot
+from ..simulation.shot import Shot
 from ..tasks.frame import Frames
 from ..tasks.noise import Noise
 from ..tasks.options import Options

@@ -8,10 +8,10 @@ from typing import Any, TypeAlias
 import gymnasium
 import numpy as np
 
-from .._types import Bytes
+from .._lib.types import Bytes
 from ..physics.table import Table
 from ..render.table_picture import SIZE as SIZE
-from ..render.table_picture import checked_size
+from ..render.table_picture import check_size
 from ..tasks.played import Played
 from ..tasks.tables import Tables
 
@@ -61,7 +61,7 @@ class Pictures:
     def __init__(self, table: Table, mode: str | None, size: Any = SIZE, players: tuple[str, ...] = ()):
         self.table, self.mode = table, mode
         self.players: tuple[str, ...] = players
-        self.size: tuple[int, int] = checked_size(size, "render_size")
+        self.size: tuple[int, int] = check_size(size, "render_size")
         self._window, self._source = None, PictureSource()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -150,18 +150,16 @@ class Pictures:
         return rgb_array(scene, size=self.size)
 
     def _scene(self, tables, k, history):
-        from ..render.scene import Turning, ball_paths, contacts, scene
+        from ..render.scene import UNTURNED, Film, scene
         from ..replays.words import bars, standing_bar
 
-        paths = ghosts = last = None
-        turns = {0: np.array([1.0, 0.0, 0.0, 0.0])}  # spots as in films
+        over: dict[str, Any] = {"turn": UNTURNED}  # spots as in films
+        last = None
         if history and np.array_equal(history[-1].positions, tables.positions[k]):  # it led to this table
             shot = history[-1].shot
-            trails = (0, *(np.flatnonzero(shot.potted[1:] >= 0) + 1).tolist())  # cue ball and potted balls
-            paths, ghosts = ball_paths(shot, trails), {0: contacts(shot)}
-            last = bars(history, self.players)[-1][1]
+            end, last = Film(self.table, shot).at(shot.duration), bars(history, self.players)[-1][1]
+            over |= {"paths": end.paths, "ghosts": end.ghosts}
             if shot.on_table[0] and np.array_equal(shot.positions[0], tables.positions[k][0]):
-                turns = {0: Turning(shot, 0).at(shot.duration)}  # as the film of the stroke left it
-        bar = standing_bar(tables, k, self.players, last)
-        over: Any = {"paths": paths, "ghosts": ghosts, "turns": turns, "text": tables.text(k), "bar": bar}
+                over["turn"] = end.turn  # as the film of the stroke left it
+        over |= {"text": tables.text(k), "bar": standing_bar(tables, k, self.players, last)}
         return scene(self.table, tables.positions[k], tables.on_table[k], **over)

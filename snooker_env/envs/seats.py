@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
 
-from .._check import choice, refuse, refuse_what
+from .._lib.check import choice, refuse, refuse_what
 from ..tasks.declarations import SAYS
 from ..tasks.frame import TABLES, Frames, Seat
 from ..tasks.options import NEVER, OBJECT, Options, options_of

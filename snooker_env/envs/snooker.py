@@ -6,8 +6,8 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from .._check import choice, refuse
-from .._types import Action, Bools, Observation, RenderMode
+from .._lib.check import choice, refuse
+from .._lib.types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.options import Options, observation_space_of

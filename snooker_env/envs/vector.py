@@ -13,8 +13,8 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from .._check import choice, integer, refuse
-from .._types import Bools, Floats, Observation
+from .._lib.check import choice, integer, refuse
+from .._lib.types import Bools, Floats, Observation
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.options import NEVER, Options

@@ -3,9 +3,9 @@ as the verdict can depend on the table after the stroke, and that table on the v
 
 import numpy as np
 
-from .._check import array, refuse
-from .._jit import entry, kernel
-from .._types import Bools, Flags, Floats, Vectors
+from .._lib.check import array, refuse
+from .._lib.jit import entry, kernel
+from .._lib.types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS
 from .balls import N_BALLS, balls_on_kernel, bits, check_table, mask_of
 from .referee import Situation, Stroke, Verdict, check, numbers_of, verdict_of

@@ -10,7 +10,7 @@ between its extremes, so bisection finds every minimum."""
 
 import numpy as np
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from ..geometry import BALL_RADIUS
 from ..physics.cloth import AX, AY, SEGMENT_BALL, T0, T_END, VX, VY, X, Y
 from .balls import CUE, N_BALLS

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from .._check import array, integer, refuse
-from .._jit import kernel
-from .._types import Bools, Flags, Floats, Vectors
+from .._lib.check import array, integer, refuse
+from .._lib.jit import kernel
+from .._lib.types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS
 
 N_BALLS = 22

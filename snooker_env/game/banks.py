@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .._types import Floats
+from .._lib.types import Floats
 from .balls import N_BALLS
 
 FOLDER = Path(__file__).parent

@@ -19,9 +19,9 @@ from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 
-from .._check import choice, integer, refuse, refuse_what, truth
-from .._jit import entry
-from .._types import Ints, MissRule
+from .._lib.check import choice, integer, refuse, refuse_what, truth
+from .._lib.jit import entry
+from .._lib.types import Ints, MissRule
 from . import frame_columns as columns
 from .balls import ALL_MASK, BLACK, CUE_BIT, REDS_MASK, BallOn, next_on, points_available
 from .frame_columns import Conditions, Effort, Layouts

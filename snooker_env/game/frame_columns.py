@@ -6,8 +6,8 @@ they may. What "replace" restores is in ``Layouts``. A visit without a frame has
 
 from typing import NamedTuple
 
-from .._jit import kernel
-from .._types import Bools, Floats
+from .._lib.jit import kernel
+from .._lib.types import Bools, Floats
 from .balls import BLACK, COLOURS_MASK, available, balls_on_kernel, next_on_kernel
 from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED
 from .ruling import FOUL, OUTCOME

@@ -4,9 +4,9 @@ gap to the cushions, off pockets."""
 
 import numpy as np
 
-from .._check import number, refuse
-from .._jit import entry, kernel
-from .._types import Flags, Place, Vectors
+from .._lib.check import number, refuse
+from .._lib.jit import entry, kernel
+from .._lib.types import Flags, Place, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from .balls import CLEARANCE, N_BALLS, REFEREE_TOUCH, check_table
 from .spotting import touches

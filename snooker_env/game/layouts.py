@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from .._check import refuse
-from .._jit import entry, kernel
-from .._types import Bools, Floats
+from .._lib.check import refuse
+from .._lib.jit import entry, kernel
+from .._lib.types import Bools, Floats
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from .balls import CUE, GREEN, N_BALLS, N_REDS, REDS_MASK, SPOTS, YELLOW
 from .banks import NO_BANK, bank_without, kept

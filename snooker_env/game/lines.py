@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from ..geometry import BALL_RADIUS
 from .balls import N_BALLS
 

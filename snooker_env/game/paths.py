@@ -12,7 +12,7 @@ places of ``in_hand``; an opening that falls between them is in the striker's fa
 
 import numpy as np
 
-from .._jit import entry, kernel
+from .._lib.jit import entry, kernel
 from .balls import N_BALLS, REDS_MASK, REFEREE_TOUCH
 from .in_hand import PLACES_IN_D, PLACES_ON_BED
 from .lines import meets

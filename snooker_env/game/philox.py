@@ -8,9 +8,9 @@ from math import cos, log, pi, sin, sqrt
 
 import numpy as np
 
-from .._check import refuse
-from .._jit import kernel
-from .._types import Words
+from .._lib.check import refuse
+from .._lib.jit import kernel
+from .._lib.types import Words
 
 _M0, _M1 = np.uint64(0xD2511F53), np.uint64(0xCD9E8D57)  # multipliers and key steps of Philox 4x32
 _W0, _W1 = np.uint64(0x9E3779B9), np.uint64(0xBB67AE85)

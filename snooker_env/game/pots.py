@@ -14,8 +14,8 @@ from math import acos, cos, radians, sqrt
 
 import numpy as np
 
-from .._jit import entry, kernel
-from .._types import Flags, Floats, Vectors
+from .._lib.jit import entry, kernel
+from .._lib.types import Flags, Floats, Vectors
 from ..geometry import AIM_X, AIM_Y, AXIS_X, AXIS_Y, BALL_RADIUS, IS_MIDDLE, POCKET_AIMS
 from ..geometry import HALF_LENGTH as _LENGTH
 from ..geometry import HALF_WIDTH as _WIDTH

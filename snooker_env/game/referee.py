@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from .._check import choice, integer, refuse
-from .._jit import entry
+from .._lib.check import choice, integer, refuse
+from .._lib.jit import entry
 from .balls import ALL_MASK, COLOURS_MASK, CUE_BIT, N_BALLS, NAMES, BallOn, balls_on, check_ball_on, ids_of
 from .rule_sets import RULES, RulesName
 from .ruling import AUTO, RULE_FLAGS, Before, Facts, Flag, Foul, Outcome, Ruling, VisitEnd, ruling

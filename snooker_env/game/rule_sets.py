@@ -5,7 +5,7 @@
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
-from .._check import choice
+from .._lib.check import choice
 from .balls import COLOURS_MASK, N_REDS
 
 RulesName: TypeAlias = Literal["snooker", "six_red", "shoot_out"]  # names of the rule sets

@@ -7,7 +7,7 @@ from collections import namedtuple
 from enum import IntEnum, IntFlag
 from typing import Any, NamedTuple
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on_kernel, count, next_on_kernel
 from .rule_sets import LATE_PENALTY
 

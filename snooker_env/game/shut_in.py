@@ -12,7 +12,7 @@ from math import pi
 
 import numpy as np
 
-from .._jit import entry, kernel
+from .._lib.jit import entry, kernel
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 from .balls import CUE, N_BALLS
 from .paths import ARC_COS, ARC_RADIUS, ARC_UX, ARC_UY, ARC_X, ARC_Y, AXIS, HIGH, LEVEL, LOW, SIDE

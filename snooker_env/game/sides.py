@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._types import Ints
+from .._lib.types import Ints
 from . import frame_columns as columns
 
 

@@ -10,9 +10,9 @@ where most narrow openings are; one narrower than 5 mm and away from every ball 
 
 import numpy as np
 
-from .._check import array, integer, refuse
-from .._jit import entry, kernel
-from .._types import Flags, Vectors
+from .._lib.check import array, integer, refuse
+from .._lib.jit import entry, kernel
+from .._lib.types import Flags, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from .balls import ALL_MASK, CLEARANCE, CUE_BIT, N_BALLS, REFEREE_TOUCH, check_table
 from .in_hand import PLACES_IN_D

@@ -7,9 +7,9 @@ black). Of several colours, those whose own spot is free go first, then the high
 
 import numpy as np
 
-from .._check import integer, refuse
-from .._jit import entry, kernel
-from .._types import Bools, Flags, Floats, Vectors
+from .._lib.check import integer, refuse
+from .._lib.jit import entry, kernel
+from .._lib.types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS, HALF_LENGTH
 from . import balls
 

@@ -4,7 +4,7 @@ from math import acos, cos, hypot, inf, pi, sqrt
 
 import numpy as np
 
-from .._types import Floats
+from .._lib.types import Floats
 from .columns import JAW_COS, JAW_RADIUS, JAW_UX, JAW_UY, JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 
 

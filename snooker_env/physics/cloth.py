@@ -22,7 +22,7 @@ Z is its height above the bed and UZ the rate of that, at T0.
 
 from math import atan, copysign, exp, expm1, inf, log1p, sqrt
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from .columns import P_G, P_MU_R, P_MU_S, P_NAP, P_R, P_ROLL_DRAG, P_SPIN
 
 GONE, REST, ROLL, SLIDE, FALLING, BEND, AIR = range(7)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._types import Floats
+from .._lib.types import Floats
 
 RANGES: dict[str, tuple[float, float]] = {
     "mu_s": (0.178, 0.245),

@@ -6,9 +6,9 @@ bed throws it up.
 
 from math import atan, cos, hypot, pi, sin, sqrt
 
-from .._check import number, refuse
-from .._jit import entry, kernel
-from .._types import Real
+from .._lib.check import number, refuse
+from .._lib.jit import entry, kernel
+from .._lib.types import Real
 from .flight import SETTLE, rubbed
 from .parameters import FASTEST, Physics
 

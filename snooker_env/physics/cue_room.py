@@ -25,8 +25,8 @@ from math import atan2, cos, hypot, inf, radians, sin, sqrt
 
 import numpy as np
 
-from .._jit import entry, kernel
-from .._types import Floats
+from .._lib.jit import entry, kernel
+from .._lib.types import Floats
 from .columns import NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 from .cue import MAX_ELEVATION, squirt
 

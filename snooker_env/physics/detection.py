@@ -14,7 +14,7 @@ behind a piece is another part of the table.
 
 from math import inf, sqrt
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from . import events
 from .cloth import AX, AY, HI_X, HI_Y, LO_X, LO_Y, REST, ROLL, T0, T_END, VX, VY, X, Y, extent
 from .columns import (

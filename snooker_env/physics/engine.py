@@ -8,8 +8,8 @@ from math import inf, sqrt
 
 import numpy as np
 
-from .._jit import entry, inlined, kernel
-from .._lanes import LANES, lane, lanes, lanes_at, lesser, no_more
+from .._lib.jit import entry, inlined, kernel
+from .._lib.lanes import LANES, lane, lanes, lanes_at, lesser, no_more
 from . import cloth, events, flight, pocket
 from .arrays import Balls, Boundaries, Forecast, Law, Log, Motions, Setup
 from .cloth import AIR, FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, UZ, VX, VY, WZ, X, Y, Z

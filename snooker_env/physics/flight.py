@@ -21,7 +21,7 @@ Only with ``Physics.flight``. z is the height of a ball's centre above its heigh
 
 from math import hypot, inf, sqrt
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from . import cloth, events, pocket
 from .cloth import (
     AIR,

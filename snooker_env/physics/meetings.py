@@ -8,7 +8,7 @@ then a series of hops of about a micrometre and a millisecond. Energy never rise
 
 from math import sqrt
 
-from .._jit import inlined, kernel
+from .._lib.jit import inlined, kernel
 from .columns import P_E_B, P_E_J, P_MU_BB_EXTRA, P_MU_BB_FADE, P_MU_BB_LEAST, P_MU_C, P_R
 from .impact import free
 from .impact.contact import collide_balls, collide_cushion, collide_tilted, cushion_restitution

@@ -11,8 +11,8 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from .._check import choice, number, refuse, truth
-from .._types import Floats, Ints, PhysicsName, Solver
+from .._lib.check import choice, number, refuse, truth
+from .._lib.types import Floats, Ints, PhysicsName, Solver
 from ..geometry import BALL_RADIUS
 from . import conditions
 from .columns import (

@@ -2,7 +2,7 @@
 
 from math import inf, sqrt
 
-from .._jit import entry, kernel
+from .._lib.jit import entry, kernel
 from .arrays import Boundaries
 from .columns import (
     FALL_RADIUS,

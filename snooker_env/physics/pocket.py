@@ -22,7 +22,7 @@ followed in steps of ``STEP``, parabolas with the impacts at their ends. Oracle:
 
 from math import inf, sqrt
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from . import events
 from .cloth import AX, AY, FALLING, HI_X, HI_Y, LO_X, LO_Y, T0, T_END, UZ, VX, VY, WX, WY, WZ, X, Y, Z
 from .columns import (

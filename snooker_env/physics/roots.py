@@ -7,7 +7,7 @@ Newton iteration. A root of even order (touched from above) is no crossing.
 
 from math import inf, sqrt
 
-from .._jit import kernel
+from .._lib.jit import kernel
 
 
 @kernel

@@ -2,8 +2,8 @@
 
 from math import hypot
 
-from .._check import refuse
-from .._types import Floats
+from .._lib.check import refuse
+from .._lib.types import Floats
 from ..geometry import Bed
 from .columns import FALL_RADIUS
 

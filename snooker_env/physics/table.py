@@ -10,8 +10,8 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from .._check import array, choice, flags, number, refuse, refuse_what
-from .._types import Batches, FlagRows, Flags, Floats, TableName, Vectors
+from .._lib.check import array, choice, flags, number, refuse, refuse_what
+from .._lib.types import Batches, FlagRows, Flags, Floats, TableName, Vectors
 from ..geometry import PRESETS, Bed, Pocket, parts
 from .bounds import bounds_of, deepest, narrowest
 from .columns import JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE

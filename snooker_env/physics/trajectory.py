@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from .._check import refuse
-from .._jit import entry
-from .._types import Floats
+from .._lib.check import refuse
+from .._lib.jit import entry
+from .._lib.types import Floats
 from . import cloth, flight
 
 

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import array, integer, number, refuse, refuse_what
-from .._jit import entry
-from .._types import CueKind, Fidelity, Floats, Integers, Scalars, Vectors
+from .._lib.check import array, integer, number, refuse, refuse_what
+from .._lib.jit import entry
+from .._lib.types import CueKind, Fidelity, Floats, Integers, Scalars, Vectors
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS
 from ..physics.conditions import END_MASS_RATIO

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import integer, refuse_what
-from .._types import Bools, Environment, Floats, Ints
+from .._lib.check import integer, refuse_what
+from .._lib.types import Bools, Environment, Floats, Ints
 from ..game import frame_columns as columns
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options, Rules

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import array, integer
-from .._jit import entry
-from .._types import Integers, Vectors
+from .._lib.check import array, integer
+from .._lib.jit import entry
+from .._lib.types import Integers, Vectors
 from ..game.balls import N_BALLS, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
 from ..game.paths import clear_path, full_ball_path

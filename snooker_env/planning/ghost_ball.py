@@ -4,7 +4,7 @@ from math import atan2, cos, hypot, sin, sqrt
 
 import numpy as np
 
-from .._jit import entry, kernel
+from .._lib.jit import entry, kernel
 from ..game import frame_columns as columns
 from ..game.balls import N_BALLS, N_REDS, YELLOW, balls_on_kernel, bits, touching_balls
 from ..game.philox import pair

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._check import array, integer, refuse, refuse_what
-from .._types import Environment, Floats, Integers, Ints, Scalars, Vectors, Words
+from .._lib.check import array, integer, refuse, refuse_what
+from .._lib.types import Environment, Floats, Integers, Ints, Scalars, Vectors, Words
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..tasks.noise import Noise, NoiseLike, errors_of

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import array, choice, integer, refuse, refuse_what, truth
-from .._files import in_file, read_json, write_atomic
-from .._types import Flags, Integers, Place, Vectors
+from .._lib.check import array, choice, integer, refuse, refuse_what, truth
+from .._lib.files import in_file, read_json, write_atomic
+from .._lib.types import Flags, Integers, Place, Vectors
 from ..game.balls import (
     COLOUR_NAMES,
     CUE,

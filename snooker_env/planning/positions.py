@@ -6,9 +6,9 @@ from typing import Any, TypeAlias, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import array, refuse, refuse_what
-from .._jit import entry
-from .._types import Batches, Environment, FlagRows, Integers, Ints, Vectors
+from .._lib.check import array, refuse, refuse_what
+from .._lib.jit import entry
+from .._lib.types import Batches, Environment, FlagRows, Integers, Ints, Vectors
 from ..game import frame_columns as columns
 from ..game.balls import CUE, N_BALLS, BallOn, bits, mask_of_present
 from ..game.frame import MOST_BREAK

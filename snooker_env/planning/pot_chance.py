@@ -4,8 +4,8 @@ from math import erf, exp, hypot, sqrt
 
 import numpy as np
 
-from .._jit import entry, kernel
-from .._types import Floats
+from .._lib.jit import entry, kernel
+from .._lib.types import Floats
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, TOLERANCE
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
 

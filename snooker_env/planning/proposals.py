@@ -17,8 +17,8 @@ from typing import NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
-from .._jit import entry, kernel
-from .._types import Floats, Integers, Ints
+from .._lib.jit import entry, kernel
+from .._lib.types import Floats, Integers, Ints
 from ..game.balls import VALUES, balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots

@@ -7,8 +7,8 @@ from math import atan2, exp, radians
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import entry, kernel
-from .._types import Floats
+from .._lib.jit import entry, kernel
+from .._lib.types import Floats
 from ..game.balls import N_BALLS, VALUES, BallOn, balls_on_kernel, bits
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS

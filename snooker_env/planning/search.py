@@ -12,8 +12,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from .._check import integer, refuse_what
-from .._types import Bools, Floats, Integers, Ints
+from .._lib.check import integer, refuse_what
+from .._lib.types import Bools, Floats, Integers, Ints
 from ..tasks.options import Rules
 from .aims import Dynamics
 from .positions import Positions, PositionsLike, check_played, seeds_of

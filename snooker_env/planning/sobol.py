@@ -8,8 +8,8 @@ from statistics import NormalDist
 
 import numpy as np
 
-from .._jit import entry, kernel
-from .._types import Floats
+from .._lib.jit import entry, kernel
+from .._lib.types import Floats
 
 DIMENSIONS = 5  # largest number of coordinates of a point
 _BITS, _ALL = 32, 0xFFFFFFFF

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import refuse, refuse_what
-from .._jit import entry
-from .._types import CueKind, Floats, Ints, Vectors
+from .._lib.check import refuse, refuse_what
+from .._lib.jit import entry
+from .._lib.types import CueKind, Floats, Ints, Vectors
 from ..game.balls import YELLOW
 from ..game.frame_columns import BALL_ON, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPLACE
 from ..game.ruling import AUTO

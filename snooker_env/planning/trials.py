@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from .._jit import entry
-from .._types import Floats, Ints, Words
+from .._lib.jit import entry
+from .._lib.types import Floats, Ints, Words
 from ..game import frame_columns as columns
 from ..game.balls import N_BALLS
 from ..game.ruling import AUTO

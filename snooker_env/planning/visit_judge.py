@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import number
-from .._types import Bools, Environment, Floats, Ints
+from .._lib.check import number
+from .._lib.types import Bools, Environment, Floats, Ints
 from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
 from ..tasks.noise import Noise, NoiseLike

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import entry
-from .._types import Bools, Floats, Ints
+from .._lib.jit import entry
+from .._lib.types import Bools, Floats, Ints
 from ..game import frame_columns as columns
 from ..game.balls import BLACK, CUE, N_BALLS, VALUES, available
 from ..game.sides import swapped

@@ -6,9 +6,9 @@ import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .._check import integer, refuse_what
-from .._command import until_closed
-from .._files import read_json
+from .._lib.check import integer, refuse_what
+from .._lib.command import until_closed
+from .._lib.files import read_json
 from ..players.model_options import add_model_options, options_of_words
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES

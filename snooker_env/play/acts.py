@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, number, refuse, refuse_what, truth
+from .._lib.check import choice, number, refuse, refuse_what, truth
 from ..advice import CueStroke
 from ..game.balls import NAMES
 from ..game.ruling import AUTO

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, number, refuse
+from .._lib.check import choice, number, refuse
 from ..game.balls import CUE
 from ..game.frame import CHOICES
 from ..game.frame_columns import PLAY

@@ -5,16 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, number, refuse
+from .._lib.check import choice, number, refuse
 from ..advice import CueStroke, Suggestion, advise, destinations
 from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
 from ..game.frame import CHOICES
 from ..geometry import BAULK_Y, POCKET_AIMS, POCKETS
 from ..physics.engine import EventKind
 from ..planning import Planner
-from ..render.scene import ball_paths
-from ..replays.encode import packed
-from ..shot import Shot
+from ..render.scene import trace_paths
+from ..replays.encode import pack
+from ..simulation.shot import Shot
 from .service import Seats, Service
 from .session import Session
 
@@ -83,9 +83,9 @@ def paths(shot: Shot) -> dict[str, Any]:
     """Paths of a shot's balls [m], rounded to 0.1 mm; the ball struck first, the pots and the duration."""
     events = shot.events
     hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
-    lines = ball_paths(shot, range(len(shot.positions)), step=0.04)
+    lines = trace_paths(shot, range(len(shot.positions)), step=0.04)
     return {
-        "paths": {str(ball): np.round(points, 4).tolist() for ball, points in lines.items()},
+        "paths": {str(ball): np.round(points, 4).tolist() for ball, (points, _) in lines.items()},
         "first": NAMES[hits["j"][0]] if len(hits) else None,
         "pots": [[NAMES[ball], POCKETS[shot.potted[ball]]] for ball in np.flatnonzero(shot.potted >= 0)],
         "duration": shot.duration,
@@ -97,7 +97,7 @@ def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any
     shot = exact(session, stroke)
     stops = destinations(session.planned(), stroke, **errors, options={"cue": session.cue})
     figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
-    return paths(shot) | figures | {"cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4")}
+    return paths(shot) | figures | {"cue": pack(stops.cue, "f4"), "ball": pack(stops.ball, "f4")}
 
 
 def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:

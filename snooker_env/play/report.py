@@ -11,7 +11,7 @@ from ..geometry import POCKET_AIMS
 from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
 from ..planning.stroke_columns import FARTHEST
 from ..render.scene import scene_data
-from ..replays.encode import encoded_stroke
+from ..replays.encode import encode_stroke
 from ..replays.words import ERRORS, errors_words
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
@@ -72,7 +72,7 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
     before, both = acts[k - 2] if k > 1 else None, acts[k - 1 : k + 1]
     chances = service.win_chances(both)
     tables = [table_after(act, labels, chance, before) for act, chance in zip(both, chances, strict=True)]
-    return encoded_stroke(played, labels) | {"tables": tables}
+    return encode_stroke(played, labels) | {"tables": tables}
 
 
 def report(service: Service) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
-from .._check import choice, integer, number, refuse, truth
+from .._lib.check import choice, integer, number, refuse, truth
 from ..advice import CueStroke
 from ..game.frame import MOST_BREAK
 from ..game.ruling import AUTO

@@ -15,13 +15,14 @@ import threading
 import time
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
-from .._check import refuse
-from .._files import strict_json
+from .._lib.check import refuse
+from .._lib.files import strict_json
+from ..replays.web import table_js
 from ..simulation import SimulationError
-from ..web import WEB, table_js
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
@@ -256,7 +257,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         return RefusedError(status, message, field, value, **headers)
 
     def _file(self, name):
-        path = WEB / (name or "play.html")
+        path = Path(__file__).with_name("web") / (name or "play.html")
         text = table_js(player=False) if name == "table.js" else path.read_text("utf-8")
         self._send(200, text.encode(), f"{FILES[name]}; charset=utf-8")
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, refuse, refuse_what
-from .._types import NoiseName
+from .._lib.check import choice, refuse, refuse_what
+from .._lib.types import NoiseName
 from ..advice.ask import AGENT
 from ..advice.strokes import cue_strokes
 from ..game.frame import CHOICES, Frame

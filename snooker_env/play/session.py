@@ -11,8 +11,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from .._check import choice, integer, refuse, refuse_what, truth
-from .._types import CueKind, NoiseName
+from .._lib.check import choice, integer, refuse, refuse_what, truth
+from .._lib.types import CueKind, NoiseName
 from ..advice import CueStroke, Room
 from ..advice.room import room_for
 from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import refuse_what
-from .._types import Bools, Floats, Integers, Ints
+from .._lib.check import refuse_what
+from .._lib.types import Bools, Floats, Integers, Ints
 from ..game.frame_columns import VISIT_COLUMNS
 from ..game.ruling import AUTO
 from ..planning import Positions, pots

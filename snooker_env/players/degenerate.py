@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Floats, Integers, Ints
+from .._lib.types import Floats, Integers, Ints
 from ..game import frame_columns as columns
 from ..planning import Positions
 from ..planning.positions import PositionsLike

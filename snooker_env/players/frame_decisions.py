@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._types import Integers
+from .._lib.types import Integers
 from ..game import frame_columns as columns
 from ..planning import Positions, Search
 from ..planning.frame_judge import FrameJudge

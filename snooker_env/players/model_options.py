@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from .._check import choice, refuse
-from .._files import strict_json
-from .._notices import say
+from .._lib.check import choice, refuse
+from .._lib.files import strict_json
+from .._lib.notices import say
 from ..tasks.options import Options
 from .saved_models import by_train, entries
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TypeAlias
 
-from .._check import integer, number, refuse
+from .._lib.check import integer, number, refuse
 from .player import Player
 
 Member: TypeAlias = str | Path | Player

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .._check import refuse, refuse_what
-from .._types import Floats, Ints
+from .._lib.check import refuse, refuse_what
+from .._lib.types import Floats, Ints
 from ..game.frame_columns import OPPONENT, Layouts
 from ..game.sides import strikers_own
 from ..planning import Positions

@@ -9,8 +9,8 @@ from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
-from .._check import refuse
-from .._types import Bools, Environment, Floats, Integers, Ints
+from .._lib.check import refuse
+from .._lib.types import Bools, Environment, Floats, Integers, Ints
 from ..game.frame_columns import PLACE_ANYWHERE, PLAY
 from ..planning.ghost_ball import put_in_hand
 from ..planning.planner import options_in

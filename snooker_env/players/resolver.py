@@ -8,8 +8,8 @@ from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any
 
-from .._check import refuse, refuse_what, truth
-from .._registration import PROGRAM_PLAYER
+from .._lib.check import refuse, refuse_what, truth
+from .._lib.registration import PROGRAM_PLAYER
 from ..planning import VisitJudge
 from ..planning.search import BUDGET, MOST
 from .choices import GhostBall, Random

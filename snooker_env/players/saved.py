@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from .._check import refuse
-from .._types import Bools, Ints, Observation
+from .._lib.check import refuse
+from .._lib.types import Bools, Ints, Observation
 from ..tasks.declarations import SAYS
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options

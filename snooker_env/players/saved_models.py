@@ -11,9 +11,9 @@ from typing import Any
 
 from gymnasium import spaces
 
-from .._check import refuse
-from .._files import MOST_JSON, strict_json, unzipped
-from .._install import missing
+from .._lib.check import refuse
+from .._lib.files import MOST_JSON, strict_json, unzipped
+from .._lib.install import missing
 
 PLAIN = "model.json"
 """The part that replaces ``data`` in the zips of ``agents/pretrained``, which hold no pickles."""

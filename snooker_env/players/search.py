@@ -9,8 +9,8 @@ After a foul in a frame a planner decides by the learned worth, the others by th
 
 import numpy as np
 
-from .._check import integer
-from .._types import Floats, Integers
+from .._lib.check import integer
+from .._lib.types import Floats, Integers
 from ..planning import Positions, Search, VisitJudge
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth

@@ -5,8 +5,8 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from .._check import choice, refuse_what
-from .._types import Bools, Floats, Integers, Ints, Observation
+from .._lib.check import choice, refuse_what
+from .._lib.types import Bools, Floats, Integers, Ints, Observation
 from ..game import frame_columns as columns
 from ..game.balls import mask_of_present
 from ..physics.parameters import nominal

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Floats, Integers
+from .._lib.types import Floats, Integers
 from ..planning import Positions, spread_of
 from ..planning.aims import Dynamics
 from ..planning.learned.frame_strokes import FOULS, FrameStrokes

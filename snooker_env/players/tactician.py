@@ -3,8 +3,8 @@ players, and all decisions of a frame by that worth (``frame_decisions``)."""
 
 import numpy as np
 
-from .._check import integer, refuse, refuse_what
-from .._types import Floats, Integers, Singles
+from .._lib.check import integer, refuse, refuse_what
+from .._lib.types import Floats, Integers, Singles
 from ..game import frame_columns as columns
 from ..planning import FrameJudge, Positions, Search, processors, spread_of
 from ..planning.learned.learned_value import LearnedValue

@@ -7,8 +7,8 @@ from textwrap import wrap
 
 import numpy as np
 
-from .._check import integer
-from .outline import BAULK_LINE, D_ARC, SPOT_MARKS, extent, is_marked
+from .._lib.check import integer
+from .outline import BAULK_LINE, D_ARC, SPOT_MARKS, extent, has_lines
 from .palette import LETTERS
 from .scene import Scene
 
@@ -54,7 +54,7 @@ class _Grid:
 def ansi(scene: Scene, width: int = WIDTH) -> str:
     """The scene as lines of text, with status and legend."""
     grid = _Grid(integer("width", width, 60, 400) - 2, scene.table)
-    if is_marked(scene.table):
+    if has_lines(scene.table):
         grid.line(BAULK_LINE, _LINE)
         grid.line(D_ARC, _ARC)
         for spot in SPOT_MARKS:

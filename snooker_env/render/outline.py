@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .._types import Floats
+from .._lib.types import Floats
 from ..game.balls import NAMES, VALUES
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.columns import JAW_RADIUS
@@ -47,7 +47,7 @@ def extent(table: Table) -> Floats:
     return np.where(np.isfinite(table.bounds), table.bounds, _SNOOKER)
 
 
-def is_marked(table: Table) -> bool:
+def has_lines(table: Table) -> bool:
     """Whether snooker's lines and spots are drawn: on a snooker bed, and on unbounded cloth."""
     return np.allclose(extent(table), _SNOOKER, rtol=0.0, atol=1e-9)
 
@@ -178,7 +178,7 @@ def scene_data(table: TableLike) -> dict[str, Any]:
         "extent": _round(extent(table)),
         "rail": RAIL,
         "cushion": CUSHION,
-        "lines": marks if is_marked(table) else None,
+        "lines": marks if has_lines(table) else None,
         "ball_radius": float(table.ball_radius or BALL_RADIUS),
         "palette": {name: list(rgb) for name, rgb in PALETTE.items()},
         "balls": [dict(zip(keys, ball, strict=True)) for ball in balls],

@@ -1,14 +1,8 @@
 """Which colours does everything have? Each ball is easy to see: 25 or more from the cloth in CIEDE2000."""
 
-from collections.abc import Sequence
-from typing import TypeAlias
-
 import numpy as np
 
-from .._types import Bytes, RealArray
-
-Colour: TypeAlias = str | Sequence[float] | RealArray
-"""A name of ``PALETTE``, or red, green and blue up to 255."""
+from .._lib.types import Bytes
 
 PALETTE: dict[str, tuple[int, int, int]] = {
     "floor": (17, 18, 21),

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._install import missing
-from .._types import Floats
-from ..game.balls import YELLOW
-from .palette import COLOURS, LETTERS, PALETTE
-from .scene import Scene, matrix
+from .._lib.install import missing
+from .._lib.types import Floats
+from ..game.balls import CUE
+from .palette import COLOURS, PALETTE
+from .scene import Scene
 from .table_picture import LAMP_HEIGHT, View, lamps
 
 if TYPE_CHECKING:
@@ -131,25 +131,22 @@ def draw_balls(surface: "Surface", scene: Scene, view: View) -> None:
     radius = scene.ball_radius * view.scale
     over = lamps(scene.table)
     images = []
-    for ball, places in scene.ghosts.items():
-        faded = tuple(COLOURS[ball].tolist()), round(radius, 2), _FADED
-        images += [_at(place, _body, *faded) for place in view(places)]
+    faded = _colour(CUE), round(radius, 2), _FADED
+    images += [_at(place, _body, *faded) for place in view(scene.ghosts)]
     where = view(scene.positions)
     images += _shadows(scene.positions, scene.heights / scene.ball_radius, over, where, radius)
     for k in np.argsort(scene.heights, kind="stable").tolist():
         ball, place, size = int(scene.ids[k]), where[k], radius * (1.0 + float(scene.heights[k]) / EYE)
-        colour = tuple(COLOURS[ball].tolist())
-        if ball in scene.turns:
-            images.append(_with_spots(place, colour, size, scene.turns[ball]))
+        if ball == CUE and scene.turn is not None:
+            images.append(_with_spots(place, size, scene.turn))
         else:
-            images.append(_at(place, _body, colour, round(size, 2), 1.0))
-    lettered = (scene.ids >= YELLOW) & scene.lettered
-    images += _reflections(scene.positions[~lettered], over, where[~lettered], radius)
-    for ball, place in zip(scene.ids[lettered].tolist(), where[lettered], strict=True):
-        letter = _letter(ball, round(radius, 1))
-        x, y = place[0] - letter.get_width() / 2, place[1] - letter.get_height() / 2
-        images.append((letter, (round(x), round(y))))
+            images.append(_at(place, _body, _colour(ball), round(size, 2), 1.0))
+    images += _reflections(scene.positions, over, where, radius)
     surface.fblits(images)
+
+
+def _colour(ball):
+    return tuple(COLOURS[ball].tolist())
 
 
 def _at(place, make, *what):
@@ -182,18 +179,17 @@ def _body(colour, radius, strength, fx, fy):
     return surface_of(shaded, strength * np.clip(radius + 0.5 - d, 0, 1))
 
 
-def _with_spots(place, colour, radius, turn):
-    """A ball with six spots, after the rotation ``turn``."""
+def _with_spots(place, radius, turn):
+    """The cue ball with six red spots, after the rotation ``turn``."""
     column, row = float(place[0]), float(place[1])
     left, top = int(np.floor(column)), int(np.floor(row))
     x, y = _grid(int(np.ceil(radius)) + 1, 4 * (column - left), 4 * (row - top))
     d = np.hypot(x, y)
     nz = np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1))
-    towards = matrix(turn) @ _SPOTS.T  # (3, 6) in the table frame: x down, y to the right, z to the eye
+    towards = turn @ _SPOTS.T  # (3, 6) in the table frame: x down, y to the right, z to the eye
     seen = np.max(np.stack([y / radius, x / radius, nz], axis=-1) @ towards, axis=-1)
     spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
-    ink = np.array(COLOURS[1] if min(colour) > 120 else (250, 250, 245), dtype=np.float64)
-    shaded = _shade(colour, nz) * (1 - spot) + _shade(ink, nz) * spot
+    shaded = _shade(COLOURS[CUE], nz) * (1 - spot) + _shade(COLOURS[1], nz) * spot
     made = surface_of(shaded, np.clip(radius + 0.5 - d, 0, 1))
     return made, (left - made.get_width() // 2, top - made.get_height() // 2)
 
@@ -253,15 +249,9 @@ def _shadow(radius, alpha, soft, fx, fy):
     return surface_of(PALETTE["shadow"], alpha / 24 * (1 - t * t * (3 - 2 * t)))
 
 
-@lru_cache(maxsize=64)
-def _letter(ball, radius):
-    light = COLOURS[ball].astype(int) @ (3, 6, 1) > 1300
-    return typeset(LETTERS[ball], (0, 0, 0) if light else (255, 255, 255), 1.25 * radius, BOLD)
-
-
 def dot(ball: int, radius: float) -> "Surface":
     """A small ball for a score bar, its id and radius [pixels], as a surface with transparency."""
-    image = _body(tuple(COLOURS[ball].tolist()), round(radius, 2), 1.0, 2, 2).copy()
+    image = _body(_colour(ball), round(radius, 2), 1.0, 2, 2).copy()
     if COLOURS[ball].max() < 90:  # dark on a dark bar
         ring = _body(PALETTE["text_quiet"], round(radius + 0.8, 2), 0.8, 2, 2).copy()
         ring.blit(image, ((ring.get_width() - image.get_width()) // 2,) * 2)

@@ -4,7 +4,7 @@ it, and the score bar as on television."""
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from .._types import Bytes
+from .._lib.types import Bytes
 from ..game.balls import COLOUR_NAMES, YELLOW
 from .palette import PALE, PALETTE
 from .pygame_balls import BOLD, MEDIUM, dot, draw_balls, draw_lines, line_width, pygame_, typeset

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .._check import number
-from .._types import Flags, Floats, Ints, Vector, Vectors
+from .._lib.check import number
+from .._lib.types import Flags, Floats, Ints, Vectors
 from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind
@@ -16,53 +16,40 @@ from .outline import outline as outline
 from .outline import scene_data as scene_data
 
 if TYPE_CHECKING:
-    from ..shot import Shot
+    from ..simulation.shot import Shot
 else:  # a shot draws itself: its module stands above this one
     Shot = Any
 
 TURN_STEP = 1 / 240  # time between stored rotations [s]: at 100 rad/s a quarter of a right angle
+UNTURNED = np.eye(3)
 
 
 class Turning:
-    """The rotation of one ball of a ``Shot``."""
+    """The rotation of the cue ball of a ``Shot``."""
 
-    def __init__(self, shot: Shot, ball: int):
-        self._shot, self._ball = shot, int(ball)
+    def __init__(self, shot: Shot):
+        self._shot = shot
         count = int(shot.duration / TURN_STEP) + 1
-        spins = shot.at((np.arange(count) + 0.5) * TURN_STEP)[2][:, self._ball]
-        turns = rotation(spins * TURN_STEP)
-        self._kept = np.empty((count + 1, 4))
-        self._kept[0] = 1.0, 0.0, 0.0, 0.0
-        for k in range(count):
-            self._kept[k + 1] = product(turns[k], self._kept[k])
+        spins = shot.at((np.arange(count) + 0.5) * TURN_STEP)[2][:, CUE]
+        self._kept = [UNTURNED]
+        for turn in spins * TURN_STEP:
+            self._kept.append(rotate(turn) @ self._kept[-1])
 
     def at(self, t: float) -> Floats:
-        """The unit quaternion (4,) at a time [s] from the start of the shot."""
+        """The rotation since the start of the shot, a matrix (3, 3), at a time [s]."""
         k = min(int(t / TURN_STEP), len(self._kept) - 1)
         rest = t - k * TURN_STEP
-        return product(rotation(self._shot.at(k * TURN_STEP + rest / 2)[2][self._ball] * rest), self._kept[k])
+        return rotate(self._shot.at(k * TURN_STEP + rest / 2)[2][CUE] * rest) @ self._kept[k]
 
 
-def rotation(turn: Floats) -> Floats:
-    """The quaternion (..., 4) of a rotation about the axis ``turn`` (..., 3) by its length [rad]."""
-    turn = np.asarray(turn, dtype=np.float64)
-    angle = np.linalg.norm(turn, axis=-1, keepdims=True)
-    return np.concatenate([np.cos(angle / 2), turn * (np.sinc(angle / (2 * np.pi)) / 2)], axis=-1)
-
-
-def product(a: Floats, b: Floats) -> Floats:
-    """The product of two quaternions (4,): the rotation ``b``, then ``a``."""
-    (aw, ax, ay, az), (bw, bx, by, bz) = a.tolist(), b.tolist()
-    w, x = aw * bw - ax * bx - ay * by - az * bz, aw * bx + ax * bw + ay * bz - az * by
-    y, z = aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw
-    return np.array([w, x, y, z])
-
-
-def matrix(q: Floats) -> Floats:
-    """The rotation of a quaternion as a matrix (3, 3)."""
-    w, x, y, z = q.tolist()
+def rotate(turn: Floats) -> Floats:
+    """The matrix (3, 3) of a rotation about the axis ``turn`` (3,) by its length [rad]."""
+    x, y, z = turn.tolist()
+    angle = (x * x + y * y + z * z) ** 0.5
     across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])  # of the axis: across @ v is its product with v
-    return np.eye(3) + 2 * w * across + 2 * across @ across
+    return (
+        UNTURNED + np.sinc(angle / np.pi) * across + np.sinc(angle / (2 * np.pi)) ** 2 / 2 * across @ across
+    )
 
 
 @dataclass(frozen=True)
@@ -91,11 +78,10 @@ class Scene:
     heights: Floats  # (k,) above the bed [m]
     ball_radius: float
     paths: dict[int, Floats]  # ball -> (m, 2) points [m]
-    ghosts: dict[int, Floats]  # ball -> (m, 2) earlier places [m], drawn faded
-    turns: dict[int, Floats]  # ball -> quaternion (w, x, y, z) since the start; such a ball has spots
+    ghosts: Floats  # (m, 2) earlier places of the cue ball [m], drawn faded
+    turn: Floats | None  # of the cue ball since the start (3, 3); with one it has spots
     text: str  # one line of status, shown without a bar
     bar: ScoreBar | None
-    lettered: bool = False  # whether balls carry their letters, so that colours are not needed
 
 
 def scene(
@@ -104,8 +90,8 @@ def scene(
     on_table: Flags | None = None,
     *,
     paths: Mapping[int, Vectors] | None = None,
-    ghosts: Mapping[int, Vectors] | None = None,
-    turns: Mapping[int, Vector] | None = None,
+    ghosts: Vectors | None = None,
+    turn: Floats | None = None,
     text: str = "",
     bar: ScoreBar | None = None,
 ) -> Scene:
@@ -114,21 +100,13 @@ def scene(
     heights = r[:, 2] if r.shape[1] == 3 else np.zeros(len(r))
     ids = np.arange(len(r)) if on_table is None else np.flatnonzero(np.array(on_table))
     radius = table.ball_radius or BALL_RADIUS
-    drawn = _copies(paths), _copies(ghosts), _copies(turns)
-    return Scene(table, ids, r[ids, :2], np.maximum(heights[ids], 0.0), radius, *drawn, text, bar)
+    lines = {int(ball): np.array(points, np.float64) for ball, points in (paths or {}).items()}
+    faded = np.array(() if ghosts is None else ghosts, np.float64).reshape(-1, 2)
+    return Scene(table, ids, r[ids, :2], np.maximum(heights[ids], 0.0), radius, lines, faded, turn, text, bar)
 
 
-def _copies(balls: Mapping[int, Vector] | Mapping[int, Vectors] | None) -> dict[int, Floats]:
-    return {int(ball): np.array(points, np.float64) for ball, points in (balls or {}).items()}
-
-
-def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), step: float = 0.02) -> dict[int, Floats]:
-    """Paths {ball: (m, 2)} [m] of the balls that move; impacts are points of them."""
-    return {ball: points for ball, (points, _) in _timed_paths(shot, balls, step).items()}
-
-
-def _timed_paths(shot, balls, step=0.02):
-    """Paths {ball: (points (m, 2) [m], their times (m,) [s])}."""
+def trace_paths(shot: Shot, balls: Iterable[int], step: float = 0.02) -> dict[int, tuple[Floats, Floats]]:
+    """Paths {ball: (points (m, 2) [m], times (m,) [s])} of the balls that move; impacts are points of them."""
     times = np.append(np.arange(0.0, shot.duration, step), shot.duration)
     impacts = shot.events["time"][shot.events["kind"] <= EventKind.POT]
     times = np.union1d(times, impacts[impacts < shot.duration])
@@ -142,13 +120,8 @@ def _timed_paths(shot, balls, step=0.02):
     return paths
 
 
-def contacts(shot: Shot, ball: int = CUE) -> Floats:
-    """Places (m, 2) [m] where a ball met others, in order; none nearer than a radius to the last."""
-    return _timed_contacts(shot, ball)[0]
-
-
-def _timed_contacts(shot, ball):
-    """``contacts`` and their times (m,) [s]."""
+def find_contacts(shot: Shot, ball: int = CUE) -> tuple[Floats, Floats]:
+    """Places (m, 2) [m] and times (m,) [s] where a ball met others; none nearer than a radius to the last."""
     met = shot.events[shot.events["kind"] == EventKind.BALL_BALL]
     met = met[(met["i"] == ball) | (met["j"] == ball)]
     places, kept = shot.at(met["time"])[0][:, ball, :2].reshape(-1, 2), []
@@ -159,26 +132,16 @@ def _timed_contacts(shot, ball):
 
 
 class Film:
-    """The pictures of a ``Shot`` at any time; some balls have a trail, spots, or faded ghosts."""
+    """The pictures of a ``Shot`` at any time: the cue ball with spots and ghosts, its path and those of potted balls."""
 
-    def __init__(
-        self,
-        table: TableLike,
-        shot: Shot,
-        *,
-        trail: Iterable[int] = (CUE,),
-        spots: Iterable[int] = (),
-        faded: Iterable[int] = (),
-        bar: ScoreBar | None = None,
-        text: str = "",
-    ):
+    def __init__(self, table: TableLike, shot: Shot, *, bar: ScoreBar | None = None, text: str = ""):
         self.duration: float = shot.duration
         self._table, self._shot = Table.of(table), shot
         self._bar, self._text = bar, text
-        self._paths = _timed_paths(shot, trail)
-        self._turning = {int(ball): Turning(shot, ball) for ball in spots}
-        self._contacts = {int(ball): _timed_contacts(shot, ball) for ball in faded}
         drops = shot.events[np.isin(shot.events["kind"], (EventKind.POT, EventKind.OFF))]
+        potted = shot.events["i"][shot.events["kind"] == EventKind.POT]
+        self._paths = trace_paths(shot, dict.fromkeys((CUE, *potted.tolist())))
+        self._turning, self._met = Turning(shot), find_contacts(shot)
         self._gone_at = np.where(shot.on_table, np.inf, -1.0)  # -1: not on the table when the shot began
         self._gone_at[drops["i"]] = drops["time"]
 
@@ -193,10 +156,15 @@ class Film:
                 done = np.concatenate([done, r[ball : ball + 1, :2]])
             if len(done) > 1:
                 paths[ball] = done
-        turns = {ball: turning.at(t) for ball, turning in self._turning.items()}
-        ghosts = {ball: places[times <= t] for ball, (places, times) in self._contacts.items()}
-        made = scene(self._table, r, self._gone_at > t, paths=paths, ghosts=ghosts, turns=turns)
-        return replace(made, ball_radius=self._shot.physics.R, bar=self._bar, text=self._text)
+        places, times = self._met
+        over = {
+            "ghosts": places[times <= t],
+            "turn": self._turning.at(t),
+            "bar": self._bar,
+            "text": self._text,
+        }
+        made = scene(self._table, r, self._gone_at > t, paths=paths, **over)
+        return replace(made, ball_radius=self._shot.physics.R)
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
         """One picture every speed / fps seconds of the shot's own time, and one of its end."""

@@ -7,11 +7,11 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from .._check import integer, refuse
-from .._types import Bytes, Floats
+from .._lib.check import integer, refuse
+from .._lib.types import Bytes, Floats
 from ..geometry import BAULK_Y, D_RADIUS
 from ..physics.table import Table
-from .outline import BAULK_LINE, CUSHION, RAIL, SPOT_MARKS, Outline, extent, is_marked, outline
+from .outline import BAULK_LINE, CUSHION, RAIL, SPOT_MARKS, Outline, extent, has_lines, outline
 from .palette import PALETTE
 
 Size: TypeAlias = tuple[int, int]
@@ -37,7 +37,7 @@ class View(NamedTuple):
         """As large as fits into ``size``, (width, height)."""
         low, high = extent(table).T
         (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
-        width, height = checked_size(size)
+        width, height = check_size(size)
         bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))
         scale = min((height - bar) / tall, width / wide)
         x, y = width / 2 - scale * middle_y, (height - bar) / 2 - scale * middle_x
@@ -49,7 +49,7 @@ class View(NamedTuple):
         return np.stack([self.x + self.scale * points[..., 1], self.y + self.scale * points[..., 0]], axis=-1)
 
 
-def checked_size(size: Sequence[int], field: str = "size") -> Size:
+def check_size(size: Sequence[int], field: str = "size") -> Size:
     """(width, height) of pictures; ValueError unless they are two valid integers."""
     if isinstance(size, str) or not hasattr(size, "__len__") or len(size) != 2:
         raise refuse(field, size, "must be (width, height)")
@@ -77,7 +77,7 @@ def table_picture(table: Table, view: View) -> Bytes:
     canvas, parts = _Canvas(view, table), outline(table)
     canvas.image[:] = _INK["floor"]
     _bed(canvas, table)
-    if is_marked(table):
+    if has_lines(table):
         _marks(canvas)
     _pockets(canvas, parts)
     for polygon, nose in zip(parts.cushions, parts.noses, strict=True):

@@ -1,22 +1,21 @@
 """How is a table shown on the screen? In a window that shows what it waits for, and reads its ``KEYS``."""
 
-import dataclasses
 import os
 import sys
 from typing import TYPE_CHECKING
 
-from .._check import number
+from .._lib.check import number
 from .palette import PALETTE
 from .pygame_balls import BOLD, MEDIUM, pygame_, typeset
 from .pygame_view import draw
 from .scene import Film, Scene
-from .table_picture import SIZE, Size, View, checked_size
+from .table_picture import SIZE, Size, View, check_size
 
 if TYPE_CHECKING:
     from pygame import Surface
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)  # that the user can choose, in multiples of the caller's
-KEYS = "space: pause    right: step    enter: skip    up/down: speed    L: letters    P: paths    esc: close"
+KEYS = "space: pause    right: step    enter: skip    up/down: speed    esc: close"
 WAITING = "waiting for the next stroke"
 _HINT = 0.026  # part of the window's height for the line with its status
 _INVISIBLE = ("dummy", "offscreen")  # drivers of SDL
@@ -46,12 +45,11 @@ class Window:
     """A window with a table, opened by the first ``draw``; once closed by its user, shut until ``close``."""
 
     def __init__(self, *, size: Size | None = None):
-        self._size = None if size is None else checked_size(size)
+        self._size = None if size is None else check_size(size)
         self._screen: Surface | None = None
         self.speed: float = 1.0  # as the user has chosen; in multiples of that of ``play``
         self.paused: bool = False
-        self._shut, self._letters, self._paths = False, False, True
-        self._steps, self._skip, self._hint = 0, False, 0
+        self._shut, self._steps, self._skip, self._hint = False, 0, False, 0
         self.status: str = ""  # the status in the window's last line
 
     @property
@@ -140,17 +138,12 @@ class Window:
         elif key in (pygame.K_UP, pygame.K_DOWN):
             k = SPEEDS.index(self.speed) + (1 if key == pygame.K_UP else -1)
             self.speed = SPEEDS[min(max(k, 0), len(SPEEDS) - 1)]
-        elif key == pygame.K_l:
-            self._letters = not self._letters
-        elif key == pygame.K_p:
-            self._paths = not self._paths
 
     def _show(self, scene):
         pygame = pygame_()
         screen = self._screen = pygame.display.get_surface()  # a new one after the window was resized
         width, height = screen.get_size()
-        hint, paths = self._hint, scene.paths if self._paths else {}
-        scene = dataclasses.replace(scene, lettered=scene.lettered or self._letters, paths=paths)
+        hint = self._hint
         pixels = draw(scene, View.of(scene.table, size=(max(width, 100), max(height - hint, 100))))
         screen.fill(PALETTE["floor"])
         screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))

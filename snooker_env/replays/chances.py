@@ -5,8 +5,8 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from .._check import refuse_what
-from .._types import Bools, Floats
+from .._lib.check import refuse_what
+from .._lib.types import Bools, Floats
 from ..game import frame_columns as columns
 from ..game.balls import BLACK, mask_of_present
 from ..game.frame import Frame, write_frame
@@ -35,7 +35,7 @@ class Standing(NamedTuple):
     on_table: Bools
 
 
-def checked_judge(judge: object) -> Judge | None:
+def check_judge(judge: object) -> Judge | None:
     """A judge, or None for none."""
     if judge is not None and not isinstance(judge, Judge):
         allowed = 'must have chance_to_win(positions), as snooker_env.player("tactician").at(env) has'

@@ -10,17 +10,17 @@ from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
-from .._check import choice, refuse, refuse_what
-from .._files import write_atomic
-from .._types import Bytes, Environment
+from .._lib.check import choice, refuse, refuse_what
+from .._lib.files import write_atomic
+from .._lib.types import Bytes, Environment
 from ..physics.table import Table, TableLike
 from ..planning import Position
 from ..render.scene import scene_data
 from ..simulation import Shot, simulate
 from ..tasks.played import Played
-from ..web import WEB, table_js
-from .chances import Judge, checked_judge, standings_of, win_chances
-from .encode import encoded_stroke, physics_data, table_data
+from .chances import Judge, check_judge, standings_of, win_chances
+from .encode import encode_stroke, physics_data, table_data
+from .web import WEB, table_js
 
 FORMAT, VERSION = "snooker-replay", 2
 SUFFIXES = (".html", ".json", ".mp4", ".gif")
@@ -79,8 +79,8 @@ class Replay:
                 raise refuse_what(f"strokes[{k}]", f"a {type(stroke).__name__}", allowed)
         if not self.strokes:
             raise refuse("strokes", [], "must hold at least one stroke")
-        self.title: str = checked_text("title", title)
-        names = checked_players(players)
+        self.title: str = check_text("title", title)
+        names = check_players(players)
         judged = next((stroke for stroke in self.strokes if isinstance(stroke, Played)), None)
         frame = judged is not None and len(judged.scores) == 2
         usual = ("Player 1", "Player 2") if frame else ("Player",) * (judged is not None)
@@ -104,7 +104,7 @@ class Replay:
                     allowed = "must be on the table of the first, or pass table=..."
                     raise refuse_what(f"strokes[{k}]", "a shot on another table", allowed)
         self.win_chance: tuple[float, ...] | None = None
-        if (asked := checked_judge(judge)) is not None:
+        if (asked := check_judge(judge)) is not None:
             self.win_chance = tuple(win_chances(asked, standings_of(self.strokes)))
         self._data: dict[str, Any] | None = None
 
@@ -124,7 +124,7 @@ class Replay:
 
         ValueError if a shot has no path, or more than 22 balls."""
         if self._data is None:
-            strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
+            strokes = [encode_stroke(stroke, self.players) for stroke in self.strokes]
             physics, *others = (shot.physics for shot in self.shots)
             # shots of several kinds of balls and cloth may be shown
             same = all(one == physics for one in others)
@@ -160,9 +160,9 @@ class Replay:
 
         ``fps`` and ``speed`` (over that of the strokes) in (0, 1000], else ValueError; ``size``: width and
         height [pixels]. Without pygame ImportError."""
-        from .film import frames, shown
+        from .film import film_strokes, frames
 
-        return frames(shown(self), fps, speed, size)
+        return frames(film_strokes(self), fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
@@ -170,7 +170,7 @@ class Replay:
         ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
         ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF: 15, 640 x 360).
         ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra."""
-        target = checked_path("path", path)
+        target = read_path("path", path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)
         if suffix in (".mp4", ".gif"):
             from .film import write_film
@@ -184,28 +184,28 @@ class Replay:
         return target
 
 
-def checked_path(field: str, path: object) -> Path:
+def read_path(field: str, path: object) -> Path:
     """``path`` as a Path, else ValueError."""
     if not isinstance(path, str | PathLike):
         raise refuse(field, path, "must be a str or a Path")
     return Path(path)
 
 
-def checked_text(field: str, text: object) -> str:
+def check_text(field: str, text: object) -> str:
     """``text`` if a file can hold it, else ValueError."""
     if not isinstance(text, str) or any(0xD800 <= ord(letter) < 0xE000 for letter in text):
         raise refuse(field, text, "must be a str, without halves of surrogate pairs")
     return text
 
 
-def checked_players(players: object) -> tuple[str, ...]:
+def check_players(players: object) -> tuple[str, ...]:
     """Names of players as a tuple; a single name may be a str."""
     if players is not None and not isinstance(players, Iterable):
         raise refuse("players", players, "must be None, or names")
     names = (players,) if isinstance(players, str) else tuple(players or ())
     if len(names) > 2:
         raise refuse("players", players, "must be at most two names")
-    return tuple(checked_text("players", name) for name in names)
+    return tuple(check_text("players", name) for name in names)
 
 
 @runtime_checkable

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._check import refuse_what
+from .._lib.check import refuse_what
 from ..game.balls import N_BALLS
 from ..physics import cloth
 from ..physics.parameters import PRESETS, Physics
@@ -28,13 +28,13 @@ _EVENT = ["time", "kind", "i", "j"]
 _WHICH = [cloth.SEGMENT_BALL, cloth.SEGMENT_STATE]
 
 
-def packed(values: ArrayLike, kind: str) -> str:
+def pack(values: ArrayLike, kind: str) -> str:
     """Numbers as base64 of little-endian ``kind``: "f8", "f4" or "u1", row after row."""
     little = np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<"))
     return base64.b64encode(little.tobytes()).decode("ascii")
 
 
-def encoded_shot(shot: Shot) -> dict[str, Any]:
+def encode_shot(shot: Shot) -> dict[str, Any]:
     """The motion of a shot, up to "pots". ValueError if it has no path, or more balls than snooker."""
     n = len(shot.positions)
     if n > N_BALLS:
@@ -48,16 +48,16 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
     waits = (np.arange(len(states)) < n) & idle & (shot.segments[:, cloth.WZ] == 0.0)
     moves = shot.segments[~waits]
     flies = bool((states == cloth.AIR).any())
-    heights = {"height": packed(moves[:, _HEIGHTS], "f8"), "g": shot.physics.g} if flies else {}
+    heights = {"height": pack(moves[:, _HEIGHTS], "f8"), "g": shot.physics.g} if flies else {}
     return {
         "n": n,
-        "start": packed(first[:, [cloth.X, cloth.Y]], "f8"),
+        "start": pack(first[:, [cloth.X, cloth.Y]], "f8"),
         "on_table": np.flatnonzero(first[:, cloth.SEGMENT_STATE] != cloth.GONE).tolist(),
         "paths": {
             "count": len(moves),
-            "f8": packed(moves[:, _PLACES], "f8"),
-            "f4": packed(moves[:, _SPINS], "f4"),
-            "u1": packed(moves[:, _WHICH], "u1"),
+            "f8": pack(moves[:, _PLACES], "f8"),
+            "f4": pack(moves[:, _SPINS], "f4"),
+            "u1": pack(moves[:, _WHICH], "u1"),
             **heights,
         },
         "events": [[round(float(t), 9), *map(int, what)] for t, *what in shot.events[_EVENT].tolist()],
@@ -66,18 +66,18 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
     }
 
 
-def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, Any]:
+def encode_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, Any]:
     """One stroke of a replay. For a bare ``Shot``, the parts that come from the referee are empty."""
     if isinstance(item, Shot):
         empty = dict.fromkeys(("cue", "cue_kind", "noise", "player", "ball_on", "after"))
         none = {"points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0}
-        return encoded_shot(item) | empty | none
+        return encode_shot(item) | empty | none
     same = {name: getattr(item, name) for name in ("cue", "cue_kind", "player", "points", "penalty")}
     here, after = item.on_table, None  # the table before the next stroke, where it is another than at rest
     rest = item.shot.positions[here], item.shot.on_table
     if not all(map(np.array_equal, (item.positions[here], here), rest)):
-        after = {"places": packed(item.positions, "f8"), "on_table": np.flatnonzero(here).tolist()}
-    return encoded_shot(item.shot) | {
+        after = {"places": pack(item.positions, "f8"), "on_table": np.flatnonzero(here).tolist()}
+    return encode_shot(item.shot) | {
         **same,
         "noise": noise_data(item.noise),
         "ball_on": "free ball" if item.free_ball else on_words(item.ball_on),

@@ -10,58 +10,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._check import number, refuse
-from .._files import write_atomic
-from .._install import missing
-from .._jit import entry
-from .._types import Bytes
+from .._lib.check import number, refuse
+from .._lib.files import write_atomic
+from .._lib.install import missing
+from .._lib.types import Bytes
 from ..physics.table import Table
-from ..render.scene import Film, Scene, ScoreBar, scene
+from ..render.scene import UNTURNED, Film, Scene, ScoreBar, scene
 from ..render.table_picture import SIZE, Size
 from ..simulation import Shot
 from ..tasks.played import Played
-from .words import bars, pots_of
+from .words import bars
 
 if TYPE_CHECKING:
     from .document import Replay
 
-_HALF = 1 << 15
-
-
-@entry(what="the colours of films", seconds=1)
-def _fill(rgb, luma, cb, cr):
-    """Fill luma (h, w), cb and cr (h/2, w/2) uint8 from the picture rgb (h, w, 3) uint8; h and w even."""
-    for i in range(cb.shape[0]):
-        for j in range(cb.shape[1]):
-            red = green = blue = 0
-            for di in range(2):
-                for dj in range(2):
-                    row, column = 2 * i + di, 2 * j + dj
-                    r, g, b = int(rgb[row, column, 0]), int(rgb[row, column, 1]), int(rgb[row, column, 2])
-                    luma[row, column] = 16 + ((11966 * r + 40254 * g + 4064 * b + _HALF) >> 16)
-                    red, green, blue = red + r, green + g, blue + b
-            cb[i, j] = 128 + ((-6596 * red - 22188 * green + 28784 * blue + 4 * _HALF) >> 18)
-            cr[i, j] = 128 + ((28784 * red - 26145 * green - 2639 * blue + 4 * _HALF) >> 18)
-
-
-def to_video(picture: Bytes) -> Bytes:
-    """The bytes (3 h w / 2,) of a picture (h, w, 3), one plane after the other: ffmpeg's format yuv420p."""
-    height, width = picture.shape[:2]
-    out = np.empty(3 * height * width // 2, np.uint8)
-    luma, chroma = out[: height * width], out[height * width :].reshape(2, height // 2, width // 2)
-    _fill(np.ascontiguousarray(picture), luma.reshape(height, width), chroma[0], chroma[1])
-    return out
-
-
 PAUSE = 0.8  # how long the table is shown after each stroke [s of the film]
-UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
-HD = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
-"""Options that declare the colour space of ``to_video`` (BT.709, limited range)."""
+HD = ["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p", "-colorspace", "bt709"]
+HD += ["-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
+"""Options that turn colours into those of BT.709 in its limited range, and declare it."""
 USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 15.0)}
 """Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
 
-def shown(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
+def film_strokes(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
     """For each stroke of a ``Replay`` its film, and the table after it with the referee's words."""
     judged = [stroke for stroke in replay.strokes if isinstance(stroke, Played)]
     its = iter(bars(judged, replay.players, replay.win_chance))
@@ -75,18 +46,17 @@ def film_stroke(
 ) -> tuple[Film, Scene]:
     """A stroke as a film, and the table after it; ``during`` and ``after`` are the bars of ``bars``."""
     shot, judged = (stroke.shot, True) if isinstance(stroke, Played) else (stroke, False)
-    film = Film(table, shot, trail=(0, *pots_of(shot)), spots=(0,), faded=(0,), bar=during, text=text)
+    film = Film(table, shot, bar=during, text=text)
     last = film.at(shot.duration)
     where, on_table = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
     placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
-    turns = {0: UNTURNED} if placed else last.turns
-    over = {"paths": last.paths, "ghosts": last.ghosts, "turns": turns}
+    over = {"paths": last.paths, "ghosts": last.ghosts, "turn": UNTURNED if placed else last.turn}
     still = scene(table, where, on_table, bar=after, text=text, **over)
     return film, replace(still, ball_radius=last.ball_radius)
 
 
 def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Size) -> Iterator[Bytes]:
-    """The pictures of what ``shown`` gives."""
+    """The pictures of what ``film_strokes`` gives."""
     from ..render.pygame_view import rgb_array
 
     fps, speed = _rate("fps", fps), _rate("speed", speed)
@@ -122,26 +92,17 @@ def _rate(field: str, value: float) -> float:
 def _encode(pictures: Iterator[Bytes], path: Path, fps: float, size: tuple[int, int]) -> None:
     if path.suffix.lower() != ".gif":
         wanted = ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1", *HD]
-        _pipe(_in_video_colours(pictures), "yuv420p", size, fps, wanted, path)
+        _pipe(pictures, size, fps, wanted, path)
         return
     first = next(pictures)
     colours = path.with_name(f"{path.stem}.colours.png")
     try:
         wanted = ["-vf", "palettegen=stats_mode=single"]
-        _pipe(iter([_swatches(first)]), "rgb24", (256, 256), 1.0, wanted, colours)
+        _pipe(iter([_swatches(first)]), (256, 256), 1.0, wanted, colours)
         chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
-        _pipe(chain([first], pictures), "rgb24", size, fps, chosen, path)
+        _pipe(chain([first], pictures), size, fps, chosen, path)
     finally:
         colours.unlink(missing_ok=True)
-
-
-def _in_video_colours(pictures: Iterator[Bytes]) -> Iterator[Bytes]:
-    """``to_video`` of each picture, computed once for a picture that is repeated."""
-    last, made = None, np.empty(0, np.uint8)
-    for picture in pictures:
-        if picture is not last:
-            last, made = picture, to_video(picture)
-        yield made
 
 
 def _swatches(picture: Bytes) -> Bytes:
@@ -165,9 +126,9 @@ def encoder_file() -> str:
     return get_ffmpeg_exe()
 
 
-def _pipe(pictures, kind, size, fps, wanted, path):
+def _pipe(pictures, size, fps, wanted, path):
     """Send pictures through ffmpeg into a file."""
-    raw = ["-f", "rawvideo", "-pix_fmt", kind, "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
+    raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
     command = [encoder_file(), "-y", "-loglevel", "error", *raw, *wanted, str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
         assert encoder.stdin is not None and encoder.stderr is not None

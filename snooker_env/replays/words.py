@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from .._types import Bools
+from .._lib.types import Bools
 from ..game.balls import N_REDS, NAMES, BallOn, mask_of_present, points_available
 from ..game.frame_columns import BALL_ON
 from ..game.ruling import Foul

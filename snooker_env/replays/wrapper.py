@@ -6,10 +6,10 @@ from typing import Any
 
 import gymnasium
 
-from .._check import choice, refuse, refuse_what
-from .._types import Action
-from .chances import Judge, checked_judge
-from .document import SUFFIXES, Replay, checked_path, checked_players
+from .._lib.check import choice, refuse, refuse_what
+from .._lib.types import Action
+from .chances import Judge, check_judge
+from .document import SUFFIXES, Replay, check_players, read_path
 
 
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
@@ -75,7 +75,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
             raise refuse_what("env", f"a {type(inner).__name__}", "must be a Snooker-v0 of one table")
         inner.keep_history = True  # type: ignore[attr-defined]
         self.paths: list[Path] = []
-        self._folder, self._prefix = checked_path("folder", folder), name_prefix
+        self._folder, self._prefix = read_path("folder", folder), name_prefix
         if episode_trigger is not None and not callable(episode_trigger):
             raise refuse("episode_trigger", episode_trigger, "must be None, or a callable(number) -> bool")
         self._suffix = choice("suffix", suffix, SUFFIXES)
@@ -83,10 +83,10 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
             words = "must be the beginning of a file's name, without folders"
             raise refuse("name_prefix", name_prefix, words)
         frame = inner.options.task != "visit"  # type: ignore[attr-defined]
-        self._wanted, self._players = episode_trigger, checked_players(players)
+        self._wanted, self._players = episode_trigger, check_players(players)
         if len(self._players) not in (0, 1 + frame):
             raise refuse("players", players, f"must be {1 + frame} names" if frame else "must be one name")
-        self._judge = checked_judge(judge)
+        self._judge = check_judge(judge)
         if judge is not None and not frame:
             raise refuse_what("judge", f"a {type(judge).__name__}", "must be None: nobody wins a visit")
         self._number, self._written = -1, True

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._types import Bools, Floats, Ints, Singles, Words
+from .._lib.types import Bools, Floats, Ints, Singles, Words
 
 
 class TableArrays(NamedTuple):

@@ -6,9 +6,9 @@ from math import atan2, hypot, pi, radians, sqrt
 import numpy as np
 from gymnasium import spaces
 
-from .._check import choice, number, refuse, refuse_what, truth
-from .._jit import kernel
-from .._types import Action, Floats
+from .._lib.check import choice, number, refuse, refuse_what, truth
+from .._lib.jit import kernel
+from .._lib.types import Action, Floats
 from ..game.pots import GHOST_X, GHOST_Y, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt

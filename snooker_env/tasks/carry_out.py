@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._jit import entry
-from .._types import Floats, Ints
+from .._lib.jit import entry
+from .._lib.types import Floats, Ints
 from ..game import frame_columns as columns
 from ..game.balls import YELLOW
 from ..game.ruling import AUTO

@@ -1,7 +1,7 @@
 """What does a player say beside its stroke? The colour that it nominates, what it decides after a foul, and whether it
 concedes, claims or lets the other begin: the one place where the numbers of an action become these codes."""
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from ..game import frame_columns as columns
 from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
 from ..game.ruling import AUTO

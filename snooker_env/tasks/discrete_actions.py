@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from .._check import refuse, refuse_what
-from .._jit import entry, kernel
-from .._types import Action, Floats
+from .._lib.check import refuse, refuse_what
+from .._lib.jit import entry, kernel
+from .._lib.types import Action, Floats
 from ..game.balls import N_BALLS, bits
 from ..game.frame_columns import strikeable
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots

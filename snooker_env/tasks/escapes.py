@@ -13,7 +13,7 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 
 import numpy as np
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from ..game.balls import N_BALLS
 from ..game.lines import met
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH

@@ -21,8 +21,8 @@ from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
-from .._check import refuse
-from .._types import Bools, Floats, Ints, Singles
+from .._lib.check import refuse
+from .._lib.types import Bools, Floats, Ints, Singles
 from ..game import frame_columns as columns
 from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
 from ..game.frame import MISS_RULES, Frame, frame_of, write_frame

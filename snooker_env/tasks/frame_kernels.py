@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._jit import entry, kernel
-from .._types import Floats, Ints
+from .._lib.jit import entry, kernel
+from .._lib.types import Floats, Ints
 from ..game import frame_columns as columns
 from ..game.apply_ruling import settle
 from ..game.attempt import ATTEMPT_GAP, closest_approach

@@ -9,7 +9,7 @@ from math import atan2, cos, hypot, pi, sin
 
 import numpy as np
 
-from .._jit import entry, kernel
+from .._lib.jit import entry, kernel
 from ..game.balls import N_BALLS, N_REDS, SPOTS, touching_balls
 from ..game.lines import met
 from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, count_pots, find_pots

@@ -10,9 +10,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from .._check import choice, number, refuse
-from .._jit import entry, kernel
-from .._types import Floats, NoiseName, Words
+from .._lib.check import choice, number, refuse
+from .._lib.jit import entry, kernel
+from .._lib.types import Floats, NoiseName, Words
 from ..game.philox import normals, pair
 from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics, PhysicsLike

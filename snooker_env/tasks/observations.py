@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from .._check import choice, refuse
-from .._jit import kernel
-from .._types import Bools, Masks, Observation, ObservationKind, Singles
+from .._lib.check import choice, refuse
+from .._lib.jit import kernel
+from .._lib.types import Bools, Masks, Observation, ObservationKind, Singles
 from ..game.balls import N_BALLS, REDS_MASK, VALUES, BallOn, bits, count
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 from ..physics.conditions import COLUMNS as CONDITIONS_SIZE

@@ -8,8 +8,8 @@ from typing import Any, Literal
 import numpy as np
 from gymnasium import spaces
 
-from .._check import choice, integer, number, refuse, refuse_what, truth
-from .._types import CueKind, Fidelity, Floats, MissRule, ObservationKind, Solver
+from .._lib.check import choice, integer, number, refuse, refuse_what, truth
+from .._lib.types import CueKind, Fidelity, Floats, MissRule, ObservationKind, Solver
 from ..game.frame import MISS_RULES
 from ..game.layouts import Plan
 from ..game.rule_sets import RULES, RuleSet, RulesName, rule_set

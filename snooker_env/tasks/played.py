@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from .._types import Bools, CueKind, Floats
+from .._lib.types import Bools, CueKind, Floats
 from ..game.balls import BallOn, ids_of
 from ..game.frame import Frame
 from ..game.ruling import Foul

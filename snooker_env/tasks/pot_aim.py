@@ -4,7 +4,7 @@ rolls; secant steps correct the direction by how far it passes the pocket's aim 
 
 from math import atan2, hypot, pi
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from ..physics import cloth, cue
 from ..physics.arrays import Law
 from ..physics.columns import P_E_B, P_MU_S, P_NAP, P_R

@@ -1,6 +1,6 @@
 """What is the reward? Named rewards of a stroke in a visit, or of a step in a frame."""
 
-from .._jit import kernel
+from .._lib.jit import kernel
 
 REWARDS = ("points", "points_and_fouls", "pots", "legal")
 """Rewards of a visit: points scored, 0 for a miss or foul, in [0, 15]; the same minus the penalty, in [-7,

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._check import array, flags, integer, number, refuse, refuse_what, truth
-from .._types import Bools, Floats, Vector
+from .._lib.check import array, flags, integer, number, refuse, refuse_what, truth
+from .._lib.types import Bools, Floats, Vector
 from ..game import balls
 from ..game.frame import MOST_BREAK, Frame
 from ..game.in_hand import within_d

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import entry, kernel
-from .._shots import count
-from .._types import Bools, Floats, Ints
+from .._lib.jit import entry, kernel
+from .._lib.types import Bools, Floats, Ints
 from ..game.balls import CUE, N_BALLS, TOUCH, bits, touching_balls
 from ..game.frame_columns import ANYWHERE, IN_HAND
 from ..game.in_hand import nearest_anywhere, nearest_place
@@ -22,6 +21,7 @@ from ..physics.events import OFF_TABLE
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
+from ..simulation.count import count
 from . import discrete_actions
 from .arrays import CueLaw, StruckArrays
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .._check import refuse
+from .._lib.check import refuse
 from ..game.banks import bank
 from ..game.layouts import STORED_IN, Plan, plan_of
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH

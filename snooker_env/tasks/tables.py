@@ -7,8 +7,8 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from .._jit import entry, kernel
-from .._types import Bools, Floats, Ints, Masks, Singles, Words
+from .._lib.jit import entry, kernel
+from .._lib.types import Bools, Floats, Ints, Masks, Singles, Words
 from ..game.balls import N_BALLS, BallOn, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import pair, stream_of
@@ -17,7 +17,7 @@ from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import END_MASS_RATIO, drawn, normalised
 from ..physics.conditions import NAMES as CONDITION_NAMES
 from ..physics.parameters import Physics, nominal, pack_into, physics_with
-from ..shot import Shot
+from ..simulation.shot import Shot
 from . import discrete_actions, stroke
 from .box_actions import Actions
 from .declarations import A_END_MASS

@@ -5,7 +5,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-from .._types import Ints
+from .._lib.types import Ints
 from .stroke import ShotBuffers
 from .tables import Crew, Task, Watch
 

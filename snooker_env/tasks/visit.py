@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from .._jit import entry, kernel
-from .._types import Bools, Floats, Ints, Singles
+from .._lib.jit import entry, kernel
+from .._lib.types import Bools, Floats, Ints, Singles
 from ..game.apply_ruling import settle_visit
 from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS

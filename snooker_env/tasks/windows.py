@@ -7,7 +7,7 @@ when it is played away: then every direction away from the touching balls is ope
 
 from math import asin, atan2, cos, floor, hypot, pi, sin, sqrt
 
-from .._jit import kernel
+from .._lib.jit import kernel
 from ..game.balls import N_BALLS
 from ..game.lines import met
 from ..geometry import BALL_RADIUS

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 import snooker_env as sn
-from snooker_env._files import with_checksum
+from snooker_env._lib.files import with_checksum
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, interval, judge, page
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.leaderboard import LEGEND, board, lines
@@ -168,7 +168,7 @@ def test_simulated_shots_are_counted():
 @pytest.mark.parametrize("log", [2, 512])
 def test_a_shot_that_is_played_twice_counts_once(monkeypatch, log):
     from snooker_env import simulation
-    from snooker_env._shots import simulated
+    from snooker_env.simulation.count import simulated
     from snooker_env.tasks import stroke
 
     monkeypatch.setattr(simulation, "_FIRST_LOG", log)

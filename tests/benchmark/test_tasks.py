@@ -11,7 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 from gymnasium.utils.env_checker import check_env, data_equivalence
 
 import snooker_env as sn
-from snooker_env._registration import ENTRY_POINTS, FORMS, ID
+from snooker_env._lib.registration import ENTRY_POINTS, FORMS, ID
 from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS
 from snooker_env.benchmark import tasks as benchmark_tasks
 from snooker_env.benchmark.playing import Repeater, play_episodes, rows_of, tables_for

@@ -28,7 +28,6 @@ SHORT = {
     "benchmarks.frames": "--frames 2 --jobs 1",
     "benchmarks.layouts_picture": "--out {tmp}",
     "benchmarks.pictures": "--out {tmp}",
-    "benchmarks.diagrams": "--out {tmp}",
     "benchmarks.planning": "--strokes 100 --repeats 2",
     "benchmarks.value_inputs": "--positions 1000 --steps 20",
     "benchmarks.coach": "--players 2 --strokes 10 --pool 10 --levels club",

@@ -10,7 +10,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
 
 from snooker_env import SnookerEnv, match_env
-from snooker_env._registration import FORMS
+from snooker_env._lib.registration import FORMS
 from snooker_env.benchmark.tasks import FREE
 from snooker_env.tasks import observations
 from snooker_env.tasks.box_actions import AIMS

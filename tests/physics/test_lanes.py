@@ -5,7 +5,7 @@ import numba
 import numpy as np
 import pytest
 
-from snooker_env._lanes import lane, lanes, lanes_at, lesser, no_more, put_lanes
+from snooker_env._lib.lanes import lane, lanes, lanes_at, lesser, no_more, put_lanes
 
 
 @numba.njit(error_model="numpy")

@@ -9,8 +9,8 @@ import snooker_env as sn
 from benchmarks._common import invariants
 from benchmarks.fuzz import allowed
 from snooker_env import EventKind, Table
+from snooker_env.physics.cloth import AX, AY, ROLL, SEGMENT_BALL, SEGMENT_STATE, T0, VX, VY, X, Y
 from snooker_env.physics.impact import contact
-from snooker_env.render.shot_paths import pieces, velocity_before
 from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.pot_aim import solved_aim
@@ -28,6 +28,12 @@ LAWS = [(MU_R, 0.015), (0.0043, 0.0151), (MU_R, 1e-5), (0.05, 0.3), (1e-3, 1.0)]
 def rolled(v, drag, start=(0.0, 0.0), table=None, **fields):
     w = (-v[1] / R, v[0] / R, 0.0)
     return sn.simulate([start], [v], [w], table, {"roll_drag": drag, **fields})
+
+
+def velocity_before(shot, ball, time):
+    """Velocity (2,) of a ball just before its event at that time."""
+    row = shot.segments[(shot.segments[:, SEGMENT_BALL] == ball) & (shot.segments[:, T0] < time)][-1]
+    return row[[VX, VY]] + row[[AX, AY]] * (time - row[T0])
 
 
 def integrated(speed, decel, drag, n=4000):
@@ -263,11 +269,11 @@ def test_shots_of_many_balls_keep_their_laws():
             check_shot(sn.simulate(p[k], v[k], w[k], "match", physics))
 
 
-def test_a_path_is_drawn_with_one_line_for_each_piece():
+def test_a_roll_is_straight():
     shot = rolled((1.0, 0.4), 0.015)
-    (piece,) = pieces(shot, 0)
-    assert piece.kind == "roll" and len(piece.points) == 1 + len(shot.events)
-    (x, y), end = piece.points.T, piece.points[-1]
+    rows = shot.segments[:-1]
+    assert (rows[:, SEGMENT_STATE] != ROLL).any() and len(rows) == len(shot.events)
+    (x, y), end = rows[:, [X, Y]].T, shot.positions[0]
     assert np.abs(x * end[1] - y * end[0]).max() < 1e-12
 
 

@@ -138,7 +138,7 @@ def test_a_visit_of_a_model_is_watched(model, tmp_path, capsys):
     out = tmp_path / "visit.json"
     assert watch.main(["--agent", model, *WORDS, "--noise", "none", "--out", str(out)]) == 0
     told = sn.player(model, trust=True, options=TARGET)
-    env = watch.episode(told, HELD_OUT_SEED, layout="held_out", noise="none", cue="real")
+    env = watch.play_episode(told, HELD_OUT_SEED, layout="held_out", noise="none", cue="real")
     assert env.points > 0  # read otherwise it has none
     assert sum(stroke["points"] for stroke in json.loads(out.read_text())["strokes"]) == env.points
 
@@ -148,7 +148,7 @@ def test_a_frame_of_a_model_is_watched_on_either_side(model, both):
     """It plays as it was trained to, also opposite, where the table's actions hold more."""
     names = ["--agent", model if both else "ghost_ball", "--opponent", model]
     args = watch.parser().parse_args(["--frame", *names, *WORDS, "--seed", "3"])
-    env, _, _ = watch.sought(args)
+    env, _, _ = watch.find_episode(args)
     opposite = env.tables.seats[1].player.player
     assert opposite.sees["aim"] == "target" and "placement" not in opposite.sees
     assert {stroke.player for stroke in env.history} == {0, 1}

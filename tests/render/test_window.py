@@ -1,7 +1,5 @@
 """Does the window do what its keys say, and does it refuse where nobody would see it?"""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -116,18 +114,6 @@ def test_a_film_is_paused_stepped_and_skipped(dummy_screen, pot):
     assert places[9] < places[10] < places[11] < places[12] and len(places) == 14
     assert places[13] == pot.positions[CUE, 0]
     assert not window.paused
-    window.close()
-
-
-def test_letters_and_paths_are_shown_at_will(dummy_screen):
-    given = {"paths": {CUE: [(0.0, -1.0), (0.0, 1.0)]}}
-    presses = {1: [dummy_screen.K_l], 2: [dummy_screen.K_p], 3: [dummy_screen.K_l]}
-    window = Pressed(dummy_screen, presses, size=(518, 300))
-    for paths, lettered in ((given, False), (given, True), ({}, True), ({}, False)):
-        window.draw(scene("match", SPOTS, **given))
-        wanted = replace(scene("match", SPOTS, **paths), lettered=lettered)
-        expected = rgb_array(wanted, size=(518, 300))
-        assert np.array_equal(picture(dummy_screen), expected)
     window.close()
 
 

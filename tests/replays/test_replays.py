@@ -3,7 +3,6 @@
 import base64
 import json
 import re
-from functools import partial
 from itertools import pairwise
 
 import gymnasium
@@ -15,8 +14,9 @@ from snooker_env.advice import CueStroke
 from snooker_env.game.balls import BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.play.session import Session
+from snooker_env.render.table_picture import View
 from snooker_env.replays.words import FOUL_WORDS, bars, foul_words, standing_bar
-from tests.refusals import refused
+from tests.refusals import refuse_each, refused
 from tests.tables import begun
 
 
@@ -151,19 +151,9 @@ def test_a_replay_of_a_replay_takes_another_title(strokes):
 
 
 def test_nobody_named_is_the_usual_players(strokes, tmp_path):
-    """None is as much as nothing, and what cannot be a name, a folder or a trigger is refused at once."""
     assert sn.replay(strokes, players=None).players == ("Player",)
     assert sn.replay(sn.replay(strokes, players="Ada"), players=None).players == ("Ada",)
     assert sn.RecordReplay(made(), tmp_path, players=None).paths == []
-    refused(lambda: sn.replay(strokes, players=3), "players", "3", "must be None, or names")
-    refused(lambda: sn.replay(strokes, players=["a", None][1:]), "players", "None", "must be a str")
-    refused(lambda: sn.replay(strokes, title=None), "title", "None", "must be a str")
-    refused(lambda: sn.replay(strokes, 3), "path", "3", "must be a str or a Path")
-    refused(lambda: sn.Replay(None), "strokes", "None", "must be strokes")
-    refused(lambda: next(sn.replay(strokes).frames(size=None)), "size", "None", "must be")
-    refused(lambda: next(sn.replay(strokes).frames(fps=None)), "fps", "None", "must be")
-    refused(lambda: sn.RecordReplay(made(), None), "folder", "None", "must be a str or a Path")
-    refused(lambda: sn.RecordReplay(made(), tmp_path, 3), "episode_trigger", "3", "must be None")
 
 
 def test_errors_of_both_seats_and_what_was_played_on():
@@ -261,21 +251,41 @@ def test_a_position_is_shown_as_it_stands():
     assert numbers(stroke["start"], "f8", 2)[[0, 1, 21]].tolist() == [[0.1, -1.2], [0.3, 0.4], [0.0, 1.4605]]
 
 
-def test_bad_arguments_are_refused(strokes, tmp_path):
-    refused(lambda: sn.replay(3), "source", "int", "must be a Shot")
-    refused(lambda: sn.replay([]), "strokes", "[]", "at least one")
-    refused(lambda: sn.replay([1]), "strokes[0]", "int", "must be a Shot")
-    other = sn.simulate([(0.0, 0.0)], [(1.0, 0)], [(0, 0, 0)], table="tight")
-    refused(lambda: sn.replay([strokes[0], other]), "strokes[1]", "another table", "must be on the table of")
-    refused(lambda: sn.replay(strokes, players=["a", "b", "c"]), "players", "'c'", "at most two")
-    refused(lambda: sn.replay(strokes, players=["a", "b"]), "players", "2 names", "one for a visit")
-    refused(lambda: sn.replay(strokes, title="\ud800"), "title", "ud800", "surrogate")
-    slower = sn.simulate([(0.0, 0.0)], [(1.0, 0)], [(0, 0, 0)], physics={"spin_decel": 5.0})
-    refused(lambda: sn.replay([strokes[0], slower]), "strokes[1]", "other physics", "spin_decel")
-    refused(lambda: sn.replay(strokes, title=3), "title", "3", "must be a str")
-    refused(lambda: sn.replay(strokes, tmp_path / "break.exe"), "suffix", ".exe", ".html")
-    save = sn.replay(strokes[0]).save
-    refused(lambda: save(tmp_path / "a.html", fps=3), "path", "a.html", "must end in .mp4 or .gif")
+WRONG = """
+sn.replay(3) | source | int | must be a Shot
+sn.replay([]) | strokes | [] | at least one
+sn.replay([1]) | strokes[0] | int | must be a Shot
+sn.Replay(None) | strokes | None | must be strokes
+sn.replay([one, other]) | strokes[1] | another table | must be on the table of
+sn.replay([one, slower]) | strokes[1] | other physics | spin_decel
+sn.replay(one, players=["a", "b", "c"]) | players | 'c' | at most two
+sn.replay(one, players=["a", "b"]) | players | 2 names | one for a visit
+sn.replay(one, players=3) | players | 3 | must be None, or names
+sn.replay(one, players=[None]) | players | None | must be a str
+sn.replay(one, title=?) | title | ? | must be a str | None; 3; chr(0xD800)
+sn.replay(one, 3) | path | 3 | must be a str or a Path
+sn.replay(one, folder / "break.exe") | suffix | .exe | .html
+sn.replay(one).save(folder / "a.html", fps=3) | path | a.html | must end in .mp4 or .gif
+next(sn.replay(one).frames(size=None)) | size | None | must be
+next(sn.replay(one).frames(fps=None)) | fps | None | must be
+sn.replay(one).save(folder / "a.mp4", size=(321, 180)) | size | (321, 180) | both even
+sn.replay(one).save(folder / "a.gif", fps=0) | fps | 0 | must be
+sn.replay(one).save(folder / "a.gif", speed=-1) | speed | -1 | must be
+sn.RecordReplay(env, None) | folder | None | must be a str or a Path
+sn.RecordReplay(env, folder, 3) | episode_trigger | 3 | must be None
+sn.RecordReplay(env, folder, players=["a", "b"]) | players | 'a', 'b' | one name
+sn.RecordReplay(env, folder, name_prefix="a/b") | name_prefix | a/b | without folders
+sn.RecordReplay(env, folder, suffix=".txt") | suffix | .txt | .html
+sn.RecordReplay(gymnasium.make("CartPole-v1"), folder) | env | CartPoleEnv | Snooker-v0
+"""
+
+
+def test_wrong_arguments_are_refused_and_no_file_is_left(strokes, tmp_path):
+    still = [(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]
+    names = {"sn": sn, "gymnasium": gymnasium, "folder": tmp_path, "env": made(), "one": strokes[0]}
+    names |= {"other": sn.simulate(*still, table="tight")}
+    names |= {"slower": sn.simulate(*still, physics={"spin_decel": 5.0})}
+    refuse_each(WRONG, names)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -314,15 +324,6 @@ def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
         _, _, terminated, truncated, _ = env.step(67)
         ends += terminated or truncated
     assert [p.name for p in env.paths] == [f"snooker-episode-{k}.json" for k in range(3)]
-
-
-def test_the_wrapper_refuses_at_once_what_it_could_not_write(tmp_path):
-    make = partial(sn.RecordReplay, made(), tmp_path)
-    refused(partial(make, players=["a", "b"]), "players", "'a', 'b'", "one name")
-    refused(partial(make, name_prefix="a/b"), "name_prefix", "a/b", "without folders")
-    refused(partial(make, suffix=".txt"), "suffix", ".txt", ".html")
-    other = partial(sn.RecordReplay, gymnasium.make("CartPole-v1"), tmp_path)
-    refused(other, "env", "CartPoleEnv", "Snooker-v0")
 
 
 def test_the_wrapper_writes_what_was_cut_short(tmp_path):
@@ -431,11 +432,11 @@ def test_the_pictures_show_the_motion_and_then_the_table(replay):
 @pytest.mark.parametrize("suffix", [".gif", ".mp4"])
 def test_every_ball_keeps_its_colour(replay, tmp_path, suffix):
     """In a GIF too, which has 256 colours: small balls must not lose theirs to the cloth."""
-    imageio, render = (pytest.importorskip(name) for name in ("imageio.v3", "snooker_env.render.view"))
+    imageio = pytest.importorskip("imageio.v3")
     size = (1280, 720)
     file = replay.save(tmp_path / f"film{suffix}", size=size, fps=5.0)
     film, first = imageio.imread(file, index=0), next(replay.frames(size=size, fps=5.0))
-    view = render.View.of(sn.Table.preset("match"), size=size)
+    view = View.of(sn.Table.preset("match"), size=size)
     for place in replay.shots[0].at(0.0)[0]:
         x, y = np.rint(view(place)).astype(int)
         around = slice(y - 1, y + 2), slice(x - 1, x + 2), slice(3)
@@ -445,10 +446,7 @@ def test_every_ball_keeps_its_colour(replay, tmp_path, suffix):
     assert [p.name for p in tmp_path.iterdir()] == [file.name]
 
 
-def test_what_no_film_can_be_is_refused(replay, tmp_path):
-    refused(lambda: replay.save(tmp_path / "a.mp4", size=(321, 180)), "size", "(321, 180)", "both even")
-    refused(lambda: replay.save(tmp_path / "a.gif", fps=0), "fps", "0", "must be")
-    refused(lambda: replay.save(tmp_path / "a.gif", speed=-1), "speed", "-1", "must be")
+def test_a_film_that_cannot_be_written_leaves_nothing(replay, tmp_path):
     with pytest.raises(OSError, match="nowhere"):
         replay.save(tmp_path / "nowhere" / "a.mp4", **SMALL)
     assert list(tmp_path.iterdir()) == []

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import snooker_env
-from snooker_env._registration import ENTRY_POINTS
+from snooker_env._lib.registration import ENTRY_POINTS
 from tests.processes import ROOT
 
 hatchling = pytest.importorskip("hatchling.build")
@@ -143,7 +143,7 @@ def test_the_wheel_holds_what_belongs_there_and_says_who_may_use_it(tmp_path, mo
         names = wheel.namelist()
         wheel.extractall(tmp_path)
     assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {"snooker_env"}
-    assert "snooker_env/_registration.py" in names and len(names) == len(set(names))
+    assert "snooker_env/_lib/registration.py" in names and len(names) == len(set(names))
     built = metadata.Distribution.at(*tmp_path.glob("*.dist-info"))
     assert built.metadata["License-Expression"] == "MIT" and built.version == snooker_env.__version__
     for name in ("LICENSE", "snooker_env/render/fonts/OFL.txt"):

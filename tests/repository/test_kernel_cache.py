@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from snooker_env import _cache
-from snooker_env._seal import sealed
+from snooker_env._lib import cache
+from snooker_env._lib.seal import sealed
 from tests.processes import ROOT, python
 
 TOY = """
-from snooker_env._jit import entry
+from snooker_env._lib.jit import entry
 
 @entry(what="a toy", seconds=3)
 def double(x):
@@ -47,7 +47,7 @@ def toy(tmp_path):
         out, err = python(before + RUN, warn="error,default::RuntimeWarning", **variables)
         return out.strip(), err
 
-    run.cache, run.folder = tmp_path / "cache", tmp_path / "cache" / "snooker_env" / _cache.kernel_hash()
+    run.cache, run.folder = tmp_path / "cache", tmp_path / "cache" / "snooker_env" / cache.kernel_hash()
     return run
 
 
@@ -75,7 +75,7 @@ def test_folders_are_made_for_the_user_alone_whatever_the_umask(toy):
 def unsafe(monkeypatch, home, match):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(home))
     with pytest.warns(RuntimeWarning, match=match) as seen:
-        assert _cache.cache_folder() is None
+        assert cache.cache_folder() is None
     assert len(seen) == 1 and "set NUMBA_CACHE_DIR to a folder of your own" in str(seen[0].message)
     return str(seen[0].message)
 
@@ -84,7 +84,7 @@ def unsafe(monkeypatch, home, match):
 def folders(tmp_path, monkeypatch):
     """The chosen folder and those that are made in it."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "home"))
-    folder = _cache.cache_folder()
+    folder = cache.cache_folder()
     return {"home": folder.parents[1], "snooker_env": folder.parent, "hash": folder}
 
 
@@ -105,7 +105,7 @@ def test_a_folder_that_others_can_write_to_is_not_used(folders, monkeypatch, whi
     message = unsafe(monkeypatch, folders["home"], "others can write to")
     assert f"others can write to {folders[which]} (mode {mode:04o}): no machine code is loaded" in message
     folders[which].chmod(0o700)
-    assert _cache.cache_folder() == folders["hash"]
+    assert cache.cache_folder() == folders["hash"]
 
 
 @root_only
@@ -120,10 +120,10 @@ def test_a_folder_of_another_user_is_not_used(folders, monkeypatch, which):
 def test_a_shared_home_is_good_and_without_owners_none_are_checked(folders, monkeypatch):
     for mode in (0o1777, 0o775, 0o755):  # /tmp; a home of the user's own group; readable by others
         folders["home"].chmod(mode)
-        assert _cache.cache_folder() == folders["hash"]
+        assert cache.cache_folder() == folders["hash"]
     folders["snooker_env"].chmod(0o777)
     monkeypatch.delattr(os, "geteuid")
-    assert _cache.cache_folder() == folders["hash"]
+    assert cache.cache_folder() == folders["hash"]
 
 
 def test_links_are_followed(folders, monkeypatch, tmp_path):
@@ -132,7 +132,7 @@ def test_links_are_followed(folders, monkeypatch, tmp_path):
     folders["hash"].rmdir(), folders["snooker_env"].rmdir()
     elsewhere.mkdir(mode=0o700)
     folders["snooker_env"].symlink_to(elsewhere)
-    assert _cache.cache_folder() == folders["hash"] and (elsewhere / folders["hash"].name).is_dir()
+    assert cache.cache_folder() == folders["hash"] and (elsewhere / folders["hash"].name).is_dir()
     elsewhere.chmod(0o777)
     assert f"others can write to {folders['snooker_env']}" in unsafe(
         monkeypatch, folders["home"], "others can write to"
@@ -148,7 +148,7 @@ def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
     with pytest.warns(
         RuntimeWarning, match="no home folder: .*every process compiles for itself; set NUMBA_CACHE_DIR"
     ):
-        assert _cache.cache_folder() is None
+        assert cache.cache_folder() is None
     assert not list(tmp_path.iterdir())
 
 
@@ -267,8 +267,10 @@ def test_on_a_full_disk_it_works_from_memory(toy):
 
 @pytest.mark.parametrize("instead", ["nothing", "a file"])
 def test_a_folder_that_is_gone_does_no_harm(toy, instead):
-    gone = "import toy, shutil; from snooker_env import _cache; shutil.rmtree(_cache.CACHE_FOLDER.parent)\n"
-    out, err = toy(gone + ("_cache.CACHE_FOLDER.parent.write_text('')\n" if instead == "a file" else ""))
+    gone = (
+        "import toy, shutil; from snooker_env._lib import cache; shutil.rmtree(cache.CACHE_FOLDER.parent)\n"
+    )
+    out, err = toy(gone + ("cache.CACHE_FOLDER.parent.write_text('')\n" if instead == "a file" else ""))
     assert out == FRESH
     if instead == "nothing":
         assert err == "" and toy() == (LOADED, "")  # made again

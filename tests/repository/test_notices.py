@@ -7,11 +7,11 @@ import re
 import pytest
 from numba.core import event
 
-from snooker_env import _cache, _jit, _notices
+from snooker_env._lib import cache, jit, notices
 from tests.processes import ROOT, python
 
 TOY = """
-from snooker_env._jit import entry, kernel
+from snooker_env._lib.jit import entry, kernel
 
 @kernel(seconds=7)
 def large(x):
@@ -52,7 +52,7 @@ def toys(tmp_path):
         assert out == ""
         return err
 
-    run.kept = f"(kept in {tmp_path / 'cache' / 'snooker_env' / _cache.kernel_hash()}; SNOOKER_ENV_QUIET=1 hides this)"
+    run.kept = f"(kept in {tmp_path / 'cache' / 'snooker_env' / cache.kernel_hash()}; SNOOKER_ENV_QUIET=1 hides this)"
     return run
 
 
@@ -98,7 +98,7 @@ def test_without_stderr_it_works_all_the_same(toys, without):
 
 def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
     code = (
-        "from snooker_env._notices import warming_up\nsmall(1.0)\n"
+        "from snooker_env._lib.notices import warming_up\nsmall(1.0)\n"
         "with warming_up([small, one, another, rest]): one(1.0); rest(1.0); another(1.0)"
     )
     lines = toys(code).splitlines()
@@ -113,7 +113,7 @@ def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
 
 LONG = {
     "snooker_env.physics.engine": ["run_batch"],
-    "snooker_env.impacts": ["_collide_balls", "_collide_cushion"],
+    "snooker_env.simulation.impacts": ["_collide_balls", "_collide_cushion"],
     "snooker_env.tasks.stroke": ["address"],
     "snooker_env.tasks.visit": ["_conclude", "_begin"],
     "snooker_env.tasks.frame_kernels": [
@@ -145,10 +145,10 @@ def test_each_long_kernel_announces_itself(module, name, capsys, monkeypatch):
     monkeypatch.delenv("SNOOKER_ENV_QUIET")
     kernel = getattr(importlib.import_module(module), name)
     # as if nothing had been compiled yet
-    monkeypatch.setattr(_notices.Cost, "_missing", lambda self: set(self.uses))
+    monkeypatch.setattr(notices.Cost, "_missing", lambda self: set(self.uses))
     event.start_event("numba:compile", data={"dispatcher": kernel})
     err = capsys.readouterr().err
-    assert err.count("\n") == 1 and f"compiling {kernel.cost.what}, " in err and kernel in _jit.ENTRIES
+    assert err.count("\n") == 1 and f"compiling {kernel.cost.what}, " in err and kernel in jit.ENTRIES
 
 
 def test_what_others_compile_is_none_of_our_business(capsys, monkeypatch):

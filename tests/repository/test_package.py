@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env import _cache
+from snooker_env._lib import cache
 from tests.processes import CACHE, ROOT, copy_of_package, python, replace
 
 # Imports and names
@@ -63,7 +63,7 @@ def test_with_the_core_dependencies_alone_everything_but_pictures_works():
 
 def test_what_is_missing_is_installed_as_the_package_was(tmp_path):
     """In a clone by its project file; the package alone, as a wheel leaves it, by its name."""
-    code = "from snooker_env._install import missing\nprint(missing('pictures need pygame-ce', 'render'))"
+    code = "from snooker_env._lib.install import missing\nprint(missing('pictures need pygame-ce', 'render'))"
     out, _ = python(code, at=copy_of_package(tmp_path))
     assert out == 'pictures need pygame-ce; install it with: pip install "snooker-env[render]"\n'
     (tmp_path / "pyproject.toml").touch()
@@ -94,56 +94,56 @@ def test_options_keep_the_order_and_the_defaults_that_were_promised(name, promis
 
 def test_the_cache_folder_depends_on_every_source_file_that_kernels_are_made_from(tmp_path):
     root = copy_of_package(tmp_path) / "snooker_env"
-    first = _cache.kernel_hash(root)
-    assert first == _cache.kernel_hash(root) == _cache.kernel_hash(ROOT / "snooker_env")
+    first = cache.kernel_hash(root)
+    assert first == cache.kernel_hash(root) == cache.kernel_hash(ROOT / "snooker_env")
     seen = {first}
-    files = sorted(p for p in root.rglob("*.py") if p.relative_to(root).parts[0] in _cache.KERNEL_ROOMS)
+    files = sorted(p for p in root.rglob("*.py") if p.relative_to(root).parts[0] in cache.KERNEL_ROOMS)
     assert len(files) > 25
     for path in files:
         text = path.read_bytes()
         # same size, other content
         path.write_bytes(text.replace(b"e", b"f", 1) if b"e" in text else text + b"#")
-        seen.add(_cache.kernel_hash(root))
+        seen.add(cache.kernel_hash(root))
         path.write_bytes(text)
         os.utime(path, (1e9, 1e9))  # its age does not matter
     assert len(seen) == len(files) + 1
     (root / "physics/new.py").write_text("")
-    seen.add(_cache.kernel_hash(root))
+    seen.add(cache.kernel_hash(root))
     (root / "physics/new.py").rename(root / "physics/newer.py")
-    seen.add(_cache.kernel_hash(root))
+    seen.add(cache.kernel_hash(root))
     (root / "physics/newer.py").unlink()
     assert len(seen) == len(files) + 3
-    assert _cache.kernel_hash(root) == first
+    assert cache.kernel_hash(root) == first
     (root / "physics/notes.txt").write_text("no source")
-    (root / "web/page.py").write_text("no kernel")
-    assert _cache.kernel_hash(root) == first
+    (root / "replays/page.py").write_text("no kernel")
+    assert cache.kernel_hash(root) == first
 
 
 def test_the_cache_is_where_it_is_said_to_be(tmp_path, monkeypatch):
     for name in CACHE:
         monkeypatch.delenv(name, raising=False)
-    key = _cache.kernel_hash()
+    key = cache.kernel_hash()
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
-    assert _cache.cache_folder() == tmp_path / "home" / ".cache" / "snooker_env" / key
+    assert cache.cache_folder() == tmp_path / "home" / ".cache" / "snooker_env" / key
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
-    assert _cache.cache_folder() == tmp_path / "xdg" / "snooker_env" / key
+    assert cache.cache_folder() == tmp_path / "xdg" / "snooker_env" / key
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))
-    assert _cache.cache_folder() == tmp_path / "numba" / "snooker_env" / key
+    assert cache.cache_folder() == tmp_path / "numba" / "snooker_env" / key
     # the trial file is gone
-    assert _cache.cache_folder().is_dir() and not list(_cache.cache_folder().iterdir())
+    assert cache.cache_folder().is_dir() and not list(cache.cache_folder().iterdir())
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
     with pytest.warns(RuntimeWarning, match="is not writable"):
-        assert _cache.cache_folder() is None
+        assert cache.cache_folder() is None
 
 
 SPOT = """
 import numpy as np
-from snooker_env import _jit
+from snooker_env._lib import jit
 from snooker_env.game import balls, spotting
 positions, on_table = spotting.spot_colours(np.zeros((22, 2)), np.zeros(22, bool), 1 << balls.BLACK)
-hits = sum(spotting._spot.stats.cache_hits.values()) if _jit.CACHE_FOLDER else -1
-print(positions[balls.BLACK, 1], hits, _jit.CACHE_FOLDER)
+hits = sum(spotting._spot.stats.cache_hits.values()) if jit.CACHE_FOLDER else -1
+print(positions[balls.BLACK, 1], hits, jit.CACHE_FOLDER)
 """
 
 
@@ -243,8 +243,8 @@ def test_fresh_and_cached_machine_code_give_the_same_bits(golden, tmp_path):
     code = GOLDEN + "print(digest(run()))"
     want = golden["digest"](golden["run"]())
     (tmp_path / "file").write_text("")
-    for cache in (tmp_path / "cache", tmp_path / "cache", tmp_path / "file"):
-        assert python(code, NUMBA_CACHE_DIR=str(cache))[0].split() == [want]
+    for place in (tmp_path / "cache", tmp_path / "cache", tmp_path / "file"):
+        assert python(code, NUMBA_CACHE_DIR=str(place))[0].split() == [want]
 
 
 def test_a_pickled_shot_and_physics_stay_what_they_are():
@@ -260,8 +260,10 @@ def test_a_pickled_shot_and_physics_stay_what_they_are():
 
 def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(tmp_path):
     """A column number baked into a kernel of agents/ comes from another folder of agents/."""
-    code = "from agents.learning.fused_kernels import spread_to_balls as k\nfrom snooker_env import _jit\n"
-    code += "print(_jit.CACHE_FOLDER, k._cache.cache_path)"
+    code = (
+        "from agents.learning.fused_kernels import spread_to_balls as k\nfrom snooker_env._lib import jit\n"
+    )
+    code += "print(jit.CACHE_FOLDER, k._cache.cache_path)"
     copy_of_package(tmp_path)
     shutil.copytree(
         ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip")

@@ -61,7 +61,6 @@ def test_destinations_can_be_read(tmp_path):
 @pytest.mark.parametrize("module", [layouts_picture, pictures])
 def test_a_picture_of_tables_can_be_read(module, tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", ["x", "--out", str(tmp_path)])
-    monkeypatch.setattr(pictures, "SIZE", (700, 400))
     with saved_figures() as figures:
         module.main()
     read(figures)

@@ -10,7 +10,7 @@ INPUTS = """
 import pickle
 import numpy as np
 import snooker_env as sn
-from snooker_env._jit import ENTRIES
+from snooker_env._lib.jit import ENTRIES
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 
@@ -145,7 +145,7 @@ for constants that are no preset's."""
 def test_a_warm_up_leaves_nothing_to_compile():
     code = """
 import json, snooker_env as sn
-from snooker_env._jit import ENTRIES
+from snooker_env._lib.jit import ENTRIES
 sn.warmup()
 print(json.dumps([[k.__qualname__ for k in ENTRIES if test(len(k.signatures))] for test in (lambda n: not n, lambda n: n > 1)]))
 """

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from snooker_env.web import table_js
+from snooker_env.replays.web import table_js
 
 FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"]
 FLAGS += ["--disable-background-networking", "--disable-component-update"]

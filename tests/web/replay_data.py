@@ -6,7 +6,7 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env.game import layout
-from snooker_env.replays.encode import packed
+from snooker_env.replays.encode import pack
 
 MATCH = sn.Physics.preset("match")
 
@@ -41,7 +41,7 @@ def visit():
         judged = {"player": player, "points": points, "pots": pots, "ball_on": on_words, "score": score}
         words = f"The referee's words after stroke {k + 1}."
         data["strokes"][k] |= judged | {"break": run, "words": words, "cue": cue}
-    data["strokes"][1]["after"] = {"places": packed(places, "f8"), "on_table": np.flatnonzero(on).tolist()}
+    data["strokes"][1]["after"] = {"places": pack(places, "f8"), "on_table": np.flatnonzero(on).tolist()}
     long = "Someone with a name that is much too long for its place in the bar"
     data["players"] = ["Ada <b>Lovelace</b>", long]
     return data, shots, places

@@ -7,8 +7,8 @@ import snooker_env as sn
 from snooker_env.game import layout
 from snooker_env.physics import cloth
 from snooker_env.render.scene import scene_data
-from snooker_env.replays.encode import packed
-from snooker_env.web import table_js
+from snooker_env.replays.encode import pack
+from snooker_env.replays.web import table_js
 from tests.web.chromium import chromium, module_page  # noqa: F401
 from tests.web.replay_data import MATCH, doubles, hit
 
@@ -68,7 +68,7 @@ def in_browser(page, made, times, names):
     """[(times, names, balls)] of shots of one game as the browser evaluates them."""
     table = GAMES[made[0][0]][0]
     replay = sn.replay([shot for _, shot, _, _ in made], table=table).to_dict()
-    found = page.evaluate(AT, {"replay": replay, "times": [packed(t, "f8") for t in times], "names": names})
+    found = page.evaluate(AT, {"replay": replay, "times": [pack(t, "f8") for t in times], "names": names})
     return [doubles(text).reshape(len(t), len(names), -1) for text, t in zip(found, times, strict=True)]
 
 

@@ -5,9 +5,9 @@ Tuples v = (vx, vy, vz) [m/s] and w = (wx, wy, wz) [rad/s], z up. Bodies that do
 
 from math import hypot, sqrt
 
-from ..._check import refuse
-from ..._jit import inlined, kernel
-from ..._types import Fidelity, Solver
+from ..._lib.check import refuse
+from ..._lib.jit import inlined, kernel
+from ..._lib.types import Fidelity, Solver
 from ..columns import (
     P_BALLS,
     P_E_B,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._jit import kernel
+from ..._lib.jit import kernel
 from .inertia import K_CLOTH, Contact, Impulses, Slips, slips_after
 
 # typed: with literals numba would compile every callee once for each

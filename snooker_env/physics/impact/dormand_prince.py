@@ -6,7 +6,7 @@ impulses; the stages are in a loop, so that the rates are compiled once.
 
 import numpy as np
 
-from ..._jit import kernel
+from ..._lib.jit import kernel
 from .coulomb import rates
 from .inertia import Impulses
 from .polynomial import CLOSING, F2, G2, LIFT, ROW, P

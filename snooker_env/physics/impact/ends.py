@@ -7,7 +7,7 @@ with work W_c, the impact at W = (1 - e^2) W_c: energetic restitution [Stronge 1
 from math import sqrt
 from typing import NamedTuple
 
-from ..._jit import inlined, kernel
+from ..._lib.jit import inlined, kernel
 from . import dormand_prince
 from .coulomb import held
 from .inertia import slips_after

@@ -7,7 +7,7 @@ the paper's discretisation error is kept; ``impulse.py`` is the accurate method.
 
 from math import hypot, sqrt
 
-from ..._jit import kernel
+from ..._lib.jit import kernel
 from ..columns import P_MU_C, P_MU_S, P_R, P_SIN
 from .coulomb import friction_coefficient
 

@@ -7,7 +7,7 @@ acts along the first slip s: between two spheres ds = -7 mu(s) dp, against a fix
 
 from math import exp, expm1, log, sqrt
 
-from ..._jit import kernel
+from ..._lib.jit import kernel
 
 
 @kernel

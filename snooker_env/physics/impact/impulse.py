@@ -26,7 +26,7 @@ contacts' next states. Speeds are over the closing speed before.
 from math import hypot, sqrt
 from typing import NamedTuple
 
-from ..._jit import inlined, kernel
+from ..._lib.jit import inlined, kernel
 from . import dormand_prince, taylor
 from .coulomb import (
     CREEP,

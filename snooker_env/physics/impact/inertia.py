@@ -66,7 +66,7 @@ again, symbolically, from the laws of Newton and Euler.
 
 from typing import NamedTuple
 
-from ..._jit import kernel
+from ..._lib.jit import kernel
 
 K_CLOTH = 3.5
 """Change of the slip at the pressed ball's lowest point per friction impulse on it: 1 + 5/2."""

@@ -6,7 +6,7 @@ coefficient of order k. Columns 0 to 6 are the state, 7 the closing speed, the o
 
 import numpy as np
 
-from ..._jit import kernel
+from ..._lib.jit import kernel
 from .inertia import Impulses
 
 ROW = 24

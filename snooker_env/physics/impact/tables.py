@@ -23,9 +23,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._jit import entry, kernel
-from ..._lanes import lane, lanes, lanes_at
-from ..._types import Floats
+from ..._lib.jit import entry, kernel
+from ..._lib.lanes import lane, lanes, lanes_at
+from ..._lib.types import Floats
 from . import inertia
 from .coulomb import Friction, Problem
 from .impulse import NO_IMPULSE, OK, REFERENCE, outlook_of, solve

@@ -24,8 +24,8 @@ from math import exp, log, sqrt
 
 import numpy as np
 
-from ..._jit import kernel
-from ..._lanes import lane, lanes, lanes_at, put_lanes
+from ..._lib.jit import kernel
+from ..._lib.lanes import lane, lanes, lanes_at, put_lanes
 from .coulomb import friction_coefficient
 from .inertia import K_CLOTH
 from .polynomial import CLOSING, F1, F2, G1, G2, LIFT, ROW, WORK_DONE, P

@@ -3,7 +3,7 @@ which it is shortened and taken again (else ``STANDS``)."""
 
 from typing import NamedTuple
 
-from ..._jit import inlined
+from ..._lib.jit import inlined
 from . import dormand_prince
 from .coulomb import CREEP, GRIPS, SLIDES, SLIP, STARTS, STICK, grip_holds, held, rates, settled
 from .ends import breaks_loose_at

@@ -10,7 +10,7 @@ from math import cos, hypot, sin, sqrt
 
 import numpy as np
 
-from ..._jit import entry, kernel
+from ..._lib.jit import entry, kernel
 from ...game.balls import N_BALLS, SPOTS, VALUES, bits, touching_balls
 from ...game.frame_columns import strikeable
 from ...geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..._jit import entry
-from ..._types import Singles
+from ..._lib.jit import entry
+from ..._lib.types import Singles
 
 
 @entry(what="the layers of networks", seconds=2)

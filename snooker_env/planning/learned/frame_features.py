@@ -6,8 +6,8 @@ from math import log, sqrt
 
 import numpy as np
 
-from ..._jit import entry
-from ..._types import Floats
+from ..._lib.jit import entry
+from ..._lib.types import Floats
 from ...game import frame_columns as columns
 from ...game.balls import N_BALLS, available, bits, touching_balls
 from ...geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH

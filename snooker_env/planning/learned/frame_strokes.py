@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..._types import Bools, Floats, Integers, Ints
+from ..._lib.types import Bools, Floats, Integers, Ints
 from ...game import frame_columns as columns
 from ...game.balls import BLACK, N_BALLS, PINK, VALUES
 from ...tasks.options import Rules

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..._types import Bools, Floats, Ints, Singles
+from ..._lib.types import Bools, Floats, Ints, Singles
 from ...physics.cue_room import NO_RAILS
 from ...tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from ...tasks.discrete_actions import SIZE as CHOICES

@@ -5,8 +5,8 @@ from math import hypot, log10
 import numpy as np
 from gymnasium import spaces
 
-from ..._jit import entry
-from ..._types import Singles
+from ..._lib.jit import entry
+from ..._lib.types import Singles
 from ...game.balls import N_BALLS, VALUES
 from ...game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
 from ...game.pots import TOLERANCE as POT_TOLERANCE

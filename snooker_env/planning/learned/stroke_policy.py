@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ..._types import Bools, Ints, Singles
+from ..._lib.types import Bools, Ints, Singles
 from ...game.balls import N_BALLS
 from ...tasks.discrete_actions import POTS, STROKES
 from ...tasks.discrete_actions import SIZE as CHOICES

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..._types import Floats, Ints
+from ..._lib.types import Floats, Ints
 from ...game.balls import N_BALLS, VALUES
 from ...game.frame_columns import BALL_ON, VISIT_COLUMNS
 from ...geometry import AIM_X, AIM_Y, IS_MIDDLE, POCKET_AIMS

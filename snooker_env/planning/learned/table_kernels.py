@@ -3,7 +3,7 @@ each over n rows once. The layouts are those of ``agents.learning.networks.Table
 
 import numpy as np
 
-from ..._jit import entry, kernel
+from ..._lib.jit import entry, kernel
 from ...game.balls import N_BALLS, N_REDS
 from ...tasks.discrete_actions import POTS, SIDES, STROKES, TOPS
 from ...tasks.observations import SIZE as OBSERVATION_SIZE

@@ -5,7 +5,7 @@ from math import cos, log, log10, radians, sqrt
 
 import numpy as np
 
-from ..._jit import entry, kernel
+from ..._lib.jit import entry, kernel
 from ...game.balls import N_BALLS, VALUES, bits
 from ...game.balls import balls_on_kernel as balls_on
 from ...game.pots import window

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..._check import refuse
-from ..._files import read_npz
-from ..._types import Singles
+from ..._lib.check import refuse
+from ..._lib.files import read_npz
+from ..._lib.types import Singles
 from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
 from ...planning.worth import Chance
 from ...tasks.noise import LEVELS, Noise

@@ -4,13 +4,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._jit import ENTRIES
-from ._notices import warming_up
-from .impacts import collide_balls, collide_cushion, strike
-from .simulation import simulate
+from .._lib.jit import ENTRIES
+from .._lib.notices import warming_up
+from ..simulation import simulate
+from ..simulation.impacts import collide_balls, collide_cushion, strike
 
 if TYPE_CHECKING:
-    from .envs.snooker import SnookerEnv
+    from ..envs.snooker import SnookerEnv
 
 
 class _Still:
@@ -35,7 +35,7 @@ def warmup() -> None:
     >>> import snooker_env as sn
     >>> sn.warmup()  # doctest: +SKIP
     """
-    with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
+    with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith("snooker_env.")]):
         simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
         strike(1.0, 0.0)
         collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
@@ -47,8 +47,8 @@ def warmup() -> None:
 
 def _play_environments() -> "tuple[SnookerEnv, SnookerEnv]":
     """Visits, frames against opponents, a match: the last frame, and the match."""
-    from .envs.snooker import SnookerEnv
-    from .planning import Position
+    from ..envs.snooker import SnookerEnv
+    from ..planning import Position
 
     env = SnookerEnv(action="discrete", conditions="drawn")
     env.reset(seed=0)
@@ -82,14 +82,14 @@ def _play_environments() -> "tuple[SnookerEnv, SnookerEnv]":
 
 def _ask_rules(env: "SnookerEnv") -> None:
     """The referee, and what rules ask of a table."""
-    from .game.apply_ruling import settle_table
-    from .game.balls import REDS_MASK
-    from .game.frame import Frame
-    from .game.in_hand import place_cue
-    from .game.pots import pots
-    from .game.referee import Situation, Stroke, judge
-    from .game.snookered import is_snookered
-    from .game.spotting import spot_colours
+    from ..game.apply_ruling import settle_table
+    from ..game.balls import REDS_MASK
+    from ..game.frame import Frame
+    from ..game.in_hand import place_cue
+    from ..game.pots import pots
+    from ..game.referee import Situation, Stroke, judge
+    from ..game.snookered import is_snookered
+    from ..game.spotting import spot_colours
 
     frame = Frame.start()
     frame.play(Stroke())
@@ -104,14 +104,14 @@ def _ask_rules(env: "SnookerEnv") -> None:
 
 def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
     """Planning, players and advice."""
-    from .advice.room import room_for
-    from .planning import Planner, Positions, clear_paths, obstructions, pots, prospects_of
-    from .planning.pot_chance import pot_chances
-    from .planning.proposals import at_balls, over_cushions
-    from .planning.visit_judge import VisitJudge
-    from .planning.worth import best_places, decide
-    from .players import player
-    from .tasks.options import Options
+    from ..advice.room import room_for
+    from ..planning import Planner, Positions, clear_paths, obstructions, pots, prospects_of
+    from ..planning.pot_chance import pot_chances
+    from ..planning.proposals import at_balls, over_cushions
+    from ..planning.visit_judge import VisitJudge
+    from ..planning.worth import best_places, decide
+    from ..players import player
+    from ..tasks.options import Options
 
     env.reset(seed=0)
     at, both, planner = Positions.of(env), Positions.of(match), Planner({"action": "discrete"})

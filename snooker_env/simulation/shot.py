@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._check import array, refuse
-from ._types import Bools, Floats, Ints, Real, Vector
-from .physics import trajectory
-from .physics.parameters import Physics
-from .physics.table import Table
+from .._lib.check import array, refuse
+from .._lib.types import Bools, Floats, Ints, Real, Vector
+from ..physics import trajectory
+from ..physics.parameters import Physics
+from ..physics.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,14 +103,17 @@ class Shot:
             out[2][times >= self.duration] = 0.0  # at exactly that time rounding may leave 1e-14 of a spin
         return (out[0][0], out[1][0], out[2][0]) if single else out
 
-    def plot(self, ax: "Axes | None" = None, **options: Any) -> "Axes":
-        """Draw the shot with matplotlib, on the axes ``ax`` or a new figure; returns the axes.
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the shot from above with matplotlib, on the axes ``ax`` or a new figure; returns the axes.
 
-        ``options``: see ``snooker_env.render.diagrams.plot``. ValueError for a wrong option or a shot without
-        a path, ImportError without matplotlib."""
-        from .render.shot_diagram import plot
+        Balls lie as before the shot; faint ones show them where they met another, and at rest. Paths have the balls' colours,
+        striped where the ball slides. The cue ball's speeds are those at the start and just before its impacts; the cut is
+        the angle between its direction and the line of centres. Baulk is left and black right: the horizontal axis is
+        y [m], the vertical one x [m] downwards, so that your own marks are drawn by ``ax.plot(y, x)``. ValueError for a shot
+        without a path or with more than 22 balls, ImportError without matplotlib."""
+        from ..render.shot_diagram import draw_shot
 
-        return plot(self, ax, **options)
+        return draw_shot(self, ax)
 
 
 @dataclass(frozen=True, eq=False)

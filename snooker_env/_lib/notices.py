@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from numba.core import event
 
-from ._cache import CACHE_FOLDER, Kept
+from .cache import CACHE_FOLDER, Kept
 
 
 def say(text: str) -> None:

@@ -7,15 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ._check import array, flags, integer, refuse, refuse_what, truth
-from ._shots import count
-from ._types import Batches, Fidelity, FlagRows, Flags, Solver, Vectors
-from .physics import cloth, engine
-from .physics.arrays import Ends, Log
-from .physics.events import LOG_FULL, OK, UNSOUND, EventKind, Status
-from .physics.impact import contact
-from .physics.parameters import FARTHEST, FASTEST, MOST_SPIN, Physics, PhysicsLike
-from .physics.table import Table, TableLike
+from .._lib.check import array, flags, integer, refuse, refuse_what, truth
+from .._lib.types import Batches, Fidelity, FlagRows, Flags, Solver, Vectors
+from ..physics import cloth, engine
+from ..physics.arrays import Ends, Log
+from ..physics.events import LOG_FULL, OK, UNSOUND, EventKind, Status
+from ..physics.impact import contact
+from ..physics.parameters import FARTHEST, FASTEST, MOST_SPIN, Physics, PhysicsLike
+from ..physics.table import Table, TableLike
+from .count import count
 from .shot import EVENT, Shot, ShotBatch, SimulationError
 
 MAX_EVENTS = 100_000

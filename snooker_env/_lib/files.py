@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ._check import refuse
+from .check import refuse
 
 MOST_JSON, MOST_NPZ = 2**26, 2**27  # bytes: many times the longest of this repository
 CHECKSUM = "sha256"  # the key of a checksum

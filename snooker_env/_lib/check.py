@@ -6,7 +6,7 @@ from math import isinf, nan
 
 import numpy as np
 
-from ._types import Bools, Floats
+from .types import Bools, Floats
 
 
 def refuse(field: str, value: object, allowed: str) -> ValueError:

@@ -21,15 +21,14 @@ from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
 
-from ._seal import sealed, unsealed
+from .seal import sealed, unsealed
 
-_PACKAGE = Path(__file__).resolve().parent
+_PACKAGE = Path(__file__).resolve().parents[1]
 _WRITE_GROUP, _WRITE_OTHERS, _STICKY = 0o020, 0o002, 0o1000
 _LARGE = 2**21  # bytes: twice the machine code of the largest kernel
 
 
-_FILES = "_inner.py", "_jit.py", "_lanes.py", "geometry.py", "impacts.py", "simulation.py"
-KERNEL_ROOMS = (*_FILES, "game", "physics", "planning", "tasks")
+KERNEL_ROOMS = ("_lib", "geometry.py", "game", "physics", "planning", "simulation", "tasks")
 """What holds kernels, and all that their kernels take from (tests/repository/test_kernel_rooms.py)."""
 
 

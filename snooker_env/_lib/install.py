@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-_CLONE = Path(__file__).parents[1]
+_CLONE = Path(__file__).parents[2]
 
 
 def missing(what: str, extra: str) -> ImportError:

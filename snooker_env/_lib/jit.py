@@ -13,9 +13,9 @@ from typing import Any
 import numba
 from numba.core.registry import CPUDispatcher
 
-from ._cache import CACHE_FOLDER, Kept, may_be_kept
-from ._inner import OPTIONS, Inner
-from ._notices import Cost
+from .cache import CACHE_FOLDER, Kept, may_be_kept
+from .inner import OPTIONS, Inner
+from .notices import Cost
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 _INNER: dict[str, Any] = _OPTIONS | OPTIONS

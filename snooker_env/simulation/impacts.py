@@ -4,15 +4,15 @@ from typing import Any
 
 import numpy as np
 
-from ._check import array, refuse
-from ._jit import entry
-from ._types import Fidelity, Floats, Real, Vector
-from .physics import cue
-from .physics.arrays import Law
-from .physics.columns import P_E_B
-from .physics.impact import contact
-from .physics.impact.polynomial import WORK
-from .physics.parameters import FASTEST_IMPACT, MOST_SPIN_IMPACT, Physics, PhysicsLike
+from .._lib.check import array, refuse
+from .._lib.jit import entry
+from .._lib.types import Fidelity, Floats, Real, Vector
+from ..physics import cue
+from ..physics.arrays import Law
+from ..physics.columns import P_E_B
+from ..physics.impact import contact
+from ..physics.impact.polynomial import WORK
+from ..physics.parameters import FASTEST_IMPACT, MOST_SPIN_IMPACT, Physics, PhysicsLike
 from .shot import SimulationError
 
 
@@ -43,7 +43,7 @@ def _vector(name, value):
     return tuple(array(name, value, (3,), most, unit).tolist())
 
 
-def _solved(kernel, what, before, normal, physics, fidelity) -> Any:
+def _solve(kernel, what, before, normal, physics, fidelity) -> Any:
     """Velocities and spins after an impact, of those ``before`` by name; SimulationError if it does not end."""
     physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
     args = tuple(_vector(name, value) for name, value in before.items())
@@ -92,7 +92,7 @@ def collide_balls(
     ([0.055, 0.0, 0.0], [0.945, 0.0, 0.0])
     """
     before = {"v1": v1, "w1": w1, "v2": v2, "w2": w2}
-    return _solved(_collide_balls, "impact", before, normal, physics, fidelity)
+    return _solve(_collide_balls, "impact", before, normal, physics, fidelity)
 
 
 def collide_cushion(
@@ -125,7 +125,7 @@ def collide_cushion(
     >>> bool(v[0] < 0)
     True
     """
-    return _solved(_collide_cushion, "cushion impact", {"v": v, "w": w}, normal, physics, fidelity)
+    return _solve(_collide_cushion, "cushion impact", {"v": v, "w": w}, normal, physics, fidelity)
 
 
 def strike(
