@@ -28,7 +28,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
       against ``opponent``: a step is a stroke and all of the opponent's after it; "match": the best of ``frames``.
     * **Action.** ``Box(-1, 1, (4,), float32)``: cue speed, 0.2 to 7 m/s; side and top, tip offsets up to 0.5 R right
       and up, in a disc; aim, up to 180 deg anticlockwise from +x, or with ``aim="target"`` 3 deg left (right: -1) of
-      the line of the best pot. Longer with ``elevation``, ``placement``, ``nominate``, ``decision``, ``concede``, ``claim``, ``lot``.
+      the line of the best pot. Longer with ``elevation``, ``placement`` and ``says``.
       What is up to 1e-6 outside is clipped, as rounding; more is refused. ``action="discrete"``: ``Discrete(540)``
       or more, ((pot * 9 + speed) * 3 + side) * 5 + top, its aim solved for; ``action_masks()`` are the available ones.
     * **Observation.** ``Box(-1.1, 1.1, (121,), float32)``: for the cue ball, 15 reds and yellow to black x / 0.889 m,

@@ -64,7 +64,7 @@ class Session:
     def __init__(
         self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
     ):
-        box = Options(task="frame", placement=True, decision=True, elevation=True, max_strokes=None)
+        box = Options(task="frame", placement=True, says=["decision"], elevation=True, max_strokes=None)
         if flight:
             box = box.but(elevation=70, physics={"flight": True})
         self._options = box.but(miss="clear_path", layout=layout, cue=cue)

@@ -13,6 +13,7 @@ from ..planning.ghost_ball import geometric_strokes
 from ..planning.positions import PositionsLike, seeds_of
 from ..planning.strokes import available, meant
 from ..planning.trials import packed_under
+from ..tasks.arrays import Packed
 from ..tasks.declarations import SAYS_NOTHING
 from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.frame import Asked
@@ -40,7 +41,7 @@ class ChoicePlayer(BoundPlayer):
 
     frames = False
     _rules: Rules  # of where it plays, under which its choices are read
-    _packed: tuple[Floats, Floats, Floats]  # the same for kernels
+    _packed: Packed  # the same for kernels
 
     def _bind(self, options: Options) -> None:
         names = ("physics", "table", "fidelity", "conditions", "cue")
@@ -84,7 +85,7 @@ class ChoicePlayer(BoundPlayer):
         address(
             np.arange(n), choices[:, None].astype(np.float64), tables, buffers.struck, packed, rules.fidelity
         )
-        return meant(buffers, packed[0])
+        return meant(buffers, packed[1])
 
     def _scored(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints, Floats]:
         """The visits with placed cue balls, their places, the decisions after fouls, and the scores."""

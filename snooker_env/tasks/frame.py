@@ -31,6 +31,7 @@ from ..game.ruling import AUTO
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import normalised
 from . import frame_kernels
+from .arrays import Packed
 from .box_actions import Actions
 from .carry_out import carry_out
 from .declarations import A_LOT
@@ -73,7 +74,7 @@ class Seat:
         """The seat with the actions and errors of ``rules``."""
         return cls(rules.actions, rules.noise, player)
 
-    def packed(self, rules: Rules) -> tuple[Any, Any, Any]:
+    def packed(self, rules: Rules) -> Packed:
         """``Rules.packed`` with this seat's actions and errors."""
         return replace(rules, actions=self.actions, noise=self.noise).packed()
 
@@ -93,7 +94,7 @@ class Frames(Tables):
     due: Bools  # (n,) which episodes have ended in a reset, so that the next step reports their end
     through: Bools  # (n,) which episodes of one stroke have ended
     seats: tuple[Seat, ...]  # the agent's, and the other's if it does not play alone; no player: by ``turn``
-    packs: tuple[Any, ...]  # ``packed`` of each seat
+    packs: tuple[Packed, ...]  # ``packed`` of each seat
 
     def __init__(
         self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None
@@ -121,11 +122,10 @@ class Frames(Tables):
         """Assign the seats: one, or two."""
         self.seats = tuple(seats)
         self.packs = tuple(self.own_rows(seat.packed(self.rules)) for seat in self.seats)
-        self.packed: tuple[Floats, Floats, Floats] = self.packs[AGENT]
+        self.packed: Packed = self.packs[AGENT]
         # the winner of the lot is asked if either player can say who begins
-        self._reads = tuple(seat.actions.pack() for seat in self.seats)
-        self._lot = self._reads[AGENT].copy()
-        self._lot[A_LOT] = any(options[A_LOT] for options in self._reads)
+        self._lot = self.packed[0].copy()
+        self._lot[A_LOT] = any(options[A_LOT] for options, *_ in self.packs)
 
     def noise_of(self, player: int) -> Noise:
         """The errors of a player; who plays alone has both turns."""
@@ -150,11 +150,11 @@ class Frames(Tables):
         """``_setting`` with the packed options of one seat's actions."""
         return *self._numbers, options, self._jaws
 
-    def _every_pack(self) -> tuple[tuple[Floats, Floats, Floats], ...]:
+    def _every_pack(self) -> tuple[Packed, ...]:
         return self.packs
 
     def _take_rows(self, here: slice) -> None:
-        self.packs = tuple((options[here], noise, phys[here]) for options, noise, phys in self.packs)
+        self.packs = tuple((reads, cues[here], noise, phys[here]) for reads, cues, noise, phys in self.packs)
         self.packed = self.packs[AGENT]
 
     def _columns(self) -> tuple[str, ...]:
@@ -193,7 +193,7 @@ class Frames(Tables):
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
         """Decisions and strokes of the seat ``side`` up to the strike; returns the tables with a stroke."""
         reads = self.seats[side].actions
-        if reads.nominate or reads.declares or self.game[which, columns.PHASE].any():
+        if reads.declares or "nominate" in reads.says or self.game[which, columns.PHASE].any():
             which = which[self.decide(which, actions, side)]
         self.strike(which, actions, buffers, self.packs[side])
         self.hold_late(which, buffers)
@@ -209,7 +209,7 @@ class Frames(Tables):
 
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
         """What the strikers say before their strokes; returns which of the tables ``which`` play one."""
-        plays, setting = np.empty(len(which), np.bool_), self._setting_of(self._reads[side])
+        plays, setting = np.empty(len(which), np.bool_), self._setting_of(self.packs[side][0])
         frame_kernels.decide(which, actions, self.arrays, self.saved_arrays, setting, plays)
         return plays
 

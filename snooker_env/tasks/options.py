@@ -1,7 +1,7 @@
 """How is the game of an environment configured? All options in one immutable object, validated together."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import InitVar, dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -20,6 +20,7 @@ from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike, physics_with
 from ..physics.table import Table, TableLike
 from . import observations
+from .arrays import Packed, pack_cue
 from .box_actions import AIMS, Actions
 from .declarations import SAYS
 from .discrete_actions import Choices
@@ -44,7 +45,6 @@ FRAMES = 7
 """Default length of a match: best of 7."""
 OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
 object: a player or an OpponentPool; players.SeenPlayer makes a player of what acts on observations"""
-_UNSAID: Any = object()
 OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
 NEVER = 2**62  # stands for no limit of strokes or steps
 
@@ -81,21 +81,20 @@ class Rules:
         """Whether a foul and a miss is called."""
         return self.miss != "off"
 
-    def packed(self) -> tuple[Floats, Floats, Floats]:
-        """For the kernels: options of the action, deviations of the noise, physical parameters. The first and
-        the last are one row, for all tables."""
+    def packed(self) -> Packed:
+        """For the kernels, with one row of cues and constants for all tables."""
         errors = self.noise.pack(BALL_RADIUS, real=self.cue == "real")
-        phys = self.physics.packed_for(self.fidelity)[None]
-        return self.with_rails(self.actions.pack())[None], errors, phys
+        cues, phys = self.packed_cue()[None], self.physics.packed_for(self.fidelity)[None]
+        return self.actions.pack(), cues, errors, phys
+
+    def packed_cue(self) -> Floats:
+        """The cue's row, of ``arrays.pack_cue``."""
+        return pack_cue(self.physics, self.rails)
 
     @property
     def rails(self) -> Floats:
         """The rails that the cue passes over, as of ``cue_room.rails_of``; none: it is free."""
         return rails_of(self.table.noses, self.table.falls) if self.cue == "real" else NO_RAILS
-
-    def with_rails(self, options: Floats) -> Floats:
-        """Packed options of actions, with the rails."""
-        return np.concatenate([options, self.rails])
 
 
 GROUPS = {
@@ -111,14 +110,11 @@ _ONLY: dict[str, str] = {**dict.fromkeys(_OF_FRAMES, "frame"), "frames": "match"
 """The only task that has an option; what is of a frame is of a match, too."""
 
 
-def _said(says: object, flags: Mapping[str, Any]) -> tuple[str, ...]:
-    """The option ``says`` with the flags that are its other spelling, in the order of ``SAYS``."""
+def _said(says: object) -> tuple[str, ...]:
+    """The option ``says`` in the order of ``SAYS``."""
     if isinstance(says, str) or not isinstance(says, Collection):
         raise refuse("says", says, f"must be a sequence of some of {', '.join(map(repr, SAYS))}")
     spoken = {choice("says", name, SAYS) for name in says}
-    for name, flag in flags.items():
-        if flag is not _UNSAID:
-            spoken = spoken | {name} if truth(name, flag) else spoken - {name}
     return tuple(name for name in SAYS if name in spoken)
 
 
@@ -185,8 +181,6 @@ class Options:
         free ball; else the one struck first), "decision" (after a foul, of box actions only), "concede",
         "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the lot for a re-spotted
         black lets the other player begin; else it begins). Default: nothing.
-    nominate, decision, concede, claim, lot : bool, optional
-        Whether ``says`` has them: ``decision=True`` adds "decision" to it. To be read as attributes, too.
     game : {"snooker", "six_red", "shoot_out"}, optional
         In a frame: the rules of the game (``snooker_env.game.rule_sets``). Default "snooker".
     time_to_play : float, optional
@@ -231,22 +225,17 @@ class Options:
     game: RulesName = "snooker"
     time_to_play: float = TIME_TO_PLAY
     frames: int = FRAMES
-    nominate: InitVar[bool] = _UNSAID
-    decision: InitVar[bool] = _UNSAID
-    concede: InitVar[bool] = _UNSAID
-    claim: InitVar[bool] = _UNSAID
-    lot: InitVar[bool] = _UNSAID
     rules: Rules = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self, *flags: object) -> None:
-        object.__setattr__(self, "says", _said(self.says, dict(zip(SAYS, flags, strict=True))))
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "says", _said(self.says))
         frame = choice("task", self.task, TASKS) != "visit"
         physics, table = self._physics(), table_of(self.table)
         fidelity, noise = parse_fidelity(self.fidelity), Noise.of(self.noise)
         for name, read in (("physics", physics), ("noise", noise)):
             if isinstance(getattr(self, name), dict):  # a dict may change later
                 object.__setattr__(self, name, read)
-        actions = self._actions(physics)
+        actions = self._actions()
         choice("cue", self.cue, CUES)
         default = isinstance(self.layout, str) and self.layout == "default"
         layout = LAYOUTS[self.task] if default else self.layout
@@ -313,14 +302,16 @@ class Options:
                 raise refuse("conditions", "drawn", allowed) from None
         return drawn, observed
 
-    def _actions(self, physics: Physics) -> Actions | Choices:
+    def _actions(self) -> Actions | Choices:
         if choice("action", self.action, ACTIONS) == "box":
-            return Actions(self.aim, self.elevation, self.placement, physics, self.says)
-        for name in ("elevation", "placement", "decision"):
+            return Actions(self.aim, self.elevation, self.placement, self.says)
+        for name in ("elevation", "placement"):
             if getattr(self, name) is not False:
                 raise refuse(name, getattr(self, name), 'must be False with action="discrete"')
+        if "decision" in self.says:
+            raise refuse("says", self.says, 'must not hold "decision" with action="discrete"')
         choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
-        return Choices(physics, self.says)
+        return Choices(self.says)
 
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""
@@ -329,10 +320,8 @@ class Options:
             if only is None or self.task == only or (self.task == "match" and only == "frame"):
                 continue
             if not isinstance(value, (type(f.default), np.bool_)) or value != f.default:
-                says = f.name == "says"
-                name, value, usual = (self.says[0], True, False) if says else (f.name, value, f.default)
-                allowed = f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"'
-                raise refuse(name, value, allowed)
+                allowed = f'must be {f.default!r} with task="{self.task}"; it belongs to task="{only}"'
+                raise refuse(f.name, value, allowed)
 
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
@@ -345,23 +334,11 @@ class Options:
 
     def but(self, **changes: Any) -> "Options":
         """Return a validated copy with some fields changed. ValueError as of ``Options``."""
-        flags = dict.fromkeys(SAYS, _UNSAID) if "says" in changes else {}  # else they are those of this one
-        return replace(self, **flags | changes)
+        return replace(self, **changes)
 
 
 _FIELDS = tuple(f for f in fields(Options) if f.init)
-NAMES = (*(f.name for f in _FIELDS), *SAYS)
-
-
-def _has(name):
-    def has(self) -> bool:
-        return name in self.says
-
-    return property(has, doc=f'Whether ``says`` has "{name}", a bool.')
-
-
-for _name in SAYS:
-    setattr(Options, _name, _has(_name))
+NAMES = tuple(f.name for f in _FIELDS)
 
 
 def observation_space_of(

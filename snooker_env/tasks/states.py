@@ -180,7 +180,7 @@ def checked_frame(state: Mapping[str, Any], rules: Rules, generator: np.random.G
         raise refuse("state.frame.miss", frame.miss, f"must be {miss!r}, as this environment plays")
     if frame.rules != rules.game:
         raise refuse("state.frame.rules", frame.rules, f"must be {rules.game!r}, as this environment plays")
-    if frame.phase == "lot" and not rules.actions.lot:
+    if frame.phase == "lot" and "lot" not in rules.actions.says:
         allowed = "must not be between two steps: the lot is drawn in the step of the stroke before"
         raise refuse("state.frame.phase", frame.phase, allowed)
     if frame.phase != "over":

@@ -19,8 +19,8 @@ from ..physics.conditions import NAMES as CONDITION_NAMES
 from ..physics.parameters import Physics, nominal, pack_into, physics_with
 from ..shot import Shot
 from . import discrete_actions, stroke
+from .arrays import C_END_MASS, Packed
 from .box_actions import Actions
-from .declarations import A_END_MASS
 from .discrete_actions import Choices
 from .noise import Noise
 from .options import NEVER, Rules
@@ -83,8 +83,6 @@ def uniform(which, streams, out):
             out[j, c], out[j, c + 1] = pair(streams[which[j]])
 
 
-Packed: TypeAlias = tuple[Floats, Floats, Floats]
-"""Action's options, noise's deviations and physical parameters: the first and the last one row, or one a table."""
 Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
 """Work on some tables, called as ``task(which, buffers)``."""
 Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
@@ -144,7 +142,7 @@ class Crew:
 
 
 _T = TypeVar("_T", bound="Tables")
-STROKES_ONLY = Choices(Physics()).pack()
+STROKES_ONLY = Choices().pack()
 """Packed options of discrete actions that only choose a stroke, for tables whose own actions are a box."""
 
 
@@ -256,8 +254,8 @@ class Tables(ABC):
         """``action_masks`` of one space of actions."""
         choices = actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE
         out = np.empty((len(which), choices), np.bool_)
-        options = self.rules.with_rails(actions.pack() if isinstance(actions, Choices) else STROKES_ONLY)
-        discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
+        reads = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY, self.rules.packed_cue()
+        discrete_actions.masks(which, self.positions, self.on_table, self.game, *reads, out)
         return out
 
     def show_masks(self, which: Ints, masks: Masks) -> None:
@@ -295,15 +293,16 @@ class Tables(ABC):
         """``packed`` with a row for each table, if they differ."""
         if not self.rules.drawn:
             return packed
-        return np.repeat(packed[0], self.n, axis=0), packed[1], self._phys
+        options, cues, noise, _ = packed
+        return options, np.repeat(cues, self.n, axis=0), noise, self._phys
 
     def _every_pack(self) -> tuple[Packed, ...]:
         return (self.packed,)
 
     def _take_rows(self, here: slice) -> None:
         """Of each pack only these rows, as views."""
-        options, noise, phys = self.packed
-        self.packed = options[here], noise, phys[here]
+        options, cues, noise, phys = self.packed
+        self.packed = options, cues[here], noise, phys[here]
 
     def draw_conditions(self, which: Ints) -> None:
         """Draw the constants of the tables ``which`` from their own streams; nothing if they are fixed."""
@@ -316,8 +315,8 @@ class Tables(ABC):
         """Give the tables ``which`` these constants (len(which), 8)."""
         self.conditions[which] = values
         pack_into(self._phys, which, values, self.rules.physics)
-        for options, _, _ in self._every_pack():
-            options[which, A_END_MASS] = values[:, END_MASS_RATIO]
+        for _, cues, _, _ in self._every_pack():
+            cues[which, C_END_MASS] = values[:, END_MASS_RATIO]
 
     def show_conditions(self, which: Ints | slice, out: StepOutput) -> None:
         """Write the constants of the tables ``which`` into the results of a step, if they are drawn."""
@@ -333,7 +332,7 @@ class Tables(ABC):
 
     def world(self, k: int) -> tuple[Rules, Floats]:
         """The rules, and the packed constants of table k: one row."""
-        phys = self.packed[2]
+        phys = self.packed[3]
         return self.rules, phys if len(phys) == 1 else phys[k : k + 1]
 
     def _columns(self) -> tuple[str, ...]:
@@ -350,12 +349,12 @@ class Tables(ABC):
         self.strike(which, actions, buffers, self.packed)
 
     def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: Packed) -> None:
-        """``address`` with the options and errors of ``packed``."""
+        """``address`` with another seat's ``packed``."""
         stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots that have been struck; returns the rows of those that need ``again``."""
-        m, phys = len(which), self.packed[2]
+        m, phys = len(which), self.packed[3]
         stroke.run(buffers, m, self.rules, phys if len(phys) == 1 else phys[which])
         status = buffers.status[:m]
         return np.flatnonzero(status).tolist() if status.any() else []

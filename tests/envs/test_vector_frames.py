@@ -20,7 +20,7 @@ def policy(observation, rng):
     )
 
 
-FULL = {"decision": True, "placement": True, "aim": "target", "noise": "club"}
+FULL = {"says": ["decision"], "placement": True, "aim": "target", "noise": "club"}
 GHOST = {"opponent": "ghost_ball"}
 MASKED = {"action": "discrete", "observation": "masked", "layout": "random:1"}
 OPTIONS = {
@@ -32,7 +32,7 @@ OPTIONS = {
     "player": FULL | {"opponent": acting(policy), "layout": "random:0", "max_strokes": 15},
     "discrete": {"opponent": "random", "layout": "colours", "action": "discrete", "noise": "amateur"}
     | {"max_strokes": 30},
-    "masked": GHOST | MASKED | {"nominate": True, "concede": True, "miss": "clear_path", "max_strokes": 20},
+    "masked": GHOST | MASKED | {"says": ["nominate", "concede"], "miss": "clear_path", "max_strokes": 20},
     "masked, alone": MASKED | {"max_strokes": 12, "max_episode_steps": 9},
     "discrete, ghost_ball": GHOST | {"layout": "random:2", "action": "discrete", "max_episode_steps": 5},
 }
@@ -87,7 +87,7 @@ def test_states_go_from_one_table_to_many_and_back(options):
 
 
 def test_options_are_checked_once_and_taken_by_every_environment():
-    keywords = {"task": "frame", "layout": "random:2", "noise": "club", "decision": True}
+    keywords = {"task": "frame", "layout": "random:2", "noise": "club", "says": ["decision"]}
     options = Options(**keywords)
     for one, other in (
         (SnookerEnv(options), SnookerEnv(**keywords)),

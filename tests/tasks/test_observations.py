@@ -69,7 +69,7 @@ def test_observations_say_where_the_balls_lie_and_what_is_on(layout):
 
 
 OF_FRAMES = {"task": "frame", "opponent": "random", "max_strokes": 40}
-SAID = {"nominate": True, "concede": True, "claim": True, "lot": True, "miss": "clear_path"}
+SAID = {"says": ["nominate", "concede", "claim", "lot"], "miss": "clear_path"}
 MASKED = {
     "opened": {},
     "colours": {"layout": "colours", "noise": "club"},

@@ -116,7 +116,7 @@ def test_one_call_serves_all_tables_that_wait():
     [
         {"aim": "target", "noise": "club", "miss": "clear_path", "layout": "random:3"},
         {"action": "discrete", "cue": "real", "noise": "professional", "layout": "colours"},
-        {"conditions": "drawn", "nominate": True, "game": "shoot_out", "layout": "random:2"},
+        {"conditions": "drawn", "says": ["nominate", "decision"], "game": "shoot_out", "layout": "random:2"},
     ],
     ids=["box", "discrete", "drawn"],
 )
@@ -344,16 +344,6 @@ def test_copies_of_an_environment_play_on_alike(copied):
     env = begun(frame_env(opponent=Soft(), layout="random:2", noise="club"), 2)
     twin = copied(env)
     assert data_equivalence(twin.step(MISS)[:4], env.step(MISS)[:4], exact=True)
-
-
-def test_says_and_the_flags_are_two_spellings():
-    options = sn.Options(task="frame", decision=True, says=["lot"])
-    assert options.says == ("decision", "lot") and options.decision and not options.nominate
-    assert options == sn.Options(task="frame", lot=True, says=("decision",))
-    assert options.but(decision=False).says == ("lot",)
-    assert options.but(says=("claim",)).says == ("claim",) and options.but(noise="club").says == options.says
-    flags = sn.SnookerEnv(task="frame", decision=True, lot=True)
-    assert sn.SnookerEnv(options).action_space == flags.action_space
 
 
 def test_groups_hold_every_option_once():

@@ -25,8 +25,7 @@ from snooker_env.planning import (
 from snooker_env.planning import pots as direct_pots
 from snooker_env.planning.proposals import at_balls
 from snooker_env.tasks import choice_of
-from snooker_env.tasks.arrays import CueLaw
-from snooker_env.tasks.declarations import A_RAILS
+from snooker_env.tasks.arrays import C_RAILS, CueLaw
 from snooker_env.tasks.discrete_actions import _NEAR_BALL, _NEAR_RAIL, SIDES, SPEEDS, STROKES, TOPS, _crowded
 from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
@@ -496,6 +495,6 @@ def test_both_players_of_a_frame_have_the_same_cue(opponent):
 def test_cue_of_two_players_is_the_same():
     packs = sn.MatchVectorEnv(2, cue="real").tables.packs
     rails = sn.Options(cue="real").rules.rails
-    assert len(packs) == 2 and all(np.array_equal(options[0, A_RAILS:], rails) for options, _, _ in packs)
+    assert len(packs) == 2 and all(np.array_equal(cues[0, C_RAILS:], rails) for _, cues, _, _ in packs)
     with pytest.raises(ValueError, match="cue"):
         sn.MatchVectorEnv(2, seats=({"cue": "real"}, {}))
