@@ -9,6 +9,8 @@ from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.box_actions import shot_of
 from snooker_env.tasks.lines import LINE_ROWS, line_of, new_work
 
+PAPER = Physics()
+
 
 @numba.njit(error_model="numpy")
 def _line(positions, on_table, on):
@@ -21,10 +23,9 @@ def _shot(a, positions, on_table, on, options, phys, cue):
     return shot_of(a, positions, on_table, on, options, law, new_work())
 
 
-def shot(actions, a, positions, on_table, on):
+def shot(actions, a, positions, on_table, on, physics=PAPER):
     """(speed, side, top, aim of the cue, elevation) of the action ``a`` of ``Actions``, with a free cue."""
     table = np.array(positions, np.float64), np.array(on_table, np.bool_), int(on)
-    physics = Physics()
     cue = np.array([physics.end_mass_ratio, physics.max_offset])
     return _shot(np.array(a, np.float64), *table, actions.pack(), physics.pack(), cue)
 

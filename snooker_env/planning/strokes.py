@@ -259,7 +259,7 @@ def decode(
         visits.nominated = nominated
     buffers = ShotBuffers(n, 0)
     visits.address(np.arange(n), actions, buffers)
-    return meant(buffers, visits.packed[1]), after
+    return meant(buffers, visits.cues), after
 
 
 def meant(buffers: ShotBuffers, cues: Floats) -> Floats:

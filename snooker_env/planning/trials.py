@@ -63,14 +63,14 @@ class Struck(Tables):
         """Put positions on the tables, with their own constants if they have any; they are played in place."""
         self.n, self.errors, self.streams = len(after), errors, streams
         if after.conditions is not None:
-            self.packed = packed_under(after.conditions, self.rules)
+            _, self.cues, _, self.phys = packed_under(after.conditions, self.rules)
         self.positions, self.on_table, self.game = after.positions, after.on_table, after.game
 
-    def address(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> None:
+    def address(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = 0) -> None:
         if self.errors is None:
-            super().address(which, actions, buffers)
+            super().address(which, actions, buffers, side)
             return
-        (_, cues, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
+        (_, cues, noise, _), silent = self.packed(), NO_NOISE.pack(1.0)
         if self.kick:
             silent = Noise(kick=self.kick).pack(1.0)
         _strike(which, actions, self.errors, self.arrays, buffers.struck, cues, noise, silent)

@@ -14,7 +14,7 @@ from . import declarations
 from .arrays import C_END_MASS, C_MAX_OFFSET, StruckArrays, TableArrays
 from .box_actions import tip_on_disc
 from .declarations import decision_of, declaration_of, nomination_of
-from .frame_kernels import choose, give_up
+from .frame_kernels import say
 from .options import Rules
 from .rewards import MATCH_REWARDS
 from .stroke import ShotBuffers, place, row_of, strike
@@ -34,22 +34,8 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
         row, p, on = tables.game[k], tables.positions[k], tables.on_table[k]
         cue_row = cues[row_of(k, cues)]
         says = declared[k] if declarations.may_declare(declared[k], row) else declarations.SAYS_NOTHING
-        if says == declarations.CONCEDES:
-            columns.concede(row)
-            give_up(row, reward)
+        if not say(k, says, columns.allowed_choice(row, decisions[k], rules), reward, tables, saved):
             continue
-        if says == declarations.CLAIMS:
-            columns.claim(row)
-            continue
-        if row[columns.PHASE] == columns.LOT:
-            other = says == declarations.OTHER_BEGINS
-            columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
-            if other:
-                continue
-        elif row[columns.PHASE] == columns.CHOICE:
-            what = columns.allowed_choice(row, decisions[k], rules)
-            if not choose(k, what, tables, saved):
-                continue
         colour = max(0, nominate[k] - YELLOW + 1)
         tables.nominated[k] = AUTO if nominate[k] < 0 else declarations.nominated_ball(colour, row)
         if row[columns.IN_HAND] and not np.isnan(places[k, 0]):
@@ -68,7 +54,7 @@ def carry_out(frames: "Frames", which: Ints, asked: "Asked", buffers: ShotBuffer
     stroke."""
     codes = frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)
     playing, tables = np.empty(len(which), np.int64), (frames.arrays, frames.saved_arrays)
-    m = _carry_out(which, asked, *tables, frames.packs[side][1:3], codes, buffers.struck, playing)
+    m = _carry_out(which, asked, *tables, frames.packed(side)[1:3], codes, buffers.struck, playing)
     frames.hold_late(playing[:m], buffers)
     return playing[:m]
 

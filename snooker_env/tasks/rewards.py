@@ -38,10 +38,3 @@ def frame_reward_of(kind, gained, winner, player):
     if kind != WIN_PAID:
         return float(gained)
     return 0.0 if winner < 0 else 1.0 if winner == player else -1.0
-
-
-def frame_reward(name: str, gained: float, winner: int | None, player: int) -> float:
-    """The same for one player of a match; ``gained`` and ``winner`` (or None) are those of player 0."""
-    if name != "win":
-        return float(gained if player == 0 else -gained)
-    return 0.0 if winner is None else 1.0 if winner == player else -1.0

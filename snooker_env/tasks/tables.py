@@ -12,7 +12,6 @@ from .._types import Bools, Floats, Ints, Masks, Singles, Words
 from ..game.balls import N_BALLS, BallOn, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import pair, stream_of
-from ..physics.columns import CONSTANTS
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import END_MASS_RATIO, drawn, normalised
 from ..physics.conditions import NAMES as CONDITION_NAMES
@@ -165,7 +164,8 @@ class Tables(ABC):
     streams: Words  # (n, 2) key and counter of each table's random stream
     nominated: Ints = np.empty(0, np.int64)  # (n,) of frames: what each striker has nominated
     begun: Bools  # (n,) which tables have an episode, possibly one that has ended
-    packed: Packed  # with a row for each table if the conditions are drawn
+    cues: Floats  # packed: one row, or one a table if the conditions are drawn
+    phys: Floats  # packed constants, likewise
     conditions: Floats  # (n, 8) constants drawn, of ``physics.conditions``; without rows if they are fixed
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
@@ -176,14 +176,20 @@ class Tables(ABC):
         self.streams = np.zeros((n, 2), np.uint64)
         self.begun = np.zeros(n, np.bool_)
         self.reals = self.REALS
-        self.conditions, self._phys = np.empty((0, CONDITIONS)), np.empty((0, CONSTANTS))
+        self.conditions = np.empty((0, CONDITIONS))
+        options, self.cues, errors, self.phys = rules.packed()
+        self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)  # of each seat
         if rules.drawn:
             self.reals = (*self.REALS, *CONDITION_NAMES)
             self.conditions = np.tile(nominal(rules.physics), (n, 1))
-            self._phys = np.tile(rules.physics.pack(), (n, 1))
+            self.cues, self.phys = np.repeat(self.cues, n, axis=0), np.tile(rules.physics.pack(), (n, 1))
         if rules.observed:
             self.SIZE = type(self).SIZE + CONDITIONS
-        self.packed = self.own_rows(rules.packed())
+
+    def packed(self, side: int = 0) -> Packed:
+        """The rules for the kernels, with the actions and errors of the seat ``side``."""
+        options, errors = self._own[side]
+        return options, self.cues, errors, self.phys
 
     @property
     def arrays(self) -> tuple[Any, ...]:
@@ -283,26 +289,9 @@ class Tables(ABC):
         for name, value in vars(self).items():
             setattr(one, name, value[here] if name in self._columns() else value)
         one.n = 1
-        if self.rules.drawn:
-            one._take_rows(here)
         return one
 
     # the constants of tables
-
-    def own_rows(self, packed: Packed) -> Packed:
-        """``packed`` with a row for each table, if they differ."""
-        if not self.rules.drawn:
-            return packed
-        options, cues, noise, _ = packed
-        return options, np.repeat(cues, self.n, axis=0), noise, self._phys
-
-    def _every_pack(self) -> tuple[Packed, ...]:
-        return (self.packed,)
-
-    def _take_rows(self, here: slice) -> None:
-        """Of each pack only these rows, as views."""
-        options, cues, noise, phys = self.packed
-        self.packed = options, cues[here], noise, phys[here]
 
     def draw_conditions(self, which: Ints) -> None:
         """Draw the constants of the tables ``which`` from their own streams; nothing if they are fixed."""
@@ -314,9 +303,8 @@ class Tables(ABC):
     def set_conditions(self, which: Ints, values: Floats) -> None:
         """Give the tables ``which`` these constants (len(which), 8)."""
         self.conditions[which] = values
-        pack_into(self._phys, which, values, self.rules.physics)
-        for _, cues, _, _ in self._every_pack():
-            cues[which, C_END_MASS] = values[:, END_MASS_RATIO]
+        pack_into(self.phys, which, values, self.rules.physics)
+        self.cues[which, C_END_MASS] = values[:, END_MASS_RATIO]
 
     def show_conditions(self, which: Ints | slice, out: StepOutput) -> None:
         """Write the constants of the tables ``which`` into the results of a step, if they are drawn."""
@@ -332,29 +320,25 @@ class Tables(ABC):
 
     def world(self, k: int) -> tuple[Rules, Floats]:
         """The rules, and the packed constants of table k: one row."""
-        phys = self.packed[3]
-        return self.rules, phys if len(phys) == 1 else phys[k : k + 1]
+        return self.rules, self.phys if len(self.phys) == 1 else self.phys[k : k + 1]
 
     def _columns(self) -> tuple[str, ...]:
         """Names of the attributes that hold one row for each table."""
-        own = ("conditions", "_phys") if self.rules.drawn else ()
+        own = ("conditions", "cues", "phys") if self.rules.drawn else ()
         return ("positions", "on_table", "game", "streams", "begun", *own)
 
     def interrupted(self) -> None:
         """A step or reset was cut short: tables at which it is not the agent's turn need a reset."""
         return
 
-    def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers) -> None:
-        """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
-        self.strike(which, actions, buffers, self.packed)
-
-    def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: Packed) -> None:
-        """``address`` with another seat's ``packed``."""
-        stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
+    def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, side: int = 0) -> None:
+        """Carry the actions (n, k) of the seat ``side`` out up to the strike, on the tables ``which``."""
+        packed, fidelity = self.packed(side), self.rules.fidelity
+        stroke.address(which, actions, self.arrays, buffers.struck, packed, fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots that have been struck; returns the rows of those that need ``again``."""
-        m, phys = len(which), self.packed[3]
+        m, phys = len(which), self.phys
         stroke.run(buffers, m, self.rules, phys if len(phys) == 1 else phys[which])
         status = buffers.status[:m]
         return np.flatnonzero(status).tolist() if status.any() else []

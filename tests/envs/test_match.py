@@ -19,7 +19,7 @@ from pettingzoo.test import api_test, render_test, seed_test
 
 WIN = {"layout": "colours", "aim": "target", "reward": "win"}
 CHOICES = {"action": "discrete", "layout": "random:2"}
-MATCH = {"frames": 3, "layout": "pots:easy", "says": ["nominate", "decision", "concede"]}
+MATCH = {"frames": 3, "layout": "pots:easy", "says": ["nominate", "concede"]}
 
 
 @pytest.mark.parametrize("options", [{"aim": "target"}, {"max_strokes": 20}, WIN, CHOICES, MATCH | CHOICES])
@@ -165,7 +165,7 @@ def actions_of(options, rng, masks):
     if options.get("action") == "discrete":
         return np.array([rng.choice(np.flatnonzero(mask)) for mask in masks])
     says = options.get("says", ())
-    a = rng.uniform(-1, 1, (N, 6 + len(says)))
+    a = rng.uniform(-1, 1, (N, sn.Options(task="frame", placement=True, says=says).rules.actions.size))
     a[:, 1:4] *= 0.3
     if "concede" in says:
         a[:, -1] = np.where(rng.random(N) < 0.98, np.abs(a[:, -1]), a[:, -1])

@@ -143,7 +143,6 @@ def test_a_reset_is_needed_first_and_after_the_end():
 
 # An environment takes every state that it gives
 
-SAYS = ["nominate", "decision", "concede", "claim", "lot"]
 FULL = {"says": ["decision"], "placement": True, "aim": "target"}
 BLACKLESS = {"cue": (0.2, -0.5), "reds": [(0.5, 1.2)], "yellow": (0.292, -1.0475)}
 OWN = {
@@ -159,7 +158,7 @@ OWN = {
     "match": FULL
     | {"task": "match", "frames": 3, "layout": "colours", "opponent": "random", "max_strokes": 40},
     "discrete": {"task": "frame", "action": "discrete", "observation": "masked", "layout": "random:1"}
-    | {"opponent": "random", "says": SAYS},
+    | {"opponent": "random", "says": ["nominate", "concede", "claim", "lot"]},
     "flight": FULL | {"task": "frame", "layout": "random:2", "physics": {"flight": True}, "elevation": True},
     "position": FULL
     | {"task": "frame", "opponent": "random", "says": ["decision", "lot"], "miss": "clear_path"},
