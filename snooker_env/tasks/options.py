@@ -125,68 +125,68 @@ class Options:
 
     Parameters
     ----------
-    task : {"visit", "frame", "match"}, optional
-        "visit" (default): build a break until the first miss or foul. "frame": play a whole frame. "match":
-        the best of several; what is said below of a frame holds for a match, too.
-    layout : str, optional
-        How tables are dealt: "opened", "held_out", "safety", "held_out_safety", "escape", "held_out_escape",
-        "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy", "pots:medium" or
-        "pots:hard". "default": "opened", in a frame "break_off".
-    action : {"box", "discrete"}, optional
-        "box" (default): numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a
-        top, in [0, 540) unless options of frames add more.
-    aim : {"absolute", "target"}, optional
-        Where a box action's aim is measured from: +x (default), or the best pot's line, else a fair stroke's.
-    observation : {"flat", "balls", "masked"}, optional
-        "flat" (default): one array. "balls": a dict of two. "masked", with ``action="discrete"``: a dict of
-        the flat array and the available choices.
-    noise : str, dict or Noise, optional
-        Execution errors: the name of a level, or standard deviations, see ``Noise``. Default "none".
-    reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
-        Default "points". The first four are of a visit, "points" and "win" of a frame, "frames" also of a match.
-    elevation : bool or float, optional
-        Whether a box action holds the elevation of the cue; True: up to 30 degrees; or up to so many degrees, 5 to 70.
-    placement : bool, optional
-        Whether it holds the place of a cue ball in hand. Default False.
-    physics : str, dict, Physics or None, optional
-        As ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
-    table : str or Table, optional
-        "match" (default), "tight", or a ``Table`` whose noses are where snooker's are.
-    cue : {"free", "real"}, optional
-        "free" (default): the cue passes through rails and balls. "real": it is raised over them as far as it
-        must be, and errors grow with its elevation (docs/environment/specification.md).
-    fidelity : str, optional
-        How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
-    conditions : {"fixed", "drawn"}, optional
-        "drawn": each episode draws eight constants of its table, in place of those of ``physics``, as
-        ``Physics.drawn`` does, with its own random stream. Infos hold them. Default "fixed".
-    observe_conditions : bool, optional
-        Whether observations hold the constants drawn, from -1 to 1. Default False.
-    opponent : str or Path, optional
-        In a frame: "none" (default), or what ``snooker_env.player`` takes: a player's name, a model's
-        ``.zip``, ... Environments also take objects (docs/environment/opponents.md); their options then say
-        "object".
-    miss : {"off", "clear_path", "attempt"}, optional
-        In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
-    max_strokes : int or None, optional
-        In a frame: strokes of both after which the referee stops it and its match; default 1000, None: never.
-    one_stroke : bool, optional
-        Whether an episode ends with its first stroke; in a frame, where the agent then begins, with its first one that
-        is no foul, when it is its turn again without a choice to make, after 20 steps at most. Not of a match.
-        Default False.
-    trust : bool, optional
-        In a frame: whether code in an opponent's ``.zip`` may run. Default False.
-    says : sequence of str, optional
-        In a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a
-        free ball; else the one struck first), "decision" (after a foul, of box actions only), "concede",
-        "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the lot for a re-spotted
-        black lets the other player begin; else it begins). Default: nothing.
-    game : {"snooker", "six_red", "shoot_out"}, optional
-        In a frame: the rules of the game (``snooker_env.game.rule_sets``). Default "snooker".
-    time_to_play : float, optional
-        In a frame of the Shoot Out: from the rest of the balls to the next stroke [s], at most 15; default 9.
-    frames : int, optional
-        In a match: the most frames that it can have, an odd number; default 7.
+    task : str, default "visit"
+        "visit": build a break until the first miss or foul. "frame": play a whole frame. "match": the best of several;
+        a match has everything that a frame has.
+    layout : str, default "default"
+        How tables are dealt (docs/environment/layouts.md): "opened", "held_out", "safety", "held_out_safety", "escape",
+        "held_out_escape", "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy",
+        "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
+    action : str, default "box"
+        "box": numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540)
+        unless ``says`` adds more.
+    aim : str, default "absolute"
+        From where a box action's aim is measured. "absolute": from +x. "target": from the best pot's line, else from a
+        fair stroke's.
+    observation : str, default "flat"
+        "flat": one array. "balls": a dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the
+        available choices.
+    noise : str, dict or Noise, default "none"
+        Execution errors: "none", "professional", "amateur", "club", "robot", "olympiad", or standard deviations as a
+        dict of the fields of ``snooker_env.tasks.Noise``.
+    reward : str, default "points"
+        "points"; of a visit "points_and_fouls", "pots" or "legal"; of a frame "win"; of a match also "frames".
+    elevation : bool or float, default False
+        Whether a box action holds the elevation of the cue: up to 30 degrees, or up to a number of degrees from 5 to 70.
+    placement : bool, default False
+        Whether a box action holds the place of a cue ball in hand.
+    physics : str, dict, Physics or None, default "paper"
+        "paper", "match", or a dict of overrides, as ``Physics.of`` takes them; the radius of the balls is snooker's.
+    table : str or Table, default "match"
+        "match", "tight", or a ``Table`` whose noses are where snooker's are.
+    fidelity : str, default "standard"
+        How impacts are solved (docs/physics/fidelity.md): "fast", "standard", "reference" or "euler:N".
+    cue : str, default "free"
+        "free": the cue passes through rails and balls. "real": it is raised over them as far as it must be, and errors
+        grow with its elevation.
+    conditions : str, default "fixed"
+        "drawn": each episode draws eight constants of its table, in place of those of ``physics``, with its own random
+        stream (docs/environment/conditions.md). Infos hold them.
+    observe_conditions : bool, default False
+        Whether observations hold the constants drawn, from -1 to 1.
+    one_stroke : bool, default False
+        Whether an episode ends with its first stroke; in a frame with the first that is no foul, after 20 steps at most.
+        Not of a match.
+    opponent : str or Path, default "none"
+        Of a frame: "none", or what ``snooker_env.player`` takes: a player's name, a model's ``.zip`` and more.
+        Environments also take objects (docs/environment/opponents.md); their options then say "object".
+    trust : bool, default False
+        Of a frame: whether code in an opponent's ``.zip`` may run.
+    miss : str, default "off"
+        Of a frame: "off", "clear_path" or "attempt", the rule for a foul and a miss (docs/environment/rules.md).
+    max_strokes : int or None, default 1000
+        Of a frame: strokes of both players after which the referee stops it and its match; None: never.
+    says : sequence of str, default ()
+        Of a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a free ball;
+        else the one struck first), "decision" (after a foul; box actions only), "concede", "claim" (the frame, where
+        the rules allow it) and "lot" (whether the winner of the lot for a re-spotted black lets the other player begin;
+        else it begins).
+    game : str, default "snooker"
+        Of a frame: "snooker", "six_red" or "shoot_out", the rules of the game (docs/environment/rules.md).
+    time_to_play : float, default 9.0
+        Of a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s], at most 15.
+    frames : int, default 7
+        Of a match: an odd number, the most frames that it can have.
 
     Attributes
     ----------

@@ -200,15 +200,12 @@ class Tables(ABC):
         """Give table k a new stream with a key drawn from a NumPy generator."""
         self.streams[k] = stream_of(rng)
 
-    def output(self, *, last: bool = False, arrays: Mapping[str, Any] | None = None) -> StepOutput:
-        """New arrays for the results of a step or reset, except for ``arrays`` by name."""
+    def output(self, *, last: bool = False) -> StepOutput:
+        """New arrays for the results of a step or reset."""
         nobody = np.empty(0, np.int64)
         choices = self.action_masks(nobody).shape[1] if self.rules.observation == "masked" else 0
         sizes = self.n, self.SIZE, len(self.reals), len(self.COUNTS)
         out = StepOutput(*sizes, last=last, choices=choices)
-        for name, array in (arrays or {}).items():
-            array[...] = 0
-            setattr(out, name, array)
         self.show_conditions(slice(None), out)
         return out
 
