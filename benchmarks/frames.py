@@ -163,7 +163,7 @@ class FrameTable:
 
     def take(self, text):
         """Take over what ``as_json`` gave."""
-        self.tables.set_state(0, self.tables.checked(json.loads(text), self.generator, either=True))
+        self.tables.set_state(0, self.tables.check_state(json.loads(text), self.generator, either=True))
 
 
 def fair_points(played, free_ball):

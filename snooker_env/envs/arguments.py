@@ -84,7 +84,7 @@ class Start:
         """From a dict; ValueError if it is no valid state here, or with ``to_play`` has no stroke left."""
         both = isinstance(tables, Frames) and len(tables.seats) == 2 and tables.seats[1].player is None
         either = {"either": True} if both else {}  # the caller plays both sides
-        return cls(state=tables.checked(state, rng, to_play=to_play, **either))
+        return cls(state=tables.check_state(state, rng, to_play=to_play, **either))
 
     def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
         """Put it on table k; returns the state of its NumPy generator, None for a position."""

@@ -104,7 +104,7 @@ class MatchVectorEnv(SnookerVectorEnv):
             tables.turns(checked, written, self._crew)
         infos = self._infos(written) | {"striker": self.strikers}
         rewards = np.stack([written.rewards, -written.rewards], axis=1) + 0.0  # no negative zero
-        return self._shaped(written), rewards, written.terminated, written.truncated, infos
+        return self._arrange(written), rewards, written.terminated, written.truncated, infos
 
     def observe(self, player: int) -> Observation:
         """Return the observations of player 0 or 1: float32 (num_envs, k), or a dict of such arrays."""
@@ -115,7 +115,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         if len(written.masks):
             written.masks[:] = self.action_masks()
             written.masks[(self.strikers != player) | self.tables.ended()] = False
-        return super()._shaped(written)
+        return super()._arrange(written)
 
     def action_masks(self) -> Bools:
         """Return the strikers' choices, bool (num_envs, choices); ValueError unless both have the same."""
@@ -124,10 +124,10 @@ class MatchVectorEnv(SnookerVectorEnv):
             raise refuse("action", self.options.action, words)
         return self.tables.action_masks()
 
-    def _shaped(self, written: Any) -> Any:
+    def _arrange(self, written: Any) -> Any:
         """The strikers' observations, without a choice where the frame or match has ended."""
         theirs = np.flatnonzero(self.tables.game[:, STRIKER])
         written.observations[theirs] = self.tables.observe(theirs, 1)
         if len(written.masks):
             written.masks[self.tables.ended()] = False
-        return super()._shaped(written)
+        return super()._arrange(written)

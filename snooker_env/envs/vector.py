@@ -166,7 +166,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             tables.reset(dealt, written, self._crew, **breakers)
         self._begun |= wanted
         self._done[wanted] = False
-        return self._shaped(written), tables.infos(written.reals, written.counts, wanted)
+        return self._arrange(written), tables.infos(written.reals, written.counts, wanted)
 
     def step(self, actions: Any) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
         """Play one step on each table.
@@ -196,7 +196,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
                 infos |= self._final(written, done)
         else:
             self._done = done
-        return self._shaped(written), written.rewards, written.terminated, written.truncated, infos
+        return self._arrange(written), written.rewards, written.terminated, written.truncated, infos
 
     def action_masks(self) -> Bools:
         """Return the available choices, bool (num_envs, 540) or wider. ValueError with ``action="box"``."""
@@ -278,18 +278,18 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             raise
 
     def _saw(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
-        self._recent[k].append(self.tables.played(k, buffers, j))
+        self._recent[k].append(self.tables.record(k, buffers, j))
 
     def _infos(self, written):
         return self.tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_))
 
-    def _shaped(self, written):
+    def _arrange(self, written):
         """The observations in the environment's kind."""
-        return observations.shaped(self.options.observation, written.observations, written.masks)
+        return observations.arrange(self.options.observation, written.observations, written.masks)
 
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
-        each = observations.shaped(self.options.observation, out.last_observations, out.last_masks)
+        each = observations.arrange(self.options.observation, out.last_observations, out.last_masks)
         if isinstance(each, dict):
             each = [dict(zip(each, parts, strict=True)) for parts in zip(*each.values(), strict=True)]
         final = np.fromiter(each, object, self.num_envs)

@@ -70,7 +70,7 @@ class Struck(Tables):
         if self.errors is None:
             super().address(which, actions, buffers, side)
             return
-        (_, cues, noise, _), silent = self.packed(), NO_NOISE.pack(1.0)
+        (_, cues, noise, _), silent = self.pack(), NO_NOISE.pack(1.0)
         if self.kick:
             silent = Noise(kick=self.kick).pack(1.0)
         _strike(which, actions, self.errors, self.arrays, buffers.struck, cues, noise, silent)
@@ -136,8 +136,8 @@ def turned(after: Positions) -> Positions:
 
 
 def packed_under(conditions: Floats, rules: Rules) -> Packed:
-    """``Rules.packed`` with a row for each table."""
-    options, cues, noise, _ = rules.packed()
+    """``Rules.pack`` with a row for each table."""
+    options, cues, noise, _ = rules.pack()
     cues = np.repeat(cues, len(conditions), axis=0)
     cues[:, C_END_MASS] = conditions[:, END_MASS_RATIO]
     return options, cues, noise, rows_under(conditions, rules.physics)

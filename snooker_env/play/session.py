@@ -256,7 +256,7 @@ class Session:
         return self._did(Act("stroke", self.state, striker, self._played, words, room, asked))
 
     def _watch(self, k, buffers, j, agents):
-        self._played = self.tables.played(k, buffers, j)
+        self._played = self.tables.record(k, buffers, j)
 
     def _hand_back(self):
         frame = self.frame
@@ -394,7 +394,7 @@ class Session:
         try:
             # no rewards are paid here
             alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}
-            return self.tables.checked(state | alone, self._generator, either=True)
+            return self.tables.check_state(state | alone, self._generator, either=True)
         except ValueError as error:
             raise ValueError(re.sub(r"state\.(frame\.)?", "", str(error))) from None
 

@@ -47,7 +47,7 @@ class ChoicePlayer(BoundPlayer):
         names = ("physics", "table", "fidelity", "conditions", "cue")
         same: Any = {name: getattr(options, name) for name in names}
         self._rules = Options(action="discrete", **same).rules
-        self._packed = self._rules.packed()
+        self._packed = self._rules.pack()
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
         """Score all choices in n positions of visits: float (n, 540), -inf for unavailable ones."""

@@ -16,7 +16,7 @@ from ..planning.strokes import decode
 from ..tasks.carry_out import sayings
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
-from ..tasks.observations import shaped
+from ..tasks.observations import arrange
 from ..tasks.options import Options, Rules
 from ..tasks.visit import Visits
 from .player import BoundPlayer, Strokes, placed
@@ -138,7 +138,7 @@ class SeenPlayer(BoundPlayer):
             tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved
         rows = np.arange(n)
         masks = tables.action_masks(rows) if isinstance(rules.actions, Choices) else None
-        answer = self.seen.act(shaped(rules.observation, tables.observe(rows), masks), masks, keys)
+        answer = self.seen.act(arrange(rules.observation, tables.observe(rows), masks), masks, keys)
         try:
             actions = np.asarray(answer)
             if actions.ndim == 0 or len(actions) != n:

@@ -54,13 +54,13 @@ def carry_out(frames: "Frames", which: Ints, asked: "Asked", buffers: ShotBuffer
     stroke."""
     codes = frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)
     playing, tables = np.empty(len(which), np.int64), (frames.arrays, frames.saved_arrays)
-    m = _carry_out(which, asked, *tables, frames.packed(side)[1:3], codes, buffers.struck, playing)
+    m = _carry_out(which, asked, *tables, frames.pack(side)[1:3], codes, buffers.struck, playing)
     frames.hold_late(playing[:m], buffers)
     return playing[:m]
 
 
 @entry(what="what actions say", seconds=1)
-def _said(actions, options, game, rules, nominated, decisions, declared):
+def _read_sayings(actions, options, game, rules, nominated, decisions, declared):
     """What the strikers of n frames say with their actions: nominations, decisions and declarations (n,)."""
     for k in range(len(game)):
         row, a = game[k], actions[k]
@@ -72,5 +72,5 @@ def _said(actions, options, game, rules, nominated, decisions, declared):
 def sayings(rules: Rules, actions: Floats, game: Ints) -> tuple[Ints, Ints, Ints]:
     """Nominations, decisions and declarations (n,), as in ``players.Strokes``, of checked actions (n, k)."""
     nominated, decisions, declared = np.empty((3, len(game)), np.int64)
-    _said(actions, rules.actions.pack(), game, rules.rule_set.code, nominated, decisions, declared)
+    _read_sayings(actions, rules.actions.pack(), game, rules.rule_set.code, nominated, decisions, declared)
     return nominated, decisions, declared

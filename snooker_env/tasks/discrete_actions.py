@@ -69,7 +69,7 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
 
 
 @kernel(seconds=1, uses=(solved_aim, aim_along))
-def chosen(index, positions, on_table, on, law, work):
+def solve_choice(index, positions, on_table, on, law, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``."""
     lines = work.lines
     # ``declarations`` reads what else the choice says; what may not be said now is played as a stroke
@@ -91,7 +91,7 @@ def chosen(index, positions, on_table, on, law, work):
 
 
 @kernel
-def _crowded(positions, on_table, rails, ax, ay):
+def _lacks_room(positions, on_table, rails, ax, ay):
     """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``: one that points about
     along (ax, ay), or any cue if that is (0, 0). A free cue never.
 
@@ -118,7 +118,7 @@ def _without_room(positions, on_table, cue, rows, pots, many, out):
     rails, x, y, left = cue[C_RAILS:], positions[0, 0], positions[0, 1], 0
     for line in range(many):
         aim = atan2(rows[line, GHOST_Y] - y, rows[line, GHOST_X] - x) if pots else rows[line, LINE_AIM]
-        if not _crowded(positions, on_table, rails, cos(aim), sin(aim)):
+        if not _lacks_room(positions, on_table, rails, cos(aim), sin(aim)):
             left += STROKES
             continue
         for s in range(len(SIDES)):
@@ -149,7 +149,7 @@ def masks(which, positions, on_table, game, options, cue, out):
                 available = declarations.may_nominate(n, row)
             p, here, many, pots = positions[k], on_table[k], 1, 0
             chooses = available and here[0]
-            crowded = chooses and _crowded(p, here, cue[C_RAILS:], 0.0, 0.0)
+            crowded = chooses and _lacks_room(p, here, cue[C_RAILS:], 0.0, 0.0)
             if crowded:  # the lines themselves are asked for
                 pots = find_pots(p, here, on, BALL_RADIUS, rows[:POTS])
                 many = pots if pots else find_lines(p, here, on, rows)

@@ -40,7 +40,7 @@ from .noise import Noise
 from .observations import FRAME_SIZE, REPLACED_SIZE
 from .options import NEVER, Options, Rules
 from .rewards import FRAMES_PAID, MATCH_REWARDS
-from .states import FrameState, checked_frame
+from .states import FrameState, check_frame_state
 from .stroke import ShotBuffers
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 from .visit import Visits
@@ -73,7 +73,7 @@ class Seat:
         """The seat with the actions and errors of ``rules``."""
         return cls(rules.actions, rules.noise, player)
 
-    def packed(self, rules: Rules) -> tuple[Floats, Floats]:
+    def pack(self, rules: Rules) -> tuple[Floats, Floats]:
         """For the kernels: what its actions hold, and its errors."""
         return self.actions.pack(), self.noise.pack(BALL_RADIUS, real=rules.cue == "real")
 
@@ -119,7 +119,7 @@ class Frames(Tables):
     def sit(self, seats: Sequence[Seat]) -> None:
         """Assign the seats: one, or two."""
         self.seats = tuple(seats)
-        self._own = tuple(seat.packed(self.rules) for seat in self.seats)
+        self._own = tuple(seat.pack(self.rules) for seat in self.seats)
         # the winner of the lot is asked if either player can say who begins
         self._lot = any("lot" in seat.actions.says for seat in self.seats)
 
@@ -232,12 +232,13 @@ class Frames(Tables):
         out: StepOutput,
         crew: Crew,
         which: Ints | None = None,
-    ) -> None:
-        """One turn of the strikers on ``which``, or all."""
+    ) -> Bools:
+        """One turn of the strikers on ``which`` (or all); returns where there was a stroke, (n,)."""
         playing = np.flatnonzero(~self.ended()) if which is None else which
         self._played[playing] = 0
         crew(playing, lambda which, b: self.complete(prepare(which, b), out, b, crew, reported=True))
         self.go_on(playing)
+        return self._played > 0
 
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> Bools:
         """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k). Returns
@@ -388,11 +389,11 @@ class Frames(Tables):
         """What the agent has earned in the episode so far, as its reward counts."""
         return self.game[k, columns.SCORE_0 + AGENT] - self.game[k, columns.SCORE_1 - AGENT]
 
-    def checked(
+    def check_state(
         self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False
     ) -> FrameState:
-        """See ``Tables.checked``. The striker must be the agent, unless ``either``."""
-        sound = checked_frame(state, self.rules, generator)
+        """See ``Tables.check_state``. The striker must be the agent, unless ``either``."""
+        sound = check_frame_state(state, self.rules, generator)
         over, stopped = sound.frame.phase == "over", sound.strokes >= self.rules.max_strokes
         if sound.due and not (over or stopped):
             raise refuse("state.due", True, "must be False: the frame goes on")

@@ -26,7 +26,7 @@ from .declarations import SAYS
 from .discrete_actions import Choices
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
-from .table_fit import fitted, table_of
+from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
 MOST_TIME = 15.0
@@ -81,13 +81,14 @@ class Rules:
         """Whether a foul and a miss is called."""
         return self.miss != "off"
 
-    def packed(self) -> Packed:
+    def pack(self) -> Packed:
         """For the kernels, with one row of cues and constants for all tables."""
         errors = self.noise.pack(BALL_RADIUS, real=self.cue == "real")
-        cues, phys = self.packed_cue()[None], self.physics.packed_for(self.fidelity)[None]
+        cues, phys = self.cue_row[None], self.physics.packed_for(self.fidelity)[None]
         return self.actions.pack(), cues, errors, phys
 
-    def packed_cue(self) -> Floats:
+    @property
+    def cue_row(self) -> Floats:
         """The cue's row, of ``arrays.pack_cue``."""
         return pack_cue(self.physics, self.rails)
 
@@ -110,7 +111,7 @@ _ONLY: dict[str, str] = {**dict.fromkeys(_OF_FRAMES, "frame"), "frames": "match"
 """The only task that has an option; what is of a frame is of a match, too."""
 
 
-def _said(says: object) -> tuple[str, ...]:
+def _order_says(says: object) -> tuple[str, ...]:
     """The option ``says`` in the order of ``SAYS``."""
     if isinstance(says, str) or not isinstance(says, Collection):
         raise refuse("says", says, f"must be a sequence of some of {', '.join(map(repr, SAYS))}")
@@ -228,7 +229,7 @@ class Options:
     rules: Rules = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "says", _said(self.says))
+        object.__setattr__(self, "says", _order_says(self.says))
         frame = choice("task", self.task, TASKS) != "visit"
         physics, table = self._physics(), table_of(self.table)
         fidelity, noise = parse_fidelity(self.fidelity), Noise.of(self.noise)
@@ -241,7 +242,7 @@ class Options:
         layout = LAYOUTS[self.task] if default else self.layout
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
             layout = f"break_off:{rule_set(self.game).reds}"
-        plan = fitted(layout, table)
+        plan = fit_plan(layout, table)
         kind = choice("observation", self.observation, observations.OBSERVATIONS)
         if kind == "masked" and not isinstance(actions, Choices):
             allowed = 'must be "flat" or "balls" with action="box": a Box has no masks'

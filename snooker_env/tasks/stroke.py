@@ -60,7 +60,7 @@ def _played_into(positions, ball, vx, vy, time):
 
 
 @kernel
-def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
+def find_first_contact(event_time, event_what, n_events, touching, positions, vx, vy):
     """Masks, from a shot's log, of the balls struck first, and of the ``touching`` ones that it was played
     into, a push stroke; one that it meets later off a cushion is struck but not moved in leaving."""
     first, moved, start = 0, 0, np.inf
@@ -170,7 +170,7 @@ def _same_constants(k, before, cues, phys):
     return differ == 0
 
 
-@entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen, shot_of))
+@entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.solve_choice, shot_of))
 def address(which, actions, tables, shots, packed, fidelity):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike; ``packed``: of ``Tables``."""
     positions, on_table, game, streams, nominated = tables
@@ -191,7 +191,7 @@ def address(which, actions, tables, shots, packed, fidelity):
             before, new = which[max(0, j - 1)], j == 0 or a[0] != solved[0] or mask != mask_before
             new = new or not _same_constants(k, before, cues, phys)
             if new or not _same_table(p, on, positions[before], on_table[before]):
-                chosen = discrete_actions.chosen(int(a[0]), p, on, mask, law, work)
+                chosen = discrete_actions.solve_choice(int(a[0]), p, on, mask, law, work)
                 solved[0], mask_before = a[0], mask
                 solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
             intended = (solved[1], solved[2], solved[3], solved[4], solved[5])
@@ -207,7 +207,7 @@ def see(j, shots, positions, on_table):
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
     log = shots.event_time[j], shots.event_what[j], shots.n_events[j]
-    first, moved = first_struck(*log, touching, positions, shot[VX], shot[VY])
+    first, moved = find_first_contact(*log, touching, positions, shot[VX], shot[VY])
     down = off = 0
     for i in range(N_BALLS):
         if shots.potted[j, i] >= 0:
@@ -283,10 +283,10 @@ class ShotBuffers:
 def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
     """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each."""
     count(m)
-    _simulated(buffers, m, rules, phys)
+    _simulate(buffers, m, rules, phys)
 
 
-def _simulated(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
+def _simulate(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
     """The same without counting them."""
     table = rules.table
     buffers.enlarged = {}
@@ -307,7 +307,7 @@ def run_again(
     while status == Status.LOG_FULL:
         one = buffers.again(j, 4 * one.log)
         one.r[0], one.here[0] = positions, on_table
-        _simulated(one, 1, rules, phys)  # counted already
+        _simulate(one, 1, rules, phys)  # counted already
         status = one.status[0]
     if status != Status.OK:
         raise SimulationError(f"the shot on table {k} {_WHY[Status(status)]}")
@@ -321,5 +321,5 @@ def with_path(
     """Play shot j, which came to rest, once more with its path, uncounted; returns its own buffers."""
     one = buffers.again(j, buffers.log, path=True)
     one.r[0], one.here[0] = positions, on_table
-    _simulated(one, 1, rules, phys)
+    _simulate(one, 1, rules, phys)
     return one

@@ -23,7 +23,7 @@ from .box_actions import Actions
 from .discrete_actions import Choices
 from .noise import Noise
 from .options import NEVER, Rules
-from .played import Played, judged, room_of, struck
+from .played import Played, judgement_of, room_of, strike_of
 from .states import FrameState, State
 
 REALS = ("points", "break", "seconds")
@@ -177,7 +177,7 @@ class Tables(ABC):
         self.begun = np.zeros(n, np.bool_)
         self.reals = self.REALS
         self.conditions = np.empty((0, CONDITIONS))
-        options, self.cues, errors, self.phys = rules.packed()
+        options, self.cues, errors, self.phys = rules.pack()
         self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)  # of each seat
         if rules.drawn:
             self.reals = (*self.REALS, *CONDITION_NAMES)
@@ -186,7 +186,7 @@ class Tables(ABC):
         if rules.observed:
             self.SIZE = type(self).SIZE + CONDITIONS
 
-    def packed(self, side: int = 0) -> Packed:
+    def pack(self, side: int = 0) -> Packed:
         """The rules for the kernels, with the actions and errors of the seat ``side``."""
         options, errors = self._own[side]
         return options, self.cues, errors, self.phys
@@ -224,17 +224,17 @@ class Tables(ABC):
         infos["foul"] = infos["fouls"] != 0
         return infos | {f"_{name}": present.copy() for name in infos}
 
-    def played(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
+    def record(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
         """The stroke just played on table k, shot j of the buffers, and the table after it."""
         game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
         if seen[stroke.SCORED]:
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
-        shot = {"shot": self.shot(k, buffers, j), "cue": struck(buffers, j), "room": room_of(buffers, j)}
+        shot = {"shot": self.shot(k, buffers, j), "cue": strike_of(buffers, j), "room": room_of(buffers, j)}
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
         after = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
         who = {"cue_kind": self.rules.cue, "noise": self.noise_of(seen[stroke.PLAYER])}
-        return Played(**shot, **who, **balls, **after, **judged(seen), **standing)
+        return Played(**shot, **who, **balls, **after, **judgement_of(seen), **standing)
 
     def noise_of(self, player: int) -> Noise:
         """The errors of a player."""
@@ -257,7 +257,7 @@ class Tables(ABC):
         """``action_masks`` of one space of actions."""
         choices = actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE
         out = np.empty((len(which), choices), np.bool_)
-        reads = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY, self.rules.packed_cue()
+        reads = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY, self.rules.cue_row
         discrete_actions.masks(which, self.positions, self.on_table, self.game, *reads, out)
         return out
 
@@ -330,7 +330,7 @@ class Tables(ABC):
 
     def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, side: int = 0) -> None:
         """Carry the actions (n, k) of the seat ``side`` out up to the strike, on the tables ``which``."""
-        packed, fidelity = self.packed(side), self.rules.fidelity
+        packed, fidelity = self.pack(side), self.rules.fidelity
         stroke.address(which, actions, self.arrays, buffers.struck, packed, fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
@@ -378,7 +378,7 @@ class Tables(ABC):
             self.set_conditions(np.array([k]), np.array([list(state.conditions.values())]))
 
     @abstractmethod
-    def checked(
+    def check_state(
         self, state: Mapping[str, Any], generator: np.random.Generator, *, to_play: bool = False
     ) -> State | FrameState:
         """The valid state that a dict describes; ValueError if it is none, or no shot is left ``to_play``."""

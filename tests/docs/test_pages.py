@@ -78,7 +78,9 @@ def options_table():
 
     ``python -m tests.docs.test_pages`` writes it into the page."""
     text = inspect.cleandoc(sn.Options.__doc__ or "").partition("Parameters\n----------\n")[2]
-    said = re.findall(r"^(\w+) : .* default (.*)\n((?:    .*\n)+)", text.partition("Attributes")[0], re.MULTILINE)
+    said = re.findall(
+        r"^(\w+) : .* default (.*)\n((?:    .*\n)+)", text.partition("Attributes")[0], re.MULTILINE
+    )
     fields = {field.name: field.default for field in dataclasses.fields(sn.Options) if field.init}
     assert {name: ast.literal_eval(default) for name, default, _ in said} == fields
     lines = ["| name | default | meaning |", "|---|---|---|"]

@@ -111,7 +111,7 @@ def test_masked_observations_hold_the_flat_one_and_the_available_choices(options
 
 
 def test_masked_observations_need_masks():
-    shaped = partial(observations.shaped, "masked", np.zeros((2, 121), np.float32))
+    shaped = partial(observations.arrange, "masked", np.zeros((2, 121), np.float32))
     refused(shaped, "masks", "None", "must be the available choices")
 
 

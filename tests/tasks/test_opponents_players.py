@@ -12,7 +12,7 @@ import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
 from snooker_env.game.frame_columns import PLAY_AGAIN, REPLACE, STRIKER
-from snooker_env.game.sides import swapped
+from snooker_env.game.sides import swap_sides
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 from snooker_env.players import OpponentPool, SeenPlayer, Strokes
 from snooker_env.tasks.carry_out import carry_out
@@ -94,8 +94,8 @@ def test_to_change_sides_twice_changes_nothing():
     rng = np.random.default_rng(0)
     game = rng.integers(0, 2, (50, columns.COLUMNS))
     game[:, columns.WINNER] = rng.integers(-1, 2, 50)
-    other = swapped(game)
-    assert np.array_equal(swapped(other), game)
+    other = swap_sides(game)
+    assert np.array_equal(swap_sides(other), game)
     assert np.array_equal(other[:, columns.SCORE_0], game[:, columns.SCORE_1])
     assert (other[:, columns.BREAKER] == 1 - game[:, columns.BREAKER]).all()
     assert ((other[:, columns.WINNER] < 0) == (game[:, columns.WINNER] < 0)).all()
