@@ -22,6 +22,7 @@ from .game.pots import (
     window,
 )
 from .tasks.lines import LINE_ROWS, line_of
+from .tasks.noise import executed
 
 __all__ = [
     "COS_CUT",
