@@ -61,7 +61,7 @@ def has_pot(tables, k):
 def from_frames(n, seed):
     """n positions without a direct pot, the cue ball not in hand, from frames of the built-in opponent
     against itself."""
-    given = {"aim": "target", "placement": True, "decision": True, "noise": "professional"}
+    given = {"aim": "target", "placement": True, "says": ["decision"], "noise": "professional"}
     found, player = [], opponent_of("ghost_ball", Options(task="frame", **given))
     while len(found) < n:
         tables, which = (

@@ -50,7 +50,7 @@ MOST_STROKES = 20_000
 REPLAYED = 20
 """Strokes played again from the JSON."""
 PLAYERS = ("random", "ghost_ball")
-SAID = {"nominate": True, "concede": True, "claim": True, "lot": True}
+SAID = {"says": ["nominate", "decision", "concede", "claim", "lot"]}
 KINDS = (
     ("random", "off"),
     ("random", "clear_path"),
@@ -101,7 +101,7 @@ class FrameTable:
             "task": "frame",
             "aim": "target",
             "placement": True,
-            "decision": True,
+            "says": ["decision"],
             "max_strokes": None,
         }
         options = Options(**given | rules | more)
@@ -153,7 +153,7 @@ class FrameTable:
         reads = self.tables.rules.actions
         rng = np.random.default_rng(int(drawn(self.tables, which)[0] * 2**32))
         action = rng.uniform(-1.0, 1.0, (1, reads.size))
-        if reads.concede:
+        if "concede" in reads.says:
             action[:, -1] = (5.0 * action[:, -1] + 1.0) / 6.0  # [-1, 1) becomes [-2/3, 1)
         return action
 
@@ -163,7 +163,7 @@ class FrameTable:
 
     def take(self, text):
         """Take over what ``as_json`` gave."""
-        self.tables.set_state(0, self.tables.checked(json.loads(text), self.generator, either=True))
+        self.tables.set_state(0, self.tables.check_state(json.loads(text), self.generator, either=True))
 
 
 def fair_points(played, free_ball):
@@ -288,7 +288,7 @@ def judged_otherwise(seed):
     otherwise by nomination."""
     player, named, plain = (
         "ghost_ball",
-        FrameTable("off", noise="club", nominate=True),
+        FrameTable("off", noise="club", says=["nominate", "decision"]),
         FrameTable("off", noise="club"),
     )
     named.start(seed)
@@ -314,7 +314,7 @@ def judged_otherwise(seed):
 def escapes(seed, kind, noise):
     """One frame with miss="attempt": failures of snookered strikers, those that were no attempt, and those
     called a miss."""
-    player, table = kind, FrameTable("attempt", noise=noise, decision=False)
+    player, table = kind, FrameTable("attempt", noise=noise, says=[])
     table.start(seed)
     failed = poor = called = 0
     while not table.over:

@@ -167,7 +167,7 @@ def outside(tables, repeats, seed):
             for target, source in zip((work.r, work.v, work.w, work.here), shots, strict=True):
                 target[: len(source)] = source
             start = time.perf_counter()
-            stroke.run(work, len(shots[0]), visits.rules, visits.packed[2])
+            stroke.run(work, len(shots[0]), visits.rules, visits.phys)
             engine += time.perf_counter() - start
         start = time.perf_counter()
         step(k)

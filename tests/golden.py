@@ -199,8 +199,14 @@ def many_visits(mode):
 
 FRAMES = {
     "plain": {"aim": "target"},
-    "placed": {"aim": "target", "placement": True, "decision": True},
-    "missed": {"aim": "target", "placement": True, "decision": True, "miss": "clear_path", "reward": "win"},
+    "placed": {"aim": "target", "placement": True, "says": ["decision"]},
+    "missed": {
+        "aim": "target",
+        "placement": True,
+        "says": ["decision"],
+        "miss": "clear_path",
+        "reward": "win",
+    },
     "absolute": {
         "elevation": True,
         "observation": "balls",

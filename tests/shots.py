@@ -4,10 +4,12 @@ import numba
 import numpy as np
 
 from snooker_env.game.pots import POT_COLUMNS
+from snooker_env.physics.parameters import Physics
 from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.box_actions import shot_of
-from snooker_env.tasks.declarations import A_END_MASS, A_MAX_OFFSET, A_RAILS
 from snooker_env.tasks.lines import LINE_ROWS, line_of, new_work
+
+PAPER = Physics()
 
 
 @numba.njit(error_model="numpy")
@@ -16,15 +18,16 @@ def _line(positions, on_table, on):
 
 
 @numba.njit(error_model="numpy")
-def _shot(a, positions, on_table, on, options, phys):
-    law = CueLaw(phys, options[A_END_MASS], 0, 0, options[A_MAX_OFFSET], options[A_RAILS:])
+def _shot(a, positions, on_table, on, options, phys, cue):
+    law = CueLaw(phys, cue[0], 0, 0, cue[1], cue[2:])
     return shot_of(a, positions, on_table, on, options, law, new_work())
 
 
-def shot(actions, a, positions, on_table, on):
+def shot(actions, a, positions, on_table, on, physics=PAPER):
     """(speed, side, top, aim of the cue, elevation) of the action ``a`` of ``Actions``, with a free cue."""
     table = np.array(positions, np.float64), np.array(on_table, np.bool_), int(on)
-    return _shot(np.array(a, np.float64), *table, actions.pack(), actions.physics.pack())
+    cue = np.array([physics.end_mass_ratio, physics.max_offset])
+    return _shot(np.array(a, np.float64), *table, actions.pack(), physics.pack(), cue)
 
 
 def line(positions, on_table, on):

@@ -64,7 +64,7 @@ def drawn(env, rng, spread=1.0):
 
 
 def frame_env(**options):
-    return SnookerEnv(**{"task": "frame", "aim": "target", "decision": True, "placement": True} | options)
+    return SnookerEnv(**{"task": "frame", "aim": "target", "says": ["decision"], "placement": True} | options)
 
 
 def frame_state(env, places, frame, **state):
@@ -90,7 +90,7 @@ class Acting:
 
 def acting(answer, **options):
     """A player of the frames of ``frame_env``, by a function of observation and generator."""
-    usual = {"task": "frame", "aim": "target", "decision": True, "placement": True}
+    usual = {"task": "frame", "aim": "target", "says": ["decision"], "placement": True}
     return SeenPlayer(Acting(answer), usual | options)
 
 

@@ -14,14 +14,14 @@ from ..game.balls import N_REDS, VALUES
 from ..game.banks import HELD_OUT
 from ..game.layouts import layout as deal
 from ..game.layouts import plan_of
-from ..tasks.options import SAYS, Options
+from ..tasks.options import Options
 
 HELD_OUT_SEED = 1_000_000
 """Seed of the first judged table."""
 FRESH_SEED, SEEDS_END = 1_500_000, 2_000_000
 """``check --fresh`` draws its seeds from the first one on. Seeds from ``HELD_OUT_SEED`` on and below the last one are for
 judging alone, not for training."""
-FREE = ("action", "aim", "observation", "elevation", "placement", "decision")
+FREE = ("action", "aim", "observation", "elevation", "placement", "says")
 """Options that an agent may choose in every task: its observation, and how its actions are read."""
 
 
@@ -105,7 +105,7 @@ class Task:
         return most_points(self.judged_layout) if self.counts else 1
 
 
-_USUAL = {f.name: f.default for f in fields(Options) if f.init} | dict.fromkeys(SAYS, False)
+_USUAL = {f.name: f.default for f in fields(Options) if f.init}
 _BREAK = (1, 10, 25, 50, 75, 100, 147)
 _LEAD = (-60, -40, -20, -10, -4, 0, 1)
 _MEASURES = {"points": ("points a visit", 500)}

@@ -21,7 +21,7 @@ class _Still:
 
     def act(self, observations: Any, masks: Any, seeds: Any) -> list[list[float]]:
         """The same stroke for each observation."""
-        return [[0.0] * (4 + ("decision" in self.options))] * len(seeds)
+        return [[0.0] * (4 + len(self.options["says"]))] * len(seeds)
 
 
 def warmup() -> None:
@@ -54,8 +54,8 @@ def _play_environments() -> "tuple[SnookerEnv, SnookerEnv]":
     env.reset(seed=0)
     env.action_masks()
     env.step(0)
-    all_of_frames = {"placement": True, "decision": True, "miss": "attempt", "opponent": "ghost_ball"}
-    env = SnookerEnv(task="frame", **all_of_frames)
+    all_of_frames: Any = {"placement": True, "says": ["decision"], "miss": "attempt"}
+    env = SnookerEnv(task="frame", opponent="ghost_ball", **all_of_frames)
     for seed in range(3):  # in one of them the opponent breaks off
         env.reset(seed=seed)
         env.step([0.0] * 7)
@@ -72,7 +72,7 @@ def _play_environments() -> "tuple[SnookerEnv, SnookerEnv]":
             env.reset(seed=seed)
             env.step(action)
     env.reset(seed=0, options={"breaker": 0})
-    match = SnookerEnv(task="match", opponent="ghost_ball", concede=True)
+    match = SnookerEnv(task="match", opponent="ghost_ball", says=["concede"])
     match.reset(seed=0)
     match.step([0.0] * 4 + [-1.0])
     tables: Any = match.tables
@@ -123,7 +123,7 @@ def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
     prospects_of(at, 1e-3)
     pot_chances(np.ones(1), np.ones(1), 1e-3)
     player("ghost_ball").at({"task": "frame"}).play(both, [0])
-    player(_Still(task="frame", decision=True)).at({"task": "frame"}).play(both, [0])
+    player(_Still(task="frame", says=["decision"])).at({"task": "frame"}).play(both, [0])
     for name in ("search_30", "planner_30", "planner_policy", "stroke_value"):
         player(name).at({"noise": "club"}).play(at, [0])
     for name in ("tactician_30", "stroke_value"):

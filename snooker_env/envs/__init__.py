@@ -27,8 +27,8 @@ def match_env(
     **keywords
         ``seats`` (two dicts: what differs in the actions and the noise of each player), ``render_size`` (width
         and height [pixels], each in [100, 8192]), and the keywords of ``Options`` in place of ``options``. Box
-        actions hold the place in the D and the decision after a foul, unless ``placement=False`` or
-        ``decision=False``.
+        actions hold the place in the D and the decision after a foul, unless ``placement=False`` or other
+        ``says``, as ``says=[]``.
 
     Returns
     -------

@@ -1,11 +1,10 @@
-"""Which tables does a reset begin, from where, with which seeds, and where do results go?"""
+"""Which tables does a reset begin, from where, and with which seeds?"""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._lib.check import choice, integer, refuse, refuse_what
 from .._lib.types import Bools, Floats, Ints
@@ -18,12 +17,6 @@ from ..tasks.tables import Tables
 STARTS = ("state", "states", "position", "positions")  # reset options that say where an episode starts
 ONE = ("state", "position", "breaker")
 MANY = ("reset_mask", *STARTS, "breaker")  # keys of the reset options of one table and of many
-OUTPUTS: dict[str, tuple[str, type[np.generic]]] = {
-    "observations": ("observations", np.float32),
-    "rewards": ("rewards", np.float64),
-    "terminations": ("terminated", np.bool_),
-    "truncations": ("truncated", np.bool_),
-}  # results that a step can write into the caller's arrays: their names in ``StepOutput``, and dtypes
 
 
 def seeds_of(seed: Any, n: int) -> list[int | None]:
@@ -91,7 +84,7 @@ class Start:
         """From a dict; ValueError if it is no valid state here, or with ``to_play`` has no stroke left."""
         both = isinstance(tables, Frames) and len(tables.seats) == 2 and tables.seats[1].player is None
         either = {"either": True} if both else {}  # the caller plays both sides
-        return cls(state=tables.checked(state, rng, to_play=to_play, **either))
+        return cls(state=tables.check_state(state, rng, to_play=to_play, **either))
 
     def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
         """Put it on table k; returns the state of its NumPy generator, None for a position."""
@@ -149,42 +142,3 @@ def _position(field, position, tables):
         words = f"must be at most {most}: the balls on the table offer {MOST_BREAK - most} more"
         raise refuse(f"{field}.points", int(game[POINTS]), words)
     return arrays
-
-
-def arrays_of(
-    out: Any, names: Collection[str], n: int, size: int, boxes: Mapping[str, Any] | None
-) -> dict[str, NDArray[Any]]:
-    """The caller's arrays for results of n tables, by name; ``size``: of a flat observation.
-
-    ``boxes``: spaces of dict observations, whose arrays are only checked; None for flat ones."""
-    if out is None:
-        return {}
-    if not isinstance(out, dict):
-        raise refuse("out", type(out).__name__, f"must be None or a dict of {', '.join(names)}")
-    for name in out:
-        choice("out", name, names)
-    arrays: dict[str, NDArray[Any]] = {}
-    for name, a in out.items():
-        if name == "observations" and boxes is not None:
-            if not isinstance(a, dict) or set(a) != set(boxes):
-                parts = " and ".join(f'"{part}"' for part in boxes)
-                raise refuse('out["observations"]', type(a).__name__, f"must be a dict of {parts}")
-            for part, box in boxes.items():
-                _check_array(f"observations.{part}", a[part], box.shape, box.dtype.type)
-            continue
-        if any(np.may_share_memory(a, other) for other in arrays.values()):
-            words = "must not share memory with another one that is given"
-            raise refuse_what(f'out["{name}"]', "an array", words)
-        output, dtype = OUTPUTS[name]
-        _check_array(name, a, (n, size) if name == "observations" else (n,), dtype)
-        arrays[output] = a
-    return arrays
-
-
-def _check_array(name: str, a: Any, shape: tuple[int, ...], dtype: type[np.generic]) -> None:
-    """ValueError unless results can be written directly into ``out[name]``."""
-    fits = isinstance(a, np.ndarray) and a.shape == shape and a.dtype == dtype
-    if not fits or not (a.flags.c_contiguous and a.flags.writeable and a.flags.aligned):
-        what = f"array of {a.dtype} and shape {a.shape}" if isinstance(a, np.ndarray) else type(a).__name__
-        allowed = f"must be a C-contiguous, writeable array of {np.dtype(dtype)} and shape {shape}"
-        raise refuse_what(f'out["{name}"]', what, allowed)

@@ -19,7 +19,6 @@ from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.options import Options, observation_space_of
-from ..tasks.rewards import frame_reward
 from ..tasks.tables import Crew
 from .arguments import ONE, breakers_of, known_options, starts_of
 from .one_table import OneTable, Record
@@ -136,7 +135,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         side = PLAYERS.index(agent)
         rows = self.tables.observe(np.zeros(1, np.int64), side)
         masks = self._mask(side, turn) if self.options.observation == "masked" else None
-        return observations.shaped(self.options.observation, rows[0], masks)
+        return observations.arrange(self.options.observation, rows[0], masks)
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
         """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
@@ -201,16 +200,14 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self._pictures.require_display()
         crew = Crew(self._record.buffers, self._watch)
         self._record.begin_step()
-        prepare = lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers, striker)  # noqa: E731
-        played = self.tables.turn(prepare, out, crew)[0]
+        played = bool(self.tables.turns([np.array([a])] * 2, out, crew)[0])
         self._last = out if played else None
         self._cumulative_rewards[name] = 0.0
-        gained, winner = self.tables.pay(0), self.frame.winner
-        each = (frame_reward(self.options.reward, gained, winner, k) for k in range(2))
-        self.rewards = dict(zip(PLAYERS, each, strict=True))
+        gained = float(out.rewards[0])
+        self.rewards = dict(zip(PLAYERS, (gained, 0.0 - gained), strict=True))
         self._account(striker)
         self._accumulate_rewards()
-        self._show(played=bool(played))
+        self._show(played=played)
 
     def _info(self, striker, player):
         """The keys of ``SnookerEnv``'s info: of the last stroke, and of the frame as the player sees it."""

@@ -81,22 +81,16 @@ class MatchVectorEnv(SnookerVectorEnv):
         """Whose turn it is, or was at the end, on each table: int64 (num_envs,), 0 or 1."""
         return self.tables.game[:, STRIKER].copy()
 
-    def reset(
-        self, *, seed: Any = None, options: Any = None, out: Any = None
-    ) -> tuple[Observation, dict[str, Any]]:
-        """Begin new frames or matches, see ``SnookerVectorEnv.reset``; without ``out``."""
-        _refuse_out(out)
+    def reset(self, *, seed: Any = None, options: Any = None) -> tuple[Observation, dict[str, Any]]:
+        """Begin new frames or matches, see ``SnookerVectorEnv.reset``."""
         observations, infos = super().reset(seed=seed, options=options)
         return observations, infos | {"striker": self.strikers}
 
-    def step(
-        self, actions: Any, *, out: Any = None
-    ) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
-        """Play one turn on each table, see ``SnookerVectorEnv.step``; without ``out``.
+    def step(self, actions: Any) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
+        """Play one turn on each table, see ``SnookerVectorEnv.step``.
 
         ``actions`` are the strikers'; with seats whose actions differ two such arrays, one for each player.
         Observations are of the players whose turn it is now; rewards float64 (num_envs, 2)."""
-        _refuse_out(out)
         tables = self.tables
         if not self._alike and not (isinstance(actions, tuple | list) and len(actions) == 2):
             words = "must be two arrays, one for each player: their seats differ"
@@ -110,7 +104,7 @@ class MatchVectorEnv(SnookerVectorEnv):
             tables.turns(checked, written, self._crew)
         infos = self._infos(written) | {"striker": self.strikers}
         rewards = np.stack([written.rewards, -written.rewards], axis=1) + 0.0  # no negative zero
-        return self._shaped(written, None), rewards, written.terminated, written.truncated, infos
+        return self._arrange(written), rewards, written.terminated, written.truncated, infos
 
     def observe(self, player: int) -> Observation:
         """Return the observations of player 0 or 1: float32 (num_envs, k), or a dict of such arrays."""
@@ -121,7 +115,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         if len(written.masks):
             written.masks[:] = self.action_masks()
             written.masks[(self.strikers != player) | self.tables.ended()] = False
-        return super()._shaped(written, None)
+        return super()._arrange(written)
 
     def action_masks(self) -> Bools:
         """Return the strikers' choices, bool (num_envs, choices); ValueError unless both have the same."""
@@ -130,15 +124,10 @@ class MatchVectorEnv(SnookerVectorEnv):
             raise refuse("action", self.options.action, words)
         return self.tables.action_masks()
 
-    def _shaped(self, written: Any, out: Any) -> Any:
+    def _arrange(self, written: Any) -> Any:
         """The strikers' observations, without a choice where the frame or match has ended."""
         theirs = np.flatnonzero(self.tables.game[:, STRIKER])
         written.observations[theirs] = self.tables.observe(theirs, 1)
         if len(written.masks):
             written.masks[self.tables.ended()] = False
-        return super()._shaped(written, out)
-
-
-def _refuse_out(out: Any) -> None:
-    if out is not None:
-        raise refuse("out", type(out).__name__, "must be None: observations are of either player")
+        return super()._arrange(written)

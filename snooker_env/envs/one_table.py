@@ -50,7 +50,7 @@ class Record:
     def saw(self, tables: Tables, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
         """Record shot j of the buffers, just played on table k; ``mine``: by the agent."""
         if self.full:
-            played = tables.played(k, buffers, j)
+            played = tables.record(k, buffers, j)
             self.strokes.append(played)
             self.last_shot = played.shot
         elif mine:

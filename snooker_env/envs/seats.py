@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any, cast
 
 from .._lib.check import choice, refuse, refuse_what
-from ..tasks.declarations import SAYS
 from ..tasks.frame import TABLES, Frames, Seat
 from ..tasks.options import NEVER, OBJECT, Options, options_of
 from ..tasks.tables import Tables
@@ -27,7 +26,7 @@ def match_options(options: Options | None, keywords: Mapping[str, Any]) -> Optio
     if options is None:
         box = keywords.get("action", "box") == "box"
         task = "match" if "frames" in keywords else "frame"
-        keywords = {"task": task, "placement": box, "decision": box, **keywords}
+        keywords = {"task": task, "placement": box, "says": ("decision",) * box, **keywords}
     options = options_of(options, keywords)
     if options.task == "visit" or options.opponent != "none" or options.trust or options.one_stroke:
         names = "task", "opponent", "trust", "one_stroke"
@@ -45,12 +44,14 @@ def match_tables(options: Options, differences: Any, n: int) -> Frames:
     pair = isinstance(differences, list | tuple) and len(differences) == 2
     if not pair or not all(isinstance(one, Mapping) for one in differences):
         raise refuse("seats", differences, "must be None, or two dicts of options, one for each player")
-    allowed = (*Options.group("action"), *SAYS, "noise")
+    allowed = (*Options.group("action"), "noise")
     for k, changes in enumerate(differences):
         for name in changes:
             choice(f"key of seats[{k}]", name, allowed)
-        discrete = changes.get("action") == "discrete"
-        box_only = dict.fromkeys(("elevation", "placement", "decision"), False) if discrete else {}
+        box_only: dict[str, Any] = {}
+        if changes.get("action") == "discrete":
+            says = tuple(name for name in options.says if name != "decision")
+            box_only = {"elevation": False, "placement": False, "says": says}
         try:
             seats[k] = Seat.of(options.but(**box_only | dict(changes)).rules)
         except ValueError as error:

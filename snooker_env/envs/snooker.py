@@ -28,7 +28,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
       against ``opponent``: a step is a stroke and all of the opponent's after it; "match": the best of ``frames``.
     * **Action.** ``Box(-1, 1, (4,), float32)``: cue speed, 0.2 to 7 m/s; side and top, tip offsets up to 0.5 R right
       and up, in a disc; aim, up to 180 deg anticlockwise from +x, or with ``aim="target"`` 3 deg left (right: -1) of
-      the line of the best pot. Longer with ``elevation``, ``placement``, ``nominate``, ``decision``, ``concede``, ``claim``, ``lot``.
+      the line of the best pot. Longer with ``elevation``, ``placement`` and ``says``.
       What is up to 1e-6 outside is clipped, as rounding; more is refused. ``action="discrete"``: ``Discrete(540)``
       or more, ((pot * 9 + speed) * 3 + side) * 5 + top, its aim solved for; ``action_masks()`` are the available ones.
     * **Observation.** ``Box(-1.1, 1.1, (121,), float32)``: for the cue ball, 15 reds and yellow to black x / 0.889 m,
@@ -97,7 +97,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         out = self.tables.output()
         self.tables.reset(np.array([starts is None]), out, self._crew(), **breakers)
         self._show()
-        return self._shaped(out), self.tables.info(out, 0)
+        return self._arrange(out), self.tables.info(out, 0)
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Play one shot; in a frame, also all strokes of the opponent after it.
@@ -119,7 +119,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
             tables.interrupted()
             raise
         ended = bool(out.terminated[0]), bool(out.truncated[0])
-        return self._shaped(out), float(out.rewards[0]), *ended, tables.info(out, 0)
+        return self._arrange(out), float(out.rewards[0]), *ended, tables.info(out, 0)
 
     def action_masks(self) -> Bools:
         """Return the choices, bool (540,) or longer, for maskable algorithms; ValueError with "box"."""
@@ -127,9 +127,9 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()[0]
 
-    def _shaped(self, out: StepOutput) -> Observation:
+    def _arrange(self, out: StepOutput) -> Observation:
         masks = out.masks[0] if len(out.masks) else None
-        return observations.shaped(self.options.observation, out.observations[0], masks)
+        return observations.arrange(self.options.observation, out.observations[0], masks)
 
     def _watch(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
         super()._watch(k, buffers, j, mine)

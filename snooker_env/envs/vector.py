@@ -3,7 +3,7 @@
 gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")"""
 
 import copy
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Literal
 
@@ -22,7 +22,7 @@ from ..tasks.played import Played
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
-from .arguments import MANY, OUTPUTS, arrays_of, breakers_of, known_options, mask_of, seeds_of, starts_of
+from .arguments import MANY, breakers_of, known_options, mask_of, seeds_of, starts_of
 from .pictures import SIZE, Picture, Pictures
 from .seats import game_of, tables_of
 from .snooker import SnookerEnv
@@ -47,10 +47,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     to reset; "state" or "position" for all of them, or "states" or "positions", one for each; "breaker", 0 the agent or
     1 the opponent, an int or one for each. Tables that start from one state meet the same execution errors; with a seed
     as well, table k draws from seed + k. Positions hold no random stream: each table draws its own errors.
-
-    ``reset`` and ``step`` write into arrays of the caller, for instance in shared memory, and return them:
-    ``out={"observations": ..., "rewards": ..., "terminations": ..., "truncations": ...}``, any of them, C-contiguous
-    and with the right shape and dtype.
 
     Parameters
     ----------
@@ -138,9 +134,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         *,
         seed: int | list[int | None] | None = None,
         options: dict[str, Any] | None = None,
-        out: dict[str, Any] | None = None,
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin new episodes on all tables, or on some; ``options`` and ``out``: see the class.
+        """Begin new episodes on all tables, or on some; ``options``: see the class.
 
         Table k draws from seed + k, or from element k of a list; without a seed the streams go on. Returns
         observations and infos: an array for each key, and under "_key" which tables it holds for. ValueError
@@ -151,7 +146,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         if not (wanted | self._begun).all():
             k = int(np.argmin(wanted | self._begun))
             raise gymnasium.error.ResetNeeded(f"table {k} has no visit yet: reset all tables first")
-        arrays = self._arrays_of(out, ("observations",))
         rows = np.flatnonzero(wanted).tolist()
         # all seeds are checked before anything changes
         new = [k for k in rows if seeds[k] is not None or self._generators[k] is None]
@@ -167,17 +161,15 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
                 tables.draw_conditions(np.array([k]))
             self._keyed[k] = True
         dealt = wanted if starts is None else np.zeros(self.num_envs, np.bool_)
-        written = tables.output(arrays=arrays)
+        written = tables.output()
         with self._playing():
             tables.reset(dealt, written, self._crew, **breakers)
         self._begun |= wanted
         self._done[wanted] = False
-        return self._shaped(written, out), tables.infos(written.reals, written.counts, wanted)
+        return self._arrange(written), tables.infos(written.reals, written.counts, wanted)
 
-    def step(
-        self, actions: Any, *, out: dict[str, Any] | None = None
-    ) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
-        """Play one step on each table; ``out``: arrays to write into, see the class.
+    def step(self, actions: Any) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
+        """Play one step on each table.
 
         ``actions``: float (num_envs, k) within [-1, 1], clipped if up to 1e-6 outside; or choices, int
         (num_envs,). Returns observations and infos as ``reset`` (with SAME_STEP also "final_obs" and
@@ -185,7 +177,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         for an action outside the space, ResetNeeded before the first reset, and with DISABLED if an episode
         is over: then nothing is played. After a SimulationError all tables need a reset."""
         a = self.options.rules.actions.check_many(actions, self.num_envs)
-        arrays = self._arrays_of(out, OUTPUTS)
         self._require_begun()
         mode = self.autoreset_mode
         if mode == AutoresetMode.DISABLED and self._done.any():
@@ -194,7 +185,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             raise gymnasium.error.ResetNeeded(f"the {what} on table {k} is over: {first}")
         same_step = mode == AutoresetMode.SAME_STEP
         waiting = self._done if mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, np.bool_)
-        written = self.tables.output(last=same_step, arrays=arrays)
+        written = self.tables.output(last=same_step)
         with self._playing():
             self.tables.step(a, waiting, written, self._crew, same_step=same_step)
         done = written.terminated | written.truncated
@@ -205,7 +196,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
                 infos |= self._final(written, done)
         else:
             self._done = done
-        return self._shaped(written, out), written.rewards, written.terminated, written.truncated, infos
+        return self._arrange(written), written.rewards, written.terminated, written.truncated, infos
 
     def action_masks(self) -> Bools:
         """Return the available choices, bool (num_envs, 540) or wider. ValueError with ``action="box"``."""
@@ -287,27 +278,18 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             raise
 
     def _saw(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
-        self._recent[k].append(self.tables.played(k, buffers, j))
-
-    def _arrays_of(self, out: Any, names: Collection[str]) -> dict[str, Any]:
-        boxes = None if self.options.observation == "flat" else self.observation_space.spaces
-        return arrays_of(out, names, self.num_envs, self.tables.SIZE, boxes)
+        self._recent[k].append(self.tables.record(k, buffers, j))
 
     def _infos(self, written):
         return self.tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_))
 
-    def _shaped(self, written, out):
-        """The observations in the environment's kind, in the arrays of ``out`` if it has them."""
-        made = observations.shaped(self.options.observation, written.observations, written.masks)
-        if out is not None and "observations" in out and self.options.observation != "flat":
-            for name, array in out["observations"].items():
-                array[...] = made[name]
-            return out["observations"]
-        return made
+    def _arrange(self, written):
+        """The observations in the environment's kind."""
+        return observations.arrange(self.options.observation, written.observations, written.masks)
 
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
-        each = observations.shaped(self.options.observation, out.last_observations, out.last_masks)
+        each = observations.arrange(self.options.observation, out.last_observations, out.last_masks)
         if isinstance(each, dict):
             each = [dict(zip(each, parts, strict=True)) for parts in zip(*each.values(), strict=True)]
         final = np.fromiter(each, object, self.num_envs)

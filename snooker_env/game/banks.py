@@ -32,7 +32,7 @@ def bank(name: str) -> Floats:
     return tables
 
 
-def kept(name: str) -> tuple[range, range]:
+def split_bank(name: str) -> tuple[range, range]:
     """Indices of the tables of a bank that are not held out, and of those that are."""
     size = len(bank(name))
     return range(size - BANKS[name]), range(size - BANKS[name], size)
@@ -44,7 +44,7 @@ def bank_without(name: str, unfit: tuple[int, ...]) -> Floats:
     if not unfit:
         return bank(name)
     tables = bank(name).copy()
-    for part in kept(name):
+    for part in split_bank(name):
         fit = np.setdiff1d(part, unfit)
         for k in np.intersect1d(part, unfit):
             tables[k] = tables[fit[np.searchsorted(fit, k) % len(fit)]]

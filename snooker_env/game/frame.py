@@ -147,7 +147,7 @@ _FLAGS = {name: getattr(columns, name.upper()) for name in _TRUTHS}
 _integers, _flags = itemgetter(*_INTEGERS.values()), itemgetter(*_FLAGS.values())
 
 
-class _Asked(NamedTuple):
+class _Answers(NamedTuple):
     """What a frame allows."""
 
     needs_snookers: tuple[bool, bool]
@@ -296,18 +296,18 @@ class Frame:
         """The most points that the striker can still score."""
         return points_available(self.on_table, self.ball_on, self.free_ball)
 
-    def _acted(self, act, number=0):
+    def _do(self, act, number=0):
         """The frame after one of the acts of ``_act``."""
-        row = _packed(self)
+        row = _pack(self)
         _act(row, act, number)
-        return _unpacked(row, self.rules, self.miss, None if self.saved is None else self.saved.layout)
+        return _unpack(row, self.rules, self.miss, None if self.saved is None else self.saved.layout)
 
-    def _asked(self):
-        return _Asked(*_ask(_packed(self), self.rule_set.code))
+    def _answers(self):
+        return _Answers(*_ask(_pack(self), self.rule_set.code))
 
     def needs_snookers(self, player: int) -> bool:
         """Whether ``player`` trails by more than is left for them; a free ball is the striker's alone."""
-        return self._asked().needs_snookers[integer("player", player, 0, 1)]
+        return self._answers().needs_snookers[integer("player", player, 0, 1)]
 
     def _in_phase(self, phase, act):
         if self.phase != phase:
@@ -316,7 +316,7 @@ class Frame:
     @property
     def shot_clock(self) -> int:
         """The longest time to play the next stroke [ms]; 0 for no limit."""
-        return self._asked().shot_clock
+        return self._answers().shot_clock
 
     def play(
         self,
@@ -340,16 +340,16 @@ class Frame:
             late, lasted = 0 < self.shot_clock < time_to_play, integer("duration", duration, 0, MOST_CLOCK)
         result = ruling_of(self.situation, Stroke(late=True) if late else stroke)
         conditions = Conditions(rules.code, MISS_RULES.index(self.miss), int(time_to_play))
-        row, effort = _packed(self), Effort(bool(clear_path), bool(full_ball_path), bool(attempt))
+        row, effort = _pack(self), Effort(bool(clear_path), bool(full_ball_path), bool(attempt))
         _play(row, result, conditions, effort, layout is not None, lasted)
-        return _unpacked(row, self.rules, self.miss, layout), verdict_of(result)
+        return _unpack(row, self.rules, self.miss, layout), verdict_of(result)
 
     @property
     def choices(self) -> tuple[Choice, ...]:
         """The opponent's choices after a foul; empty in other phases."""
         if self.phase != "choice":
             return ()
-        asked = self._asked()
+        asked = self._answers()
         last: tuple[Choice, ...] = ("replace",) if asked.replace else ("anywhere",) if asked.anywhere else ()
         return ("play", "play_again", *last)
 
@@ -363,30 +363,30 @@ class Frame:
         choice("choice", what, self.choices)
         if what == "replace" and self.saved is None:
             raise refuse("saved", None, 'must be the position before the miss to choose "replace"')
-        return self._acted(_CHOOSE, CHOICES.index(what))
+        return self._do(_CHOOSE, CHOICES.index(what))
 
     def draw(self, first: int) -> "Frame":
         """The winner of the lot has chosen that player ``first`` begins at the re-spotted black."""
         self._in_phase("lot", "draw")
-        return self._acted(_DRAW, integer("first", first, 0, 1))
+        return self._do(_DRAW, integer("first", first, 0, 1))
 
     @property
     def may_claim(self) -> bool:
         """Whether the striker may claim the frame: only the black is left and the lead is more than 7."""
-        return self._asked().claim
+        return self._answers().claim
 
     def claim(self) -> "Frame":
         """The striker claims the frame."""
         if not self.may_claim:
             allowed = "must be over 7 with only the black left"
             raise refuse("lead", self.situation.lead if self.phase == "stroke" else self.phase, allowed)
-        return self._acted(_CLAIM)
+        return self._do(_CLAIM)
 
     def concede(self, player: int) -> "Frame":
         """``player`` concedes the frame; only the striker may."""
-        if not self._asked().concede[integer("player", player, 0, 1)]:
+        if not self._answers().concede[integer("player", player, 0, 1)]:
             raise refuse("player", player, "must be the striker of a frame that is not over")
-        return self._acted(_CONCEDE)
+        return self._do(_CONCEDE)
 
     def restart(self) -> "Frame":
         """A stalemate: scores are void, the balls of ``rack`` are set up again and the same player breaks."""
@@ -417,7 +417,7 @@ class Frame:
         return frame
 
 
-def _packed(frame):
+def _pack(frame):
     """A ``Frame`` as a row of ``frame_columns``, but for the layout that is stored with it."""
     row = np.zeros(columns.COLUMNS, np.int64)
     for name, column in (*_INTEGERS.items(), *_FLAGS.items()):
@@ -435,7 +435,7 @@ def _packed(frame):
     return row
 
 
-def _unpacked(row, rules, miss, layout):
+def _unpack(row, rules, miss, layout):
     """The ``Frame`` of a row; ``layout``: what is stored with it, if anything is."""
     at = row.tolist()
     saved = None
@@ -461,12 +461,12 @@ def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesNa
     layout = None
     if row[columns.SAVED_LAYOUT]:
         layout = tuple(map(tuple, layouts.positions[k].tolist())), tuple(layouts.on_table[k].tolist())
-    return _unpacked(row, rules, miss, layout)
+    return _unpack(row, rules, miss, layout)
 
 
 def write_frame(frame: Frame, strokes: int, row: Ints, layouts: Layouts, k: int) -> None:
     """Write a checked ``Frame`` into the row (COLUMNS,) of a table, its layout into row k of ``layouts``."""
-    row[:] = _packed(frame)
+    row[:] = _pack(frame)
     row[columns.STROKES] = strokes
     if frame.saved is not None and frame.saved.layout is not None:
         layouts.positions[k], layouts.on_table[k] = map(np.array, frame.saved.layout)

@@ -126,7 +126,7 @@ def needs_snookers(row, player):
 
 
 @kernel
-def _decided(row):
+def _rules_miss_out(row):
     """Whether the scores rule a miss out: a player needs penalty points, or the lead is what is left."""
     level = abs(lead_of(row, 0)) == available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
     return level or needs_snookers(row, 0) or needs_snookers(row, 1)
@@ -166,7 +166,7 @@ def after_stroke(row, result, conditions, effort, layout, duration):
     me = row[STRIKER]
     other = 1 - me
     failures, warned, misses = row[FAILURES], row[WARNED], row[MISSES]
-    decided = _decided(row)
+    decided = _rules_miss_out(row)
     on_table, ball_on = row[ON_TABLE], row[BALL_ON]
     in_hand, free_ball = row[IN_HAND] + row[ANYWHERE], row[FREE_BALL]
     row[SCORE_0 + me] += result.points
@@ -196,7 +196,7 @@ def after_stroke(row, result, conditions, effort, layout, duration):
     if warned and full and result.fouls & MISSED:
         _end(row, other)
         return
-    called = _is_miss(result, conditions, effort, failures, misses, decided or _decided(row))
+    called = _is_miss(result, conditions, effort, failures, misses, decided or _rules_miss_out(row))
     row[PHASE], row[MISS_CALLED] = CHOICE, called
     row[FAILURES] = failures + 1 if called and full else 0
     row[MISSES] = misses + 1 if called and rules == SIX_RED else 0

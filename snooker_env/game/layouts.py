@@ -12,7 +12,7 @@ from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from .balls import CUE, GREEN, N_BALLS, N_REDS, REDS_MASK, SPOTS, YELLOW
-from .banks import NO_BANK, bank_without, kept
+from .banks import NO_BANK, bank_without, split_bank
 from .philox import normals, pair, stream_of
 from .pots import POT_COLUMNS, TOLERANCE, find_pots
 from .snookered import NO_JAWS, snookered_from
@@ -61,7 +61,7 @@ def _put(positions, on_table, ball, kind, stream):
 
 
 @kernel
-def _stored(positions, on_table, tables, first, last, stream):
+def _deal_from_bank(positions, on_table, tables, first, last, stream):
     """One of the tables first to last - 1 of a bank, with probability 1/2 mirrored in the long axis."""
     u, v = pair(stream)
     table = tables[first + int(u * (last - first))]
@@ -119,7 +119,7 @@ def _deal(code, tables, stream, positions, on_table, pot):
     """One layout: racked and spotted balls, loose reds, last the cue ball; until its condition holds."""
     kind, reds, low, high = int(code[0]), int(code[1]), code[2], code[3]
     if kind == STORED:
-        _stored(positions, on_table, tables, int(low), int(high), stream)
+        _deal_from_bank(positions, on_table, tables, int(low), int(high), stream)
         return
     racked = reds if kind == BREAK_OFF or kind == LINE_UP else 0
     loose = reds - racked
@@ -196,7 +196,7 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     tables, code = NO_BANK, None
     if name in STORED_IN:
         which, held_out = STORED_IN[name]
-        tables, part = bank_without(which, unfit), kept(which)[held_out]
+        tables, part = bank_without(which, unfit), split_bank(which)[held_out]
         code = (STORED, N_REDS, part.start, part.stop)
     elif name in _NAMES:
         code = (*_NAMES[name], 0, 0)

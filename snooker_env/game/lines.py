@@ -17,7 +17,7 @@ def meets(bx, by, ux, uy, radius):
 
 
 @kernel
-def met(positions, on_table, x, y, ux, uy, far):
+def find_first_ball(positions, on_table, x, y, ux, uy, far):
     """The ball met first from (x, y) along the unit vector u, up to the distance ``far`` [m]; 0 if none."""
     ball = 0
     for i in range(1, N_BALLS):

@@ -76,7 +76,7 @@ def _inside(x, y, radius):
 
 
 @kernel
-def _parted(cx, cy, qx, qy, walls, n, work, radius):
+def _walls_part(cx, cy, qx, qy, walls, n, work, radius):
     """Whether the first ``n`` walls part the free places c and q."""
     (ends, places), (turned, seen) = walls, work
     # From c to q past the noses' corners: the place of either in a pocket's mouth is left straight inwards.
@@ -141,7 +141,7 @@ def shut_in(positions, on_table, on, noses, jaws, radius):
             turn, x, y = 2.0 * pi * k / BESIDE, positions[i, 0], positions[i, 1]
             qx, qy = x + 2.0 * radius * np.cos(turn), y + 2.0 * radius * np.sin(turn)
             here = _free(positions, on_table, on, qx, qy, noses, jaws, radius)
-            if here and not before and not _parted(cx, cy, qx, qy, walls, n, work, radius):
+            if here and not before and not _walls_part(cx, cy, qx, qy, walls, n, work, radius):
                 return False
             before = here
     return True

@@ -6,7 +6,7 @@ from .._lib.types import Ints
 from . import frame_columns as columns
 
 
-def swapped(game: Ints) -> Ints:
+def swap_sides(game: Ints) -> Ints:
     """Rows of frames (m, COLUMNS) as if the players had changed sides: a new array."""
     other = game.copy()
     for a, b in ((columns.SCORE_0, columns.SCORE_1), (columns.FRAMES_0, columns.FRAMES_1)):
@@ -21,7 +21,7 @@ def swapped(game: Ints) -> Ints:
 
 def strikers_own(game: Ints) -> Ints:
     """Rows of frames (m, COLUMNS) with the striker as player 0: a new array."""
-    return np.where(game[:, columns.STRIKER, None] == 1, swapped(game), game)
+    return np.where(game[:, columns.STRIKER, None] == 1, swap_sides(game), game)
 
 
 def as_visits(game: Ints) -> Ints:

@@ -45,7 +45,7 @@ def _edge(cx, cy, tx, ty, side, radius):
 
 
 @kernel
-def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
+def hiding_balls(positions, on_table, on, target, cx, cy, jaws, radius):
     """Mask of the nearest balls that hide an edge of ``target`` from (cx, cy); 0: none; -1: a jaw does."""
     tx, ty = positions[target, 0], positions[target, 1]
     if np.hypot(tx - cx, ty - cy) <= 2.0 * radius + REFEREE_TOUCH:
@@ -74,7 +74,7 @@ def snookered_from(positions, on_table, on, cx, cy, jaws, radius):
     effective = -1
     for target in range(1, N_BALLS):
         if on_table[target] and (on >> target) & 1:
-            mask = hidden(positions, on_table, on, target, cx, cy, jaws, radius)
+            mask = hiding_balls(positions, on_table, on, target, cx, cy, jaws, radius)
             if mask <= 0:
                 return False, 0
             effective &= mask

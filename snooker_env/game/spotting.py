@@ -26,7 +26,7 @@ def touches(positions, on_table, x, y, reach):
 
 
 @kernel
-def occupied(positions, on_table, x, y, radius):
+def has_no_room(positions, on_table, x, y, radius):
     """Whether a ball at (x, y) [m] would touch one that is on the table."""
     return touches(positions, on_table, x, y, 2.0 * radius + balls.REFEREE_TOUCH)
 
@@ -54,10 +54,10 @@ def nearest_free(positions, on_table, x, y, direction, radius):
 def place_colour(positions, on_table, ball, radius):
     """The place of the colour ``ball`` by the rule: (x, y) [m]; its entry in ``on_table`` must be False."""
     x, y = balls.SPOTS[ball, 0], balls.SPOTS[ball, 1]
-    if not occupied(positions, on_table, x, y, radius):
+    if not has_no_room(positions, on_table, x, y, radius):
         return x, y
     for spot in range(balls.BLACK, balls.YELLOW - 1, -1):
-        if not occupied(positions, on_table, balls.SPOTS[spot, 0], balls.SPOTS[spot, 1], radius):
+        if not has_no_room(positions, on_table, balls.SPOTS[spot, 0], balls.SPOTS[spot, 1], radius):
             return balls.SPOTS[spot, 0], balls.SPOTS[spot, 1]
     up = nearest_free(positions, on_table, x, y, 1.0, radius)
     if up <= HALF_LENGTH - radius - balls.CLEARANCE:
@@ -75,7 +75,7 @@ def spot(positions, on_table, mask, radius):
     waiting = mask
     for ball in range(balls.BLACK, balls.YELLOW - 1, -1):
         x, y = balls.SPOTS[ball, 0], balls.SPOTS[ball, 1]
-        if (mask >> ball) & 1 and not occupied(positions, on_table, x, y, radius):
+        if (mask >> ball) & 1 and not has_no_room(positions, on_table, x, y, radius):
             positions[ball, 0], positions[ball, 1] = x, y
             on_table[ball] = True
             waiting &= ~(1 << ball)

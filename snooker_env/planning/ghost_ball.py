@@ -14,7 +14,7 @@ from ..game.ruling import AUTO
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..tasks.declarations import nominated_ball
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, ROLL, ROLLING, find_escapes
-from ..tasks.lines import BREAK_X, EASY, LINE_ROWS, NARROW, POTS, break_off, nearest, racked
+from ..tasks.lines import BREAK_X, EASY, LINE_ROWS, NARROW, POTS, break_off, end_red_of_rack, nearest
 from ..tasks.stroke import place
 from ..tasks.windows import open_part, open_windows
 
@@ -160,7 +160,7 @@ def put(positions, on_table, mask, anywhere, rows, stream):
     if anywhere:
         _put_on_bed(positions, on_table, mask, rows)
         return
-    if racked(positions, on_table):
+    if end_red_of_rack(positions, on_table):
         u, _ = pair(stream)
         place(positions, on_table, BREAK_X if u < 0.5 else -BREAK_X, BAULK_Y, False)
         return
@@ -182,7 +182,7 @@ def put(positions, on_table, mask, anywhere, rows, stream):
 @kernel
 def stroke_at(positions, on_table, on, in_hand, failed, drive, rows, stream):
     """The geometric player's shot: (speed, side, top, direction). ``in_hand``: just placed; see ``plain``."""
-    end_red = racked(positions, on_table) if in_hand else 0
+    end_red = end_red_of_rack(positions, on_table) if in_hand else 0
     if end_red:
         return break_off(positions, end_red)
     touching = touching_balls(positions, on_table)
@@ -228,7 +228,7 @@ def geometric_turn(positions, on_table, row, rules, rows, stream):
     drive = DRIVE if rules == SHOOT_OUT else 0.0
     placed = row[columns.IN_HAND]
     speed, side, top, aim = stroke_at(positions, on_table, mask, placed, failed, drive, rows, stream)
-    speed *= 1.0 + (0.04 if placed and racked(positions, on_table) else 0.2) * (jitter - 0.5)
+    speed *= 1.0 + (0.04 if placed and end_red_of_rack(positions, on_table) else 0.2) * (jitter - 0.5)
     return speed, side, top, aim, named(positions, on_table, row, aim) if frame else AUTO, decision
 
 

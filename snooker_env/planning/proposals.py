@@ -27,11 +27,11 @@ from ..physics.cue import squirt
 from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
-from ..tasks.lines import EASY, aim_at_met, break_off, new_work, racked
+from ..tasks.lines import EASY, aim_at_ball, break_off, end_red_of_rack, new_work
 from ..tasks.noise import POT_SPEED
 from ..tasks.pot_aim import solved_aim
 from ..tasks.stroke import row_of
-from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
+from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, wrap_angle
 from .aims import Dynamics, law_of
 from .positions import Positions
 from .pot_chance import chance_of, length_of
@@ -222,9 +222,9 @@ def _contacts(balls, seeds, law, safe, strokes, chances):
             if safe and other:
                 aim = _near_edge(windows, many, sobol(j, 3, scramble), far)
             played = stroke[SPEED], stroke[SIDE], stroke[TOP], 0.0
-            stroke[AIM] = turned(aim_at_met(aim, played, p, here, its, work))
+            stroke[AIM] = wrap_angle(aim_at_ball(aim, played, p, here, its, work))
             chances[k, i] = 1.0
-        end_red = racked(p, here) if safe else 0
+        end_red = end_red_of_rack(p, here) if safe else 0
         if end_red:  # the one stroke that is known to be good
             stroke = strokes[k, 0]
             stroke[SPEED], stroke[SIDE], stroke[TOP], stroke[AIM] = break_off(p, end_red)
@@ -261,7 +261,7 @@ def _escapes(balls, seeds, law, strokes, chances):
             if again == 0:
                 level = stroke[SPEED], 0.0, ROLLING, 0.0
                 aims[j] = escape_aim(line[LINE_AIM], level, p, here, on, its, work)
-            stroke[AIM] = turned(aims[j % many] + aside)
+            stroke[AIM] = wrap_angle(aims[j % many] + aside)
 
 
 _SPREAD = np.empty((0, 0), np.int64)

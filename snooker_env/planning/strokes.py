@@ -17,10 +17,12 @@ from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
 from ..physics.cue_room import NO_RAILS
+from ..physics.parameters import Physics
 from ..tasks import stroke
+from ..tasks.arrays import C_END_MASS, pack_cue
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions
 from ..tasks.carry_out import sayings
-from ..tasks.declarations import A_END_MASS, CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
+from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.discrete_actions import SIZE, masks
 from ..tasks.options import Options, Rules
 from ..tasks.stroke import ShotBuffers, row_of
@@ -170,7 +172,7 @@ class Strokes:
         ]
         for name, holds, least in (
             ("elevation", box.elevation, 0.0),
-            ("decision", box.decision, PLAY),
+            ("decision", "decision" in box.says, PLAY),
             ("declare", box.declares, SAYS_NOTHING),
         ):
             if not holds and ((part := getattr(self, name)) > least).any():
@@ -182,9 +184,9 @@ class Strokes:
             parts.append(2.0 * self.elevation / box.steepest - 1.0)
         if box.placement:
             parts += self._placed(at)
-        if box.nominate:
+        if "nominate" in box.says:
             parts.append(self._nominated(at))
-        if box.decision:
+        if "decision" in box.says:
             again = np.where(self.decision == PLAY_AGAIN, -1.0, 1.0)
             parts.append(np.where(self.decision == PLAY, 0.0, again))
         if box.declares:
@@ -239,10 +241,10 @@ def check_strokes(strokes: Vectors, n: int | None = None) -> Floats:
 
 
 @entry
-def _off_the_tip(strokes, every):
+def _off_the_tip(strokes, cues):
     """Turn the aims of strikes, the cue's, into the directions in which the cue ball leaves the tip [rad]."""
     for j in range(strokes.shape[0]):
-        strokes[j, AIM] += squirt(strokes[j, SIDE], every[row_of(j, every), A_END_MASS])
+        strokes[j, AIM] += squirt(strokes[j, SIDE], cues[row_of(j, cues), C_END_MASS])
 
 
 def decode(
@@ -257,15 +259,15 @@ def decode(
         visits.nominated = nominated
     buffers = ShotBuffers(n, 0)
     visits.address(np.arange(n), actions, buffers)
-    return meant(buffers, visits.packed[0]), after
+    return meant(buffers, visits.cues), after
 
 
-def meant(buffers: ShotBuffers, options: Floats) -> Floats:
-    """Strokes (n, 5) that were struck without errors; ``options``: packed, of the action, one row for all or each."""
+def meant(buffers: ShotBuffers, cues: Floats) -> Floats:
+    """Strokes (n, 5) that were struck without errors; ``cues``: packed, one row for all or each."""
     strokes = buffers.shots[:, stroke.CUE_SPEED : stroke.ROOM].copy()
     changed = buffers.shots[:, stroke.ROOM] != 0  # what is meant does not say how the cue finds room
     strokes[changed] = buffers.shots[changed, stroke.MEANT :]
-    _off_the_tip(strokes, options)
+    _off_the_tip(strokes, cues)
     off = np.arctan2(np.sin(strokes[:, AIM]), np.cos(strokes[:, AIM]))
     level = np.arctan2(buffers.shots[:, stroke.VY], buffers.shots[:, stroke.VX])
     strokes[:, AIM] = np.where(changed | (strokes[:, ELEVATION] > 0.0), off, level)
@@ -300,7 +302,7 @@ def action_masks(positions: PositionsLike, *, cue: CueKind = "free") -> NDArray[
 
 def available(positions: Positions, rails: Floats) -> NDArray[np.bool_]:
     """``action_masks`` with the rails that the cue passes over, ``Rules.rails``."""
-    at, options = positions.as_visits(), np.concatenate([STROKES_ONLY, rails])
+    at, cue = positions.as_visits(), pack_cue(Physics(), rails)
     out = np.empty((len(at), SIZE), np.bool_)
-    masks(np.arange(len(at)), at.positions, at.on_table, at.game, options, out)
+    masks(np.arange(len(at)), at.positions, at.on_table, at.game, STROKES_ONLY, cue, out)
     return out

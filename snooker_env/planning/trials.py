@@ -15,9 +15,8 @@ from ..game.sides import strikers_own
 from ..physics.conditions import END_MASS_RATIO
 from ..physics.cue import squirt
 from ..tasks import stroke
-from ..tasks.arrays import StruckArrays, TableArrays
+from ..tasks.arrays import C_END_MASS, C_MAX_OFFSET, Packed, StruckArrays, TableArrays
 from ..tasks.box_actions import tip_on_disc
-from ..tasks.declarations import A_END_MASS, A_MAX_OFFSET
 from ..tasks.frame import Frames
 from ..tasks.noise import N_KICK, Noise, drawn_errors, kick_of, with_errors
 from ..tasks.options import Rules
@@ -34,18 +33,18 @@ NO_NOISE = Noise()
 
 
 @entry(what="strokes under given errors", seconds=2)
-def _strike(which, strokes, errors, tables, shots, every, noise, silent):
+def _strike(which, strokes, errors, tables, shots, cues, noise, silent):
     """Strike the strokes (n, 5) of the tables ``which`` under standard normal errors (n, 5)."""
     tables, shots = TableArrays(*tables), StruckArrays(*shots)
     for j in range(which.shape[0]):
         k = which[j]
-        options = every[row_of(k, every)]
+        cue_row = cues[row_of(k, cues)]
         speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
-        side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], options[A_MAX_OFFSET])
-        p, on, aim = tables.positions[k], tables.on_table[k], aim - squirt(side, options[A_END_MASS])
-        meant = stroke.played_in((speed, side, top, aim, elevation), p, on, options, shots.shots[j])
+        side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], cue_row[C_MAX_OFFSET])
+        p, on, aim = tables.positions[k], tables.on_table[k], aim - squirt(side, cue_row[C_END_MASS])
+        meant = stroke.played_in((speed, side, top, aim, elevation), p, on, cue_row, shots.shots[j])
         struck = with_errors(*meant, errors[k], noise)
-        stroke.strike_with(meant, struck, p, on, options, j, shots)
+        stroke.strike_with(meant, struck, p, on, cue_row, j, shots)
         if silent[N_KICK] > 0.0:  # blocks are drawn as for errors, too
             drawn_errors(tables.streams[k])
         shots.kicks[j] = kick_of(silent, tables.streams[k])
@@ -64,17 +63,17 @@ class Struck(Tables):
         """Put positions on the tables, with their own constants if they have any; they are played in place."""
         self.n, self.errors, self.streams = len(after), errors, streams
         if after.conditions is not None:
-            self.packed = packed_under(after.conditions, self.rules)
+            _, self.cues, _, self.phys = packed_under(after.conditions, self.rules)
         self.positions, self.on_table, self.game = after.positions, after.on_table, after.game
 
-    def address(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> None:
+    def address(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = 0) -> None:
         if self.errors is None:
-            super().address(which, actions, buffers)
+            super().address(which, actions, buffers, side)
             return
-        (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
+        (_, cues, noise, _), silent = self.pack(), NO_NOISE.pack(1.0)
         if self.kick:
             silent = Noise(kick=self.kick).pack(1.0)
-        _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
+        _strike(which, actions, self.errors, self.arrays, buffers.struck, cues, noise, silent)
 
 
 class TrialVisits(Struck, Visits):
@@ -136,9 +135,9 @@ def turned(after: Positions) -> Positions:
     return Positions(after.positions, after.on_table, strikers_own(after.game), after.saved, after.conditions)
 
 
-def packed_under(conditions: Floats, rules: Rules) -> tuple[Floats, Floats, Floats]:
-    """``Rules.packed`` with a row for each table."""
-    options, noise, _ = rules.packed()
-    options = np.repeat(options, len(conditions), axis=0)
-    options[:, A_END_MASS] = conditions[:, END_MASS_RATIO]
-    return options, noise, rows_under(conditions, rules.physics)
+def packed_under(conditions: Floats, rules: Rules) -> Packed:
+    """``Rules.pack`` with a row for each table."""
+    options, cues, noise, _ = rules.pack()
+    cues = np.repeat(cues, len(conditions), axis=0)
+    cues[:, C_END_MASS] = conditions[:, END_MASS_RATIO]
+    return options, cues, noise, rows_under(conditions, rules.physics)

@@ -64,7 +64,7 @@ class Session:
     def __init__(
         self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
     ):
-        box = Options(task="frame", placement=True, decision=True, elevation=True, max_strokes=None)
+        box = Options(task="frame", placement=True, says=["decision"], elevation=True, max_strokes=None)
         if flight:
             box = box.but(elevation=70, physics={"flight": True})
         self._options = box.but(miss="clear_path", layout=layout, cue=cue)
@@ -256,7 +256,7 @@ class Session:
         return self._did(Act("stroke", self.state, striker, self._played, words, room, asked))
 
     def _watch(self, k, buffers, j, agents):
-        self._played = self.tables.played(k, buffers, j)
+        self._played = self.tables.record(k, buffers, j)
 
     def _hand_back(self):
         frame = self.frame
@@ -394,7 +394,7 @@ class Session:
         try:
             # no rewards are paid here
             alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}
-            return self.tables.checked(state | alone, self._generator, either=True)
+            return self.tables.check_state(state | alone, self._generator, either=True)
         except ValueError as error:
             raise ValueError(re.sub(r"state\.(frame\.)?", "", str(error))) from None
 

@@ -13,6 +13,7 @@ from ..planning.ghost_ball import geometric_strokes
 from ..planning.positions import PositionsLike, seeds_of
 from ..planning.strokes import available, meant
 from ..planning.trials import packed_under
+from ..tasks.arrays import Packed
 from ..tasks.declarations import SAYS_NOTHING
 from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.frame import Asked
@@ -40,13 +41,13 @@ class ChoicePlayer(BoundPlayer):
 
     frames = False
     _rules: Rules  # of where it plays, under which its choices are read
-    _packed: tuple[Floats, Floats, Floats]  # the same for kernels
+    _packed: Packed  # the same for kernels
 
     def _bind(self, options: Options) -> None:
         names = ("physics", "table", "fidelity", "conditions", "cue")
         same: Any = {name: getattr(options, name) for name in names}
         self._rules = Options(action="discrete", **same).rules
-        self._packed = self._rules.packed()
+        self._packed = self._rules.pack()
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
         """Score all choices in n positions of visits: float (n, 540), -inf for unavailable ones."""
@@ -84,7 +85,7 @@ class ChoicePlayer(BoundPlayer):
         address(
             np.arange(n), choices[:, None].astype(np.float64), tables, buffers.struck, packed, rules.fidelity
         )
-        return meant(buffers, packed[0])
+        return meant(buffers, packed[1])
 
     def _scored(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints, Floats]:
         """The visits with placed cue balls, their places, the decisions after fouls, and the scores."""

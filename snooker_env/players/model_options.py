@@ -11,7 +11,7 @@ from .._lib.notices import say
 from ..tasks.options import Options
 from .saved_models import by_train, entries
 
-KEYS = (*Options.group("action", "visit"), "decision")  # what a model's file does not say
+KEYS = tuple(Options.group("action"))  # what a model's file does not say
 LEFT_OUT = "must be left out: it is for models of Stable-Baselines3"
 
 
@@ -27,13 +27,13 @@ def checked(options: Mapping[str, Any] | None) -> dict[str, Any]:
 
 
 def options_of_words(words: Sequence[str]) -> dict[str, Any]:
-    """Options from words like "aim=target" and "placement=True"; ValueError for others."""
+    """Options from words like "aim=target", "placement=True" and "says=decision,lot"; ValueError for others."""
     options: dict[str, Any] = {}
     for word in words:
         name, equals, value = word.partition("=")
         if not equals or name not in KEYS or name in options:
             raise refuse("options", word, f"must be KEY=VALUE, KEY once each of {', '.join(KEYS)}")
-        options[name] = _value(value)
+        options[name] = tuple(value.split(",")) if name == "says" else _value(value)
     return checked(options)
 
 

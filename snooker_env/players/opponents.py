@@ -158,11 +158,11 @@ def _named(name: str, options: Options) -> Player:
 def _model(path: str, options: Options) -> Player:
     """A model of Stable-Baselines3, whose actions are the environment's, with or without what is said."""
     plain = {name: getattr(options, name) for name in Options.group("action", "visit")}
-    full = plain | dict.fromkeys(options.says, True)
+    full = plain | {"says": options.says}
     try:
         model = FittingModel.of(path, full, "opponent")
     except ValueError:
-        if full == plain or "nominate" in options.says:  # a nomination cannot be left out
+        if not options.says or "nominate" in options.says:  # a nomination cannot be left out
             raise
         model = FittingModel.of(path, plain, "opponent")
     return SeenPlayer(SavedNetwork(model, options.trust), name=path)

@@ -131,7 +131,7 @@ def placed(at: Positions, seeds: Integers) -> tuple[Positions, np.ndarray]:
 
 VISITS: dict[str, Any] = {"aim": "absolute", "elevation": True, "placement": True}
 """The options with which an environment of visits reads all that a player does."""
-FRAMES: dict[str, Any] = VISITS | {"decision": True}
+FRAMES: dict[str, Any] = VISITS | {"says": ("decision",)}
 """Those of frames and matches, where nobody concedes and the colour first struck is the one nominated."""
 _ODD = np.uint64(0x9E3779B97F4A7C15)
 

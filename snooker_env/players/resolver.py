@@ -64,7 +64,7 @@ def player(name: Any, *, trust: bool = False, options: Mapping[str, Any] | None 
         Whether code in a model's ``.zip`` may run.
     options : dict, optional
         How the actions of a model of Stable-Baselines3 are read, which its file does not say: "aim", "elevation",
-        "placement", "action" and, of frames, "decision", as the environment of its training had them. What is
+        "placement", "action" and, of frames, "says", as the environment of its training had them. What is
         left out is that of ``Snooker-v0``.
 
     Returns

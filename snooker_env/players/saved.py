@@ -8,7 +8,6 @@ import numpy as np
 
 from .._lib.check import refuse
 from .._lib.types import Bools, Ints, Observation
-from ..tasks.declarations import SAYS
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options
 from .model_options import say_assumed
@@ -31,7 +30,7 @@ class FittingModel:
         for frame, replaced in ((False, False), (True, False), (True, True)):
             for kind in OBSERVATIONS:
                 task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
-                told = {name: options[name] for name in options if frame or name not in SAYS}
+                told = {name: options[name] for name in options if frame or name != "says"}
                 model = cls(saved, told | task | {"observation": kind})
                 choices = getattr(model.actions, "n", 0)
                 if outline(space(kind, frame=frame, replaced=replaced, choices=choices)) == saved.observation:

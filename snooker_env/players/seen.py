@@ -14,15 +14,14 @@ from ..planning import Positions
 from ..planning.positions import PositionsLike, seeds_of
 from ..planning.strokes import decode
 from ..tasks.carry_out import sayings
-from ..tasks.declarations import SAYS
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
-from ..tasks.observations import shaped
+from ..tasks.observations import arrange
 from ..tasks.options import Options, Rules
 from ..tasks.visit import Visits
 from .player import BoundPlayer, Strokes, placed
 
-OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")  # with "miss" it sees more
+OPTIONS = (*Options.group("action"), *Options.group("view"), "miss")  # with "miss" it sees more
 
 
 @runtime_checkable
@@ -84,7 +83,7 @@ class SeenPlayer(BoundPlayer):
         for key in sees:
             choice(f"key of the options of player {self.name}", key, OPTIONS)
         if not self.frames:
-            sees.pop("decision", None)  # there is none in a visit
+            sees.pop("says", None)  # there is nothing to say in a visit
         self.sees = sees
         self._rules: Any = None
         self._bind(Options())
@@ -139,7 +138,7 @@ class SeenPlayer(BoundPlayer):
             tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved
         rows = np.arange(n)
         masks = tables.action_masks(rows) if isinstance(rules.actions, Choices) else None
-        answer = self.seen.act(shaped(rules.observation, tables.observe(rows), masks), masks, keys)
+        answer = self.seen.act(arrange(rules.observation, tables.observe(rows), masks), masks, keys)
         try:
             actions = np.asarray(answer)
             if actions.ndim == 0 or len(actions) != n:

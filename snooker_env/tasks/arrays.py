@@ -2,12 +2,30 @@
 Python hands over plain tuples, which a kernel names where it begins: a named tuple takes 0.7 us more. Each
 array takes 0.1 us, so that no tuple holds more than its kernels need."""
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._lib.types import Bools, Floats, Ints, Singles, Words
+from ..physics.parameters import Physics
+
+# Columns of a cue's row: one row for all tables, or one for each.
+C_END_MASS = 0  # ``Physics.end_mass_ratio``
+C_MAX_OFFSET = 1  # ``Physics.max_offset``
+C_MU_S = 2  # ``Physics.mu_s``: what a ball that a raised cue strikes rubs against
+C_E_T = 3  # ``Physics.thrown``
+C_RAILS = 4  # from here on the rails that it passes over (``cue_room.rails_of``); none: it is free
+
+
+def pack_cue(physics: Physics, rails: Floats) -> Floats:
+    """A cue's row for the kernels: float64 (4 + len(rails),), in the columns ``C_*``."""
+    return np.array([physics.end_mass_ratio, physics.max_offset, physics.mu_s, physics.thrown, *rails])
+
+
+Packed: TypeAlias = tuple[Floats, Floats, Floats, Floats]
+"""An action's options, of ``declarations``; rows of cues, one or one a table; the noise's deviations; rows of packed
+``Physics``, likewise."""
 
 
 class TableArrays(NamedTuple):
@@ -66,7 +84,7 @@ class CueLaw(NamedTuple):
     fidelity: int  # this and the next as ``parse_fidelity`` returns them
     n_steps: int
     max_offset: float  # of the tip, over R
-    rails: Floats  # that the cue passes over, of ``cue_room.rails_of``; none: it is free
+    rails: Floats  # as in a cue's row
 
 
 class Work(NamedTuple):

@@ -12,8 +12,7 @@ from .._lib.types import Action, Floats
 from ..game.pots import GHOST_X, GHOST_Y, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
-from ..physics.parameters import Physics
-from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_TARGET, SAYS
+from .declarations import A_ELEVATION, A_TARGET, DECLARES, SAYS
 from .lines import aim_along, find_lines
 from .pot_aim import swerved_aim
 
@@ -66,7 +65,7 @@ def _target(positions, on_table, on, stroke, law, work):
 def shot_of(a, positions, on_table, on, options, law, work):
     """(speed, side, top, aim of the cue, elevation) of an action (k,); ``options``: of ``Actions.pack``."""
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
-    side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], options[A_MAX_OFFSET])
+    side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], law.max_offset)
     elevation = 0.5 * (a[4] + 1.0) * options[A_ELEVATION] if options[A_ELEVATION] else 0.0
     direction = pi * a[3]
     if options[A_TARGET]:
@@ -75,7 +74,7 @@ def shot_of(a, positions, on_table, on, options, law, work):
         direction = (
             _target(positions, on_table, on, (speed, side, top, raised), law, work) + TARGET_SPAN * a[3]
         )
-    return speed, side, top, direction - squirt(side, options[A_END_MASS]), elevation
+    return speed, side, top, direction - squirt(side, law.end_mass_ratio), elevation
 
 
 class Actions:
@@ -86,17 +85,12 @@ class Actions:
     elevation: bool
     steepest: float  # the elevation that 1 means [rad]
     placement: bool
-    decision: bool
-    nominate: bool
-    concede: bool
-    claim: bool
-    lot: bool
-    physics: Physics
+    says: tuple[str, ...]  # some of ``SAYS``, in their order
     space: spaces.Box
     size: int  # components of an action
 
     def __init__(
-        self, aim: str, elevation: bool | float, placement: bool, physics: Physics, says: Collection[str] = ()
+        self, aim: str, elevation: bool | float = False, placement: bool = False, says: Collection[str] = ()
     ):
         self.aim = choice("aim", aim, AIMS)
         self.placement = truth("placement", placement)
@@ -108,15 +102,15 @@ class Actions:
             except ValueError:
                 raise refuse("elevation", elevation, "must be True or False, or degrees in [5, 70]") from None
         self.elevation = self.steepest > 0.0
-        self.nominate, self.decision, self.concede, self.claim, self.lot = (name in says for name in SAYS)
-        self.physics = physics
-        self.size = 4 + self.elevation + 2 * self.placement + self.nominate + self.decision + self.declares
+        self.says = tuple(name for name in SAYS if name in says)
+        said = ("nominate" in says) + ("decision" in says) + self.declares
+        self.size = 4 + self.elevation + 2 * self.placement + said
         self.space = spaces.Box(-1.0, 1.0, (self.size,), np.float32)
 
     @property
     def declares(self) -> bool:
         """Whether the last component is a declaration."""
-        return self.concede or self.claim or self.lot
+        return any(name in self.says for name in DECLARES)
 
     def check(self, action: Action) -> list[float]:
         """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1].
@@ -150,10 +144,10 @@ class Actions:
 
     def pack(self) -> Floats:
         """The options for the kernels: float64, in the columns ``A_*`` of ``declarations``."""
-        strike = self.physics.end_mass_ratio, self.physics.max_offset, self.physics.mu_s, self.physics.thrown
-        last = self.size - self.declares  # the components before the declaration
-        nominated = last - 1 - self.decision if self.nominate else -1
-        where = nominated, last - 1 if self.decision else -1, last if self.declares else -1
+        where, at = [], self.size - self.declares - ("decision" in self.says) - ("nominate" in self.says)
+        for holds in ("nominate" in self.says, "decision" in self.says, self.declares):
+            where.append(at if holds else -1)
+            at += holds
         kind = self.aim == "target", self.steepest, self.placement
-        spoken = self.concede, self.claim, self.lot
-        return np.array([*kind, *strike, False, *where, *spoken], np.float64)
+        declares = (name in self.says for name in DECLARES)
+        return np.array([*kind, False, *where, *declares], np.float64)

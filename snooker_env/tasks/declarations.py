@@ -6,25 +6,20 @@ from ..game import frame_columns as columns
 from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
 from ..game.ruling import AUTO
 
-# Columns of the row of options that kernels take: what an action holds and says,
+# Columns of the options that kernels take: what an action holds and says.
 A_TARGET = 0  # whether the aim of a box action is measured from a line at a ball
 A_ELEVATION = 1  # the elevation that 1 means [rad]; 0: an action holds none
 A_PLACEMENT = 2  # whether a box action holds the place of a cue ball in hand
-A_DISCRETE = 7  # whether an action is a choice
-A_NOMINATE = 8  # of a box action, the component that nominates; of choices 0; -1: none
-A_DECISION = 9  # the component that decides after a foul; -1: none
-A_DECLARATION = 10  # the component that declares; -1: none
-A_CONCEDE = 11  # whether an action can concede
-A_CLAIM = 12  # whether it can claim the frame
-A_LOT = 13  # whether it can let the other player begin after the lot
-# and the cue, of which each table may have its own.
-A_END_MASS = 3  # ``Physics.end_mass_ratio``
-A_MAX_OFFSET = 4  # ``Physics.max_offset``
-A_MU_S = 5  # ``Physics.mu_s``: what a ball that a raised cue strikes rubs against
-A_E_T = 6  # ``Physics.thrown``
-A_RAILS = 14  # from here on the rails that it passes over (``cue_room.rails_of``); none: it is free
+A_DISCRETE = 3  # whether an action is a choice
+A_NOMINATE = 4  # of a box action, the component that nominates; of choices 0; -1: none
+A_DECISION = 5  # the component that decides after a foul; -1: none
+A_DECLARATION = 6  # the component that declares; -1: none
+A_CONCEDE = 7  # whether an action can concede
+A_CLAIM = 8  # whether it can claim the frame
+A_LOT = 9  # whether it can let the other player begin after the lot
 
 SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
+DECLARES = SAYS[2:]
 (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)  # declarations
 COLOURS = 6
 STROKE_CHOICES = 540  # ``discrete_actions.SIZE``, the number of discrete actions that only choose a stroke

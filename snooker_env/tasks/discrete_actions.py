@@ -18,8 +18,8 @@ from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, fin
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from ..physics.cue_room import EDGE, EDGE_AXIS, EDGE_LEVEL, EDGE_SIDE, RAIL, STEEPEST, TIP, least_elevation
-from ..physics.parameters import Physics
 from . import declarations
+from .arrays import C_END_MASS, C_RAILS
 from .escapes import LINE_AIM
 from .lines import LINE_ROWS, POTS, aim_along, count_lines, find_lines
 from .pot_aim import solved_aim
@@ -69,7 +69,7 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
 
 
 @kernel(seconds=1, uses=(solved_aim, aim_along))
-def chosen(index, positions, on_table, on, law, work):
+def solve_choice(index, positions, on_table, on, law, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``."""
     lines = work.lines
     # ``declarations`` reads what else the choice says; what may not be said now is played as a stroke
@@ -91,7 +91,7 @@ def chosen(index, positions, on_table, on, law, work):
 
 
 @kernel
-def _crowded(positions, on_table, rails, ax, ay):
+def _lacks_room(positions, on_table, rails, ax, ay):
     """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``: one that points about
     along (ax, ay), or any cue if that is (0, 0). A free cue never.
 
@@ -112,17 +112,17 @@ def _crowded(positions, on_table, rails, ax, ay):
 
 
 @kernel
-def _without_room(positions, on_table, options, rows, pots, many, out):
+def _without_room(positions, on_table, cue, rows, pots, many, out):
     """Of the ``many`` lines in ``rows``, of which ``pots`` are pots (all or none), clear the choices in ``out`` (SIZE,)
     whose cue must be steeper than ``STEEPEST``, unless none were left."""
-    rails, x, y, left = options[declarations.A_RAILS :], positions[0, 0], positions[0, 1], 0
+    rails, x, y, left = cue[C_RAILS:], positions[0, 0], positions[0, 1], 0
     for line in range(many):
         aim = atan2(rows[line, GHOST_Y] - y, rows[line, GHOST_X] - x) if pots else rows[line, LINE_AIM]
-        if not _crowded(positions, on_table, rails, cos(aim), sin(aim)):
+        if not _lacks_room(positions, on_table, rails, cos(aim), sin(aim)):
             left += STROKES
             continue
         for s in range(len(SIDES)):
-            cue_aim, steep = aim - squirt(SIDES[s], options[declarations.A_END_MASS]), True
+            cue_aim, steep = aim - squirt(SIDES[s], cue[C_END_MASS]), True
             for t in range(len(TOPS)):  # the higher the tip, the lower the cue
                 if steep:
                     stroke = SIDES[s], TOPS[t], cue_aim, 0.0
@@ -136,7 +136,7 @@ def _without_room(positions, on_table, options, rows, pots, many, out):
 
 
 @entry
-def masks(which, positions, on_table, game, options, out):
+def masks(which, positions, on_table, game, options, cue, out):
     """Available choices on the tables ``which``, of visits or frames: bool, one row of ``out`` each."""
     rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
@@ -149,7 +149,7 @@ def masks(which, positions, on_table, game, options, out):
                 available = declarations.may_nominate(n, row)
             p, here, many, pots = positions[k], on_table[k], 1, 0
             chooses = available and here[0]
-            crowded = chooses and _crowded(p, here, options[declarations.A_RAILS :], 0.0, 0.0)
+            crowded = chooses and _lacks_room(p, here, cue[C_RAILS:], 0.0, 0.0)
             if crowded:  # the lines themselves are asked for
                 pots = find_pots(p, here, on, BALL_RADIUS, rows[:POTS])
                 many = pots if pots else find_lines(p, here, on, rows)
@@ -158,7 +158,7 @@ def masks(which, positions, on_table, game, options, out):
             for c in range(SIZE):
                 out[j, n * SIZE + c] = available and c < STROKES * many
             if crowded:
-                _without_room(p, here, options, rows, pots, many, out[j, n * SIZE : (n + 1) * SIZE])
+                _without_room(p, here, cue, rows, pots, many, out[j, n * SIZE : (n + 1) * SIZE])
         at = parts * SIZE
         for what, column in (
             (declarations.CONCEDES, declarations.A_CONCEDE),
@@ -172,31 +172,26 @@ def masks(which, positions, on_table, game, options, out):
 
 class Choices:
     """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``.
-    With ``nominate``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those
+    With "nominate" in ``says``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those
     of the ball that is then on. The last choices, as far as they are on: concede, claim, let the other player
     begin after the lot. What may not be said is played as the stroke of the same remainder."""
 
     size: int = 1
     placement: bool = False
-    decision: bool = False
-    nominate: bool
-    concede: bool
-    claim: bool
-    lot: bool
+    says: tuple[str, ...]
     choices: int
     space: "spaces.Discrete[np.int64]"  # evaluated, it would need Gymnasium 1.2.2
 
-    def __init__(self, physics: Physics, says: Collection[str] = ()):
-        self.physics = physics
-        self.nominate, _, self.concede, self.claim, self.lot = (name in says for name in declarations.SAYS)
-        more = self.concede + self.claim + self.lot
-        self.choices = SIZE * (1 + declarations.COLOURS * self.nominate) + more
+    def __init__(self, says: Collection[str] = ()):
+        self.says = tuple(name for name in declarations.SAYS if name in says)
+        parts = 1 + declarations.COLOURS * ("nominate" in says)
+        self.choices = SIZE * parts + sum(name in says for name in declarations.DECLARES)
         self.space = spaces.Discrete(self.choices)
 
     @property
     def declares(self) -> bool:
         """Whether the last choices are declarations."""
-        return self.concede or self.claim or self.lot
+        return any(name in self.says for name in declarations.DECLARES)
 
     def check(self, action: Action) -> list[float]:
         """The choice in a list; ValueError unless it is an integer in [0, choices)."""
@@ -219,7 +214,6 @@ class Choices:
 
     def pack(self) -> Floats:
         """The options for the kernels, in the columns ``A_*`` of ``declarations``."""
-        strike = self.physics.end_mass_ratio, self.physics.max_offset, self.physics.mu_s, self.physics.thrown
-        spoken = self.concede, self.claim, self.lot
-        where = 0 if self.nominate else -1, -1, -1
-        return np.array([False, False, False, *strike, True, *where, *spoken], np.float64)
+        where = 0 if "nominate" in self.says else -1, -1, -1
+        declares = (name in self.says for name in declarations.DECLARES)
+        return np.array([False, False, False, True, *where, *declares], np.float64)

@@ -15,7 +15,7 @@ import numpy as np
 
 from .._lib.jit import kernel
 from ..game.balls import N_BALLS
-from ..game.lines import met
+from ..game.lines import find_first_ball
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics import cloth, events
 from ..physics.arrays import Boundaries, Law
@@ -23,7 +23,7 @@ from ..physics.columns import AXIS_X, AXIS_Y, P_R
 from ..physics.detection import boundary_event, pair_time
 from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
 from .pot_aim import stroke_in_room, struck_by
-from .windows import turned
+from .windows import wrap_angle
 
 ROLL = 0.25  # twice a rolling ball's deceleration [m/s^2]
 ROLLING = 0.4  # tip offset over R with which a ball rolls from the start
@@ -88,7 +88,7 @@ def _reaches(positions, on_table, on, ux, uy, speed):
         along = (length - y) / uy if uy > 0.0 else (-length - y) / uy if uy < 0.0 else 1e9
         run = max(0.0, min(across, along))
         stop = v2 / ROLL
-        ball = met(positions, on_table, x, y, ux, uy, min(run, 0.9 * stop))
+        ball = find_first_ball(positions, on_table, x, y, ux, uy, min(run, 0.9 * stop))
         if ball:
             return worth if (on >> ball) & 1 else 0.0
         if run >= stop:
@@ -106,7 +106,7 @@ def _reaches(positions, on_table, on, ux, uy, speed):
         if abs(x + dx) > width or abs(y + dy) > length:
             return 0.0
         if chord > 1e-9:
-            ball = met(positions, on_table, x, y, dx / chord, dy / chord, chord)
+            ball = find_first_ball(positions, on_table, x, y, dx / chord, dy / chord, chord)
             if ball:
                 return 0.6 * worth if (on >> ball) & 1 else 0.0
         x, y = x + dx, y + dy
@@ -122,7 +122,7 @@ def _reaches(positions, on_table, on, ux, uy, speed):
 def _keep(lines, first, count, aim, half, speed, worth):
     """Insert an escape into the rows ``first`` to ``count``, best first; returns the new ``count``."""
     for k in range(first, count):
-        if abs(turned(lines[k, LINE_AIM] - aim)) < _SAME:
+        if abs(wrap_angle(lines[k, LINE_AIM] - aim)) < _SAME:
             if lines[k, LINE_WORTH] >= worth:
                 return count
             for after in range(k, count - 1):
@@ -139,7 +139,7 @@ def _keep(lines, first, count, aim, half, speed, worth):
     for k in range(count - 1, at, -1):
         for c in range(4):
             lines[k, c] = lines[k - 1, c]
-    lines[at, LINE_AIM], lines[at, LINE_ROOM] = turned(aim), half
+    lines[at, LINE_AIM], lines[at, LINE_ROOM] = wrap_angle(aim), half
     lines[at, LINE_SPEED], lines[at, LINE_WORTH] = speed, worth
     return count
 
@@ -169,7 +169,7 @@ def find_escapes(positions, on_table, on, lines, first):
 
 
 @kernel(seconds=1, uses=(collide_cushion,))
-def _played(aim, stroke, positions, on_table, law, work):
+def _ball_reached_by(aim, stroke, positions, on_table, law, work):
     """The ball that the cue ball meets first, by the engine's models; 0: none, or a pocket."""
     phys, motion, state, R = law.phys, work.motion, work.state, law.phys[P_R]
     (vx, vy, _), w = struck_by(stroke_in_room(aim, stroke, positions, on_table, law), law)
@@ -208,10 +208,10 @@ def _played(aim, stroke, positions, on_table, law, work):
     return 0
 
 
-@kernel(uses=(_played,))
+@kernel(uses=(_ball_reached_by,))
 def _succeeds(aim, stroke, positions, on_table, on, law, work):
     """Whether the stroke meets a ball on first."""
-    ball = _played(aim, stroke, positions, on_table, law, work)
+    ball = _ball_reached_by(aim, stroke, positions, on_table, law, work)
     return ball > 0 and (on >> ball) & 1 != 0
 
 

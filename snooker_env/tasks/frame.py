@@ -16,7 +16,7 @@ the free place of the D nearest to its usual one (``balls.SPOTS``), or if it may
 came to rest. The player may place it elsewhere."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -28,19 +28,19 @@ from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_
 from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
 from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
+from ..geometry import BALL_RADIUS
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import normalised
 from . import frame_kernels
 from .box_actions import Actions
 from .carry_out import carry_out
-from .declarations import A_LOT
 from .discrete_actions import Choices
 from .frame_kernels import AGENT
 from .noise import Noise
 from .observations import FRAME_SIZE, REPLACED_SIZE
 from .options import NEVER, Options, Rules
 from .rewards import FRAMES_PAID, MATCH_REWARDS
-from .states import FrameState, checked_frame
+from .states import FrameState, check_frame_state
 from .stroke import ShotBuffers
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 from .visit import Visits
@@ -73,9 +73,9 @@ class Seat:
         """The seat with the actions and errors of ``rules``."""
         return cls(rules.actions, rules.noise, player)
 
-    def packed(self, rules: Rules) -> tuple[Any, Any, Any]:
-        """``Rules.packed`` with this seat's actions and errors."""
-        return replace(rules, actions=self.actions, noise=self.noise).packed()
+    def pack(self, rules: Rules) -> tuple[Floats, Floats]:
+        """For the kernels: what its actions hold, and its errors."""
+        return self.actions.pack(), self.noise.pack(BALL_RADIUS, real=rules.cue == "real")
 
 
 class Frames(Tables):
@@ -93,7 +93,6 @@ class Frames(Tables):
     due: Bools  # (n,) which episodes have ended in a reset, so that the next step reports their end
     through: Bools  # (n,) which episodes of one stroke have ended
     seats: tuple[Seat, ...]  # the agent's, and the other's if it does not play alone; no player: by ``turn``
-    packs: tuple[Any, ...]  # ``packed`` of each seat
 
     def __init__(
         self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None
@@ -120,12 +119,9 @@ class Frames(Tables):
     def sit(self, seats: Sequence[Seat]) -> None:
         """Assign the seats: one, or two."""
         self.seats = tuple(seats)
-        self.packs = tuple(self.own_rows(seat.packed(self.rules)) for seat in self.seats)
-        self.packed: tuple[Floats, Floats, Floats] = self.packs[AGENT]
+        self._own = tuple(seat.pack(self.rules) for seat in self.seats)
         # the winner of the lot is asked if either player can say who begins
-        self._reads = tuple(seat.actions.pack() for seat in self.seats)
-        self._lot = self._reads[AGENT].copy()
-        self._lot[A_LOT] = any(options[A_LOT] for options in self._reads)
+        self._lot = any("lot" in seat.actions.says for seat in self.seats)
 
     def noise_of(self, player: int) -> Noise:
         """The errors of a player; who plays alone has both turns."""
@@ -144,18 +140,7 @@ class Frames(Tables):
     @property
     def _setting(self):
         """For kernels: the parts of ``frame_kernels.Setting``, in a plain tuple."""
-        return self._setting_of(self._lot)
-
-    def _setting_of(self, options):
-        """``_setting`` with the packed options of one seat's actions."""
-        return *self._numbers, options, self._jaws
-
-    def _every_pack(self) -> tuple[tuple[Floats, Floats, Floats], ...]:
-        return self.packs
-
-    def _take_rows(self, here: slice) -> None:
-        self.packs = tuple((options[here], noise, phys[here]) for options, noise, phys in self.packs)
-        self.packed = self.packs[AGENT]
+        return *self._numbers, self._lot, self._jaws
 
     def _columns(self) -> tuple[str, ...]:
         more = ("_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due", "through")
@@ -193,9 +178,9 @@ class Frames(Tables):
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
         """Decisions and strokes of the seat ``side`` up to the strike; returns the tables with a stroke."""
         reads = self.seats[side].actions
-        if reads.nominate or reads.declares or self.game[which, columns.PHASE].any():
+        if reads.declares or "nominate" in reads.says or self.game[which, columns.PHASE].any():
             which = which[self.decide(which, actions, side)]
-        self.strike(which, actions, buffers, self.packs[side])
+        self.address(which, actions, buffers, side)
         self.hold_late(which, buffers)
         return which
 
@@ -209,8 +194,8 @@ class Frames(Tables):
 
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
         """What the strikers say before their strokes; returns which of the tables ``which`` play one."""
-        plays, setting = np.empty(len(which), np.bool_), self._setting_of(self._reads[side])
-        frame_kernels.decide(which, actions, self.arrays, self.saved_arrays, setting, plays)
+        plays, tables = np.empty(len(which), np.bool_), (self.arrays, self.saved_arrays, self._setting)
+        frame_kernels.decide(which, actions, self._own[side][0], *tables, plays)
         return plays
 
     def complete(
@@ -255,8 +240,9 @@ class Frames(Tables):
         self.go_on(playing)
         return self._played > 0
 
-    def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> None:
-        """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k)."""
+    def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> Bools:
+        """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k). Returns
+        where there was a stroke, (n,)."""
         going, striker = ~self.ended(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
@@ -268,6 +254,7 @@ class Frames(Tables):
         out.truncated[~going] = ~out.terminated[~going]
         crew(np.flatnonzero(~going), lambda which, _: self._show(which, out, fresh=False))
         crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
+        return self._played > 0
 
     def go_on(self, which: Ints) -> None:
         """After each turn: the next frame of a match, where one has ended. Here there is none."""
@@ -374,12 +361,6 @@ class Frames(Tables):
             out.counts[0, : len(COUNTS)] = last.counts[0, : len(COUNTS)]
         return self.info(out, 0)
 
-    def pay(self, k: int) -> int:
-        """What the agent has earned on table k since it was last paid."""
-        unpaid = self._unpaid(k)
-        self.game[k, columns.PAID] += unpaid
-        return unpaid
-
     def action_masks(self, which: Ints | None = None, side: int = AGENT) -> Bools:
         """See ``Tables.action_masks``; of the player in seat ``side``."""
         which = np.arange(self.n) if which is None else which
@@ -408,11 +389,11 @@ class Frames(Tables):
         """What the agent has earned in the episode so far, as its reward counts."""
         return self.game[k, columns.SCORE_0 + AGENT] - self.game[k, columns.SCORE_1 - AGENT]
 
-    def checked(
+    def check_state(
         self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False
     ) -> FrameState:
-        """See ``Tables.checked``. The striker must be the agent, unless ``either``."""
-        sound = checked_frame(state, self.rules, generator)
+        """See ``Tables.check_state``. The striker must be the agent, unless ``either``."""
+        sound = check_frame_state(state, self.rules, generator)
         over, stopped = sound.frame.phase == "over", sound.strokes >= self.rules.max_strokes
         if sound.due and not (over or stopped):
             raise refuse("state.due", True, "must be False: the frame goes on")

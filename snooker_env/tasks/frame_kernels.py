@@ -22,7 +22,7 @@ from ..physics.engine import EventKind, Status
 from . import declarations, stroke
 from .arrays import OutputArrays, PlayedArrays, TableArrays
 from .observations import FRAME_SIZE, REPLACED_SIZE, SIZE, observe_into
-from .rewards import FRAMES_PAID, earned, frame_reward_of
+from .rewards import FRAMES_PAID, earnings, frame_reward_of
 from .tables import COUNTS, I_BREAK, I_FOULS, REALS, Tables, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
@@ -47,7 +47,7 @@ class Setting(NamedTuple):
     one_stroke: bool  # whether an episode ends with its first stroke that is no foul
     frames: int  # frames that win a match
     clock: int  # time of a frame [ms]; 0: no clock
-    options: Floats  # packed, of the action space
+    lot: bool  # whether the winner of the lot for a re-spotted black says who begins
     jaws: Floats  # (m, 3): see ``snookered.NO_JAWS``
 
 
@@ -70,26 +70,33 @@ def give_up(row, reward):
         row[columns.PAID] += -left if row[columns.WINNER] == AGENT else left
 
 
+@kernel
+def say(k, declared, decision, reward, tables, saved):
+    """Carry out what the striker may say, and says, before a stroke; whether one follows."""
+    row = tables.game[k]
+    if declared == declarations.CONCEDES:
+        columns.concede(row)
+        give_up(row, reward)
+    elif declared == declarations.CLAIMS:
+        columns.claim(row)
+    elif row[columns.PHASE] == columns.LOT:
+        other = declared == declarations.OTHER_BEGINS
+        columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
+    elif row[columns.PHASE] == columns.CHOICE:
+        return choose(k, decision, tables, saved)
+    return declared == declarations.SAYS_NOTHING
+
+
 @entry(what="the decisions of frames", seconds=2)
-def decide(which, actions, tables, saved, setting, plays):
+def decide(which, actions, options, tables, saved, setting, plays):
     """What strikers say before a stroke; ``plays[j]``: one follows."""
     tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
-    options = setting.options
     for j in range(which.shape[0]):
         k = which[j]
         row, a = tables.game[k], actions[k]
         declared = declarations.declaration_of(a, options, row)
-        plays[j] = declared == declarations.SAYS_NOTHING
-        if declared == declarations.CONCEDES:
-            columns.concede(row)
-            give_up(row, setting.reward)
-        elif declared == declarations.CLAIMS:
-            columns.claim(row)
-        elif row[columns.PHASE] == columns.LOT:
-            other = declared == declarations.OTHER_BEGINS
-            columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
-        elif row[columns.PHASE] == columns.CHOICE:
-            plays[j] = choose(k, declarations.decision_of(a, options, row, setting.rules), tables, saved)
+        decision = declarations.decision_of(a, options, row, setting.rules)
+        plays[j] = say(k, declared, decision, setting.reward, tables, saved)
         if plays[j] and options[declarations.A_NOMINATE] >= 0:
             tables.nominated[k] = declarations.nomination_of(a, options, row)
 
@@ -161,7 +168,7 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
             _leave_the_black(p, on)
             u, _ = pair(tables.streams[k])
             row[columns.STRIKER] = int(2.0 * u)  # the winner of the lot
-            if alone or not setting.options[declarations.A_LOT]:
+            if alone or not setting.lot:
                 columns.draw(row, row[columns.STRIKER])  # who begins
         if row[columns.IN_HAND] and not row[columns.OVER]:
             lies = row[columns.ANYWHERE] and not (potted | off) & 1  # it stays where it came to rest
@@ -244,7 +251,7 @@ def _write_frame_info(k, row, player, replies, out):
 def _worth(row, reward):
     """What the agent has earned so far, as the ``reward`` counts it."""
     frames_lead = row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
-    return earned(reward, columns.lead_of(row, AGENT), frames_lead)
+    return earnings(reward, columns.lead_of(row, AGENT), frames_lead)
 
 
 MOST_STEPS = 20

@@ -11,7 +11,7 @@ import numpy as np
 
 from .._lib.jit import entry, kernel
 from ..game.balls import N_BALLS, N_REDS, SPOTS, touching_balls
-from ..game.lines import met
+from ..game.lines import find_first_ball
 from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, count_pots, find_pots
 from ..geometry import BALL_RADIUS
 from ..physics.cloth import COLUMNS
@@ -19,7 +19,7 @@ from ..physics.impact.polynomial import WORK
 from .arrays import Work
 from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, escape_aim, find_escapes
 from .pot_aim import swerved_aim
-from .windows import HIGH, LOW, MOST_EDGES, half_width, open_windows, room, towards, turned
+from .windows import HIGH, LOW, MOST_EDGES, half_width, open_windows, room, towards, wrap_angle
 
 POTS = 4
 """Number of pots, or of other lines where there is no direct pot, to choose from."""
@@ -45,7 +45,7 @@ def new_work():
 
 
 @kernel
-def racked(positions, on_table):
+def end_red_of_rack(positions, on_table):
     """The end red of the last row if all balls stand as at a start of a frame, with 15 or 6 reds; else 0."""
     end = 0
     for i in range(1, N_BALLS):
@@ -88,15 +88,15 @@ def _add(lines, count, aim, space):
     if count == POTS or space < _SLIT:
         return count
     for k in range(count):
-        if abs(turned(aim - lines[k, LINE_AIM])) < _APART:
+        if abs(wrap_angle(aim - lines[k, LINE_AIM])) < _APART:
             return count
-    lines[count, LINE_AIM], lines[count, LINE_ROOM] = turned(aim), space
+    lines[count, LINE_AIM], lines[count, LINE_ROOM] = wrap_angle(aim), space
     lines[count, LINE_SPEED], lines[count, LINE_WORTH] = 0.0, 0.0
     return count + 1
 
 
 @kernel
-def _seen(positions, on_table, lines, windows, many, count):
+def _add_windows(positions, on_table, lines, windows, many, count):
     """Append the middle of the widest window, a thin contact at either edge of it, and the other middles."""
     x, y = positions[0, 0], positions[0, 1]
     for k in range(many):
@@ -107,7 +107,7 @@ def _seen(positions, on_table, lines, windows, many, count):
             continue
         for sign in (-1.0, 1.0):
             edge = middle + sign * (half - _SLIT)
-            ball = met(positions, on_table, x, y, cos(edge), sin(edge), 1e9)
+            ball = find_first_ball(positions, on_table, x, y, cos(edge), sin(edge), 1e9)
             thin = (1.0 - THIN) * (half_width(positions, ball) if ball else 0.5 * pi)
             if thin < 0.6 * half:
                 count = _add(lines, count, middle + sign * (half - thin), thin)
@@ -118,7 +118,7 @@ def _seen(positions, on_table, lines, windows, many, count):
 def find_lines(positions, on_table, on, rows):
     """Write up to ``POTS`` lines into ``rows`` (LINE_ROWS, POT_COLUMNS); returns the number, >= 1."""
     lines, windows = rows[:POTS], rows[POTS:]
-    touching, end_red, count = touching_balls(positions, on_table), racked(positions, on_table), 0
+    touching, end_red, count = touching_balls(positions, on_table), end_red_of_rack(positions, on_table), 0
     many = open_windows(positions, on_table, on, touching, windows)
     if end_red:
         outwards = -1.0 if positions[0, 0] < 0.0 else 1.0
@@ -128,7 +128,7 @@ def find_lines(positions, on_table, on, rows):
             count = _add(lines, count, aim, space if space > NARROW else 0.0)
     if many == 0 or windows[0, HIGH] - windows[0, LOW] < 2.0 * NARROW:
         count = find_escapes(positions, on_table, on & ~touching, lines, count)
-    count = _seen(positions, on_table, lines, windows, many, count)
+    count = _add_windows(positions, on_table, lines, windows, many, count)
     if count == 0:  # nothing is known to succeed
         lines[0, LINE_AIM], lines[0, LINE_ROOM] = nearest(positions, on_table, on), 0.0
         lines[0, LINE_SPEED], lines[0, LINE_WORTH] = 1.0, 0.0
@@ -168,13 +168,13 @@ def line_of(positions, on_table, on, rows):
 
 
 @kernel
-def aim_at_met(aim, stroke, positions, on_table, law, work):
+def aim_at_ball(aim, stroke, positions, on_table, law, work):
     """Direction [rad] in which the stroke (speed, side, top, elevation) leaves, so that it comes to the ball that lies
     in the direction ``aim``, its cue raised as it must be."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return aim
     x, y = positions[0, 0], positions[0, 1]
-    ball = met(positions, on_table, x, y, cos(aim), sin(aim), 1e9)
+    ball = find_first_ball(positions, on_table, x, y, cos(aim), sin(aim), 1e9)
     if ball == 0:
         return aim
     far = max(BALL_RADIUS, hypot(positions[ball, 0] - x, positions[ball, 1] - y) - 2.0 * BALL_RADIUS)
@@ -185,5 +185,5 @@ def aim_at_met(aim, stroke, positions, on_table, law, work):
 def aim_along(line, stroke, positions, on_table, on, law, work):
     """Direction [rad] of the stroke (speed, side, top, elevation) along a row of ``find_lines``."""
     if line[LINE_SPEED] == 0.0:
-        return aim_at_met(line[LINE_AIM], stroke, positions, on_table, law, work)
+        return aim_at_ball(line[LINE_AIM], stroke, positions, on_table, law, work)
     return escape_aim(line[LINE_AIM], stroke, positions, on_table, on, law, work)

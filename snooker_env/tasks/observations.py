@@ -121,7 +121,7 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
     row[BALLS_SIZE + 10] = points / 155.0
 
 
-def shaped(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = None) -> Observation:
+def arrange(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = None) -> Observation:
     """Flat observations (..., k) in a kind of ``space``: "flat" is ``rows`` itself, "balls" has new arrays."""
     if kind == "flat":
         return rows

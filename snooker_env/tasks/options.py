@@ -1,7 +1,7 @@
 """How is the game of an environment configured? All options in one immutable object, validated together."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import InitVar, dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -20,12 +20,13 @@ from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike, physics_with
 from ..physics.table import Table, TableLike
 from . import observations
+from .arrays import Packed, pack_cue
 from .box_actions import AIMS, Actions
 from .declarations import SAYS
 from .discrete_actions import Choices
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
-from .table_fit import fitted, table_of
+from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
 MOST_TIME = 15.0
@@ -44,7 +45,6 @@ FRAMES = 7
 """Default length of a match: best of 7."""
 OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
 object: a player or an OpponentPool; players.SeenPlayer makes a player of what acts on observations"""
-_UNSAID: Any = object()
 OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
 NEVER = 2**62  # stands for no limit of strokes or steps
 
@@ -81,21 +81,21 @@ class Rules:
         """Whether a foul and a miss is called."""
         return self.miss != "off"
 
-    def packed(self) -> tuple[Floats, Floats, Floats]:
-        """For the kernels: options of the action, deviations of the noise, physical parameters. The first and
-        the last are one row, for all tables."""
+    def pack(self) -> Packed:
+        """For the kernels, with one row of cues and constants for all tables."""
         errors = self.noise.pack(BALL_RADIUS, real=self.cue == "real")
-        phys = self.physics.packed_for(self.fidelity)[None]
-        return self.with_rails(self.actions.pack())[None], errors, phys
+        cues, phys = self.cue_row[None], self.physics.packed_for(self.fidelity)[None]
+        return self.actions.pack(), cues, errors, phys
+
+    @property
+    def cue_row(self) -> Floats:
+        """The cue's row, of ``arrays.pack_cue``."""
+        return pack_cue(self.physics, self.rails)
 
     @property
     def rails(self) -> Floats:
         """The rails that the cue passes over, as of ``cue_room.rails_of``; none: it is free."""
         return rails_of(self.table.noses, self.table.falls) if self.cue == "real" else NO_RAILS
-
-    def with_rails(self, options: Floats) -> Floats:
-        """Packed options of actions, with the rails."""
-        return np.concatenate([options, self.rails])
 
 
 GROUPS = {
@@ -111,14 +111,11 @@ _ONLY: dict[str, str] = {**dict.fromkeys(_OF_FRAMES, "frame"), "frames": "match"
 """The only task that has an option; what is of a frame is of a match, too."""
 
 
-def _said(says: object, flags: Mapping[str, Any]) -> tuple[str, ...]:
-    """The option ``says`` with the flags that are its other spelling, in the order of ``SAYS``."""
+def _order_says(says: object) -> tuple[str, ...]:
+    """The option ``says`` in the order of ``SAYS``."""
     if isinstance(says, str) or not isinstance(says, Collection):
         raise refuse("says", says, f"must be a sequence of some of {', '.join(map(repr, SAYS))}")
     spoken = {choice("says", name, SAYS) for name in says}
-    for name, flag in flags.items():
-        if flag is not _UNSAID:
-            spoken = spoken | {name} if truth(name, flag) else spoken - {name}
     return tuple(name for name in SAYS if name in spoken)
 
 
@@ -129,70 +126,68 @@ class Options:
 
     Parameters
     ----------
-    task : {"visit", "frame", "match"}, optional
-        "visit" (default): build a break until the first miss or foul. "frame": play a whole frame. "match":
-        the best of several; what is said below of a frame holds for a match, too.
-    layout : str, optional
-        How tables are dealt: "opened", "held_out", "safety", "held_out_safety", "escape", "held_out_escape",
-        "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy", "pots:medium" or
-        "pots:hard". "default": "opened", in a frame "break_off".
-    action : {"box", "discrete"}, optional
-        "box" (default): numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a
-        top, in [0, 540) unless options of frames add more.
-    aim : {"absolute", "target"}, optional
-        Where a box action's aim is measured from: +x (default), or the best pot's line, else a fair stroke's.
-    observation : {"flat", "balls", "masked"}, optional
-        "flat" (default): one array. "balls": a dict of two. "masked", with ``action="discrete"``: a dict of
-        the flat array and the available choices.
-    noise : str, dict or Noise, optional
-        Execution errors: the name of a level, or standard deviations, see ``Noise``. Default "none".
-    reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
-        Default "points". The first four are of a visit, "points" and "win" of a frame, "frames" also of a match.
-    elevation : bool or float, optional
-        Whether a box action holds the elevation of the cue; True: up to 30 degrees; or up to so many degrees, 5 to 70.
-    placement : bool, optional
-        Whether it holds the place of a cue ball in hand. Default False.
-    physics : str, dict, Physics or None, optional
-        As ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
-    table : str or Table, optional
-        "match" (default), "tight", or a ``Table`` whose noses are where snooker's are.
-    cue : {"free", "real"}, optional
-        "free" (default): the cue passes through rails and balls. "real": it is raised over them as far as it
-        must be, and errors grow with its elevation (docs/environment/specification.md).
-    fidelity : str, optional
-        How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
-    conditions : {"fixed", "drawn"}, optional
-        "drawn": each episode draws eight constants of its table, in place of those of ``physics``, as
-        ``Physics.drawn`` does, with its own random stream. Infos hold them. Default "fixed".
-    observe_conditions : bool, optional
-        Whether observations hold the constants drawn, from -1 to 1. Default False.
-    opponent : str or Path, optional
-        In a frame: "none" (default), or what ``snooker_env.player`` takes: a player's name, a model's
-        ``.zip``, ... Environments also take objects (docs/environment/opponents.md); their options then say
-        "object".
-    miss : {"off", "clear_path", "attempt"}, optional
-        In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
-    max_strokes : int or None, optional
-        In a frame: strokes of both after which the referee stops it and its match; default 1000, None: never.
-    one_stroke : bool, optional
-        Whether an episode ends with its first stroke; in a frame, where the agent then begins, with its first one that
-        is no foul, when it is its turn again without a choice to make, after 20 steps at most. Not of a match.
-        Default False.
-    trust : bool, optional
-        In a frame: whether code in an opponent's ``.zip`` may run. Default False.
-    says : sequence of str, optional
-        In a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a
-        free ball; else the one struck first), "decision" (after a foul, of box actions only), "concede",
-        "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the lot for a re-spotted
-        black lets the other player begin; else it begins). Default: nothing.
-    nominate, decision, concede, claim, lot : bool, optional
-        Whether ``says`` has them: ``decision=True`` adds "decision" to it. To be read as attributes, too.
-    game : {"snooker", "six_red", "shoot_out"}, optional
-        In a frame: the rules of the game (``snooker_env.game.rule_sets``). Default "snooker".
-    time_to_play : float, optional
-        In a frame of the Shoot Out: from the rest of the balls to the next stroke [s], at most 15; default 9.
-    frames : int, optional
-        In a match: the most frames that it can have, an odd number; default 7.
+    task : str, default "visit"
+        "visit": build a break until the first miss or foul. "frame": play a whole frame. "match": the best of several;
+        a match has everything that a frame has.
+    layout : str, default "default"
+        How tables are dealt (docs/environment/layouts.md): "opened", "held_out", "safety", "held_out_safety", "escape",
+        "held_out_escape", "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy",
+        "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
+    action : str, default "box"
+        "box": numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540)
+        unless ``says`` adds more.
+    aim : str, default "absolute"
+        From where a box action's aim is measured. "absolute": from +x. "target": from the best pot's line, else from a
+        fair stroke's.
+    observation : str, default "flat"
+        "flat": one array. "balls": a dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the
+        available choices.
+    noise : str, dict or Noise, default "none"
+        Execution errors: "none", "professional", "amateur", "club", "robot", "olympiad", or standard deviations as a
+        dict of the fields of ``snooker_env.tasks.Noise``.
+    reward : str, default "points"
+        "points"; of a visit "points_and_fouls", "pots" or "legal"; of a frame "win"; of a match also "frames".
+    elevation : bool or float, default False
+        Whether a box action holds the elevation of the cue: up to 30 degrees, or up to a number of degrees from 5 to 70.
+    placement : bool, default False
+        Whether a box action holds the place of a cue ball in hand.
+    physics : str, dict, Physics or None, default "paper"
+        "paper", "match", or a dict of overrides, as ``Physics.of`` takes them; the radius of the balls is snooker's.
+    table : str or Table, default "match"
+        "match", "tight", or a ``Table`` whose noses are where snooker's are.
+    fidelity : str, default "standard"
+        How impacts are solved (docs/physics/fidelity.md): "fast", "standard", "reference" or "euler:N".
+    cue : str, default "free"
+        "free": the cue passes through rails and balls. "real": it is raised over them as far as it must be, and errors
+        grow with its elevation.
+    conditions : str, default "fixed"
+        "drawn": each episode draws eight constants of its table, in place of those of ``physics``, with its own random
+        stream (docs/environment/conditions.md). Infos hold them.
+    observe_conditions : bool, default False
+        Whether observations hold the constants drawn, from -1 to 1.
+    one_stroke : bool, default False
+        Whether an episode ends with its first stroke; in a frame with the first that is no foul, after 20 steps at most.
+        Not of a match.
+    opponent : str or Path, default "none"
+        Of a frame: "none", or what ``snooker_env.player`` takes: a player's name, a model's ``.zip`` and more.
+        Environments also take objects (docs/environment/opponents.md); their options then say "object".
+    trust : bool, default False
+        Of a frame: whether code in an opponent's ``.zip`` may run.
+    miss : str, default "off"
+        Of a frame: "off", "clear_path" or "attempt", the rule for a foul and a miss (docs/environment/rules.md).
+    max_strokes : int or None, default 1000
+        Of a frame: strokes of both players after which the referee stops it and its match; None: never.
+    says : sequence of str, default ()
+        Of a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a free ball;
+        else the one struck first), "decision" (after a foul; box actions only), "concede", "claim" (the frame, where
+        the rules allow it) and "lot" (whether the winner of the lot for a re-spotted black lets the other player begin;
+        else it begins).
+    game : str, default "snooker"
+        Of a frame: "snooker", "six_red" or "shoot_out", the rules of the game (docs/environment/rules.md).
+    time_to_play : float, default 9.0
+        Of a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s], at most 15.
+    frames : int, default 7
+        Of a match: an odd number, the most frames that it can have.
 
     Attributes
     ----------
@@ -231,28 +226,23 @@ class Options:
     game: RulesName = "snooker"
     time_to_play: float = TIME_TO_PLAY
     frames: int = FRAMES
-    nominate: InitVar[bool] = _UNSAID
-    decision: InitVar[bool] = _UNSAID
-    concede: InitVar[bool] = _UNSAID
-    claim: InitVar[bool] = _UNSAID
-    lot: InitVar[bool] = _UNSAID
     rules: Rules = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self, *flags: object) -> None:
-        object.__setattr__(self, "says", _said(self.says, dict(zip(SAYS, flags, strict=True))))
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "says", _order_says(self.says))
         frame = choice("task", self.task, TASKS) != "visit"
         physics, table = self._physics(), table_of(self.table)
         fidelity, noise = parse_fidelity(self.fidelity), Noise.of(self.noise)
         for name, read in (("physics", physics), ("noise", noise)):
             if isinstance(getattr(self, name), dict):  # a dict may change later
                 object.__setattr__(self, name, read)
-        actions = self._actions(physics)
+        actions = self._actions()
         choice("cue", self.cue, CUES)
         default = isinstance(self.layout, str) and self.layout == "default"
         layout = LAYOUTS[self.task] if default else self.layout
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
             layout = f"break_off:{rule_set(self.game).reds}"
-        plan = fitted(layout, table)
+        plan = fit_plan(layout, table)
         kind = choice("observation", self.observation, observations.OBSERVATIONS)
         if kind == "masked" and not isinstance(actions, Choices):
             allowed = 'must be "flat" or "balls" with action="box": a Box has no masks'
@@ -313,14 +303,16 @@ class Options:
                 raise refuse("conditions", "drawn", allowed) from None
         return drawn, observed
 
-    def _actions(self, physics: Physics) -> Actions | Choices:
+    def _actions(self) -> Actions | Choices:
         if choice("action", self.action, ACTIONS) == "box":
-            return Actions(self.aim, self.elevation, self.placement, physics, self.says)
-        for name in ("elevation", "placement", "decision"):
+            return Actions(self.aim, self.elevation, self.placement, self.says)
+        for name in ("elevation", "placement"):
             if getattr(self, name) is not False:
                 raise refuse(name, getattr(self, name), 'must be False with action="discrete"')
+        if "decision" in self.says:
+            raise refuse("says", self.says, 'must not hold "decision" with action="discrete"')
         choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
-        return Choices(physics, self.says)
+        return Choices(self.says)
 
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""
@@ -329,10 +321,8 @@ class Options:
             if only is None or self.task == only or (self.task == "match" and only == "frame"):
                 continue
             if not isinstance(value, (type(f.default), np.bool_)) or value != f.default:
-                says = f.name == "says"
-                name, value, usual = (self.says[0], True, False) if says else (f.name, value, f.default)
-                allowed = f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"'
-                raise refuse(name, value, allowed)
+                allowed = f'must be {f.default!r} with task="{self.task}"; it belongs to task="{only}"'
+                raise refuse(f.name, value, allowed)
 
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
@@ -345,23 +335,11 @@ class Options:
 
     def but(self, **changes: Any) -> "Options":
         """Return a validated copy with some fields changed. ValueError as of ``Options``."""
-        flags = dict.fromkeys(SAYS, _UNSAID) if "says" in changes else {}  # else they are those of this one
-        return replace(self, **flags | changes)
+        return replace(self, **changes)
 
 
 _FIELDS = tuple(f for f in fields(Options) if f.init)
-NAMES = (*(f.name for f in _FIELDS), *SAYS)
-
-
-def _has(name):
-    def has(self) -> bool:
-        return name in self.says
-
-    return property(has, doc=f'Whether ``says`` has "{name}", a bool.')
-
-
-for _name in SAYS:
-    setattr(Options, _name, _has(_name))
+NAMES = tuple(f.name for f in _FIELDS)
 
 
 def observation_space_of(

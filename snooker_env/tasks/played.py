@@ -46,14 +46,14 @@ class Played:
     ] = ()  # what a real cue did to it: "raised", "moved" (its tip, upwards), "unplayable"
 
 
-def judged(seen: list[int]) -> dict[str, Any]:
+def judgement_of(seen: list[int]) -> dict[str, Any]:
     """The fields of ``Played`` that a row of ``ShotBuffers.seen`` holds."""
     cost = {"points": seen[SCORED], "penalty": seen[COST], "fouls": Foul(seen[FOULS])}
     before = {"ball_on": BallOn(seen[WAS_ON]), "free_ball": bool(seen[FREE]), "player": seen[PLAYER]}
     return cost | before | {"first": ids_of(seen[FIRST]), "break_before": seen[BREAK] - seen[SCORED]}
 
 
-def struck(buffers: ShotBuffers, j: int) -> dict[str, float]:
+def strike_of(buffers: ShotBuffers, j: int) -> dict[str, float]:
     """The field ``cue`` of ``Played``, for shot j."""
     names = ("speed", "side", "top", "aim", "elevation")
     return dict(zip(names, buffers.shots[j, CUE_SPEED:ROOM].tolist(), strict=True))

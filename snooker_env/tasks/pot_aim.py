@@ -109,7 +109,7 @@ def _passes(played, positions, b, p, law, work):
 
 
 @kernel
-def _sent(played, far, positions, law, work):
+def _direction_at(played, far, positions, law, work):
     """Direction [rad], from where it lies, in which the cue ball of a stroke of ``stroke_in_room`` is as ``far`` away
     [m], or where it stops."""
     phys, motion, state = law.phys, work.motion, work.state
@@ -139,7 +139,7 @@ def _sent(played, far, positions, law, work):
 @kernel
 def _off(played, line, far, positions, law, work):
     """Angle [rad] from ``line`` to where the stroke ``played`` sends the cue ball, in (-pi, pi]."""
-    off = _sent(played, far, positions, law, work) - line
+    off = _direction_at(played, far, positions, law, work) - line
     return off - 2.0 * pi * round(off / (2.0 * pi))
 
 

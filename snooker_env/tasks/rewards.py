@@ -27,21 +27,14 @@ MATCH_REWARDS = (*FRAME_REWARDS, "frames")
 
 
 @kernel
-def earned(kind, lead, frames_lead):
+def earnings(kind, lead, frames_lead):
     """What PAID counts for the reward ``kind``: a player's lead in frames, or in points."""
     return frames_lead if kind == FRAMES_PAID else lead
 
 
 @kernel
 def frame_reward_of(kind, gained, winner, player):
-    """A step's reward; ``kind``: of ``MATCH_REWARDS``, ``gained``: ``earned`` unpaid, ``winner``: or -1."""
+    """A step's reward; ``kind``: of ``MATCH_REWARDS``, ``gained``: ``earnings`` unpaid, ``winner``: or -1."""
     if kind != WIN_PAID:
         return float(gained)
     return 0.0 if winner < 0 else 1.0 if winner == player else -1.0
-
-
-def frame_reward(name: str, gained: float, winner: int | None, player: int) -> float:
-    """The same for one player of a match; ``gained`` and ``winner`` (or None) are those of player 0."""
-    if name != "win":
-        return float(gained if player == 0 else -gained)
-    return 0.0 if winner is None else 1.0 if winner == player else -1.0

@@ -71,7 +71,7 @@ def check_keys(state: object, keys: Collection[str]) -> None:
         raise refuse_what("state", f"a dict with {unknown}", allowed)
 
 
-def checked_layout(
+def check_layout(
     names: tuple[str, str], positions: Sequence[Vector], on_table: object, table: Table, R: float
 ) -> tuple[Floats, Bools]:
     """The arrays positions (22, 2), on_table (22,); ValueError, with one of ``names``, if not a layout."""
@@ -140,12 +140,12 @@ def check_conditions(
     return {name: number(f"state.conditions.{name}", values[name], *ends) for name, ends in each}
 
 
-def checked(
+def check_visit(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, to_play: bool = False
 ) -> State:
     """The ``State`` of a dict; ValueError names the first wrong part, or if none is left ``to_play``."""
     conditions, table, R = check_conditions(state, VISIT_KEYS, rules), rules.table, rules.physics.R
-    positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
+    positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
     on = integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
     ball_on = balls.BallOn(on)
@@ -167,11 +167,11 @@ def checked(
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"], conditions)
 
 
-def checked_frame(state: Mapping[str, Any], rules: Rules, generator: np.random.Generator) -> FrameState:
+def check_frame_state(state: Mapping[str, Any], rules: Rules, generator: np.random.Generator) -> FrameState:
     """The ``FrameState`` that a dict describes, under these rules; ValueError names the first wrong part."""
     conditions = check_conditions(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R
-    positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
+    positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
     frame = Frame.from_dict(state["frame"], "state.frame")
     strokes = integer("state.strokes", state["strokes"], 0, MOST)
     for k, points in enumerate(frame.scores):
@@ -180,7 +180,7 @@ def checked_frame(state: Mapping[str, Any], rules: Rules, generator: np.random.G
         raise refuse("state.frame.miss", frame.miss, f"must be {miss!r}, as this environment plays")
     if frame.rules != rules.game:
         raise refuse("state.frame.rules", frame.rules, f"must be {rules.game!r}, as this environment plays")
-    if frame.phase == "lot" and not rules.actions.lot:
+    if frame.phase == "lot" and "lot" not in rules.actions.says:
         allowed = "must not be between two steps: the lot is drawn in the step of the stroke before"
         raise refuse("state.frame.phase", frame.phase, allowed)
     if frame.phase != "over":
@@ -190,7 +190,7 @@ def checked_frame(state: Mapping[str, Any], rules: Rules, generator: np.random.G
         in_d = frame.in_hand and not frame.anywhere
         check_in_hand("state.frame.in_hand", in_d, "state.positions", positions)
     if frame.saved is not None:
-        frame = replace(frame, saved=_checked_saved(frame, table, R))
+        frame = replace(frame, saved=_check_saved(frame, table, R))
     stream = check_stream(state["stream"])
     check_rng(state["rng"], generator)
     opponent = integer("state.opponent", state["opponent"], 0, MOST)
@@ -199,11 +199,11 @@ def checked_frame(state: Mapping[str, Any], rules: Rules, generator: np.random.G
     made = FrameState(*one, conditions=conditions)
     if not rules.frames:
         return made
-    frames, first_break = _checked_match(state, frame, rules.frames)
+    frames, first_break = _check_match(state, frame, rules.frames)
     return made._replace(frames=frames, first_break=first_break, best_of=rules.frames)
 
 
-def _checked_match(state, frame, best_of):
+def _check_match(state, frame, best_of):
     """The frames won and who broke first, of a match of ``best_of`` frames."""
     if integer("state.best_of", state["best_of"], 1, MOST) != best_of:
         raise refuse("state.best_of", state["best_of"], f"must be {best_of}, as this environment plays")
@@ -218,7 +218,7 @@ def _checked_match(state, frame, best_of):
     return won, integer("state.first_break", state["first_break"], 0, 1)
 
 
-def _checked_saved(frame, table, R):
+def _check_saved(frame, table, R):
     """The position to which a frame may return, with its layout checked like that of the state itself."""
     saved, field = frame.saved, "state.frame.saved.layout"
     if saved.layout is None and not frame.miss_called:
@@ -227,7 +227,7 @@ def _checked_saved(frame, table, R):
         raise refuse_what(field, "a layout", 'must be None with miss = "off": no position is ever replaced')
     if not isinstance(saved.layout, tuple) or len(saved.layout) != 2:
         raise refuse(field, saved.layout, "must be positions and on_table, as they were before the foul")
-    positions, on_table = checked_layout((f"{field}[0]", f"{field}[1]"), *saved.layout, table, R)
+    positions, on_table = check_layout((f"{field}[0]", f"{field}[1]"), *saved.layout, table, R)
     if balls.mask_of_present(on_table) != saved.on_table | balls.CUE_BIT:
         allowed = "must hold the cue ball and the balls of state.frame.saved.on_table, no others"
         raise refuse(f"{field}[1]", on_table.tolist(), allowed)

@@ -23,9 +23,9 @@ from ..physics.table import Table
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from ..simulation.count import count
 from . import discrete_actions
-from .arrays import CueLaw, StruckArrays
+from .arrays import C_E_T, C_END_MASS, C_MAX_OFFSET, C_MU_S, C_RAILS, CueLaw, StruckArrays
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
-from .declarations import A_DISCRETE, A_E_T, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_PLACEMENT, A_RAILS, playable
+from .declarations import A_DISCRETE, A_PLACEMENT, playable
 from .lines import new_work
 from .noise import executed, kick_of
 from .options import Rules
@@ -60,7 +60,7 @@ def _played_into(positions, ball, vx, vy, time):
 
 
 @kernel
-def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
+def find_first_contact(event_time, event_what, n_events, touching, positions, vx, vy):
     """Masks, from a shot's log, of the balls struck first, and of the ``touching`` ones that it was played
     into, a push stroke; one that it meets later off a cushion is struck but not moved in leaving."""
     first, moved, start = 0, 0, np.inf
@@ -103,10 +103,10 @@ def reached_cushion(event_what, n_events):
 
 
 @kernel
-def played_in(intended, positions, on_table, options, shot):
+def played_in(intended, positions, on_table, cue_row, shot):
     """The stroke that is ``intended`` (speed, side, top, aim of the cue, elevation) as the cue has room for it; what
     was done is recorded in the row ``shot``."""
-    rails, most = options[A_RAILS:], options[A_MAX_OFFSET]
+    rails, most = cue_row[C_RAILS:], cue_row[C_MAX_OFFSET]
     played, shot[ROOM] = in_room(intended, positions, on_table, rails, BALL_RADIUS, most)
     for c in range(5):
         shot[MEANT + c] = intended[c]
@@ -114,16 +114,16 @@ def played_in(intended, positions, on_table, options, shot):
 
 
 @kernel
-def strike_with(intended, struck, positions, on_table, options, j, shots):
+def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
     """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, for which there is room, with errors.
     The cue is raised once more where these took its room."""
     speed, side, top, aim, elevation = struck
-    side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
+    side, top = tip_on_disc(side, top, cue_row[C_MAX_OFFSET])
     if side != intended[1] or top != intended[2] or aim != intended[3] or elevation != intended[4]:
-        elevation = raised((side, top, aim, elevation), positions, on_table, options[A_RAILS:], BALL_RADIUS)
+        elevation = raised((side, top, aim, elevation), positions, on_table, cue_row[C_RAILS:], BALL_RADIUS)
     shot, r, v, w, aloft, here = shots.shots[j], shots.r, shots.v, shots.w, shots.aloft, shots.here
-    mu_s, m = options[A_MU_S], options[A_END_MASS]
-    after = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m, options[A_E_T])
+    mu_s, m = cue_row[C_MU_S], cue_row[C_END_MASS]
+    after = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m, cue_row[C_E_T])
     (shot[VX], shot[VY], shot[UZ]), (shot[WX], shot[WY], shot[WZ]) = after
     shot[SPEED] = intended[0]
     shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
@@ -135,11 +135,11 @@ def strike_with(intended, struck, positions, on_table, options, j, shots):
 
 
 @kernel
-def strike(intended, positions, on_table, stream, options, noise, j, shots):
+def strike(intended, positions, on_table, stream, cue_row, noise, j, shots):
     """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``executed``), as far as there is room
     for the cue, with errors."""
-    meant = played_in(intended, positions, on_table, options, shots.shots[j])
-    strike_with(meant, executed(*meant, noise, stream), positions, on_table, options, j, shots)
+    meant = played_in(intended, positions, on_table, cue_row, shots.shots[j])
+    strike_with(meant, executed(*meant, noise, stream), positions, on_table, cue_row, j, shots)
     shots.kicks[j] = kick_of(noise, stream)
 
 
@@ -160,27 +160,27 @@ def row_of(k, rows):
 
 
 @kernel
-def _same_constants(k, before, options, phys):
+def _same_constants(k, before, cues, phys):
     """Whether two tables have the same cue and constants."""
     differ = 0
     if phys.shape[0] > 1:
-        differ += options[k, A_END_MASS] != options[before, A_END_MASS]
+        differ += cues[k, C_END_MASS] != cues[before, C_END_MASS]
         for c in range(phys.shape[1]):
             differ += phys[k, c] != phys[before, c]
     return differ == 0
 
 
-@entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen, shot_of))
+@entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.solve_choice, shot_of))
 def address(which, actions, tables, shots, packed, fidelity):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike; ``packed``: of ``Tables``."""
     positions, on_table, game, streams, nominated = tables
-    shots, (every, noise, phys), work = StruckArrays(*shots), packed, new_work()
+    shots, (options, cues, noise, phys), work = StruckArrays(*shots), packed, new_work()
     solved, mask_before = np.empty(6), 0  # the last choice, and the stroke that it means
     for j in range(which.shape[0]):
         k = which[j]
-        a, p, on, options = actions[k], positions[k], on_table[k], every[row_of(k, every)]
-        most, rails = options[A_MAX_OFFSET], options[A_RAILS:]
-        law = CueLaw(phys[row_of(k, phys)], options[A_END_MASS], fidelity[0], fidelity[1], most, rails)
+        a, p, on, cue_row = actions[k], positions[k], on_table[k], cues[row_of(k, cues)]
+        most, rails = cue_row[C_MAX_OFFSET], cue_row[C_RAILS:]
+        law = CueLaw(phys[row_of(k, phys)], cue_row[C_END_MASS], fidelity[0], fidelity[1], most, rails)
         if game[k, IN_HAND] and options[A_PLACEMENT]:
             anywhere = game.shape[1] > ANYWHERE and game[k, ANYWHERE] != 0
             x, y = place_anywhere_of(a, options) if anywhere else place_of(a, options)
@@ -189,15 +189,15 @@ def address(which, actions, tables, shots, packed, fidelity):
         if options[A_DISCRETE]:
             # a planner plays a choice under several errors in succession: its aim is solved once
             before, new = which[max(0, j - 1)], j == 0 or a[0] != solved[0] or mask != mask_before
-            new = new or not _same_constants(k, before, every, phys)
+            new = new or not _same_constants(k, before, cues, phys)
             if new or not _same_table(p, on, positions[before], on_table[before]):
-                chosen = discrete_actions.chosen(int(a[0]), p, on, mask, law, work)
+                chosen = discrete_actions.solve_choice(int(a[0]), p, on, mask, law, work)
                 solved[0], mask_before = a[0], mask
                 solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
             intended = (solved[1], solved[2], solved[3], solved[4], solved[5])
         else:
             intended = shot_of(a, p, on, mask, options, law, work)
-        strike(intended, p, on, streams[k], options, noise, j, shots)
+        strike(intended, p, on, streams[k], cue_row, noise, j, shots)
 
 
 @kernel
@@ -207,7 +207,7 @@ def see(j, shots, positions, on_table):
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
     log = shots.event_time[j], shots.event_what[j], shots.n_events[j]
-    first, moved = first_struck(*log, touching, positions, shot[VX], shot[VY])
+    first, moved = find_first_contact(*log, touching, positions, shot[VX], shot[VY])
     down = off = 0
     for i in range(N_BALLS):
         if shots.potted[j, i] >= 0:
@@ -283,10 +283,10 @@ class ShotBuffers:
 def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
     """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each."""
     count(m)
-    _simulated(buffers, m, rules, phys)
+    _simulate(buffers, m, rules, phys)
 
 
-def _simulated(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
+def _simulate(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
     """The same without counting them."""
     table = rules.table
     buffers.enlarged = {}
@@ -307,7 +307,7 @@ def run_again(
     while status == Status.LOG_FULL:
         one = buffers.again(j, 4 * one.log)
         one.r[0], one.here[0] = positions, on_table
-        _simulated(one, 1, rules, phys)  # counted already
+        _simulate(one, 1, rules, phys)  # counted already
         status = one.status[0]
     if status != Status.OK:
         raise SimulationError(f"the shot on table {k} {_WHY[Status(status)]}")
@@ -321,5 +321,5 @@ def with_path(
     """Play shot j, which came to rest, once more with its path, uncounted; returns its own buffers."""
     one = buffers.again(j, buffers.log, path=True)
     one.r[0], one.here[0] = positions, on_table
-    _simulated(one, 1, rules, phys)
+    _simulate(one, 1, rules, phys)
     return one

@@ -62,7 +62,7 @@ def _check_pockets(cloth: Table) -> None:
             raise refuse("table", cloth.name, allowed)
 
 
-def fitted(layout: str, cloth: Table) -> Plan:
+def fit_plan(layout: str, cloth: Table) -> Plan:
     """The ``Plan`` of a layout on a table, without the stored tables that do not fit its pockets."""
     plan = plan_of(layout)
     return plan_of(layout, _unfit(cloth, STORED_IN[layout][0])) if len(plan.tables) else plan

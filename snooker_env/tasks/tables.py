@@ -12,19 +12,18 @@ from .._lib.types import Bools, Floats, Ints, Masks, Singles, Words
 from ..game.balls import N_BALLS, BallOn, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import pair, stream_of
-from ..physics.columns import CONSTANTS
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import END_MASS_RATIO, drawn, normalised
 from ..physics.conditions import NAMES as CONDITION_NAMES
 from ..physics.parameters import Physics, nominal, pack_into, physics_with
 from ..simulation.shot import Shot
 from . import discrete_actions, stroke
+from .arrays import C_END_MASS, Packed
 from .box_actions import Actions
-from .declarations import A_END_MASS
 from .discrete_actions import Choices
 from .noise import Noise
 from .options import NEVER, Rules
-from .played import Played, judged, room_of, struck
+from .played import Played, judgement_of, room_of, strike_of
 from .states import FrameState, State
 
 REALS = ("points", "break", "seconds")
@@ -83,8 +82,6 @@ def uniform(which, streams, out):
             out[j, c], out[j, c + 1] = pair(streams[which[j]])
 
 
-Packed: TypeAlias = tuple[Floats, Floats, Floats]
-"""Action's options, noise's deviations and physical parameters: the first and the last one row, or one a table."""
 Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
 """Work on some tables, called as ``task(which, buffers)``."""
 Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
@@ -144,7 +141,7 @@ class Crew:
 
 
 _T = TypeVar("_T", bound="Tables")
-STROKES_ONLY = Choices(Physics()).pack()
+STROKES_ONLY = Choices().pack()
 """Packed options of discrete actions that only choose a stroke, for tables whose own actions are a box."""
 
 
@@ -167,7 +164,8 @@ class Tables(ABC):
     streams: Words  # (n, 2) key and counter of each table's random stream
     nominated: Ints = np.empty(0, np.int64)  # (n,) of frames: what each striker has nominated
     begun: Bools  # (n,) which tables have an episode, possibly one that has ended
-    packed: Packed  # with a row for each table if the conditions are drawn
+    cues: Floats  # packed: one row, or one a table if the conditions are drawn
+    phys: Floats  # packed constants, likewise
     conditions: Floats  # (n, 8) constants drawn, of ``physics.conditions``; without rows if they are fixed
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
@@ -178,14 +176,20 @@ class Tables(ABC):
         self.streams = np.zeros((n, 2), np.uint64)
         self.begun = np.zeros(n, np.bool_)
         self.reals = self.REALS
-        self.conditions, self._phys = np.empty((0, CONDITIONS)), np.empty((0, CONSTANTS))
+        self.conditions = np.empty((0, CONDITIONS))
+        options, self.cues, errors, self.phys = rules.pack()
+        self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)  # of each seat
         if rules.drawn:
             self.reals = (*self.REALS, *CONDITION_NAMES)
             self.conditions = np.tile(nominal(rules.physics), (n, 1))
-            self._phys = np.tile(rules.physics.pack(), (n, 1))
+            self.cues, self.phys = np.repeat(self.cues, n, axis=0), np.tile(rules.physics.pack(), (n, 1))
         if rules.observed:
             self.SIZE = type(self).SIZE + CONDITIONS
-        self.packed = self.own_rows(rules.packed())
+
+    def pack(self, side: int = 0) -> Packed:
+        """The rules for the kernels, with the actions and errors of the seat ``side``."""
+        options, errors = self._own[side]
+        return options, self.cues, errors, self.phys
 
     @property
     def arrays(self) -> tuple[Any, ...]:
@@ -196,15 +200,12 @@ class Tables(ABC):
         """Give table k a new stream with a key drawn from a NumPy generator."""
         self.streams[k] = stream_of(rng)
 
-    def output(self, *, last: bool = False, arrays: Mapping[str, Any] | None = None) -> StepOutput:
-        """New arrays for the results of a step or reset, except for ``arrays`` by name."""
+    def output(self, *, last: bool = False) -> StepOutput:
+        """New arrays for the results of a step or reset."""
         nobody = np.empty(0, np.int64)
         choices = self.action_masks(nobody).shape[1] if self.rules.observation == "masked" else 0
         sizes = self.n, self.SIZE, len(self.reals), len(self.COUNTS)
         out = StepOutput(*sizes, last=last, choices=choices)
-        for name, array in (arrays or {}).items():
-            array[...] = 0
-            setattr(out, name, array)
         self.show_conditions(slice(None), out)
         return out
 
@@ -223,17 +224,17 @@ class Tables(ABC):
         infos["foul"] = infos["fouls"] != 0
         return infos | {f"_{name}": present.copy() for name in infos}
 
-    def played(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
+    def record(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
         """The stroke just played on table k, shot j of the buffers, and the table after it."""
         game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
         if seen[stroke.SCORED]:
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
-        shot = {"shot": self.shot(k, buffers, j), "cue": struck(buffers, j), "room": room_of(buffers, j)}
+        shot = {"shot": self.shot(k, buffers, j), "cue": strike_of(buffers, j), "room": room_of(buffers, j)}
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
         after = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
         who = {"cue_kind": self.rules.cue, "noise": self.noise_of(seen[stroke.PLAYER])}
-        return Played(**shot, **who, **balls, **after, **judged(seen), **standing)
+        return Played(**shot, **who, **balls, **after, **judgement_of(seen), **standing)
 
     def noise_of(self, player: int) -> Noise:
         """The errors of a player."""
@@ -256,8 +257,8 @@ class Tables(ABC):
         """``action_masks`` of one space of actions."""
         choices = actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE
         out = np.empty((len(which), choices), np.bool_)
-        options = self.rules.with_rails(actions.pack() if isinstance(actions, Choices) else STROKES_ONLY)
-        discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
+        reads = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY, self.rules.cue_row
+        discrete_actions.masks(which, self.positions, self.on_table, self.game, *reads, out)
         return out
 
     def show_masks(self, which: Ints, masks: Masks) -> None:
@@ -285,25 +286,9 @@ class Tables(ABC):
         for name, value in vars(self).items():
             setattr(one, name, value[here] if name in self._columns() else value)
         one.n = 1
-        if self.rules.drawn:
-            one._take_rows(here)
         return one
 
     # the constants of tables
-
-    def own_rows(self, packed: Packed) -> Packed:
-        """``packed`` with a row for each table, if they differ."""
-        if not self.rules.drawn:
-            return packed
-        return np.repeat(packed[0], self.n, axis=0), packed[1], self._phys
-
-    def _every_pack(self) -> tuple[Packed, ...]:
-        return (self.packed,)
-
-    def _take_rows(self, here: slice) -> None:
-        """Of each pack only these rows, as views."""
-        options, noise, phys = self.packed
-        self.packed = options[here], noise, phys[here]
 
     def draw_conditions(self, which: Ints) -> None:
         """Draw the constants of the tables ``which`` from their own streams; nothing if they are fixed."""
@@ -315,9 +300,8 @@ class Tables(ABC):
     def set_conditions(self, which: Ints, values: Floats) -> None:
         """Give the tables ``which`` these constants (len(which), 8)."""
         self.conditions[which] = values
-        pack_into(self._phys, which, values, self.rules.physics)
-        for options, _, _ in self._every_pack():
-            options[which, A_END_MASS] = values[:, END_MASS_RATIO]
+        pack_into(self.phys, which, values, self.rules.physics)
+        self.cues[which, C_END_MASS] = values[:, END_MASS_RATIO]
 
     def show_conditions(self, which: Ints | slice, out: StepOutput) -> None:
         """Write the constants of the tables ``which`` into the results of a step, if they are drawn."""
@@ -333,29 +317,25 @@ class Tables(ABC):
 
     def world(self, k: int) -> tuple[Rules, Floats]:
         """The rules, and the packed constants of table k: one row."""
-        phys = self.packed[2]
-        return self.rules, phys if len(phys) == 1 else phys[k : k + 1]
+        return self.rules, self.phys if len(self.phys) == 1 else self.phys[k : k + 1]
 
     def _columns(self) -> tuple[str, ...]:
         """Names of the attributes that hold one row for each table."""
-        own = ("conditions", "_phys") if self.rules.drawn else ()
+        own = ("conditions", "cues", "phys") if self.rules.drawn else ()
         return ("positions", "on_table", "game", "streams", "begun", *own)
 
     def interrupted(self) -> None:
         """A step or reset was cut short: tables at which it is not the agent's turn need a reset."""
         return
 
-    def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers) -> None:
-        """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
-        self.strike(which, actions, buffers, self.packed)
-
-    def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: Packed) -> None:
-        """``address`` with the options and errors of ``packed``."""
-        stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
+    def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, side: int = 0) -> None:
+        """Carry the actions (n, k) of the seat ``side`` out up to the strike, on the tables ``which``."""
+        packed, fidelity = self.pack(side), self.rules.fidelity
+        stroke.address(which, actions, self.arrays, buffers.struck, packed, fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots that have been struck; returns the rows of those that need ``again``."""
-        m, phys = len(which), self.packed[2]
+        m, phys = len(which), self.phys
         stroke.run(buffers, m, self.rules, phys if len(phys) == 1 else phys[which])
         status = buffers.status[:m]
         return np.flatnonzero(status).tolist() if status.any() else []
@@ -398,7 +378,7 @@ class Tables(ABC):
             self.set_conditions(np.array([k]), np.array([list(state.conditions.values())]))
 
     @abstractmethod
-    def checked(
+    def check_state(
         self, state: Mapping[str, Any], generator: np.random.Generator, *, to_play: bool = False
     ) -> State | FrameState:
         """The valid state that a dict describes; ValueError if it is none, or no shot is left ``to_play``."""

@@ -19,7 +19,7 @@ from ..physics.engine import Status
 from .arrays import OutputArrays, PlayedArrays
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
-from .states import State, checked
+from .states import State, check_visit
 from .stroke import JUMPED, ShotBuffers, see, write_ruling
 from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_info, write_stroke_info
 
@@ -154,10 +154,10 @@ class Visits(Tables):
         visit = {"ball_on": ball_on, "in_hand": bool(in_hand), "points": points, "over": bool(over)}
         return super().get_state(k) | visit
 
-    def checked(
+    def check_state(
         self, state: Mapping[str, Any], generator: np.random.Generator, *, to_play: bool = False
     ) -> State:
-        return checked(state, self.rules, generator, to_play=to_play)
+        return check_visit(state, self.rules, generator, to_play=to_play)
 
     def set_state(self, k: int, state: State) -> None:
         """See ``Tables.set_state``; its steps are counted from 0."""

@@ -9,7 +9,7 @@ from math import asin, atan2, cos, floor, hypot, pi, sin, sqrt
 
 from .._lib.jit import kernel
 from ..game.balls import N_BALLS
-from ..game.lines import met
+from ..game.lines import find_first_ball
 from ..geometry import BALL_RADIUS
 
 LOW, HIGH, EDGE = range(3)
@@ -32,7 +32,7 @@ def towards(positions, ball):
 
 
 @kernel
-def turned(angle):
+def wrap_angle(angle):
     """An angle as the same one in [-pi, pi] [rad]."""
     return angle - 2.0 * pi * floor(angle / (2.0 * pi) + 0.5)
 
@@ -80,7 +80,7 @@ def open_windows(positions, on_table, on, touching, windows):
         here = windows[k % n, EDGE] + 2.0 * pi * (k // n)
         end = windows[(k + 1) % n, EDGE] + 2.0 * pi * ((k + 1) // n)
         angle, was_open = 0.5 * (here + end), is_open
-        is_open = (wanted >> met(positions, on_table, x, y, cos(angle), sin(angle), 1e9)) & 1 != 0
+        is_open = (wanted >> find_first_ball(positions, on_table, x, y, cos(angle), sin(angle), 1e9)) & 1 != 0
         if shut < 0:
             shut, is_open = (-1 if is_open else k), False
         elif is_open and not was_open:
@@ -105,7 +105,7 @@ def room(windows, count, angle):
     most = 0.0
     for k in range(count):
         half = 0.5 * (windows[k, HIGH] - windows[k, LOW])
-        most = max(most, half - abs(turned(angle - windows[k, LOW] - half)))
+        most = max(most, half - abs(wrap_angle(angle - windows[k, LOW] - half)))
     return most
 
 
@@ -116,7 +116,7 @@ def open_part(positions, ball, windows, count):
     best, widest = middle, 0.0
     for k in range(count):
         wide = 0.5 * (windows[k, HIGH] - windows[k, LOW])
-        off = turned(windows[k, LOW] + wide - middle)
+        off = wrap_angle(windows[k, LOW] + wide - middle)
         low, high = max(-half, off - wide), min(half, off + wide)
         if 0.5 * (high - low) > widest:
             best, widest = middle + 0.5 * (low + high), 0.5 * (high - low)

@@ -36,7 +36,7 @@ class Aiming:
 class OfFrames:
     """Sees frames: its score, which is 0 in a visit, and the balls."""
 
-    options: ClassVar = {"task": "frame", "aim": "absolute", "decision": True}
+    options: ClassVar = {"task": "frame", "aim": "absolute", "says": ["decision"]}
     seen: ClassVar = []
 
     def act(self, observations, masks, seeds):

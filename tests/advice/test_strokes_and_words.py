@@ -16,8 +16,8 @@ from tests.shots import shot
 
 def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
     stroke = CueStroke(speed=3.1, aim=2.5, side=-0.2, top=0.3, elevation=0.2, place=(0.1, -1.2))
-    actions = box_actions.Actions("absolute", True, True, sn.Physics(), ("decision",))
-    options = sn.Options(task="frame", aim="absolute", elevation=True, placement=True, decision=True)
+    actions = box_actions.Actions("absolute", True, True, ("decision",))
+    options = sn.Options(task="frame", aim="absolute", elevation=True, placement=True, says=["decision"])
     at = sn.Positions.of(OPEN)
     (a,) = stroke.strokes().actions(options, at)
     places, on_table, _ = OPEN.arrays()

@@ -18,12 +18,12 @@ class Softly:
 
 
 class Decides(Softly):
-    options: ClassVar = {"aim": "target", "decision": True}
+    options: ClassVar = {"aim": "target", "says": ["decision"]}
 
 
 class Names(Softly):
-    more = dict.fromkeys(("decision", "nominate", "concede", "lot"), True)
-    options: ClassVar = {"task": "frame", "aim": "target", **more}
+    says: ClassVar = ["nominate", "decision", "concede", "lot"]
+    options: ClassVar = {"task": "frame", "aim": "target", "says": says}
     action = (-0.4, 0, 0, 0, 0.9, -1, 0)
 
     def act(self, observations, masks, seeds):

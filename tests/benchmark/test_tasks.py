@@ -100,11 +100,11 @@ def test_what_is_free_is_taken():
     env = gymnasium.make("SnookerBreak-v0", render_mode="ansi", **free)
     assert env.action_space.shape == (7,) and env.observation_space["state"].shape == (11,)
     assert gymnasium.make("SnookerBreakClub-v0", action="discrete").action_space.n > 100
-    assert gymnasium.make("SnookerFrame-v0", decision=True, placement=True).action_space.shape == (7,)
+    assert gymnasium.make("SnookerFrame-v0", says=["decision"], placement=True).action_space.shape == (7,)
     envs = many("SnookerEscape-v0", 3, threads=1, autoreset_mode="SameStep", aim="target")
     assert envs.reset(seed=1)[0].shape == (3, OBSERVATION_SIZE) and envs.threads == 1
     with pytest.raises(ValueError, match='belongs to task="frame"'):
-        gymnasium.make("SnookerBreak-v0", decision=True)
+        gymnasium.make("SnookerBreak-v0", says=["decision"])
 
 
 def test_an_escape_is_one_stroke_whose_reward_is_1_if_it_is_legal():

@@ -73,17 +73,34 @@ def tables(heading):
     return [[table[0], *table[2:]] for table in rows]
 
 
-def defaults(table):
-    """Name -> default, of a table of options; a row may have several names."""
-    rows = [(re.findall(r"`(\w+)`", row[0]), ast.literal_eval(row[1].strip("`"))) for row in table[1:]]
-    return {name: default for names, default in rows for name in names}
+def options_table():
+    """The specification's table of options, made from what ``Options`` declares: defaults and docstring.
 
-
-def test_options_have_the_defaults_that_are_printed():
-    of_all, of_one = map(defaults, tables("Options"))
+    ``python -m tests.docs.test_pages`` writes it into the page."""
+    text = inspect.cleandoc(sn.Options.__doc__ or "").partition("Parameters\n----------\n")[2]
+    said = re.findall(
+        r"^(\w+) : .* default (.*)\n((?:    .*\n)+)", text.partition("Attributes")[0], re.MULTILINE
+    )
     fields = {field.name: field.default for field in dataclasses.fields(sn.Options) if field.init}
-    assert of_all == fields
+    assert {name: ast.literal_eval(default) for name, default, _ in said} == fields
+    lines = ["| name | default | meaning |", "|---|---|---|"]
+    for name, default, words in said:
+        words = " ".join(words.split()).replace("``", "`")
+        words = re.sub(r"docs/environment/(\w+)\.md", r"[\1](\1.md)", words)
+        words = re.sub(r"docs/(\w+)/(\w+)\.md", r"[\2](../\1/\2.md)", words)
+        lines.append(f"| `{name}` | `{default}` | {words} |")
+    return "\n".join(lines) + "\n"
+
+
+_PRINTED = re.compile(r"(?<=`Table`, an opponent\.\n\n)(?:\|.*\n)+")
+
+
+def test_the_table_of_options_is_the_one_that_their_declarations_make():
+    (printed,) = _PRINTED.findall(PAGE)
+    assert printed == options_table(), "run python -m tests.docs.test_pages"
+    ((_, *rows),) = tables("Options")[1:]
     signature = inspect.signature(sn.SnookerEnv).parameters
+    of_one = {row[0].strip("`"): ast.literal_eval(row[1].strip("`")) for row in rows}
     assert of_one == {name: signature[name].default for name in ("options", "render_mode", "render_size")}
 
 
@@ -95,3 +112,8 @@ def test_noise_levels_have_the_numbers_that_are_printed():
     for row in rows:
         numbers = [getattr(LEVELS[level], row[0].strip("`")) for level in levels]
         assert [float(cell) for cell in row[2:]] == numbers, row[0]
+
+
+if __name__ == "__main__":
+    path = ROOT / "docs/environment/specification.md"
+    path.write_text(_PRINTED.sub(lambda _: options_table(), PAGE), encoding="utf-8")

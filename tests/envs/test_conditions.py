@@ -187,7 +187,7 @@ def test_a_view_of_one_table_is_that_table():
     assert [one.mu_s for one in many.call("physics")] == many.tables.conditions[:, 0].tolist()
     assert many.call("get_state")[2]["conditions"] == many.get_state()[2]["conditions"]
     view = many.tables.view(2)
-    assert (view.packed[2] == many.tables.packed[2][2:]).all()
+    assert (view.phys == many.tables.phys[2:]).all()
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ LAYOUTS = (
 )
 NOISE = "must be one of 'none', 'professional', 'amateur', 'club', 'robot', 'olympiad' or a dict of"
 REWARDS = "must be one of 'points', 'points_and_fouls', 'pots', 'legal'"
-FLAGS = ("elevation", "placement", "decision", "trust", "nominate", "concede", "claim", "lot", "one_stroke")
+FLAGS = ("elevation", "placement", "trust", "one_stroke")
 DEVIATIONS = ("aim_deg", "speed_rel", "speed_abs", "offset_mm", "elevation_deg")
 OPPONENTS = "'none', 'random', 'ghost_ball', "
 RENDER_MODES = "must be one of 'human', 'rgb_array', 'ansi'"
@@ -66,7 +66,7 @@ WRONG = [
     (FRAME | {"game": "shoot_out"}, "miss", "must be", ("clear_path",)),
     (FRAME | {"game": "six_red"}, "time_to_play", "must be", (5.0,)),
     (FRAME | {"game": "shoot_out"}, "time_to_play", "must be", (0.0, 15.001)),  # none would be in time
-    (FRAME | DISCRETE, "decision", "must be False", (True,)),
+    (FRAME | DISCRETE, "says", 'must not hold "decision"', (("decision",),)),
     ({"task": "match"}, "frames", "must be odd", (2,)),
     ({"task": "match"}, "frames", "must be", (0, True, "7")),
     (DISCRETE, "elevation", "must be False", (True,)),
@@ -77,7 +77,7 @@ WRONG = [
     ({}, "render_mode", RENDER_MODES, ("", "Human", "depth_array", 3, True, ["ansi"])),
     ({}, "opponent", "must be 'none' with task=\"visit\"", ("random",)),
     ({}, "miss", "must be 'off' with task=\"visit\"", ("clear_path",)),
-    *[({}, field, 'must be False with task="visit"', (True,)) for field in FLAGS[2:8]],
+    *[({}, field, 'must be False with task="visit"', (True,)) for field in FLAGS[2:3]],
     ({}, "frames", 'must be 7 with task="visit"', (5,)),
     ({}, "game", "must be 'snooker' with task=\"visit\"", ("six_red",)),
     ({}, "time_to_play", 'must be 9.0 with task="visit"', (5.0,)),
@@ -94,7 +94,7 @@ ENV = [
         for w in (-0.1, NAN, INF, "0.1", None, True)
     ],
     case(make(task="frame", says=["shout"]), "says", "'shout'", "must be one of 'nominate', 'decision'"),
-    case(make(says=["lot"]), "lot", "True", 'must be False with task="visit"', "visit-says"),
+    case(make(says=["lot"]), "says", "('lot',)", 'must be () with task="visit"', "visit-says"),
     case(make(physics={"R": 0.03}), "physics.R", "0.03", "must be 0.02625 in Snooker-v0"),
     case(make(physics={"mu_s": 0.0}), "physics.mu_s", "0.0", "must be > 0"),
     case(make(noise={"aim": 0.1}), "noise field", "'aim'", "must be one of 'aim_deg', 'speed_rel'"),

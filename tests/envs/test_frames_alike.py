@@ -13,15 +13,18 @@ from tests.tables import begun, plain
 
 pytest.importorskip("pettingzoo")
 
-PLAIN = {"aim": "target", "noise": "club", "placement": True, "decision": True}
-SAID = {"nominate": True, "concede": True, "claim": True, "lot": True}
+SAYS = ["nominate", "decision", "concede", "claim", "lot"]
+PLAIN = {"aim": "target", "noise": "club", "placement": True, "says": ["decision"]}
+SAID = {"says": ["nominate", "concede", "claim", "lot"]}
 CHOICES = {"action": "discrete", "noise": "amateur"}
 FRAMES = {"layout": "colours", "reward": "frames", "miss": "clear_path"}
 KINDS = {
     "plain": PLAIN | {"task": "frame", "layout": "random:1"},
     "miss": PLAIN | {"task": "frame", "layout": "random:2", "miss": "clear_path", "reward": "win"},
-    "everything said": PLAIN | SAID | {"task": "frame", "layout": "random:1", "miss": "clear_path"},
-    "a match": PLAIN | SAID | {"task": "match", "frames": 3, "layout": "random:0", "max_strokes": 90},
+    "everything said": PLAIN | {"says": SAYS} | {"task": "frame", "layout": "random:1", "miss": "clear_path"},
+    "a match": PLAIN
+    | {"says": SAYS}
+    | {"task": "match", "frames": 3, "layout": "random:0", "max_strokes": 90},
     "frames of a match": PLAIN | FRAMES | {"task": "match", "frames": 5},
     "discrete": SAID | CHOICES | {"task": "match", "frames": 3, "layout": "random:1"},
 }
@@ -57,12 +60,12 @@ class Played:
     def _action(self, env, rng):
         if env.options.action == "discrete":
             mask = env.action_mask(env.agent_selection)
-            if rng.uniform() > 0.02 and env.options.concede:
+            if rng.uniform() > 0.02 and "concede" in env.options.says:
                 mask[3780] = False
             return int(rng.choice(np.flatnonzero(mask)))
         a = rng.uniform(-1, 1, env.action_space(PLAYERS[0]).shape)
         a[1:4] *= 0.3
-        if env.options.concede and rng.uniform() > 0.02:
+        if "concede" in env.options.says and rng.uniform() > 0.02:
             a[-1] = abs(a[-1])
         return a
 

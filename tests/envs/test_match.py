@@ -19,7 +19,7 @@ from pettingzoo.test import api_test, render_test, seed_test
 
 WIN = {"layout": "colours", "aim": "target", "reward": "win"}
 CHOICES = {"action": "discrete", "layout": "random:2"}
-MATCH = {"frames": 3, "layout": "pots:easy", "nominate": True, "concede": True}
+MATCH = {"frames": 3, "layout": "pots:easy", "says": ["nominate", "concede"]}
 
 
 @pytest.mark.parametrize("options", [{"aim": "target"}, {"max_strokes": 20}, WIN, CHOICES, MATCH | CHOICES])
@@ -29,7 +29,7 @@ def test_pettingzoo_checks_its_interface(options, strict, capsys):
 
 
 MASKED = {"action": "discrete", "observation": "masked"}
-SAID = {"nominate": True, "concede": True, "claim": True, "lot": True}
+SAID = {"says": ["nominate", "concede", "claim", "lot"]}
 
 
 @pytest.mark.parametrize("options", [{"observation": "balls"}, MASKED, MASKED | SAID, MASKED | {"frames": 3}])
@@ -164,10 +164,10 @@ def actions_of(options, rng, masks):
     """Random actions on N tables: near a pot, or available choices."""
     if options.get("action") == "discrete":
         return np.array([rng.choice(np.flatnonzero(mask)) for mask in masks])
-    longer = sum(bool(options.get(name)) for name in ("nominate", "decision", "concede"))
-    a = rng.uniform(-1, 1, (N, 6 + longer))
+    says = options.get("says", ())
+    a = rng.uniform(-1, 1, (N, sn.Options(task="frame", placement=True, says=says).rules.actions.size))
     a[:, 1:4] *= 0.3
-    if options.get("concede"):
+    if "concede" in says:
         a[:, -1] = np.where(rng.random(N) < 0.98, np.abs(a[:, -1]), a[:, -1])
     return a
 
@@ -213,13 +213,13 @@ LOOKS = {
     "masked": MASKED | {"layout": "colours"},
     "masked, everything said": MASKED | SAID | {"layout": "random:1", "noise": "amateur"},
     "masked match with misses": MASKED | {"frames": 3, "layout": "random:0", "miss": "attempt"},
-    "masked six-red": MASKED | {"game": "six_red", "miss": "clear_path", "nominate": True},
+    "masked six-red": MASKED | {"game": "six_red", "miss": "clear_path", "says": ["nominate"]},
     "masked Shoot Out": MASKED | {"game": "shoot_out", "layout": "random:2"},
     "masked, drawn and seen": MASKED | {"conditions": "drawn", "observe_conditions": True, "cue": "real"},
     "masked, other errors": MASKED | {"layout": "random:1", "seats": ({}, {"noise": "amateur"})},
-    "masked, both concede": MASKED | {"layout": "random:0", "seats": ({"concede": True},) * 2},
+    "masked, both concede": MASKED | {"layout": "random:0", "seats": ({"says": ["concede"]},) * 2},
     "balls with misses": PLAIN | {"observation": "balls", "layout": "random:1", "miss": "clear_path"},
-    "balls, six-red": PLAIN | {"observation": "balls", "game": "six_red", "nominate": True},
+    "balls, six-red": PLAIN | {"observation": "balls", "game": "six_red", "says": ["nominate", "decision"]},
     "flat Shoot Out": PLAIN | {"game": "shoot_out", "layout": "random:2"},
 }
 
@@ -279,7 +279,7 @@ def test_both_players_see_on_each_of_many_tables_what_they_see_in_a_match_alone(
 
 
 def test_seats_with_other_choices_have_masks_of_their_own():
-    seats = ({}, {"concede": True})
+    seats = ({}, {"says": ["concede"]})
     match = begun(sn.match_env(**MASKED, seats=seats, layout="random:1"), 1)
     for name, many in (("player_0", 540), ("player_1", 541)):
         assert match.observe(name)["action_mask"].shape == (many,)

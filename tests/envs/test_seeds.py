@@ -24,7 +24,7 @@ def play(env, seed, steps=6, actions=1):
     return pickle.dumps(jsonable(out))
 
 
-FRAME = {"task": "frame", "decision": True, "placement": True, "layout": "random:3"}
+FRAME = {"task": "frame", "says": ["decision"], "placement": True, "layout": "random:3"}
 FRAMES = [FRAME | {"opponent": name} for name in ("none", "random", "ghost_ball")]
 
 

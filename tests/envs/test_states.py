@@ -143,7 +143,7 @@ def test_a_reset_is_needed_first_and_after_the_end():
 
 # An environment takes every state that it gives
 
-FULL = {"decision": True, "placement": True, "aim": "target"}
+FULL = {"says": ["decision"], "placement": True, "aim": "target"}
 BLACKLESS = {"cue": (0.2, -0.5), "reds": [(0.5, 1.2)], "yellow": (0.292, -1.0475)}
 OWN = {
     "visit": {"layout": "random:3", "placement": True},
@@ -153,19 +153,22 @@ OWN = {
     "due": FULL | {"task": "frame", "layout": "random:0", "opponent": "ghost_ball", "reward": "win"},
     "miss": FULL | {"task": "frame", "layout": "break_off", "opponent": "random", "miss": "clear_path"},
     "six-red": FULL | {"task": "frame", "game": "six_red", "opponent": "random", "miss": "attempt"},
-    "Shoot Out": FULL | {"task": "frame", "game": "shoot_out", "opponent": "random", "lot": True},
+    "Shoot Out": FULL
+    | {"task": "frame", "game": "shoot_out", "opponent": "random", "says": ["decision", "lot"]},
     "match": FULL
     | {"task": "match", "frames": 3, "layout": "colours", "opponent": "random", "max_strokes": 40},
     "discrete": {"task": "frame", "action": "discrete", "observation": "masked", "layout": "random:1"}
-    | {"opponent": "random", "nominate": True, "concede": True, "claim": True, "lot": True},
+    | {"opponent": "random", "says": ["nominate", "concede", "claim", "lot"]},
     "flight": FULL | {"task": "frame", "layout": "random:2", "physics": {"flight": True}, "elevation": True},
-    "position": FULL | {"task": "frame", "opponent": "random", "lot": True, "miss": "clear_path"},
+    "position": FULL
+    | {"task": "frame", "opponent": "random", "says": ["decision", "lot"], "miss": "clear_path"},
 }
 TWO = {
-    "six-red": FULL | {"game": "six_red", "miss": "attempt", "lot": True, "nominate": True},
-    "match": FULL | {"frames": 3, "layout": "random:0", "lot": True, "concede": True, "claim": True},
-    "Shoot Out": FULL | {"game": "shoot_out", "layout": "random:2", "lot": True, "time_to_play": 14.0},
-    "position": FULL | {"lot": True, "miss": "clear_path"},
+    "six-red": FULL | {"game": "six_red", "miss": "attempt", "says": ["nominate", "decision", "lot"]},
+    "match": FULL | {"frames": 3, "layout": "random:0", "says": ["decision", "concede", "claim", "lot"]},
+    "Shoot Out": FULL
+    | {"game": "shoot_out", "layout": "random:2", "says": ["decision", "lot"], "time_to_play": 14.0},
+    "position": FULL | {"says": ["decision", "lot"], "miss": "clear_path"},
 }
 
 
@@ -237,16 +240,16 @@ def test_every_state_of_two_players_is_taken_and_goes_on(kind):
 @pytest.mark.parametrize("miss", ["off", "clear_path"])
 def test_the_state_of_a_respotted_black_that_the_frame_began_without_is_taken(miss):
     """Level scores when the last ball falls bring the black back, whatever the frame began with."""
-    options = {"task": "frame", "aim": "target", "decision": True, "placement": True, "miss": miss}
+    options = {"task": "frame", "aim": "target", "says": ["decision", "lot"], "placement": True, "miss": miss}
     env = frame_state(
-        sn.match_env(**options, lot=True),
+        sn.match_env(**options),
         {CUE: (0.326, 1.031), YELLOW: (0.6, 1.4)},
         {"ball_on": BallOn.YELLOW, "scores": (5, 7), "rack": 1 << YELLOW},
     )
     env.step(np.array([0.0, 0, 0, 0, 0, 0, 0, 1], np.float32))
     for phase, declared in (("lot", -1.0), ("stroke", 1.0)):
         assert env.frame.phase == phase and env.frame.on_table == 1 << BLACK
-        other = sn.match_env(**options, lot=True)
+        other = sn.match_env(**options)
         state = plain(env.get_state())
         other.reset(options={"state": state})
         assert plain(other.get_state()) == state

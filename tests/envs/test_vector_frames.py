@@ -1,16 +1,13 @@
 """Do native vector frames play, bit for bit, what ``SyncVectorEnv`` plays, with all that goes with them?"""
 
-import gymnasium
 import numpy as np
 import pytest
-from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
 from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks.options import Options
-from tests.envs.test_vector import MODES, actions_of, check_equal, native, same
-from tests.refusals import refused
-from tests.tables import acting, begun
+from tests.envs.test_vector import MODES, check_equal, same
+from tests.tables import acting
 
 
 def policy(observation, rng):
@@ -20,7 +17,7 @@ def policy(observation, rng):
     )
 
 
-FULL = {"decision": True, "placement": True, "aim": "target", "noise": "club"}
+FULL = {"says": ["decision"], "placement": True, "aim": "target", "noise": "club"}
 GHOST = {"opponent": "ghost_ball"}
 MASKED = {"action": "discrete", "observation": "masked", "layout": "random:1"}
 OPTIONS = {
@@ -32,7 +29,7 @@ OPTIONS = {
     "player": FULL | {"opponent": acting(policy), "layout": "random:0", "max_strokes": 15},
     "discrete": {"opponent": "random", "layout": "colours", "action": "discrete", "noise": "amateur"}
     | {"max_strokes": 30},
-    "masked": GHOST | MASKED | {"nominate": True, "concede": True, "miss": "clear_path", "max_strokes": 20},
+    "masked": GHOST | MASKED | {"says": ["nominate", "concede"], "miss": "clear_path", "max_strokes": 20},
     "masked, alone": MASKED | {"max_strokes": 12, "max_episode_steps": 9},
     "discrete, ghost_ball": GHOST | {"layout": "random:2", "action": "discrete", "max_episode_steps": 5},
 }
@@ -87,7 +84,7 @@ def test_states_go_from_one_table_to_many_and_back(options):
 
 
 def test_options_are_checked_once_and_taken_by_every_environment():
-    keywords = {"task": "frame", "layout": "random:2", "noise": "club", "decision": True}
+    keywords = {"task": "frame", "layout": "random:2", "noise": "club", "says": ["decision"]}
     options = Options(**keywords)
     for one, other in (
         (SnookerEnv(options), SnookerEnv(**keywords)),
@@ -117,75 +114,3 @@ def test_a_match_takes_them_too():
     env = sn.match_env(Options(task="frame", layout="random:2", aim="target"))
     assert env.action_space("player_0").shape == (4,)
     assert sn.match_env().action_space("player_0").shape == (7,)
-
-
-def arrays_for(space):
-    """Arrays of a space's form that nothing has been written into."""
-    if isinstance(space, gymnasium.spaces.Dict):
-        return {name: arrays_for(part) for name, part in space.items()}
-    return np.full(space.shape, 9, space.dtype)
-
-
-MASKED_VISIT = {"action": "discrete", "observation": "masked"}
-
-
-@pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize(
-    "options",
-    [{"layout": "random:2"}, FRAME | {"layout": "random:0"}, MASKED_VISIT, {"observation": "balls"}],
-)
-def test_results_are_written_into_the_arrays_given(mode, options):
-    n = 6
-    plain, written = native(n, autoreset_mode=mode, **options), native(n, autoreset_mode=mode, **options)
-    seen = {"observations": arrays_for(plain.observation_space)}
-    others = {"rewards": np.full(n, 9.0), "terminations": np.ones(n, bool), "truncations": np.ones(n, bool)}
-    out = seen | others
-    first = written.reset(seed=1, out=seen)
-    assert first[0] is out["observations"] and same(plain.reset(seed=1), first)
-    rng = np.random.default_rng(0)
-    for _ in range(12):
-        a = actions_of(plain, rng)
-        want, got = plain.step(a), written.step(a, out=out)
-        assert all(part is into for part, into in zip(got, out.values(), strict=False))
-        assert all(same(x, y) for x, y in zip(want, got, strict=True))
-        done = want[2] | want[3]
-        if mode == AutoresetMode.DISABLED and done.any():
-            mask = {"reset_mask": done.copy()}
-            assert same(plain.reset(options=mask), written.reset(options=mask, out=seen))
-
-
-def test_arrays_that_share_memory_are_refused():
-    env, both = native(4), np.zeros(4, bool)
-    env.reset(seed=1)
-    with pytest.raises(ValueError, match="must not share memory"):
-        env.step(np.zeros((4, 4)), out={"terminations": both, "truncations": both})
-
-
-def test_a_part_of_the_observations_that_cannot_be_written_into_is_refused():
-    env = native(3, observation="balls")
-    out = arrays_for(env.observation_space) | {"state": np.zeros((3, 11), bool)}
-    field, value = 'out["observations.state"]', "array of bool and shape (3, 11)"
-    refused(lambda: env.reset(out={"observations": out}), field, value, "must be a C-contiguous")
-
-
-@pytest.mark.parametrize(
-    ("out", "field"),
-    [
-        ([], "out"),
-        ({"infos": 1}, "out"),
-        ({"rewards": np.zeros(3, np.float32)}, 'out["rewards"]'),
-        ({"rewards": [0.0] * 3}, 'out["rewards"]'),
-        ({"observations": np.zeros((3, 120), np.float32)}, 'out["observations"]'),
-        ({"rewards": np.zeros(6)[::2]}, 'out["rewards"]'),
-        ({"observations": np.zeros((121, 3), np.float32).T}, 'out["observations"]'),
-        ({"truncations": np.zeros(3)}, 'out["truncations"]'),
-    ],
-)
-def test_arrays_that_cannot_be_written_into_are_refused_before_anything_is_played(out, field):
-    env = begun(native(3, noise="club"))
-    before = env.get_state()
-    with pytest.raises(ValueError) as info:
-        env.step(np.zeros((3, 4)), out=out)
-    assert str(info.value).startswith(f"{field} = ") and env.get_state() == before
-    out = {"rewards": np.zeros(3)}
-    refused(lambda: env.reset(out=out), "out", "'rewards'", "must be one of 'observations'")

@@ -9,7 +9,7 @@ from benchmarks.make_safety import LIKELY
 from snooker_env import SnookerVectorEnv
 from snooker_env.game import layouts
 from snooker_env.game.balls import GREEN, SPOTS, YELLOW
-from snooker_env.game.banks import BANKS, bank, kept
+from snooker_env.game.banks import BANKS, bank, split_bank
 from snooker_env.game.pots import pots
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
@@ -176,7 +176,7 @@ def test_an_escape_is_from_a_snooker(name, seed):
 
 @pytest.mark.parametrize("name", BANKS)
 def test_no_stored_table_is_of_both_parts(name):
-    tables, (trained, held_out) = bank(name), kept(name)
+    tables, (trained, held_out) = bank(name), split_bank(name)
     assert len(held_out) == BANKS[name] and trained.stop == held_out.start and trained.start == 0
     cues = [
         np.sort(np.abs(tables[part.start : part.stop, 0]).round(7), axis=1) for part in (trained, held_out)
@@ -191,10 +191,12 @@ def test_a_stored_table_is_dealt_as_it_is_or_mirrored():
         swapped = positions.copy() * (-1.0, 1.0)
         swapped[[YELLOW, GREEN]] = swapped[[GREEN, YELLOW]]
         for mirrored, made in ((False, positions), (True, swapped)):
-            same = (plan.tables[kept("safety")[1]][:, on_table] == made[on_table]).all((1, 2))
+            same = (plan.tables[split_bank("safety")[1]][:, on_table] == made[on_table]).all((1, 2))
             if same.any():
                 seen.add(mirrored)
-                assert np.array_equal(on_table, ~np.isnan(plan.tables[kept("safety")[1]][same][0, :, 0]))
+                assert np.array_equal(
+                    on_table, ~np.isnan(plan.tables[split_bank("safety")[1]][same][0, :, 0])
+                )
                 break
         else:
             raise AssertionError(seed)

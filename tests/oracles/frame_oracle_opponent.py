@@ -31,7 +31,7 @@ class OpponentChecker(Checker):
             "aim": "target",
             "max_strokes": None,
             "placement": True,
-            "decision": True,
+            "says": ["decision"],
             **kind.options,
         }
         self.env = sn.SnookerEnv(**given)

@@ -205,11 +205,8 @@ class Checker:
         self._seed = 0
         self.env = sn.match_env(**{"aim": "target", "max_strokes": None, **kind.options})
         self.env.keep_history = True
-        given = {
-            name: kind.options[name]
-            for name in ("miss", "nominate", "concede", "claim", "lot", "game")
-            if name in kind.options
-        }
+        given = {name: kind.options[name] for name in ("miss", "game") if name in kind.options}
+        given |= {name: True for name in kind.options.get("says", ()) if name != "decision"}
         if "time_to_play" in kind.options:
             given["time_to_play"] = round(1000 * kind.options["time_to_play"])
         self.rules = Rules(**given)

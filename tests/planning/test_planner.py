@@ -193,7 +193,7 @@ def test_afterstates_are_positions_to_play_on():
 
 def test_a_frame_and_a_match_are_planned_as_a_visit():
     pytest.importorskip("pettingzoo")
-    frame = gymnasium.make("Snooker-v0", task="frame", aim="target", placement=True, decision=True)
+    frame = gymnasium.make("Snooker-v0", task="frame", aim="target", placement=True, says=["decision"])
     frame.reset(seed=0)
     match = sn.match_env(aim="target")
     match.reset(seed=0)

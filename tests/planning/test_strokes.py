@@ -55,7 +55,7 @@ def test_a_stroke_of_a_speed_and_a_direction_is_what_it_says():
         {"aim": "absolute", "elevation": True, "layout": "break_off"},
         {"aim": "target", "placement": True, "elevation": True, "layout": "break_off"},
         {"aim": "target", "cue": "real", "layout": "random:6"},
-        {"aim": "target", "task": "frame", "placement": True, "decision": True},
+        {"aim": "target", "task": "frame", "placement": True, "says": ["decision"]},
     ],
 )
 def test_strokes_become_actions_that_mean_them(options):
@@ -76,7 +76,7 @@ def test_strokes_become_actions_that_mean_them(options):
 
 
 def test_an_aim_from_a_target_line_is_that_of_the_nominated_ball():
-    options = sn.Options(task="frame", aim="target", nominate=True)
+    options = sn.Options(task="frame", aim="target", says=["nominate"])
     env, rng = sn.SnookerEnv(options), np.random.default_rng(3)
     colours = {"yellow": (0.3, 0.4), "blue": (0.0, 0.0), "pink": (-0.4, 0.7), "black": (0.5, 1.2)}
     position = Position(cue=(0.1, -0.6), reds=[(-0.6, -0.2)], on="any_colour", **colours)

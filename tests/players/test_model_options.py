@@ -109,7 +109,7 @@ def test_a_model_of_the_repository_says_itself_how_its_actions_are_read():
         ({"noise": "club"}, "key of options = 'noise': must be one of 'action', 'aim', "),
         ({"aim": "up"}, "aim = 'up': must be one of 'absolute', 'target'"),
         ({"elevation": 80}, "elevation = 80: must be True or False, or degrees in"),
-        ({"decision": 3}, "decision = 3: must be True or False"),
+        ({"says": 3}, "says = 3: must be a sequence"),
     ],
 )
 def test_options_that_cannot_be_are_refused(options, says):
@@ -121,9 +121,9 @@ def test_options_that_cannot_be_are_refused(options, says):
 
 
 def test_words_of_a_command_line_become_options():
-    words = ["aim=target", "placement=true", "decision=False", "elevation=30"]
+    words = ["aim=target", "placement=true", "says=decision,lot", "elevation=30"]
     read = model_options.options_of_words(words)
-    assert read == {"aim": "target", "placement": True, "decision": False, "elevation": 30}
+    assert read == {"aim": "target", "placement": True, "says": ("decision", "lot"), "elevation": 30}
 
 
 def test_the_options_of_a_command_line_are_those_of_the_models_on_it(model):

@@ -24,7 +24,7 @@ def of_visits(n, layout="random:6", seed=5):
 
 def of_frames(n, steps=6):
     """Positions of frames in all phases: after fouls, with free balls, in hand."""
-    options = {"task": "frame", "opponent": "ghost_ball", "noise": "club", "decision": True}
+    options = {"task": "frame", "opponent": "ghost_ball", "noise": "club", "says": ["decision"]}
     env, rng = tables(n, 3, threads=1, **options), np.random.default_rng(0)
     for _ in range(steps):
         env.step(rng.uniform(-1, 1, env.action_space.shape).astype(np.float32))

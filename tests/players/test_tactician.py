@@ -13,7 +13,7 @@ from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from tests.planning.test_frame_judge import frame_of
 from tests.planning.test_trials import GAME, frames_in_play, positions_of
 
-OPTIONS = GAME | {"noise": "club", "cue": "real", "decision": True}
+OPTIONS = GAME | {"noise": "club", "cue": "real", "says": ["decision"]}
 
 
 def test_it_is_a_player_of_the_package_and_takes_a_budget():
@@ -84,7 +84,7 @@ def test_the_lot_is_decided_by_the_worth_of_the_black():
     silent = sn.player("tactician_30").at(OPTIONS).play(far, [3])
     assert silent.declare.tolist() == [SAYS_NOTHING]
     silent.actions(sn.Options(**OPTIONS), far)  # an environment without lots reads it
-    told = OPTIONS | {"lot": True}
+    told = OPTIONS | {"says": ["decision", "lot"]}
     said = sn.player("tactician_30").at(told).play(far, [3]).declare.tolist()
     worth = sn.player("tactician_30").at(told).judge.worth(far)
     assert (said[0] == OTHER_BEGINS) == bool(worth[0] < 0.0)
@@ -100,7 +100,7 @@ def test_a_lost_frame_is_conceded_only_where_it_may_be():
         (False, lost, SAYS_NOTHING),
         (True, alive, SAYS_NOTHING),
     ):
-        player = sn.player("tactician_30").at(OPTIONS | {"concede": says})
+        player = sn.player("tactician_30").at(OPTIONS | {"says": ["decision"] + ["concede"] * says})
         assert player.play(at, [1]).declare.tolist() == [wanted]
 
 

@@ -34,9 +34,9 @@ def test_constants_that_rooms_share_agree():
     assert spotting.balls.CLEARANCE is in_hand.CLEARANCE is balls.CLEARANCE
     assert layouts.GAP > balls.PINK_GAP > balls.CLEARANCE > balls.REFEREE_TOUCH > balls.TOUCH
     # Half a radius at the end of the action's scale is what ``Physics.max_offset`` allows by default
-    actions = Actions("absolute", False, False, Physics())
+    actions = Actions("absolute")
     side = shot(actions, [0, 1, 0, 0], balls.SPOTS, np.ones(22, bool), 2)[1]
-    assert side == actions.physics.max_offset == 0.5
+    assert side == Physics().max_offset == 0.5
     kinds = observations.STATE_ENTRIES[1:9]
     assert kinds == tuple(b.name.lower() for b in balls.BallOn if b >= 0)
     assert observations.space("flat").shape == (

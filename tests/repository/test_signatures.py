@@ -73,7 +73,7 @@ for table in ("match", "tight", None, own, pickle.loads(pickle.dumps(own))):
 
 ENVS = """
 options = {"elevation": True, "placement": True, "noise": "club", "aim": "target"}
-for make in (lambda: SnookerEnv(**options), lambda: SnookerEnv(task="frame", miss="clear_path", decision=True, **options)):
+for make in (lambda: SnookerEnv(**options), lambda: SnookerEnv(task="frame", miss="clear_path", says=["decision"], **options)):
     env = make()
     first, _ = env.reset(seed=1)
     state = env.get_state()

@@ -60,7 +60,7 @@ GOOD = (
     "points: float = choosing.step(7)[1]",
     "envs = sn.SnookerVectorEnv(4, sn.Options(noise=Noise(aim_deg=0.1)), autoreset_mode='SameStep', threads=1)",
     "rows, infos = envs.reset(seed=[1, 2, 3, None], options={'reset_mask': np.ones(4, np.bool_)})",
-    "rows, rewards, ends, cuts, infos = envs.step(np.zeros((4, 4)), out={'rewards': np.zeros(4)})",
+    "rows, rewards, ends, cuts, infos = envs.step(np.zeros((4, 4)))",
     "total: float = rewards.sum()",
     "match = sn.match_env(max_strokes=None, render_mode='ansi')",
     "match.reset(seed=1)",

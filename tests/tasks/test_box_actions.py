@@ -36,7 +36,7 @@ def test_absolute_aim_is_the_direction_in_which_the_ball_leaves(side, aim):
 
 
 def shot_of(env, *action_and_table):
-    return shot(env.options.rules.actions, *action_and_table)
+    return shot(env.options.rules.actions, *action_and_table, env.physics)
 
 
 def test_squirt_is_what_is_compensated():

@@ -24,15 +24,15 @@ SOFT = [-1.0, 0, 0, 0.5, 0, 0, 0]
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
 def test_gymnasium_checks_it(observation, opponent):
-    decision = observation != "masked"  # which is of discrete actions
-    options = {"opponent": opponent, **viewed(observation), "layout": "random:2", "decision": decision}
+    says = ["decision"] * (observation != "masked")  # which is of discrete actions
+    options = {"opponent": opponent, **viewed(observation), "layout": "random:2", "says": says}
     env = gymnasium.make("Snooker-v0", task="frame", **options)
     check_env(env.unwrapped, skip_render_check=True)
     assert gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())).spec == env.spec
 
 
 def test_gymnasium_checks_a_match():
-    options = {"layout": "pots:easy", "opponent": "random", "nominate": True, "lot": True}
+    options = {"layout": "pots:easy", "opponent": "random", "says": ["nominate", "decision", "lot"]}
     check_env(SnookerEnv(task="match", **options), skip_render_check=True)
 
 
@@ -43,10 +43,10 @@ def test_the_spaces_grow_and_those_of_a_visit_do_not():
     assert frame_env(observation="balls").observation_space["state"].shape == (30,)
     assert "replaced" not in frame_env(observation="balls").observation_space.spaces
     assert frame_env(observation="balls", miss="clear_path").observation_space["replaced"].shape == (22, 3)
-    discrete = {"action": "discrete", "observation": "masked", "decision": False, "placement": False}
-    masked = frame_env(**discrete, nominate=True, concede=True, miss="clear_path").observation_space
+    discrete = {"action": "discrete", "observation": "masked", "placement": False}
+    masked = frame_env(**discrete, says=["nominate", "concede"], miss="clear_path").observation_space
     assert masked["observations"].shape == (206,) and masked["action_mask"].shape == (7 * 540 + 1,)
-    assert frame_env(decision=False, placement=False).action_space.shape == (4,)
+    assert frame_env(says=[], placement=False).action_space.shape == (4,)
     assert len(FRAME_ENTRIES) == 19
 
 

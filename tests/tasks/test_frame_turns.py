@@ -47,7 +47,7 @@ def test_after_a_foul_the_action_decides(decision, own):
 
 
 def test_without_the_option_the_agent_always_plays():
-    env = frame_state(frame_env(opponent="ghost_ball", decision=False), PLACES, FOULED)
+    env = frame_state(frame_env(opponent="ghost_ball", says=[]), PLACES, FOULED)
     assert env.step([-0.5, 0, 0, 0, -1.0, -1.0])[4]["events"] > 0
 
 

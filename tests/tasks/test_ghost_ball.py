@@ -20,7 +20,7 @@ from tests.tables import begun
 
 def dealt(n, **options):
     """New frames at which player 0 is to play."""
-    game = Options(task="frame", aim="target", placement=True, decision=True, **options)
+    game = Options(task="frame", aim="target", placement=True, says=["decision"], **options)
     tables = Frames(
         game, n, seats=[Seat.of(game.rules, opponent_of("ghost_ball", game)), Seat.of(game.rules)]
     )
@@ -125,7 +125,7 @@ def test_a_ball_on_that_it_touches_is_played_away_from():
 def test_a_constant_action_that_never_plays_after_a_foul_wins_few_frames(speed, most, decision):
     """Softly along the target line it won 77 of 100 frames, while "ghost_ball" struck at random; harder
     strokes along that line pot balls and win 18 to 35."""
-    options = {"task": "frame", "aim": "target", "decision": True, "miss": "clear_path"}
+    options = {"task": "frame", "aim": "target", "says": ["decision"], "miss": "clear_path"}
     tables = begun(sn.SnookerVectorEnv(100, threads=1, opponent="ghost_ball", **options), 0)
     action, won, over = np.tile([speed, 0.0, 0.0, 0.0, decision], (100, 1)), 0, np.zeros(100, bool)
     while not over.all():

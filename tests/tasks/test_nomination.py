@@ -41,7 +41,7 @@ def test_the_number_of_strokes_is_the_same_in_both_files():
     ],
 )
 def test_after_a_red_the_colour_nominated_is_the_one_on(part, aim, penalty, foul):
-    env = frame_state(frame_env(aim="absolute", nominate=True), PLACES, ANY)
+    env = frame_state(frame_env(aim="absolute", says=["nominate", "decision"]), PLACES, ANY)
     assert env.action_space.shape == (8,)
     info = env.step([-0.9, 0, 0, aim, 0, 0, named(part), 0])[4]
     assert (info["penalty"], info["fouls"]) == (penalty, foul) and env.tables.nominated[0] == AUTO
@@ -55,7 +55,7 @@ def test_without_nomination_a_stroke_at_nothing_costs_seven_and_the_colour_struc
 
 def test_the_potting_line_is_that_of_the_ball_nominated():
     for part, ball in ((3, BLUE), (4, PINK)):
-        env = frame_state(frame_env(nominate=True), PLACES, ANY)
+        env = frame_state(frame_env(says=["nominate", "decision"]), PLACES, ANY)
         assert env.step([-0.5, 0, 0, 0, 0, 0, named(part), 0])[4]["first_ball"] == ball
 
 
@@ -65,19 +65,21 @@ FREE = {"phase": "stroke", "free_ball": True, "scores": (0, 4)}
 @pytest.mark.parametrize(("part", "penalty"), [(0, 5), (4, 0), (1, 5), (6, 5)])
 def test_a_free_ball_is_nominated_or_declined(part, penalty):
     """With reds on: the blue struck first is fair as the free ball, worth a red, else it costs its five."""
-    env = frame_state(frame_env(aim="absolute", nominate=True), PLACES, FREE)
+    env = frame_state(frame_env(aim="absolute", says=["nominate", "decision"]), PLACES, FREE)
     assert env.step([-0.9, 0, 0, TO_BLUE, 0, 0, named(part, 7), 0])[4]["penalty"] == penalty
 
 
 def test_the_ball_on_itself_as_the_free_ball_declines_it():
     for part, penalty in ((0, 0), (4, 0), (5, 5), (6, 5)):  # blue is on
-        env = frame_state(frame_env(aim="absolute", nominate=True), COLOURS, FREE | {"ball_on": BallOn.BLUE})
+        env = frame_state(
+            frame_env(aim="absolute", says=["nominate", "decision"]), COLOURS, FREE | {"ball_on": BallOn.BLUE}
+        )
         assert env.step([-0.9, 0, 0, TO_BLUE, 0, 0, named(part, 7), 0])[4]["penalty"] == penalty, part
 
 
 def test_at_other_times_a_nomination_is_ignored():
     for part in range(6):
-        env = frame_state(frame_env(aim="absolute", nominate=True), PLACES, {})
+        env = frame_state(frame_env(aim="absolute", says=["nominate", "decision"]), PLACES, {})
         assert env.step([-0.9, 0, 0, TO_BLUE, 0, 0, named(part), 0])[4]["fouls"] == Foul.WRONG_FIRST
 
 
@@ -88,7 +90,7 @@ def blocks(env):
 
 
 def test_masks_allow_what_may_be_nominated():
-    env = frame_env(action="discrete", decision=False, placement=False, nominate=True)
+    env = frame_env(action="discrete", placement=False, says=["nominate"])
     assert env.action_space.n == 3780
     assert blocks(frame_state(env, PLACES, {})) == [0]
     assert blocks(frame_state(env, PLACES, ANY)) == [1, 4, 5, 6]  # green and brown are not on the table
@@ -100,15 +102,16 @@ def test_masks_allow_what_may_be_nominated():
     refused(lambda: env.step(3780), "action", "3780", "must be an integer in [0, 3780)")
 
 
-SAID = {"concede": True, "claim": True, "lot": True}
-CHOICES = {"action": "discrete", "decision": False, "placement": False}
+DECLARED = ["concede", "claim", "lot"]
+SAID = {"says": ["decision", *DECLARED]}
+CHOICES = {"action": "discrete", "says": DECLARED, "placement": False}
 
 
-@pytest.mark.parametrize("only", ["concede", "claim", "lot"])
+@pytest.mark.parametrize("only", DECLARED)
 def test_each_declaration_alone_lengthens_the_action_by_one(only):
-    assert frame_env(**{only: True}).action_space.shape == (8,)
+    assert frame_env(says=["decision", only]).action_space.shape == (8,)
     assert frame_env(**SAID).action_space.shape == (8,)
-    assert sn.SnookerEnv(task="frame", action="discrete", **{only: True}).action_space.n == 541
+    assert sn.SnookerEnv(task="frame", action="discrete", says=[only]).action_space.n == 541
 
 
 def test_who_concedes_loses_without_a_stroke():
@@ -117,7 +120,7 @@ def test_who_concedes_loses_without_a_stroke():
         frame_state(env, PLACES, {"scores": (50, 0)})
         _, reward, terminated, _, info = env.step(say)
         assert (reward, terminated, info["winner"], info["events"]) == (-1.0, True, 1, 0)
-    env = frame_state(frame_env(claim=True), PLACES, {})
+    env = frame_state(frame_env(says=["decision", "claim"]), PLACES, {})
     assert env.step([-0.5] + [0] * 6 + [-1.0])[4]["events"] > 0  # without the option it is no concession
 
 
@@ -138,11 +141,11 @@ def test_the_winner_of_the_lot_says_who_begins(options):
     level = black | {"scores": (20, 20), "in_hand": True, "striker": 1}
     places = {CUE: (0.0, -1.2), BLACK: SPOTS[BLACK]}
     for other in (False, True):
-        env = frame_state(sn.match_env(lot=True, **options), places, level)
+        env = frame_state(sn.match_env(**{"says": ["decision", "lot"]} | options), places, level)
         assert env.agent_selection == "player_1" and env.observe("player_1")[121 + 12] == 1.0
         if options:
             assert env.action_mask("player_1")[-1] == 1
-            env.step(540 if other else 0)
+            env.step(542 if other else 0)
         else:
             env.step(np.array([-1.0] + [0.0] * 6 + [-0.1 if other else 0.0]))
         assert env.strokes == (not other) and env.frame.phase != "lot"
@@ -155,7 +158,8 @@ def test_the_winner_of_the_lot_says_who_begins(options):
 @pytest.mark.parametrize("action", ["box", "discrete"])
 def test_the_built_in_players_play_with_everything_said(opponent, action):
     """They nominate, begin at the lot, and do not concede."""
-    options = SAID | {"task": "match", "frames": 3, "nominate": True, "layout": "pots:easy", "aim": "target"}
+    says = ["nominate", *DECLARED]
+    options = {"says": says, "task": "match", "frames": 3, "layout": "pots:easy", "aim": "target"}
     many = {"opponent": opponent, "autoreset_mode": "SameStep", "threads": 1}
     tables = begun(sn.SnookerVectorEnv(20, action=action, **options, **many))
     rng, ended = np.random.default_rng(0), 0
@@ -179,19 +183,21 @@ GIVES_UP = [0.0] * 7 + [-1.0]
 
 
 def test_to_concede_costs_what_is_left_on_the_table():
-    env = frame_state(frame_env(concede=True, opponent="ghost_ball"), STANDING, {"scores": (10, 30)})
+    env = frame_state(
+        frame_env(says=["decision", "concede"], opponent="ghost_ball"), STANDING, {"scores": (10, 30)}
+    )
     _, reward, terminated, _, info = env.step(GIVES_UP)
     assert (reward, terminated, info["winner"]) == (-LEFT, True, 1)
     assert (info["score"], info["opponent_score"]) == (10.0, 30.0)  # the score stands
 
 
 def test_from_the_start_it_costs_147():
-    env = begun(sn.SnookerEnv(task="frame", concede=True))
+    env = begun(sn.SnookerEnv(task="frame", says=["concede"]))
     assert env.step([0.0] * 4 + [-1.0])[1] == -147.0
 
 
 def test_what_was_not_paid_yet_is_paid_with_it():
-    env = frame_env(concede=True, opponent="ghost_ball")
+    env = frame_env(says=["decision", "concede"], opponent="ghost_ball")
     state = frame_state(env, STANDING, {"scores": (10, 30)}).get_state() | {"unpaid": -5}
     env.reset(options={"state": plain(state)})
     assert env.step(GIVES_UP)[1] == -5 - LEFT
@@ -199,14 +205,16 @@ def test_what_was_not_paid_yet_is_paid_with_it():
 
 @pytest.mark.parametrize("striker", [0, 1])
 def test_of_two_players_the_other_one_gets_it(striker):
-    match = frame_state(sn.match_env(concede=True), STANDING, {"scores": (10, 30), "striker": striker})
+    match = frame_state(
+        sn.match_env(says=["decision", "concede"]), STANDING, {"scores": (10, 30), "striker": striker}
+    )
     match.step(GIVES_UP)
     assert match.rewards == {f"player_{striker}": -LEFT, f"player_{1 - striker}": LEFT}
 
 
 @pytest.mark.parametrize(("reward", "expected"), [("win", -1.0), ("frames", -1.0), ("points", -(147 + LEFT))])
 def test_of_a_match_each_frame_given_up_is_paid_once(reward, expected):
-    env = begun(sn.SnookerEnv(task="match", frames=3, concede=True, aim="target", reward=reward))
+    env = begun(sn.SnookerEnv(task="match", frames=3, says=["concede"], aim="target", reward=reward))
     total = env.step([0.0] * 4 + [-1.0])[1]
     state = env.get_state()
     assert state["frames"] == [0, 1]

@@ -69,7 +69,7 @@ def test_observations_say_where_the_balls_lie_and_what_is_on(layout):
 
 
 OF_FRAMES = {"task": "frame", "opponent": "random", "max_strokes": 40}
-SAID = {"nominate": True, "concede": True, "claim": True, "lot": True, "miss": "clear_path"}
+SAID = {"says": ["nominate", "concede", "claim", "lot"], "miss": "clear_path"}
 MASKED = {
     "opened": {},
     "colours": {"layout": "colours", "noise": "club"},
@@ -111,7 +111,7 @@ def test_masked_observations_hold_the_flat_one_and_the_available_choices(options
 
 
 def test_masked_observations_need_masks():
-    shaped = partial(observations.shaped, "masked", np.zeros((2, 121), np.float32))
+    shaped = partial(observations.arrange, "masked", np.zeros((2, 121), np.float32))
     refused(shaped, "masks", "None", "must be the available choices")
 
 

@@ -53,7 +53,7 @@ def test_the_ghost_ball_player_pots_what_is_there():
 def test_the_ghost_ball_player_beats_the_random_one():
     wins = 0
     for seed in range(8):
-        env = begun(frame_env(opponent="ghost_ball", decision=False), seed)
+        env = begun(frame_env(opponent="ghost_ball", says=[]), seed)
         rng = np.random.default_rng(seed)
         while not env.over:
             env.step(rng.uniform(-1, 1, 6))
@@ -94,8 +94,8 @@ def test_a_saved_model_may_play(tmp_path, task, name):
     trained = getattr(sb3, name)("MlpPolicy", SnookerEnv(task=task, **options), seed=1, device="cpu")
     path = str(tmp_path / "model.zip")
     trained.save(path)
-    for decision in (False, True):
-        env = SnookerEnv(task="frame", opponent=path, trust=True, decision=decision, **options)
+    for says in ([], ["decision"]):
+        env = SnookerEnv(task="frame", opponent=path, trust=True, says=says, **options)
         network = env.tables.seats[1].player.player.seen._network
         pairs = zip(network.parameters(), trained.policy.parameters(), strict=True)
         assert all((a == b).all() for a, b in pairs)
@@ -106,15 +106,14 @@ def test_a_saved_model_may_play(tmp_path, task, name):
         assert all(data_equivalence(runs[0], run, exact=True) for run in runs[1:])
 
 
-@pytest.mark.parametrize("own", [{}, {"task": "frame"}, {"task": "frame", "nominate": True}])
+@pytest.mark.parametrize("own", [{}, {"task": "frame"}, {"task": "frame", "says": ["nominate"]}])
 def test_a_saved_model_that_sees_masks_may_play(tmp_path, own):
     """A model of visits, with 540 choices, plays in a frame with more as it does on what it sees."""
     contrib = pytest.importorskip("sb3_contrib")
     masked = {"action": "discrete", "observation": "masked"}
     made = contrib.MaskablePPO("MultiInputPolicy", SnookerEnv(**masked, **own), seed=1, device="cpu")
     made.save(tmp_path / "model.zip")
-    nominate = own.get("nominate", False)
-    options = {"task": "frame", "layout": "random:2", "concede": not nominate, "nominate": nominate, **masked}
+    options = {"task": "frame", "layout": "random:2", "says": own.get("says", ["concede"]), **masked}
     env = SnookerVectorEnv(5, threads=1, opponent=str(tmp_path / "model.zip"), trust=True, **options)
     seen = env.tables.seats[1].player.player.seen
     rows = SnookerVectorEnv(5, threads=1, **masked, **own).reset(seed=3)[0]
@@ -145,7 +144,7 @@ def test_a_model_that_does_not_fit_is_refused_when_made_and_none_of_it_runs(
 ):
     file = bombed(saved / f"{name}.zip", tmp_path / "model.zip", tmp_path / "mark")
     with pytest.raises(ValueError) as info:
-        SnookerEnv(task="frame", opponent=str(file), trust=trust, placement=True, decision=True)
+        SnookerEnv(task="frame", opponent=str(file), trust=trust, placement=True, says=["decision"])
     assert str(info.value).startswith(f"opponent = {str(file)!r}: {says}")
     assert not (tmp_path / "mark").exists()
 

@@ -12,7 +12,7 @@ import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
 from snooker_env.game.frame_columns import PLAY_AGAIN, REPLACE, STRIKER
-from snooker_env.game.sides import swapped
+from snooker_env.game.sides import swap_sides
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 from snooker_env.players import OpponentPool, SeenPlayer, Strokes
 from snooker_env.tasks.carry_out import carry_out
@@ -94,8 +94,8 @@ def test_to_change_sides_twice_changes_nothing():
     rng = np.random.default_rng(0)
     game = rng.integers(0, 2, (50, columns.COLUMNS))
     game[:, columns.WINNER] = rng.integers(-1, 2, 50)
-    other = swapped(game)
-    assert np.array_equal(swapped(other), game)
+    other = swap_sides(game)
+    assert np.array_equal(swap_sides(other), game)
     assert np.array_equal(other[:, columns.SCORE_0], game[:, columns.SCORE_1])
     assert (other[:, columns.BREAKER] == 1 - game[:, columns.BREAKER]).all()
     assert ((other[:, columns.WINNER] < 0) == (game[:, columns.WINNER] < 0)).all()
@@ -116,7 +116,7 @@ def test_one_call_serves_all_tables_that_wait():
     [
         {"aim": "target", "noise": "club", "miss": "clear_path", "layout": "random:3"},
         {"action": "discrete", "cue": "real", "noise": "professional", "layout": "colours"},
-        {"conditions": "drawn", "nominate": True, "game": "shoot_out", "layout": "random:2"},
+        {"conditions": "drawn", "says": ["nominate", "decision"], "game": "shoot_out", "layout": "random:2"},
     ],
     ids=["box", "discrete", "drawn"],
 )
@@ -344,16 +344,6 @@ def test_copies_of_an_environment_play_on_alike(copied):
     env = begun(frame_env(opponent=Soft(), layout="random:2", noise="club"), 2)
     twin = copied(env)
     assert data_equivalence(twin.step(MISS)[:4], env.step(MISS)[:4], exact=True)
-
-
-def test_says_and_the_flags_are_two_spellings():
-    options = sn.Options(task="frame", decision=True, says=["lot"])
-    assert options.says == ("decision", "lot") and options.decision and not options.nominate
-    assert options == sn.Options(task="frame", lot=True, says=("decision",))
-    assert options.but(decision=False).says == ("lot",)
-    assert options.but(says=("claim",)).says == ("claim",) and options.but(noise="club").says == options.says
-    flags = sn.SnookerEnv(task="frame", decision=True, lot=True)
-    assert sn.SnookerEnv(options).action_space == flags.action_space
 
 
 def test_groups_hold_every_option_once():

@@ -25,9 +25,16 @@ from snooker_env.planning import (
 from snooker_env.planning import pots as direct_pots
 from snooker_env.planning.proposals import at_balls
 from snooker_env.tasks import choice_of
-from snooker_env.tasks.arrays import CueLaw
-from snooker_env.tasks.declarations import A_RAILS
-from snooker_env.tasks.discrete_actions import _NEAR_BALL, _NEAR_RAIL, SIDES, SPEEDS, STROKES, TOPS, _crowded
+from snooker_env.tasks.arrays import C_RAILS, CueLaw
+from snooker_env.tasks.discrete_actions import (
+    _NEAR_BALL,
+    _NEAR_RAIL,
+    SIDES,
+    SPEEDS,
+    STROKES,
+    TOPS,
+    _lacks_room,
+)
 from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
 from snooker_env.tasks.pot_aim import _passes, stroke_in_room
@@ -305,7 +312,7 @@ def test_only_what_is_near_makes_a_cue_too_steep():
 
 def test_no_cue_that_must_be_steep_is_overlooked():
     """Lies at a rail or a ball, cues of all directions: a reach or a distance that is 5 % too small would miss some."""
-    least, turned, near = (from_python(one) for one in (least_elevation, squirt, _crowded))
+    least, turned, near = (from_python(one) for one in (least_elevation, squirt, _lacks_room))
     rails, rng, steep = np.array(sn.Options(cue="real").rules.rails), np.random.default_rng(4), 0
     for k in range(8000):
         places, here = np.zeros((22, 2)), np.zeros(22, bool)
@@ -494,8 +501,8 @@ def test_both_players_of_a_frame_have_the_same_cue(opponent):
 
 
 def test_cue_of_two_players_is_the_same():
-    packs = sn.MatchVectorEnv(2, cue="real").tables.packs
+    packs = [sn.MatchVectorEnv(2, cue="real").tables.pack(side) for side in range(2)]
     rails = sn.Options(cue="real").rules.rails
-    assert len(packs) == 2 and all(np.array_equal(options[0, A_RAILS:], rails) for options, _, _ in packs)
+    assert all(np.array_equal(cues[0, C_RAILS:], rails) for _, cues, _, _ in packs)
     with pytest.raises(ValueError, match="cue"):
         sn.MatchVectorEnv(2, seats=({"cue": "real"}, {}))

@@ -9,10 +9,10 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import SnookerEnv, SnookerVectorEnv, Table
-from snooker_env.game.banks import bank, kept
+from snooker_env.game.banks import bank, split_bank
 from snooker_env.game.layouts import LAYOUTS, STORED_IN, deal_tables
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.tasks.table_fit import fitted
+from snooker_env.tasks.table_fit import fit_plan
 from tests.refusals import refused
 from tests.tables import begun
 
@@ -55,8 +55,8 @@ FIT = {
 
 def test_some_opened_tables_do_not_fit_other_pockets():
     """The tests below can see it: the bank was played on the match table, where balls rest in the mouths."""
-    assert 3 < len(fitted("opened", Table.preset("tight")).unfit) < 100
-    assert fitted("opened", MATCH).unfit == ()
+    assert 3 < len(fit_plan("opened", Table.preset("tight")).unfit) < 100
+    assert fit_plan("opened", MATCH).unfit == ()
 
 
 @pytest.mark.parametrize("layout", EVERY)
@@ -70,20 +70,20 @@ def test_every_layout_fits_every_table_that_is_accepted(name, layout):
 def test_every_stored_table_that_can_be_dealt_fits(name):
     """All of a bank, as it is and mirrored."""
     for layout in STORED_IN:
-        tables = fitted(layout, FIT[name]).tables
+        tables = fit_plan(layout, FIT[name]).tables
         assert not FIT[name].unfit(tables, BALL_RADIUS) and not FIT[name].unfit(tables * (-1, 1), BALL_RADIUS)
 
 
 def test_others_stand_in_for_the_opened_tables_that_do_not_fit_and_no_other_deal_changes():
-    plan = fitted("opened", Table.preset("tight"))
+    plan = fit_plan("opened", Table.preset("tight"))
     differ = np.flatnonzero((plan.tables != bank("opened")).any((1, 2)))
     assert set(differ) <= set(plan.unfit) and len(differ) >= len(plan.unfit) - 1
-    for part in kept("opened"):
+    for part in split_bank("opened"):
         for k in set(differ) & set(part):
             assert any(np.array_equal(plan.tables[k], bank("opened")[j]) for j in part)
     streams = np.arange(8000, dtype=np.uint64).reshape(-1, 2)
     dealt = []
-    for each in (plan, fitted("opened", MATCH)):
+    for each in (plan, fit_plan("opened", MATCH)):
         positions, on_table = np.zeros((len(streams), 22, 2)), np.zeros((len(streams), 22), bool)
         deal_tables(np.arange(len(streams)), each.code, each.tables, streams.copy(), positions, on_table)
         dealt.append(positions)

@@ -153,7 +153,7 @@ def test_wrong_figures_of_a_foreign_model_are_refused(foreign, tmp_path, change)
     assert not mark.exists()
 
 
-KEYS = ": must be KEY=VALUE, KEY once each of action, aim, elevation, placement, decision"
+KEYS = ": must be KEY=VALUE, KEY once each of action, aim, elevation, placement, says"
 
 
 @pytest.mark.parametrize(
