@@ -8,10 +8,11 @@ from .._check import integer, refuse
 from ..planning.positions import PositionsLike
 from ..players import Player
 from ..players import player as player_of
+from ..players.cue_stroke import cue_strokes
 from ..tasks.noise import NoiseLike
 from . import judging
 from .practice import one_position, practice_of
-from .strokes import Advice, cue_strokes
+from .suggestions import Advice
 
 AGENT, OF_FRAMES = "planner_500", "tactician"  # who is asked if nobody is named: in a visit, and in a frame
 INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices

@@ -9,9 +9,9 @@ from .._check import integer
 from .._types import Floats
 from ..game.balls import CUE
 from ..planning.positions import PositionsLike
+from ..players.cue_stroke import CueStroke, StrokeLike
 from ..tasks.noise import NoiseLike
 from .practice import JUDGING, keys, one_position, played_from, practice_of
-from .strokes import CueStroke, StrokeLike
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -11,11 +11,12 @@ from ..game.balls import CUE
 from ..game.frame_columns import Layouts
 from ..geometry import BALL_RADIUS
 from ..planning import Outcomes, Positions, clear_paths
+from ..players.cue_stroke import CueStroke
 from . import words as say
 from .frames import Outlook, Z, lies, outlooks, rest_of
 from .practice import JUDGING, Practice, keys, played_from
 from .room import Room, room_for
-from .strokes import CueStroke, Suggestion
+from .suggestions import Suggestion
 
 FOULS = ("foul", "in-off")  # kinds of strokes that are fouls without errors
 RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with

@@ -14,12 +14,12 @@ from ..game.in_hand import place_cue
 from ..planning import FrameJudge, Outcomes, Planner, Positions, Search, VisitJudge
 from ..planning.positions import bare
 from ..planning.worth import chosen
+from ..players.cue_stroke import CueStroke
 from ..players.seen import begun
 from ..players.tactician import Tactician
 from ..tasks.noise import Noise, errors_of
 from ..tasks.options import Options
 from ..tasks.tables import Tables
-from .strokes import CueStroke
 
 PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")  # of the table
 FRAME_OPTIONS = tuple(Options.group("frame"))  # those that count as well where a position is of a frame

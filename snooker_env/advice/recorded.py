@@ -24,11 +24,11 @@ from ..physics.cue import strike
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from ..planning import Position, pots
+from ..players.cue_stroke import CueStroke
 from ..replays import replay
 from ..replays.encode import physics_data, table_data, table_from
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.options import CUES, Options
-from .strokes import CueStroke
 
 FORMAT, VERSION = "snooker-strokes", 1
 VERSIONS = {

@@ -15,8 +15,8 @@ from .._command import exit_code
 from .._files import write_atomic
 from .._tables import shown, text_table
 from .._warmup import warmup
-from ..play.program import AgentError
 from ..players.model_options import add_model_options, options_of_words
+from ..players.program import AgentError
 from ..progress import Progress
 from .agents import Agent, is_known, seated
 from .checking import afresh, faults, faults_of_replay

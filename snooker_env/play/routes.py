@@ -4,7 +4,6 @@ A handler takes the checked fields of a request and returns JSON types; a ValueE
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -13,17 +12,17 @@ from ..advice import CueStroke
 from ..game.frame import MOST_BREAK
 from ..game.ruling import AUTO
 from ..planning.position import Position
+from ..players.requests import STROKE, read_colour, read_place, read_stroke
 from ..replays import Replay
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
-from . import acts, questions
-from .questions import colour_named, place_asked, stroke_in
+from . import questions
+from .game_record import open_game, record_game
 from .report import report, scene, stroke_report
 from .service import Service, StaleError
 from .session import Session
 
-STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")  # fields that define a stroke
 Handler = Callable[[Service, dict[str, Any]], Any]
 
 
@@ -48,22 +47,17 @@ def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def stroke_asked(session: Session, fields: dict[str, Any]) -> CueStroke:
-    """The stroke in a request, with its aim solved if it is given by a pot; the cue ball is placed first."""
+    """The stroke in a request; the cue ball is placed first."""
     if "place" in fields:
-        session.place(*place_asked("place", fields["place"]))
-    if "aim_at" not in fields:
-        return stroke_in(fields)
-    if "aim" in fields:
-        raise refuse("aim", fields["aim"], "must be left out with aim_at")
-    stroke = stroke_in(fields, 0.0)
-    return replace(stroke, aim=questions.aim_at(session, fields["aim_at"], stroke))
+        session.place(*read_place("place", fields["place"]))
+    return read_stroke(fields, session.planned(), {"cue": session.cue})
 
 
 def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     strikes = any(name in fields for name in STROKE)
     if not strikes and "choice" not in fields:
         raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
-    nominated = colour_named("nominate", fields["nominate"]) if "nominate" in fields else AUTO
+    nominated = read_colour("nominate", fields["nominate"]) if "nominate" in fields else AUTO
     struck = None
     with service.acting(_revision(fields)) as session:
         if "choice" in fields:
@@ -80,7 +74,7 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
-        place = list(session.place(*place_asked("place", fields.get("place"))))
+        place = list(session.place(*read_place("place", fields.get("place"))))
     with service.reading():
         return {"place": place, "state": report(service)}
 
@@ -167,12 +161,12 @@ def _concede(service: Service, fields: dict[str, Any]) -> None:
 def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     whole = truth("acts", fields.get("acts", False))
     with service.reading() as session:
-        return acts.written(session) if whole else session.save()
+        return record_game(session) if whole else session.save()
 
 
 def _load(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(pause=True, any_turn=True) as session:
-        acts.opened(session, fields.get("saved"))
+        open_game(session, fields.get("saved"))
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:

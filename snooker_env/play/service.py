@@ -14,11 +14,12 @@ import numpy as np
 from .._check import choice, refuse, refuse_what
 from .._types import NoiseName
 from ..advice.ask import AGENT
-from ..advice.strokes import cue_strokes
 from ..game.frame import CHOICES, Frame
 from ..game.frame_columns import STROKES
 from ..game.ruling import AUTO
 from ..players import Player, Strokes, player
+from ..players.cue_stroke import cue_strokes
+from ..players.table_report import nominations_of
 from ..replays.chances import Judge, Standing, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
@@ -108,10 +109,9 @@ class Service:
     paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
     trouble: str  # why the last agent did not play, or ""
 
-    def __init__(self, session: Session, seats: Seats, *, judged: bool = True):
+    def __init__(self, session: Session, seats: Seats):
         self.session: Session = session
         self.seats: Seats = seats
-        self._judged = judged
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
         self.revision: int = 0
         self.paused, self.trouble = False, ""
@@ -169,8 +169,10 @@ class Service:
             self._asking.release()
 
     def judge(self, noise: NoiseName | None = None) -> Judge | None:
-        """Who says how likely each seat wins, with these errors, by default those of ``Seats.level``; or None."""
-        if not self._judged or self.session.practice:
+        """Who says how likely each seat wins, with these errors, by default those of ``Seats.level``.
+
+        None in practice, where nobody wins."""
+        if self.session.practice:
             return None
         options = self.session.options_with(noise or self.seats.level(self.session))
         if self._judge[0] is not options:
@@ -264,5 +266,7 @@ class Service:
         if session.frame.in_hand and np.isfinite(decided.place[0]).all():
             session.place(*decided.place[0].tolist())
         nominated = int(decided.nominate[0])
-        sensible = nominated in session.nominations() or (nominated == DECLINED and session.frame.free_ball)
+        sensible = nominated in nominations_of(session.frame) or (
+            nominated == DECLINED and session.frame.free_ball
+        )
         session.play(stroke, nominated=nominated if sensible else AUTO)

@@ -16,9 +16,9 @@ from snooker_env.game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from snooker_env.geometry import POCKETS
 from snooker_env.planning import Position, Positions
 from snooker_env.play import routes
-from snooker_env.play.program import ProgramPlayer
-from snooker_env.play.words import lines_of, where
 from snooker_env.players import Strokes, player
+from snooker_env.players.program import ProgramPlayer
+from snooker_env.players.table_report import find_lines, where
 from snooker_env.simulation import SimulationError
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
 from snooker_env.tasks.frame import Frames
@@ -70,7 +70,7 @@ def test_the_text_gives_a_blind_player_places_lines_and_what_is_in_the_way(game)
 
 def test_lines_agree_with_geometry():
     at = Positions.of(Position(**EASY))
-    lines = {(line.ball, POCKETS[line.pocket]): line for line in lines_of([at], 0b110, "none")}
+    lines = {(line.ball, POCKETS[line.pocket]): line for line in find_lines([at], 0b110, "none")}
     assert len(lines) == 12
     straight = lines[1, "top right"]
     assert straight.open and straight.cut < 0.01 and straight.aim == pytest.approx(STRAIGHT, abs=1e-3)
@@ -166,7 +166,7 @@ def test_the_chance_is_for_the_larger_errors_and_nobody_wins_practice(game):
 
 def test_a_program_that_plays_is_not_told_the_chance():
     """It is to find its stroke by itself."""
-    code = "import json,sys;print(json.dumps({'speed':1.0,'aim':float(json.loads(input())['win_chance'] is None)}))"
+    code = "import json,sys;print(json.dumps({'speed':1.0,'aim':float('win_chance' not in json.loads(input()))}))"
     program = ProgramPlayer(f'{sys.executable} -c "{code}"').at({"noise": "club"})
     assert program.play(Position(**EASY), [1]).aim.tolist() == [1.0]
     program.close()

@@ -12,8 +12,9 @@ from snooker_env.game.balls import BLACK, BLUE, CUE, NAMES, PINK
 from snooker_env.game.frame_columns import STROKES
 from snooker_env.game.ruling import AUTO, Foul
 from snooker_env.planning import Position
+from snooker_env.play.report import last_words
 from snooker_env.play.session import STATE, Session
-from snooker_env.play.words import last_words
+from snooker_env.players.table_report import nominations_of
 from snooker_env.tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from tests.playing import COVERED, EASY, FROZEN
 
@@ -97,7 +98,7 @@ def test_a_free_ball_may_be_named_and_counts_as_the_ball_on():
     balls = {"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "black": [-0.6, -0.9]}
     for named, fouls in ((BLUE, Foul(0)), (BLACK, Foul.WRONG_FIRST)):
         session = standing(balls, free_ball=True)
-        assert session.nominations() == (BLUE, BLACK)
+        assert nominations_of(session.frame) == (BLUE, BLACK)
         session.play(ALONG_X, nominated=named)
         assert session.acts[-1].played.fouls == fouls
 

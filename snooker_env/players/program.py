@@ -1,8 +1,9 @@
 """How does an external program play? JSON lines: a state on its standard input, a stroke on its output.
 
-It is started at the first question. For each stroke it gets one line, the object of ``GET api/state`` with a "seed", and
-answers with one, as ``POST api/stroke`` takes it, without "nominate". In phase "choice" of a frame it answers with a
-"choice"; after "play" or "anywhere" alone it gets the state once more, for its stroke. Its standard error is that of this process.
+It is started at the first question. For each stroke it gets one line, what ``GET api/state`` says of the table with a
+"seed", and answers with one, as ``POST api/stroke`` takes it, without "nominate". In phase "choice" of a frame it answers
+with a "choice"; after "play" or "anywhere" alone it gets the state once more, for its stroke. Its standard error is that of
+this process.
 """
 
 import contextlib
@@ -19,22 +20,22 @@ import numpy as np
 
 from .._check import choice, number, refuse
 from ..game.balls import CUE
-from ..game.frame import CHOICES
-from ..game.frame_columns import PLAY
+from ..game.frame import CHOICES, Frame, frame_of
+from ..game.frame_columns import PLAY, Layouts
+from ..game.in_hand import place_cue
 from ..planning import Positions
 from ..planning.positions import seeds_of
-from ..players.player import BoundPlayer, Strokes
+from ..planning.worth import chosen
 from ..tasks.box_actions import MIN_SPEED
-from ..tasks.frame import Frames
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options
-from .report import report
-from .routes import STROKE, stroke_asked
-from .server import RefusedError, parsed
-from .service import Seats, Service
-from .session import STATE, Session
+from .player import BoundPlayer, Strokes
+from .requests import STROKE, read_object, read_place, read_stroke
+from .seen import begun
+from .table_report import report_game, report_turn, say_score, say_table, visit_of
 
 LONGEST = 1 << 20  # the longest answer [bytes]
+LABELS = ("Player 1", "Player 2")  # the program is always the first
 
 
 class AgentError(RuntimeError):
@@ -73,8 +74,6 @@ class ProgramPlayer(BoundPlayer):
             raise refuse("player", f"program:{command}", 'must name a program: program:"python my_player.py"')
         self.name = f"program:{command}"
         self._lines = _Lines(command, words, number("timeout", timeout, 0.0, 1e6, open_low=True))
-        self._session = Session()
-        self._service = Service(self._session, Seats({}), judged=False)
 
     def _bind(self, options: Options) -> None:
         self._noise: Any = choice("noise", options.noise, tuple(LEVELS))
@@ -86,66 +85,72 @@ class ProgramPlayer(BoundPlayer):
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at)).tolist()
-        return Strokes.join([self._stroke(at, k, key) for k, key in enumerate(keys)] or [_struck()[:0]])
+        if not at.of_frames:
+            at = begun(at)
+        return Strokes.join([self._stroke(at[[k]], key) for k, key in enumerate(keys)] or [_struck()[:0]])
 
     def close(self) -> None:
         """End the program; the next question starts it again."""
-        self._service.close()
         self._lines.close()
 
-    def _stroke(self, at: Positions, k: int, seed: int) -> Strokes:
-        """What the program does in the position k."""
-        self._stand(at, k)
-        answer, decided = self._asked(seed), "play"
-        if (
-            answer in ({"choice": "play"}, {"choice": "anywhere"})
-            and answer["choice"] in self._session.frame.choices
-        ):
-            decided = answer["choice"]
-            self._session.choose(decided)  # its stroke comes with the next answer
-            self._service.revision += 1
-            answer = self._asked(seed)
+    def _stroke(self, at: Positions, seed: int) -> Strokes:
+        """What the program does in the one position ``at``, of a frame."""
+        answer, decided = self._asked(at, seed), "play"
+        if answer in ({"choice": "play"}, {"choice": "anywhere"}):
+            choices = self._frame(at).choices
+            if answer["choice"] in choices:
+                decided = answer["choice"]
+                at = chosen(at, CHOICES.index(decided))
+                answer = self._asked(at, seed)  # its stroke
         try:
-            for name in answer:
-                choice("field", name, (*STROKE, "revision", *(("choice",) if at.of_frames else ())))
-            twin = self._session.twin()
-            what = answer.get("choice", decided)
-            if "choice" in answer or twin.frame.phase == "choice":
-                twin.choose(what)
-            decision = CHOICES.index(what)
-            if what in ("play_again", "replace"):
-                return _struck(decision=decision)
-            stroke = stroke_asked(twin, answer)
-            place = twin.tables.positions[0, CUE] if twin.frame.in_hand else None
-            return _struck(stroke.numbers(), place, decision)
+            return self._read(answer, at, decided)
         except ValueError as error:
             what = f"answered {_short(json.dumps(answer))}, which is refused: {error}"
             raise AnswerError(f"the program {self._lines.command!r} {what}") from None
 
-    def _stand(self, at: Positions, k: int) -> None:
-        """The session as the position k stands."""
-        session = self._session
-        if at.of_frames:
-            table = Frames(session.tables.rules, 1)
-            table.positions[0], table.on_table[0], table.game[0] = at.positions[k], at.on_table[k], at.game[k]
-            for kept, layout in zip(table.saved, at.saved or (), strict=False):
-                kept[0] = layout[k]
-            state = table.get_state(0)
-            game = {"practice": False, "noise": [self._noise] * 2, "cue": self.options.cue}
-            game["state"] = {n: state[n] for n in STATE}
-            session.load({"format": "snooker-game", "version": 1, **game})
-        else:
-            position = at[k]
-            session.set_up(position, scores=(position.points, 0), striker=0, free_ball=False)
-            session.noise[:], session.cue = [self._noise] * 2, self.options.cue
-        self._service.revision += 1
+    def _read(self, answer: dict[str, Any], at: Positions, decided: str) -> Strokes:
+        """The stroke that an answer asks for, after what was ``decided``; ValueError names what is wrong."""
+        for name in answer:
+            choice("field", name, (*STROKE, "revision", "choice"))
+        frame, what = self._frame(at), answer.get("choice", decided)
+        if frame.phase == "choice":
+            choice("choice", what, frame.choices)
+            if what in ("play_again", "replace"):
+                return _struck(decision=CHOICES.index(what))
+            at = chosen(at, CHOICES.index(what))
+        elif "choice" in answer:
+            raise refuse("choice", what, "must be left out: the other player has not just fouled")
+        if "place" in answer:
+            x, y = read_place("place", answer["place"])
+            if not at.in_hand[0]:
+                raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
+            at = at.copy()
+            where = place_cue(at.positions[0], at.on_table[0], x, y, anywhere=bool(at.anywhere[0]))
+            at.positions[0, CUE] = where
+        stroke = read_stroke(answer, visit_of(self._frame(at), at), self.options)
+        return _struck(stroke.numbers(), at.positions[0, CUE] if at.in_hand[0] else None, CHOICES.index(what))
 
-    def _asked(self, seed: int) -> dict[str, Any]:
-        """The program's answer to the table as it stands: an object."""
-        answer = self._answered(report(self._service) | {"seed": seed})
+    def _frame(self, at: Positions) -> Frame:
+        """The frame of the one position ``at``."""
+        rules, saved = self.options.rules, at.saved or Layouts(at.positions, at.on_table)
+        return frame_of(at.game[0], rules.miss, saved, 0, rules.game)
+
+    def _asked(self, at: Positions, seed: int) -> dict[str, Any]:
+        """The program's answer to the one position ``at``: an object."""
+        frame = self._frame(at)
+        state = report_game(frame, at.positions[0].tolist(), at.on_table[0].tolist(), LABELS)
+        turn, lines = report_turn(frame, at, self.options.rules.table, self._noise)
+        state |= turn | {
+            "noise": [self._noise] * 2,
+            "cue": self.options.cue,
+            "game": frame.rules,
+            "seed": seed,
+        }
+        state["text"] = say_table(state, lines, [state["words"], say_score(state, LABELS)])
+        answer = self._answered(state)
         try:
-            return parsed(answer.strip())
-        except RefusedError as error:
+            return read_object(answer.strip())
+        except ValueError as error:
             what = f"answered {_short(answer)}, which is no stroke: {error}"
             raise AnswerError(f"the program {self._lines.command!r} {what}") from None
 
