@@ -20,7 +20,7 @@ import numpy as np
 import snooker_env as sn
 from snooker_env.advice import CueStroke, Recorded
 from snooker_env.advice import errors as coaching
-from snooker_env.advice.judging import wilson
+from snooker_env.advice.outcomes import wilson
 from snooker_env.advice.practice import practice_of
 from snooker_env.planning import Planner, Positions
 from snooker_env.players import VISITS

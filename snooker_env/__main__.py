@@ -5,7 +5,7 @@ from ._command import until_closed
 COMMANDS = {
     "watch": "watch a player's visit or frame in the browser, or keep it as a page or a film",
     "play": "play in the browser, against a player or a person",
-    "advice": "what a player would do in a position; what strokes say of a player",
+    "advice": "what recorded strokes say of a player",
     "benchmark": "judge a player on the tasks, check and compare results",
 }
 

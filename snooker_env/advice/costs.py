@@ -7,8 +7,7 @@ from ..planning import Positions, Proposals, Search, pots
 from ..planning.proposals import Asking, strokes_at
 from ..planning.sobol import sobol_points
 from ..planning.worth import lead_of, passed
-from .judging import joined
-from .practice import JUDGING, Practice, keys, one_position
+from .practice import JUDGING, Practice, join, keys, one_position
 from .recorded import Recorded
 
 PARTS = ("potting", "position", "safety")
@@ -42,7 +41,7 @@ def lost(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, I
 
 def worth_of(bench: Practice, at: list[Positions]) -> Floats:
     """What positions of frames are worth to their strikers (n,)."""
-    return np.asarray(bench.judge.worth(joined(at)), np.float64) if at else np.empty(0)
+    return np.asarray(bench.judge.worth(join(at)), np.float64) if at else np.empty(0)
 
 
 def values(bench: Practice, strokes: list[Recorded]) -> Floats:

@@ -34,8 +34,8 @@ class Suggestion(CueStroke):
     chance_interval : (float, float)
         Wilson's 95 % interval of the chance; without noise, the chance itself twice.
     points, points_interval : float, (float, float)
-        Expected points of the visit from this stroke on, continued by the fast player of
-        ``snooker_env.advice.visits``, and the 95 % interval of that mean by the sampling error.
+        Expected points of the visit from this stroke on, continued by a fast search, and the 95 % interval of that
+        mean by the sampling error.
     foul, in_off : float
         Shares of the samples with a foul, and in which the cue ball was potted.
     stops : (float, float) or None

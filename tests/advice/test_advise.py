@@ -7,7 +7,6 @@ import pytest
 from cases import ALL, ENDGAME, IN_HAND, OPEN, RESPOTTED, SNOOKERED, played, state_of, stroke_of
 
 import snooker_env as sn
-from snooker_env.advice.__main__ import main
 from snooker_env.planning import clear_paths
 from tests.refusals import refused
 
@@ -91,7 +90,6 @@ def test_strokes_that_read_the_same_are_given_once():
     advice = sn.advise(ENDGAME, n=8, **QUICK)
     words = [one.words.split(" m/s, ")[1].split(", pot ")[0] for one in advice]
     assert len({(w, one.ball, one.pocket) for w, one in zip(words, advice, strict=True)}) == len(advice) > 2
-    assert len({round(one.speed, 3) for one in sn.advise(ENDGAME, n=8, distinct=False, **QUICK)}) > 1
 
 
 def test_the_first_advice_is_good():
@@ -203,29 +201,3 @@ def test_wrong_positions_and_environments_before_reset_are_refused():
             sn.advise(env, **QUICK)
         env.reset(seed=1)
         assert len(sn.advise(env, **QUICK)) >= 1
-
-
-def test_the_command_prints_advice(tmp_path, capsys):
-    file = tmp_path / "one.json"
-    OPEN.save(file)
-    few = ["--position", str(file), "--agent", "ghost_ball", "--n", "2", "--samples", "30", "--visits", "2"]
-    assert main(few) == 0
-    printed = capsys.readouterr().out.splitlines()
-    advice = sn.advise(OPEN, agent="ghost_ball", n=2, samples=30, visits=2)
-    assert [line for line in printed if not line.startswith("   ")] == str(advice).splitlines()
-    assert "(95 %); cue ball stops at (" in printed[2] and len(printed) == 1 + 2 * len(advice)
-    assert main([*few, "--json"]) == 0 and json.loads(capsys.readouterr().out) == advice.to_dict()
-
-
-def test_what_is_wrong_is_said_in_a_line(tmp_path, capsys):
-    file = tmp_path / "one.json"
-    ENDGAME.save(file)
-    for wrong, said in (
-        (["--agent", "nobody"], "player = 'nobody'"),
-        (["--n", "0"], "n = 0: must be"),
-        (["--noise", "x"], "noise = 'x'"),
-    ):
-        assert main(["--position", str(file), *wrong]) == 2
-        out, error = capsys.readouterr()
-        assert not out and error.startswith(f"error: {said}") and error.count("\n") == 1
-    assert main(["--position", str(tmp_path / "none.json")]) == 2 and "none.json" in capsys.readouterr().err
