@@ -144,9 +144,9 @@ def told(one, *, cue=None, made=None, intended=True):
 
 def told_by_pots(chances, paces, made):
     """Estimate, interval and truth's speed of pots made or missed."""
-    at = coaching.speed_of(paces)
-    log_l = coaching.outcomes(coaching.Pots([], chances, made, paces), at)
-    weights = coaching.posterior(log_l + np.log(coaching.PRIOR)[:, None]).sum(axis=0)
+    at = coaching.choose_speed(paces)
+    log_l = coaching.weigh_outcomes(coaching.Pots([], chances, made, paces), at)
+    weights = coaching.normalise(log_l + np.log(coaching.PRIOR)[:, None]).sum(axis=0)
     return coaching.estimate(weights, BASE.direction_deg(speed=at), len(made)), at
 
 
@@ -172,7 +172,7 @@ def level(name, noise, pool, chances, blues, args):
         cues, made = played(pool, rows, noise, rng)
         for kind, intended in (("meant, played", True), ("pot, played", False)):
             strokes = [told(pool[k], cue=cue, intended=intended) for k, cue in zip(rows, cues, strict=True)]
-            errors = coaching.estimate_errors(strokes, options=WHERE)
+            errors = coaching.fit_errors(strokes, practice_of(coaching.BASE, WHERE), 0).errors
             keep(f"direction: {kind}", errors.direction, noise.direction_deg(speed=errors.at))
             if intended:
                 keep("growth: meant, played", errors.growth, noise.growth)
@@ -211,9 +211,9 @@ def main():
     args = parser.options()
     pool, practice = pool_of(args.pool, args.seed), practice_of(coaching.BASE, WHERE)
     mark = [told(one, made=True) for one in pool]
-    chances = coaching.tolerances(mark, practice, args.seed).chances
+    chances = coaching.simulate_pots(mark, practice, args.seed).chances
     blue = [told(one, made=True) for one in drill() for _ in range(COPIES)]
-    blues = coaching.tolerances(blue, practice, args.seed).chances
+    blues = coaching.simulate_pots(blue, practice, args.seed).chances
     print(f"{args.players} players, {args.strokes} strokes each, of {len(pool)}\n")
     print(f"{'':50s}{'mean':>9s}{'rms':>7s}{'+-':>7s}  within 15 %        interval holds the truth")
     figures = {}

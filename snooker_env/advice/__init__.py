@@ -7,7 +7,7 @@ from ..players.cue_stroke import CueStroke
 from .ask import advise
 from .coach import Coaching, coach
 from .destinations import Destinations, destinations
-from .errors import PlayerErrors, estimate_errors
+from .errors import PlayerErrors
 from .recorded import Recorded, read_strokes, strokes_of, write_strokes
 from .room import Room
 from .suggestions import Advice, Suggestion
@@ -26,7 +26,6 @@ __all__ = [
     "advise",
     "coach",
     "destinations",
-    "estimate_errors",
     "read_strokes",
     "strokes_of",
     "write_strokes",

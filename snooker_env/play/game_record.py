@@ -51,7 +51,7 @@ def open_game(session: Session, saved: object) -> None:
         session.noise[:], session.practice, session.cue = (
             game["noise"],
             game["practice"],
-            game.get("cue", "free"),
+            game["cue"],
         )
 
 

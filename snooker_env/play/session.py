@@ -328,7 +328,6 @@ class Session:
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
             allowed = 'must be a saved game, with "format": "snooker-game"'
             raise refuse_what("saved", "something else", allowed)
-        saved = {"cue": "free"} | saved  # games were saved without it while every cue was free
         if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
             what = f"version {saved.get('version')!r} with {sorted(saved)}"
             raise refuse_what("saved", what, f"must be version 1 with {list(fields)}")
