@@ -88,12 +88,7 @@ def advise(
     )
     at = one_position(position, scores)
     practice = practice_of(noise, options, position, of_frames=at.of_frames)
-    agent = (OF_FRAMES if at.of_frames else AGENT) if agent is None else agent
-    asked = player_of(agent)
-    name = str(agent) if isinstance(agent, str | Path) else getattr(asked, "name", "") or type(asked).__name__
-    if at.of_frames and not getattr(asked, "frames", True):
-        allowed = f'must know frames, as "{OF_FRAMES}" or "stroke_value" do: this player knows visits alone'
-        raise refuse("agent", name, allowed)
+    name, asked = _player_of(agent, at)
     strokes = _ask(asked, practice, at, n, seed)
     chosen, of_agent = _choose_fair(practice, strokes, n, trials), {one.stroke for one in strokes}
     if not chosen:
@@ -108,6 +103,17 @@ def advise(
         noise=noise if isinstance(noise, str) else asdict(practice.noise),
         **trials._asdict(),
     )
+
+
+def _player_of(agent: Any, at: Positions) -> tuple[str, Player]:
+    """The player and its name; ValueError for one that knows visits alone in a frame."""
+    agent = (OF_FRAMES if at.of_frames else AGENT) if agent is None else agent
+    asked = player_of(agent)
+    name = str(agent) if isinstance(agent, str | Path) else getattr(asked, "name", "") or type(asked).__name__
+    if at.of_frames and not getattr(asked, "frames", True):
+        allowed = f'must know frames, as "{OF_FRAMES}" or "stroke_value" do: this player knows visits alone'
+        raise refuse("agent", name, allowed)
+    return name, asked
 
 
 def _ask(player: Player, practice: Practice, at: Positions, n: int, seed: int) -> list[Intention]:

@@ -40,6 +40,7 @@ def open_game(session: Session, saved: object) -> None:
         raise refuse_what("saved.acts", "something else", f"must be a list of at most {MOST_ACTS}")
     with session.as_a_whole():
         session.load(game)
+        noise, practice, cue = list(session.noise), session.practice, session.cue
         for k, act in enumerate(acts):
             try:
                 _do(session, act)
@@ -48,11 +49,7 @@ def open_game(session: Session, saved: object) -> None:
         if not _same(end, here := _end(session)):
             allowed = f"must be {here}: that is where it ends here, maybe another version played it"
             raise refuse("saved.end", end, allowed)
-        session.noise[:], session.practice, session.cue = (
-            game["noise"],
-            game["practice"],
-            game["cue"],
-        )
+        session.noise, session.practice, session.cue = noise, practice, cue  # as at the end
 
 
 def _do(session: Session, act: Any) -> None:
