@@ -33,13 +33,6 @@ def test_chances_are_those_of_the_environment():
         assert one.spread == pytest.approx(np.sqrt(((cue - cue.mean(axis=0)) ** 2).sum(1).mean()), rel=0.2)
 
 
-def test_points_expected_of_the_last_ball_are_its_chance_times_its_value():
-    last = sn.Position(cue=(0.3, 1.0), black=(0.0, 1.4605))
-    (one,) = sn.advise(last, noise="club", n=1, samples=300, visits=20)
-    assert one.points == pytest.approx(7 * one.chance) and 0.0 < one.chance < 1.0
-    assert one.points_interval[0] < one.points < one.points_interval[1]
-
-
 def test_points_expected_hold_what_follows():
     """The whole visit again, with other errors: the intervals overlap."""
     few = sn.advise(OPEN, n=1, samples=200, visits=60, seed=1)[0]
@@ -90,13 +83,6 @@ def test_strokes_that_read_the_same_are_given_once():
     advice = sn.advise(ENDGAME, n=8, **QUICK)
     words = [one.words.split(" m/s, ")[1].split(", pot ")[0] for one in advice]
     assert len({(w, one.ball, one.pocket) for w, one in zip(words, advice, strict=True)}) == len(advice) > 2
-
-
-def test_the_first_advice_is_good():
-    """The blue goes in nine times of ten; the best stroke scores more than the widest pot alone."""
-    agents = "planner_500", "ghost_ball"
-    best, plain = (sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0] for agent in agents)
-    assert best.points > plain.points
 
 
 def test_without_noise_everything_is_certain():

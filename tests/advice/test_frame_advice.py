@@ -57,11 +57,6 @@ def test_the_chance_to_win_is_that_of_other_samples_too():
         assert f"win chance {100 * one.win:.0f} %" in one.words and 0.0 < one.win < 1.0
 
 
-def test_scores_decide_what_the_chance_is():
-    ahead, behind = (sn.advise(HIDDEN, n=1, **QUICK | {"scores": pair})[0] for pair in ((60, 0), (0, 60)))
-    assert behind.win < 0.2 < 0.8 < ahead.win
-
-
 def test_strokes_are_ordered_by_it_and_the_best_is_compared():
     safe, pot = sn.advise(HIDDEN, n=4, **QUICK), sn.advise(ENDGAME, n=3, noise="amateur", **QUICK)
     for advice in (safe, pot):
@@ -168,22 +163,6 @@ def test_a_touching_ball_is_played_away_from():
     assert one.words.startswith("safety away from the touching red, 1.5 m/s")
     (visit,) = sn.advise(touching, agent=away, noise="none")
     assert visit.kind == "contact" and visit.words.startswith("away from the touching red, 1.5 m/s")
-
-
-def test_figures_in_words():
-    say = words.reply_words
-    assert (
-        say("safety", 0.12, 3.04, 0.34)
-        == "the opponent pots next in 12 %, leaves the opponent 3 points, snookered in 34 %"
-    )
-    assert say("escape", 0.5, 12.6, 0.004) == "the opponent pots next in 50 %, leaves the opponent 13 points"
-    assert (
-        say("pot", 0.5, 18.2, 0.0) == "leaves the opponent 18 points if missed"
-        and say("pot", None, None, None) == ""
-    )
-    assert words.against_words(0.55, "pot") == " against 55 % for the best pot"
-    assert words.against_words(0.55, "") == " against 55 % for the next best"
-    assert words.what_words("safety", 3, -1, 3, "thin on the left") == "safety off the red, thin on the left"
 
 
 def test_it_is_json_and_of_its_seed_alone():
