@@ -14,7 +14,7 @@ from .._types import Floats
 from ..planning import clear_paths, pots
 from ..tasks.noise import LEVELS, NoiseLike
 from .costs import PARTS, count_costs
-from .errors import BASE, SCALES, Estimate, Fit, PlayerErrors, Pots, check_recorded, fit_errors, list_chances
+from .errors import BASE, SCALES, Estimate, Fit, PlayerErrors, Pots, fit_errors, list_chances, list_strokes
 from .practice import Practice, practice_of
 from .recorded import Recorded, agree_options
 
@@ -169,7 +169,7 @@ def coach(
     >>> report.made, report.errors.speed is None
     (3, True)
     """
-    kept = check_recorded(strokes)
+    kept = list_strokes(strokes)
     options = agree_options(kept, options)
     if isinstance(target, str):
         choice("target", target, LEVELS)

@@ -129,7 +129,7 @@ class Fit(NamedTuple):
     strokes: list[Recorded]  # without the guessed pots that were likelier to be safeties
 
 
-def check_recorded(strokes: Any) -> list[Recorded]:
+def list_strokes(strokes: Any) -> list[Recorded]:
     """Strokes as a list; ValueError unless there is one, and all are ``Recorded``."""
     kept = list(strokes)
     for k, one in enumerate(kept):

@@ -49,8 +49,8 @@ class TextPlayer(ProgramPlayer):
                     raise
         raise AssertionError
 
-    def _answered(self, state: dict[str, Any]) -> bytes:
-        answer = super()._answered(state | {"error": self._error})
+    def _answer(self, state: dict[str, Any]) -> bytes:
+        answer = super()._answer(state | {"error": self._error})
         for name, more in (("answers", 1), ("read", len(state["text"])), ("written", len(answer))):
             self.counts[name] += more
         return answer

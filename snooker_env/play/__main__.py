@@ -82,7 +82,7 @@ def warm_up(service: "Service") -> None:
             stroke = CueStroke(speed=2.0, aim=1.0)
             questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
             for name in {service.seats.advisers(session.practice)[0], service.seats.who[1]}:
-                service.seats.decided(name, session)
+                service.seats.decide(name, session)
     with service.reading():
         report(service)
 

@@ -2,11 +2,12 @@
 
 Played again, strokes meet the same execution errors, so that it must end as it did."""
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from .._check import choice, refuse, refuse_what, truth
+from .._types import CueKind
 from ..advice import CueStroke
 from ..game.balls import NAMES
 from ..game.ruling import AUTO
@@ -72,10 +73,8 @@ def _play(session: Session, act: dict[str, Any]) -> None:
     stroke = CueStroke.of({name: act[name] for name in STROKE[:5] if name in act})
     level: Any = choice("noise", act.get("noise"), LEVELS)
     session.noise[session.frame.striker] = level
-    session.practice, session.cue = (
-        truth("practice", act.get("practice")),
-        choice("cue", act.get("cue"), CUES),
-    )
+    session.practice = truth("practice", act.get("practice"))
+    session.cue = cast(CueKind, choice("cue", act.get("cue"), CUES))
     if act.get("place") is not None:
         session.place(*read_place("place", act["place"]))
     named = act.get("nominate")

@@ -46,7 +46,7 @@ def paths(shot: Shot) -> dict[str, Any]:
 def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any]:
     """Where cue ball and object ball stop with ``errors`` (noise, samples, seed), and the paths without them."""
     shot = exact(session, stroke)
-    stops = destinations(session.planned(), stroke, **errors, options={"cue": session.cue})
+    stops = destinations(session.as_visit(), stroke, **errors, options={"cue": session.cue})
     figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
     return paths(shot) | figures | {"cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4")}
 
@@ -58,14 +58,14 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
         (chance,) = service.win_chances([session.twin().choose(what)], session.noise[seat])
         win = chance if chance is None or seat == 0 else 1.0 - chance
         found.append({"choice": what, "win": win})
-    decided = service.seats.decided(agent, session)
+    decided = service.seats.decide(agent, session)
     return {"choice": CHOICES[int(decided.decision[0])], "choices": found}
 
 
 def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:
     """At most n strokes of the agent, the best of each ``_idea``, in words, data and paths; their order."""
     how: Any = {**errors, "n": n + RIVALS * (n - 1), "options": {"cue": session.cue}}
-    at = session.planned()
+    at = session.as_visit()
     if not session.practice:  # alone at the table nobody wins
         at, how["options"] = (
             session.position,

@@ -46,11 +46,11 @@ def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         return {"revision": service.revision, "strokes": strokes}
 
 
-def stroke_asked(session: Session, fields: dict[str, Any]) -> CueStroke:
+def take_stroke(session: Session, fields: dict[str, Any]) -> CueStroke:
     """The stroke in a request; the cue ball is placed first."""
     if "place" in fields:
         session.place(*read_place("place", fields["place"]))
-    return read_stroke(fields, session.planned(), {"cue": session.cue})
+    return read_stroke(fields, session.as_visit(), {"cue": session.cue})
 
 
 def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -66,7 +66,7 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
                 raise refuse("choice", fields["choice"], allowed)
             session.choose(fields["choice"])
         if strikes:
-            session.play(stroke_asked(session, fields), nominated=nominated)
+            session.play(take_stroke(session, fields), nominated=nominated)
             struck = stroke_report(service, session.at - 1)
     with service.reading():
         return {"stroke": struck, "state": report(service)}
@@ -111,7 +111,7 @@ def position_of(fields: object) -> Position:
     return Position(**fields | points)
 
 
-def _moved(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
+def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
     """Undo or redo until a person has a stroke or decision to make."""
     with service.acting(pause=True, any_turn=True) as session:
         people = not all(map(service.seats.is_agent, (0, 1)))
@@ -186,13 +186,13 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
         errors = _errors(fields, 500, session.noise[session.frame.striker])
-        return questions.scatter(session, stroke_asked(session, fields), **errors)
+        return questions.scatter(session, take_stroke(session, fields), **errors)
 
 
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading(_revision(fields)) as session:  # at once: it does not wait for long questions
         twin = session.twin()
-    return twin.room(stroke_asked(twin, fields)).to_dict()
+    return twin.room(take_stroke(twin, fields)).to_dict()
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
@@ -232,8 +232,8 @@ POST: dict[str, Route] = {
     "destinations": Route(_destinations, (*STROKE, *ERRORS)),
     "room": Route(_room, (*STROKE, "revision")),
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
-    "undo": Route(partial(_moved, move=Session.undo)),
-    "redo": Route(partial(_moved, move=Session.redo)),
+    "undo": Route(partial(_move, move=Session.undo)),
+    "redo": Route(partial(_move, move=Session.redo)),
     "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),

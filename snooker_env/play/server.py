@@ -86,7 +86,7 @@ class PlayHandler(BaseHTTPRequestHandler):
 
     def _serve(self):
         try:
-            name, query = self._checked()
+            name, query = self._check_request()
             if not name.startswith("api/"):
                 self._file(name)
                 return
@@ -107,7 +107,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         except SimulationError as error:
             self._refuse(RefusedError(500, f"this stroke cannot be computed: {error}"))
 
-    def _checked(self) -> tuple[str, dict[str, Any]]:
+    def _check_request(self) -> tuple[str, dict[str, Any]]:
         """The path after the token and the query, of a valid request."""
         head = self.headers
         try:

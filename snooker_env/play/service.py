@@ -83,7 +83,7 @@ class Seats:
         """The names of both."""
         return self.label(0), self.label(1)
 
-    def decided(self, name: str, session: Session) -> Strokes:
+    def decide(self, name: str, session: Session) -> Strokes:
         """What an agent does in the frame: a decision, a declaration or a stroke, without changing it."""
         options = session.options_with(session.noise[session.frame.striker])
         decided = self.players[name].at(options).play(session.position, session.tables.game[:, STROKES])
@@ -154,7 +154,7 @@ class Service:
             with session.as_a_whole():
                 yield session
             self.paused, self.trouble = pause, ""
-            self._moved()
+            self._announce()
 
     @contextmanager
     def asking(self, revision: int | None = None) -> Iterator[Session]:
@@ -200,7 +200,7 @@ class Service:
             if not self.paused:
                 return  # it is thinking already: another page was first
             self.paused, self.trouble = False, ""
-            self._moved()
+            self._announce()
 
     def agent_to_play(self) -> bool:
         """Whether it is an agent's turn."""
@@ -212,7 +212,7 @@ class Service:
         """Whether an agent is thinking about its stroke, or about to."""
         return self.agent_to_play() and not self.paused
 
-    def _moved(self):
+    def _announce(self):
         self.revision += 1
         self._changed.notify_all()
 
@@ -227,7 +227,7 @@ class Service:
                 who, twin = self.seats.who[self.session.frame.striker], self.session.twin()
             decided, trouble = None, ""
             try:
-                decided = self.seats.decided(who, twin)
+                decided = self.seats.decide(who, twin)
             # a custom player may raise anything: it is reported, and the game waits
             except Exception as error:
                 trouble = f"{who} gave no stroke ({type(error).__name__}: {error})"
@@ -237,7 +237,7 @@ class Service:
                 if decided is not None:
                     trouble = self._carry_out(decided)
                 self.trouble, self.paused = trouble, bool(trouble) or all(map(self.seats.is_agent, (0, 1)))
-                self._moved()
+                self._announce()
 
     def _carry_out(self, decided: Strokes) -> str:
         """What an agent has decided; why it could not be carried out, or ""."""

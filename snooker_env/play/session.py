@@ -116,7 +116,7 @@ class Session:
 
     def room(self, stroke: CueStroke) -> Room:
         """How the cue finds room for a stroke as the table lies; nothing is played."""
-        return room_for(stroke.numbers(), self.planned(), self._options.rules)
+        return room_for(stroke.numbers(), self.as_visit(), self._options.rules)
 
     @property
     def state(self) -> dict[str, Any]:
@@ -134,7 +134,7 @@ class Session:
         """The frame as its striker sees it."""
         return of_tables(self.tables)
 
-    def planned(self) -> Positions:
+    def as_visit(self) -> Positions:
         """The next stroke's position, as one of a visit."""
         if self.frame.phase == "over":
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
@@ -263,13 +263,13 @@ class Session:
         """End the frame: the striker concedes."""
         if self.frame.phase == "over":
             raise refuse("phase", "over", "must not be over")
-        return self._ended("concede", self.frame.concede(self.frame.striker))
+        return self._end("concede", self.frame.concede(self.frame.striker))
 
     def claim(self) -> Act:
         """The striker, more than seven points ahead with the black alone on the table, claims the frame."""
-        return self._ended("claim", self.frame.claim())
+        return self._end("claim", self.frame.claim())
 
-    def _ended(self, what: str, after: Frame) -> Act:
+    def _end(self, what: str, after: Frame) -> Act:
         striker = self.frame.striker
         self._write(after, int(self.tables.game[0, STROKES]))
         return self._did(Act(what, self.state, striker, asked={"declare": what}))
@@ -304,7 +304,7 @@ class Session:
         rules: Any = {"miss": self.miss, "rules": self.game}
         frame = Frame(**game, **rules, ball_on=BallOn[str(position.on).upper()])
         state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
-        sound = self._checked(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
+        sound = self._check(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
         if not check:
             self.tables.set_state(0, sound)
             self._did(Act("set_up", self.state))
@@ -364,9 +364,9 @@ class Session:
         return True
 
     def _set(self, state):
-        self.tables.set_state(0, self._checked(state))
+        self.tables.set_state(0, self._check(state))
 
-    def _checked(self, state: dict[str, Any]) -> FrameState:
+    def _check(self, state: dict[str, Any]) -> FrameState:
         try:
             # no rewards are paid here
             alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}

@@ -87,7 +87,7 @@ class ProgramPlayer(BoundPlayer):
         keys = seeds_of(seeds, len(at)).tolist()
         if not at.of_frames:
             at = begun(at)
-        return Strokes.join([self._stroke(at[[k]], key) for k, key in enumerate(keys)] or [_struck()[:0]])
+        return Strokes.join([self._stroke(at[[k]], key) for k, key in enumerate(keys)] or [_one_stroke()[:0]])
 
     def close(self) -> None:
         """End the program; the next question starts it again."""
@@ -95,13 +95,13 @@ class ProgramPlayer(BoundPlayer):
 
     def _stroke(self, at: Positions, seed: int) -> Strokes:
         """What the program does in the one position ``at``, of a frame."""
-        answer, decided = self._asked(at, seed), "play"
+        answer, decided = self._ask(at, seed), "play"
         if answer in ({"choice": "play"}, {"choice": "anywhere"}):
             choices = self._frame(at).choices
             if answer["choice"] in choices:
                 decided = answer["choice"]
                 at = chosen(at, CHOICES.index(decided))
-                answer = self._asked(at, seed)  # its stroke
+                answer = self._ask(at, seed)  # its stroke
         try:
             return self._read(answer, at, decided)
         except ValueError as error:
@@ -116,7 +116,7 @@ class ProgramPlayer(BoundPlayer):
         if frame.phase == "choice":
             choice("choice", what, frame.choices)
             if what in ("play_again", "replace"):
-                return _struck(decision=CHOICES.index(what))
+                return _one_stroke(decision=CHOICES.index(what))
             at = chosen(at, CHOICES.index(what))
         elif "choice" in answer:
             raise refuse("choice", what, "must be left out: the other player has not just fouled")
@@ -128,14 +128,16 @@ class ProgramPlayer(BoundPlayer):
             where = place_cue(at.positions[0], at.on_table[0], x, y, anywhere=bool(at.anywhere[0]))
             at.positions[0, CUE] = where
         stroke = read_stroke(answer, visit_of(self._frame(at), at), self.options)
-        return _struck(stroke.numbers(), at.positions[0, CUE] if at.in_hand[0] else None, CHOICES.index(what))
+        return _one_stroke(
+            stroke.numbers(), at.positions[0, CUE] if at.in_hand[0] else None, CHOICES.index(what)
+        )
 
     def _frame(self, at: Positions) -> Frame:
         """The frame of the one position ``at``."""
         rules, saved = self.options.rules, at.saved or Layouts(at.positions, at.on_table)
         return frame_of(at.game[0], rules.miss, saved, 0, rules.game)
 
-    def _asked(self, at: Positions, seed: int) -> dict[str, Any]:
+    def _ask(self, at: Positions, seed: int) -> dict[str, Any]:
         """The program's answer to the one position ``at``: an object."""
         frame = self._frame(at)
         state = report_game(frame, at.positions[0].tolist(), at.on_table[0].tolist(), LABELS)
@@ -147,14 +149,14 @@ class ProgramPlayer(BoundPlayer):
             "seed": seed,
         }
         state["text"] = say_table(state, lines, [state["words"], say_score(state, LABELS)])
-        answer = self._answered(state)
+        answer = self._answer(state)
         try:
             return read_object(answer.strip())
         except ValueError as error:
             what = f"answered {_short(answer)}, which is no stroke: {error}"
             raise AnswerError(f"the program {self._lines.command!r} {what}") from None
 
-    def _answered(self, state: dict[str, Any]) -> bytes:
+    def _answer(self, state: dict[str, Any]) -> bytes:
         """The line that the program answers a state with."""
         return self._lines.ask(json.dumps(state, separators=(",", ":")).encode() + b"\n")
 
@@ -186,22 +188,22 @@ class _Lines:
                 process.stdin.write(line)
                 process.stdin.flush()
         elif answer := self._answers.queue[0]:
-            raise self._failed(f"answered {_short(answer)} without a state: one line for each")
+            raise self._failure(f"answered {_short(answer)} without a state: one line for each")
         try:
             answer = self._answers.get(timeout=self.timeout)
         except queue.Empty:
-            raise self._failed(f"gave no stroke within {self.timeout:g} s") from None
+            raise self._failure(f"gave no stroke within {self.timeout:g} s") from None
         if len(answer) > LONGEST:
-            raise self._failed(f"answered a line of more than {LONGEST:,} bytes")
+            raise self._failure(f"answered a line of more than {LONGEST:,} bytes")
         if not answer:
             try:
                 code = process.wait(2.0)
             except subprocess.TimeoutExpired:
-                raise self._failed("closed its output") from None
-            raise self._failed(f"ended with exit code {code} instead of a stroke")
+                raise self._failure("closed its output") from None
+            raise self._failure(f"ended with exit code {code} instead of a stroke")
         return answer
 
-    def _failed(self, what):
+    def _failure(self, what):
         return AgentError(f"the program {self.command!r} {what}")
 
     def close(self) -> None:
@@ -230,7 +232,7 @@ class _Lines:
             self._answers.put(line)
 
 
-def _struck(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:
+def _one_stroke(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:
     """One stroke."""
     places: Any = None if place is None else np.array([place])
     return Strokes(np.array([values]), places, decision=np.array([decision]))
