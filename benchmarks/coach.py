@@ -20,7 +20,7 @@ import numpy as np
 import snooker_env as sn
 from snooker_env.advice import CueStroke, Recorded
 from snooker_env.advice import errors as coaching
-from snooker_env.advice.judging import wilson
+from snooker_env.advice.outcomes import wilson
 from snooker_env.advice.practice import practice_of
 from snooker_env.planning import Planner, Positions
 from snooker_env.players import VISITS
@@ -79,10 +79,10 @@ def pool_of(n, seed):
                 break
         deal += 1
     env.close()
-    return [Recorded(position=at, intended=meant(row), ball=b, pocket=p) for at, row, b, p in pool[:n]]
+    return [Recorded(position=at, intended=intend(row), ball=b, pocket=p) for at, row, b, p in pool[:n]]
 
 
-def meant(row):
+def intend(row):
     """A row of five numbers as a ``CueStroke``."""
     speed, side, top, aim, elevation = row.tolist()
     shrink = max(1.0, hypot(side, top) / 0.5)
@@ -101,7 +101,7 @@ def drill():
     return made
 
 
-def played(pool, rows, noise, rng):
+def play(pool, rows, noise, rng):
     """Strokes of the pool as played with errors: the strokes as executed, (n, 5), and whether the pots were made."""
     planner = Planner({"noise": noise})
     at = Positions.of([pool[k].position for k in rows])
@@ -110,10 +110,10 @@ def played(pool, rows, noise, rng):
     stops = planner.play_strokes(at, np.arange(len(rows)), strokes, errors=z)
     balls, pockets = np.array([(pool[k].ball, pool[k].pocket) for k in rows]).T
     made = (stops.potted[np.arange(len(rows)), balls] == pockets) & (stops.penalty == 0)
-    return executed(strokes, z, noise), made
+    return execute(strokes, z, noise), made
 
 
-def executed(strokes, z, noise):
+def execute(strokes, z, noise):
     """The law of ``tasks.noise`` for strokes (n, 5) with a free cue: speed, side, top, aim of the cue, elevation."""
     speed, side, top, aim, elevation = strokes.T
     more, tip = np.hypot(1.0, noise.growth * speed), noise.offset_mm * 1e-3 / sn.Physics().R
@@ -129,7 +129,7 @@ def executed(strokes, z, noise):
     )
 
 
-def told(one, *, cue=None, made=None, intended=True):
+def tell(one, *, cue=None, made=None, intended=True):
     """A stroke of the pool with what is known of it after it was played."""
     names = ("speed", "side", "top", "aim", "elevation")
     return Recorded(
@@ -144,9 +144,9 @@ def told(one, *, cue=None, made=None, intended=True):
 
 def told_by_pots(chances, paces, made):
     """Estimate, interval and truth's speed of pots made or missed."""
-    at = coaching.speed_of(paces)
-    log_l = coaching.outcomes(coaching.Pots([], chances, made, paces), at)
-    weights = coaching.posterior(log_l + np.log(coaching.PRIOR)[:, None]).sum(axis=0)
+    at = coaching.choose_speed(paces)
+    log_l = coaching.weigh_outcomes(coaching.Pots([], chances, made, paces), at)
+    weights = coaching.normalise(log_l + np.log(coaching.PRIOR)[:, None]).sum(axis=0)
     return coaching.estimate(weights, BASE.direction_deg(speed=at), len(made)), at
 
 
@@ -169,10 +169,10 @@ def level(name, noise, pool, chances, blues, args):
 
     for _ in range(args.players):
         rows = rng.choice(len(pool), args.strokes)
-        cues, made = played(pool, rows, noise, rng)
+        cues, made = play(pool, rows, noise, rng)
         for kind, intended in (("meant, played", True), ("pot, played", False)):
-            strokes = [told(pool[k], cue=cue, intended=intended) for k, cue in zip(rows, cues, strict=True)]
-            errors = coaching.estimate_errors(strokes, options=WHERE)
+            strokes = [tell(pool[k], cue=cue, intended=intended) for k, cue in zip(rows, cues, strict=True)]
+            errors = coaching.fit_errors(strokes, practice_of(coaching.BASE, WHERE), 0).errors
             keep(f"direction: {kind}", errors.direction, noise.direction_deg(speed=errors.at))
             if intended:
                 keep("growth: meant, played", errors.growth, noise.growth)
@@ -180,7 +180,7 @@ def level(name, noise, pool, chances, blues, args):
         one, at = told_by_pots(chances[rows], paces[rows], made)
         keep("direction: pot made or not", one, noise.direction_deg(speed=at))
         same = np.full(args.strokes, best)
-        _, made = played(blue, same, noise, rng)
+        _, made = play(blue, same, noise, rng)
         one, at = told_by_pots(rates[same], drilled[same], made)
         keep("direction: drill", one, noise.direction_deg(speed=at))
     return out
@@ -210,10 +210,10 @@ def main():
     add("--levels", nargs="+", choices=PLAYERS, default=tuple(PLAYERS), help="whose errors [all]")
     args = parser.options()
     pool, practice = pool_of(args.pool, args.seed), practice_of(coaching.BASE, WHERE)
-    mark = [told(one, made=True) for one in pool]
-    chances = coaching.tolerances(mark, practice, args.seed).chances
-    blue = [told(one, made=True) for one in drill() for _ in range(COPIES)]
-    blues = coaching.tolerances(blue, practice, args.seed).chances
+    mark = [tell(one, made=True) for one in pool]
+    chances = coaching.simulate_pots(mark, practice, args.seed).chances
+    blue = [tell(one, made=True) for one in drill() for _ in range(COPIES)]
+    blues = coaching.simulate_pots(blue, practice, args.seed).chances
     print(f"{args.players} players, {args.strokes} strokes each, of {len(pool)}\n")
     print(f"{'':50s}{'mean':>9s}{'rms':>7s}{'+-':>7s}  within 15 %        interval holds the truth")
     figures = {}

@@ -1,4 +1,4 @@
-"""What is loaded by its name at the first use? The environments that Gymnasium knows by id, and the player of programs."""
+"""What is loaded by its name at the first use? The environments that Gymnasium knows by id."""
 
 from types import ModuleType
 from typing import Any
@@ -6,8 +6,6 @@ from typing import Any
 ID = "Snooker-v0"
 ENTRY_POINT = "snooker_env.envs.snooker:SnookerEnv"
 VECTOR_ENTRY_POINT = "snooker_env.envs.vector:SnookerVectorEnv"
-
-PROGRAM_PLAYER = "snooker_env.play.program:ProgramPlayer"  # it speaks the language of the page
 
 _TASKS = "snooker_env.benchmark.environments"
 _NAMES = ("Break", "BreakClub", "Escape", "Safety", "Frame")

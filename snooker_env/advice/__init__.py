@@ -3,13 +3,14 @@
 In words the ``snooker_env.POCKETS`` are called green pocket, yellow pocket, right middle, top right, top left
 and left middle. Left and right are as seen from the baulk end: right is the yellow side (+x)."""
 
+from ..players.cue_stroke import CueStroke
 from .ask import advise
 from .coach import Coaching, coach
 from .destinations import Destinations, destinations
-from .errors import PlayerErrors, estimate_errors
+from .errors import PlayerErrors
 from .recorded import Recorded, read_strokes, strokes_of, write_strokes
 from .room import Room
-from .strokes import Advice, CueStroke, Suggestion
+from .suggestions import Advice, Suggestion
 from .words import POCKET_WORDS
 
 __all__ = [
@@ -25,7 +26,6 @@ __all__ = [
     "advise",
     "coach",
     "destinations",
-    "estimate_errors",
     "read_strokes",
     "strokes_of",
     "write_strokes",

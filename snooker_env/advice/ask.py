@@ -1,20 +1,25 @@
 """What would a player do here, and how would it turn out? ``advise``."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from .._lib.check import integer, refuse
-from ..planning.positions import PositionsLike
+from ..planning.positions import Positions, PositionsLike
 from ..players import Player
 from ..players import player as player_of
+from ..players.cue_stroke import cue_strokes
 from ..tasks.noise import NoiseLike
-from . import judging
-from .practice import one_position, practice_of
-from .strokes import Advice, cue_strokes
+from .intentions import FOULS, Intention, drop_alike, intend
+from .outcomes import Trials, judge_strokes
+from .practice import Practice, one_position, practice_of
+from .suggestions import Advice, Suggestion
+from .words import against_words
 
 AGENT, OF_FRAMES = "planner_500", "tactician"  # who is asked if nobody is named: in a visit, and in a frame
 INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices
+RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with
+SELDOM = 0.05  # chance of a pot below which it is no suggestion where there are others
 CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
 
 
@@ -29,8 +34,6 @@ def advise(
     visits: int = 40,
     seed: int = 0,
     options: Any = None,
-    distinct: bool = True,
-    trust: bool = False,
 ) -> Advice:
     """Return the strokes that a player would play in a position, best first, and their outcomes.
 
@@ -45,8 +48,8 @@ def advise(
         each stroke has its ``place``. Points of the break so far do not count.
     agent : str, Path or player, optional
         The player, as ``snooker_env.player`` takes it, in a frame one that knows frames ("tactician",
-        "stroke_value", your own). One without ``rank`` has one stroke. Default None: "planner_500", in a frame
-        "tactician".
+        "stroke_value", your own). One without ``rank`` has one stroke; of those that read alike, apart from the
+        speed of a pot, only the first is kept. Default None: "planner_500", in a frame "tactician".
     scores : (int, int), optional
         Of the striker and of the other, in [0, 1000]: they make a frame of a position of a visit. Default None:
         it is what it is.
@@ -63,10 +66,6 @@ def advise(
     options : dict or Options, optional
         An ``Options``, or a dict with "physics", "table", "fidelity", "cue" and, in a frame, "miss" and "game".
         Default None: those of ``position`` if it is an environment, else the defaults.
-    distinct : bool
-        Whether only the first of strokes with equal descriptions is kept, apart from the speed of a pot.
-    trust : bool
-        Whether code in a model's file may run, see ``snooker_env.player``.
 
     Returns
     -------
@@ -82,32 +81,19 @@ def advise(
     (21, 'top left', True)
     """
     integer("n", n, 1, 100)
-    integer("samples", samples, 1, 100_000)
-    integer("visits", visits, 0, 100_000)
-    integer("seed", seed, 0, 2**63)
+    trials = Trials(
+        integer("samples", samples, 1, 100_000),
+        integer("visits", visits, 0, 100_000),
+        integer("seed", seed, 0, 2**63),
+    )
     at = one_position(position, scores)
     practice = practice_of(noise, options, position, of_frames=at.of_frames)
-    agent = (OF_FRAMES if at.of_frames else AGENT) if agent is None else agent
-    asked = player_of(agent, trust=trust)
-    name = str(agent) if isinstance(agent, str | Path) else getattr(asked, "name", "") or type(asked).__name__
-    if at.of_frames and not getattr(asked, "frames", True):
-        allowed = f'must know frames, as "{OF_FRAMES}" or "stroke_value" do: this player knows visits alone'
-        raise refuse("agent", name, allowed)
-
-    def tried(one: Player) -> list[judging.Tried]:
-        bound = one.at(practice.options)
-        rank = getattr(bound, "rank", None)
-        played = bound.play(at, [seed]) if rank is None else rank(at, [seed])[0].strokes
-        strokes = judging.tried(practice, at, cue_strokes(played, at)[: CONSIDERED * n])
-        return judging.distinct(strokes) if distinct else strokes
-
-    judge: Any = {"samples": samples, "visits": visits, "seed": seed}
-    strokes = tried(asked)
-    chosen, of_agent = judging.fair(practice, strokes, n, **judge), {one.stroke for one in strokes}
+    name, asked = _player_of(agent, at)
+    strokes = _ask(asked, practice, at, n, seed)
+    chosen, of_agent = _choose_fair(practice, strokes, n, trials), {one.stroke for one in strokes}
     if not chosen:
-        strokes += tried(player_of(INSTEAD))
-        chosen = judging.fair(practice, strokes, n, **judge)
-    chosen = chosen or [judging.least_bad(practice, strokes, **judge)]
+        strokes += _ask(player_of(INSTEAD), practice, at, n, seed)
+        chosen = _choose_fair(practice, strokes, n, trials) or [_choose_least_bad(practice, strokes, trials)]
     return Advice(
         suggestions=tuple(chosen),
         position=at[0],
@@ -115,5 +101,64 @@ def advise(
         agent=name,
         own=all(one.stroke in of_agent for one in chosen),
         noise=noise if isinstance(noise, str) else asdict(practice.noise),
-        **judge,
+        **trials._asdict(),
     )
+
+
+def _player_of(agent: Any, at: Positions) -> tuple[str, Player]:
+    """The player and its name; ValueError for one that knows visits alone in a frame."""
+    agent = (OF_FRAMES if at.of_frames else AGENT) if agent is None else agent
+    asked = player_of(agent)
+    name = str(agent) if isinstance(agent, str | Path) else getattr(asked, "name", "") or type(asked).__name__
+    if at.of_frames and not getattr(asked, "frames", True):
+        allowed = f'must know frames, as "{OF_FRAMES}" or "stroke_value" do: this player knows visits alone'
+        raise refuse("agent", name, allowed)
+    return name, asked
+
+
+def _ask(player: Player, practice: Practice, at: Positions, n: int, seed: int) -> list[Intention]:
+    """The strokes that a player would play, the first of those that are alike."""
+    bound = player.at(practice.options)
+    rank = getattr(bound, "rank", None)
+    played = bound.play(at, [seed]) if rank is None else rank(at, [seed])[0].strokes
+    return drop_alike(intend(practice, at, cue_strokes(played, at)[: CONSIDERED * n]))
+
+
+def _choose_fair(practice: Practice, strokes: list[Intention], n: int, trials: Trials) -> list[Suggestion]:
+    """The first n strokes that are fair without errors and in most samples, the preferred kind first.
+
+    Pots that hardly ever go are none of them, unless nothing else is, or in a frame none of the others wins so often."""
+    waiting, out, unlikely = [one for one in strokes if one.kind not in FOULS], [], []
+    while waiting and len(out) < n:
+        some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
+        for one in judge_strokes(practice, some, trials):
+            if one.foul <= 0.5:
+                (unlikely if one.kind == "pot" and one.chance < SELDOM else out).append(one)
+    most = max([one.win for one in out if one.win is not None], default=-1.0)
+    if not out or out[0].win is not None:
+        needed = [one for one in unlikely if not out or one.win > most][: max(1, n - len(out))]
+        note = "hardly ever made, but no better stroke was found"
+        out += [replace(one, words=f"{one.words}; {note}") for one in needed]
+    if not out or out[0].win is None:
+        return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
+    out = sorted(out, key=lambda one: -one.figure)[:n]
+    others = [one for one in waiting if (one.kind == "pot") != (out[0].kind == "pot")][:RIVALS]
+    rivals = judge_strokes(practice, others, trials._replace(visits=0)) if others else []
+    return [_compare(out, [one for one in out[1:] + rivals if one.foul <= 0.5]), *out[1:]]
+
+
+def _compare(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
+    """The best stroke of a frame, compared with the best of the other kind, a pot or none, or the next best."""
+    one = best[0]
+    rivals = [other for other in others if (other.kind == "pot") != (one.kind == "pot")]
+    if not (rivals or best[1:]):
+        return one
+    rival = max(rivals or best[1:], key=lambda other: other.figure)
+    kind = rival.kind if rivals else ""
+    return replace(one, against=rival.win, words=one.words + against_words(rival.figure, kind))
+
+
+def _choose_least_bad(practice: Practice, strokes: list[Intention], trials: Trials) -> Suggestion:
+    """The stroke that is fair in most samples, where none is fair."""
+    best = min(judge_strokes(practice, strokes, trials), key=lambda one: one.foul)
+    return replace(best, words=f"no fair stroke found: {best.words}")

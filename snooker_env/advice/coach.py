@@ -13,10 +13,10 @@ from .._lib.check import choice
 from .._lib.types import Floats
 from ..planning import clear_paths, pots
 from ..tasks.noise import LEVELS, NoiseLike
-from .costs import PARTS, lost
-from .errors import BASE, SCALES, Estimate, Fitted, PlayerErrors, Pots, chances_of, checked, fitted
+from .costs import PARTS, count_costs
+from .errors import BASE, SCALES, Estimate, Fit, PlayerErrors, Pots, fit_errors, list_chances, list_strokes
 from .practice import Practice, practice_of
-from .recorded import Recorded, agreed
+from .recorded import Recorded, agree_options
 
 WIDE, NARROW = 0.23, 0.06  # tolerances [deg] above which a pot is easy, below which hard, as of ``pots:D``
 RESAMPLES = 2000
@@ -169,17 +169,17 @@ def coach(
     >>> report.made, report.errors.speed is None
     (3, True)
     """
-    kept = checked(strokes)
-    options = agreed(kept, options)
+    kept = list_strokes(strokes)
+    options = agree_options(kept, options)
     if isinstance(target, str):
         choice("target", target, LEVELS)
     bench = practice_of(target, options, of_frames=True)
     physical = {name: getattr(bench.options, name) for name in ("physics", "table", "fidelity", "cue")}
     base = practice_of(BASE, physical)
-    found = fitted(kept, base, seed, every_pot=True)
+    found = fit_errors(kept, base, seed)
     kept = found.strokes
-    points, counts = lost(kept, bench, seed)
-    visits = visits_of(kept)
+    points, counts = count_costs(kept, bench, seed)
+    visits = count_visits(kept)
     rng = np.random.default_rng((seed, RESAMPLES))
     drawn = points[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / max(1, visits)
     ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), points.sum(axis=0) / max(1, visits)
@@ -198,8 +198,8 @@ def coach(
         visits=visits,
         called=len(found.pots.rows),
         made=int(found.pots.made.sum()),
-        expected=_counted(found),
-        likely=_likely(found.pots, bench),
+        expected=_expect(found),
+        likely=_expect_of_target(found.pots, bench),
         target=target if isinstance(target, str) else asdict(bench.noise),
         costs=parts,
         most=most,
@@ -208,12 +208,12 @@ def coach(
     )
 
 
-def visits_of(strokes: Sequence[Recorded]) -> int:
+def count_visits(strokes: Sequence[Recorded]) -> int:
     """The number of visits in strokes of one player, in order; the last may go on."""
     return sum(not one.goes_on for one in strokes) + strokes[-1].goes_on
 
 
-def _likely(pots: Pots, bench: Practice) -> Estimate | None:
+def _expect_of_target(pots: Pots, bench: Practice) -> Estimate | None:
     """How many called pots a player of the target level makes, whose errors are known; the normal interval."""
     physics, noise, base = bench.options.rules.physics, bench.noise, LEVELS[BASE]
     times = [
@@ -225,12 +225,12 @@ def _likely(pots: Pots, bench: Practice) -> Estimate | None:
     return _interval(float(p.sum()), float((p * (1.0 - p)).sum()), len(p)) if len(p) else None
 
 
-def _counted(found: Fitted) -> Estimate | None:
+def _expect(found: Fit) -> Estimate | None:
     """How many called pots are made: the mean over the errors' posterior, the normal interval of the count."""
     if found.direction is None or not len(found.pots.rows):
         return None
     mean = square = 0.0
-    for chances, weights in zip(chances_of(found.pots, found.errors.at), found.direction, strict=True):
+    for chances, weights in zip(list_chances(found.pots, found.errors.at), found.direction, strict=True):
         counts, spread = chances.sum(axis=0), (chances * (1.0 - chances)).sum(axis=0)
         mean, square = mean + float(counts @ weights), square + float((spread + counts**2) @ weights)
     return _interval(mean, square - mean * mean, len(found.pots.rows))
@@ -245,14 +245,14 @@ def _potting(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: Play
     """Pots as wide as those that cost most."""
     sums = dict.fromkeys(WORDS, 0.0)
     for one, points in zip(strokes, lost.tolist(), strict=True):
-        if points and (wide := width_of(one)) is not None:
+        if points and (wide := measure_width(one)) is not None:
             sums["easy" if wide > WIDE else "medium" if wide > NARROW else "hard"] += points
     worst = max(sums, key=lambda name: sums[name])
     share = f"of {cost.value:.1f} points a visit lost by missed pots most were lost at {WORDS[worst]}"
     return Drill(layout=f"pots:{worst}", reason=share)
 
 
-def width_of(one: Recorded) -> float | None:
+def measure_width(one: Recorded) -> float | None:
     """The tolerance of the called pot [deg], if it is direct."""
     direct = pots(one.position, 16)
     which = np.flatnonzero((direct.ball[0] == one.ball) & (direct.pocket[0] == one.pocket))

@@ -7,8 +7,7 @@ from ..planning import Positions, Proposals, Search, pots
 from ..planning.proposals import Asking, strokes_at
 from ..planning.sobol import sobol_points
 from ..planning.worth import lead_of, passed
-from .judging import joined
-from .practice import JUDGING, Practice, keys, one_position
+from .practice import JUDGING, Practice, join, keys, one_position
 from .recorded import Recorded
 
 PARTS = ("potting", "position", "safety")
@@ -17,20 +16,20 @@ SLOW, FAST, TIP = 0.8, 4.5, 0.35
 """Of the strokes tried there: cue speeds [m/s], the largest height of the tip over R."""
 
 
-def lost(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, Ints]:
+def count_costs(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, Ints]:
     """Points lost against the errors of ``bench``, (n, 3) by ``PARTS``; how many strokes tell each, (3,)."""
     parts, counts = np.zeros((len(strokes), 3)), np.zeros(3, np.int64)
     known = [k for k, one in enumerate(strokes) if one.after is not None]
     at = {k: one_position(strokes[k].position, strokes[k].scores) for k in known}
-    worths = worth_of(bench, [at[k] for k in known])
-    left = values(bench, [strokes[k] for k in known])
+    worths = judge_worth(bench, [at[k] for k in known])
+    left = value_strokes(bench, [strokes[k] for k in known])
     for k, worth, value in zip(known, worths, left, strict=True):
         one = strokes[k]
         if one.ball is None:
             parts[k, 2] = worth - value
             counts[2] += 1
             continue
-        best = best_at(bench, at[k], one, seed) if one.potted is not None else None
+        best = play_best_pot(bench, at[k], one, seed) if one.potted is not None else None
         if best is None:
             continue
         p, made, missed = best
@@ -40,12 +39,12 @@ def lost(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, I
     return parts, counts
 
 
-def worth_of(bench: Practice, at: list[Positions]) -> Floats:
+def judge_worth(bench: Practice, at: list[Positions]) -> Floats:
     """What positions of frames are worth to their strikers (n,)."""
-    return np.asarray(bench.judge.worth(joined(at)), np.float64) if at else np.empty(0)
+    return np.asarray(bench.judge.worth(join(at)), np.float64) if at else np.empty(0)
 
 
-def values(bench: Practice, strokes: list[Recorded]) -> Floats:
+def value_strokes(bench: Practice, strokes: list[Recorded]) -> Floats:
     """What strokes were worth as they came (n,): points, and the worth of what they left."""
     out = np.array([float(one.points - one.penalty) for one in strokes])
     going = [k for k, one in enumerate(strokes) if one.after is not None and not one.after.over]
@@ -55,11 +54,13 @@ def values(bench: Practice, strokes: list[Recorded]) -> Floats:
         scores = tuple(min(score, 1000) for score in (scores if one.goes_on else scores[::-1]))
         after.append(one_position(one.after, scores))
     signs = np.array([1.0 if strokes[k].goes_on else -1.0 for k in going])
-    out[going] += signs * worth_of(bench, after)
+    out[going] += signs * judge_worth(bench, after)
     return out
 
 
-def best_at(bench: Practice, at: Positions, one: Recorded, seed: int) -> tuple[float, float, float] | None:
+def play_best_pot(
+    bench: Practice, at: Positions, one: Recorded, seed: int
+) -> tuple[float, float, float] | None:
     """The target's best stroke at the called pot: chance, worth if made and if missed; None if not direct."""
     direct, judge = pots(at, 16), bench.judge
     which = np.flatnonzero((direct.ball[0] == one.ball) & (direct.pocket[0] == one.pocket))

@@ -9,9 +9,9 @@ from .._lib.check import integer
 from .._lib.types import Floats
 from ..game.balls import CUE
 from ..planning.positions import PositionsLike
+from ..players.cue_stroke import CueStroke, StrokeLike
 from ..tasks.noise import NoiseLike
-from .practice import JUDGING, keys, one_position, played_from, practice_of
-from .strokes import CueStroke, StrokeLike
+from .practice import JUDGING, keys, one_position, practice_of, start_from
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -98,7 +98,7 @@ def destinations(
     integer("samples", samples, 1, 1_000_000)
     integer("seed", seed, 0, 2**63)
     practice, struck = practice_of(noise, options, position), CueStroke.of(stroke)
-    start, row = played_from(one_position(position).as_visits(), struck), struck.numbers()[None]
+    start, row = start_from(one_position(position).as_visits(), struck), struck.numbers()[None]
     tries = 1 if practice.sure else samples
     rows = np.zeros(tries, np.int64)
     ball = int(practice.play(start, rows[:1], row).first[0])

@@ -1,10 +1,10 @@
-"""How large are a player's errors of direction and speed? ``estimate_errors``: estimates with 95 % intervals.
+"""How large are a player's errors of direction and speed? ``fit_errors``: estimates with 95 % intervals.
 
 The model is that of ``snooker_env.tasks.noise``. Estimated are the errors of direction and of speed, as multiples s of a
 professional's, and how the first grow with the cue speed, by the likelihoods of docs/play/coach.md, "How errors are
 estimated"."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from math import erf, hypot, pi, radians, remainder, sqrt
 from statistics import NormalDist
@@ -19,8 +19,8 @@ from ..planning import Positions
 from ..planning.aims import STEEPEST_CUE
 from ..planning.sobol import sobol_points
 from ..tasks.noise import LEVELS, POT_SPEED, TWICE, Noise
-from .practice import Practice, practice_of
-from .recorded import CALLED, Recorded, agreed, direction_of, squirted
+from .practice import Practice
+from .recorded import CALLED, Recorded, direction_of, squirt
 from .room import room_for
 
 BASE = "professional"  # whose errors the estimates are multiples of
@@ -54,7 +54,7 @@ class Estimate:
 
 @dataclass(frozen=True, kw_only=True)
 class PlayerErrors:
-    """A player's errors of execution, as returned by ``estimate_errors``. An ``Estimate`` has ``value``, the ends ``low``
+    """A player's errors of execution, as ``coach`` estimates them. An ``Estimate`` has ``value``, the ends ``low``
     and ``high`` of its 95 % interval, and the number of ``strokes`` that it was learned from.
 
     Attributes
@@ -75,11 +75,11 @@ class PlayerErrors:
     Examples
     --------
     >>> import snooker_env as sn
-    >>> from snooker_env.advice import Recorded, estimate_errors
+    >>> from snooker_env.advice import Recorded, coach
     >>> at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     >>> meant = {"speed": 2.0, "aim": 0.8}
     >>> strokes = [Recorded(position=at, intended=meant, played={"speed": 2.0, "aim": 0.8 + e}) for e in (-0.002, 0.002)]
-    >>> found = estimate_errors(strokes, options={"cue": "free", "physics": "paper", "table": "match"})
+    >>> found = coach(strokes, options={"cue": "free", "physics": "paper", "table": "match"}).errors
     >>> round(found.direction.value, 2), found.direction.strokes, found.at
     (0.14, 2, 2.0)
     """
@@ -120,7 +120,7 @@ class Pots(NamedTuple):
     paces: Floats  # (n,) cue speeds [m/s]
 
 
-class Fitted(NamedTuple):
+class Fit(NamedTuple):
     """The errors of a player, and what was found on the way."""
 
     errors: PlayerErrors
@@ -129,38 +129,7 @@ class Fitted(NamedTuple):
     strokes: list[Recorded]  # without the guessed pots that were likelier to be safeties
 
 
-def estimate_errors(strokes: Sequence[Recorded], *, options: Any = None, seed: int = 0) -> PlayerErrors:
-    """Estimate a player's errors of direction and speed from recorded strokes.
-
-    Parameters
-    ----------
-    strokes : sequence of Recorded
-        The strokes of one player. Those that say nothing of an error are left out.
-    options : dict or Options, optional
-        Where they were played, as in ``advise``: what the strokes do not say of "cue", "physics" and "table".
-    seed : int
-        Seed of the simulated strokes, in [0, 2**63].
-
-    Returns
-    -------
-    PlayerErrors
-        ValueError if no stroke says anything, an argument is invalid, or nothing says where they were played.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> from snooker_env.advice import Recorded, estimate_errors
-    >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
-    >>> pot = {"position": at, "ball": 21, "pocket": 4, "speed": 2.0, "cue": "free", "physics": "paper", "table": "match"}
-    >>> found = estimate_errors([Recorded(**pot, potted=k > 0) for k in range(6)])
-    >>> found.direction.low < found.direction.value < found.direction.high
-    True
-    """
-    kept = checked(strokes)
-    return fitted(kept, practice_of(BASE, agreed(kept, options)), seed).errors
-
-
-def checked(strokes: Any) -> list[Recorded]:
+def list_strokes(strokes: Any) -> list[Recorded]:
     """Strokes as a list; ValueError unless there is one, and all are ``Recorded``."""
     kept = list(strokes)
     for k, one in enumerate(kept):
@@ -171,54 +140,51 @@ def checked(strokes: Any) -> list[Recorded]:
     return kept
 
 
-def fitted(strokes: list[Recorded], practice: Practice, seed: int, *, every_pot: bool = False) -> Fitted:
-    """``estimate_errors`` with what was found on the way; ``practice``: with the errors ``BASE``; ``every_pot``: also those
-    that tell nothing of errors beside the stroke itself."""
+def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
+    """Estimate a player's errors; ``practice``: with the errors ``BASE``."""
     integer("seed", seed, 0, 2**63)
-    seen = measured(strokes, practice)
+    seen = measure_errors(strokes, practice)
     directions = seen.directions.copy()
     known = ~np.isnan(directions)
     guessed = np.array([one.guessed for one in strokes]) & known
     tells = known | np.array([one.potted is not None for one in strokes])
-    at = speed_of(seen.paces[tells])
-    more = grown(seen.paces, at)
-    mixed, meant = guesses(directions[guessed], seen.widths[guessed], more[:, guessed])
+    at = choose_speed(seen.paces[tells])
+    more = grow_with_speed(seen.paces, at)
+    mixed, meant = weigh_guesses(directions[guessed], seen.widths[guessed], more[:, guessed])
     strokes = list(strokes)
     for k in np.flatnonzero(guessed)[~meant].tolist():
         strokes[k] = replace(strokes[k], ball=None, pocket=None, potted=None, guessed=False)
         directions[k] = np.nan
     known = ~np.isnan(directions)
-    asked = [
-        one if every_pot or not sure else replace(one, potted=None)
-        for one, sure in zip(strokes, known, strict=True)
-    ]
-    pots = tolerances(asked, practice, seed)
+    pots = simulate_pots(strokes, practice, seed)
     told = [k for k, row in enumerate(pots.rows) if not known[row]]
     base, direction, growth, weights, aside = LEVELS[BASE], None, None, None, None
     unit, n = base.direction_deg(practice.options.rules.physics, speed=at), int(known.sum()) + len(told)
     if n:
         sure = known & ~guessed
         rest = Pots([], pots.chances[told], pots.made[told], pots.paces[told])
-        log_l = direct(directions[sure], more[:, sure]) + mixed + outcomes(rest, at)
-        weights = posterior(log_l + np.log(PRIOR)[:, None])
+        log_l = weigh_errors(directions[sure], more[:, sure]) + mixed + weigh_outcomes(rest, at)
+        weights = normalise(log_l + np.log(PRIOR)[:, None])
         direction, likeliest = estimate(weights.sum(axis=0), unit, n), weights.sum(axis=1)
         paces = np.concatenate([seen.paces[known], rest.paces])
         if paces.max() >= SEVERAL * paces.min():
-            growth = growth_of(likeliest, n)
-        aside = mean_of(directions[known] / more[int(likeliest.argmax()), known], unit)
+            growth = estimate_growth(likeliest, n)
+        aside = estimate_mean(directions[known] / more[int(likeliest.argmax()), known], unit)
     v = seen.speeds[~np.isnan(seen.speeds)]
     speed = (
-        estimate(posterior(direct(v, np.ones((1, len(v))))[0]), base.speed_rel, len(v)) if len(v) else None
+        estimate(normalise(weigh_errors(v, np.ones((1, len(v))))[0]), base.speed_rel, len(v))
+        if len(v)
+        else None
     )
     if direction is None and speed is None:
         allowed = "with intended and played, with a pot and played, or with a pot and potted"
         raise refuse_what("strokes", "none that tells an error", f"must hold strokes {allowed}")
-    found: Any = {"aside": aside, "faster": mean_of(v, base.speed_rel)}
+    found: Any = {"aside": aside, "faster": estimate_mean(v, base.speed_rel)}
     errors = PlayerErrors(direction=direction, at=at, growth=growth, speed=speed, **found)
-    return Fitted(errors, weights, pots, strokes)
+    return Fit(errors, weights, pots, strokes)
 
 
-def speed_of(paces: Floats) -> float:
+def choose_speed(paces: Floats) -> float:
     """The cue speed at which an error is stated [m/s]: ``POT_SPEED``, or the nearest between the quartiles of ``paces``."""
     if not len(paces):
         return POT_SPEED
@@ -226,21 +192,21 @@ def speed_of(paces: Floats) -> float:
     return min(max(POT_SPEED, low), high)
 
 
-def grown(paces: Floats, at: float) -> Floats:
+def grow_with_speed(paces: Floats, at: float) -> Floats:
     """Standard deviations of the direction at cue speeds (n,), in those of a professional at rest, for each of ``GROWTHS``
     where it is a professional's at the speed ``at``: (growths, n)."""
     g = GROWTHS[:, None]
     return np.hypot(1.0, g * paces) / np.hypot(1.0, g * at) * hypot(1.0, LEVELS[BASE].growth * at)
 
 
-def direct(e: Floats, more: Floats) -> Floats:
+def weigh_errors(e: Floats, more: Floats) -> Floats:
     """Log-likelihood (growths, scales) of errors (n,) whose deviations are ``more`` (growths, n) times each scale."""
     squares = np.sum((e / more) ** 2, axis=1)[:, None]
     return -len(e) * np.log(SCALES) - np.log(more).sum(axis=1)[:, None] - 0.5 * squares / SCALES**2
 
 
-def guesses(e: Floats, widths: Floats, more: Floats) -> tuple[Floats, Any]:
-    """Log-likelihood (growths, scales) of guessed pots (n,), as of ``direct``, or safeties evenly within ``widths``; which
+def weigh_guesses(e: Floats, widths: Floats, more: Floats) -> tuple[Floats, Any]:
+    """Log-likelihood (growths, scales) of guessed pots (n,), as of ``weigh_errors``, or safeties evenly within ``widths``; which
     are pots at the likeliest growth, scale and share of safeties."""
     if not len(e):
         return np.zeros((len(more), len(SCALES))), np.zeros(0, np.bool_)
@@ -255,26 +221,23 @@ def guesses(e: Floats, widths: Floats, more: Floats) -> tuple[Floats, Any]:
     return np.logaddexp.reduce(log_l, axis=1), meant
 
 
-def outcome(chances: Floats, made: Bools) -> Floats:
-    """Log-likelihoods (n, scales) of pots made or missed, whose chances are (n, scales)."""
-    p = np.clip(chances, 1e-3, 1.0 - 1e-3)  # a fluke or a slip is never impossible
-    return np.where(np.asarray(made)[:, None], np.log(p), np.log1p(-p))
-
-
-def outcomes(pots: Pots, at: float) -> Floats:
+def weigh_outcomes(pots: Pots, at: float) -> Floats:
     """Log-likelihood (growths, scales) of pots made or missed; the scales are of errors at the cue speed ``at``."""
-    made = [outcome(chances, pots.made).sum(axis=0) for chances in chances_of(pots, at)]
-    return np.array(made)
+    out = []
+    for chances in list_chances(pots, at):
+        p = np.clip(chances, 1e-3, 1.0 - 1e-3)  # a fluke or a slip is never impossible
+        out.append(np.where(pots.made[:, None], np.log(p), np.log1p(-p)).sum(axis=0))
+    return np.array(out)
 
 
-def chances_of(pots: Pots, at: float) -> Iterator[Floats]:
+def list_chances(pots: Pots, at: float) -> Iterator[Floats]:
     """The chances (n, scales) of pots for each of ``GROWTHS``; the scales are of errors at the cue speed ``at``."""
     own = np.hypot(1.0, LEVELS[BASE].growth * pots.paces)
-    for row in grown(pots.paces, at):
-        yield shifted(pots.chances, row / own)
+    for row in grow_with_speed(pots.paces, at):
+        yield shift_chances(pots.chances, row / own)
 
 
-def shifted(chances: Floats, times: Floats) -> Floats:
+def shift_chances(chances: Floats, times: Floats) -> Floats:
     """Chances (n, scales) for scales that are ``times`` (n,) as large."""
     x = np.clip(np.arange(len(SCALES)) + np.log(times)[:, None] / STEP, 0.0, len(SCALES) - 1.0)
     left = np.minimum(x.astype(np.int64), len(SCALES) - 2)
@@ -282,13 +245,13 @@ def shifted(chances: Floats, times: Floats) -> Floats:
     return low + (x - left) * (high - low)
 
 
-def posterior(log_likelihood: Floats) -> Floats:
+def normalise(log_likelihood: Floats) -> Floats:
     """Weights that sum to 1, for a prior flat in the logarithm of the scale: ``SCALES`` are evenly spaced in it."""
     weights = np.exp(log_likelihood - log_likelihood.max())
     return weights / weights.sum()
 
 
-def growth_of(weights: Floats, strokes: int) -> Estimate:
+def estimate_growth(weights: Floats, strokes: int) -> Estimate:
     """Median of a posterior over ``GROWTHS``, and the ends of the likeliest of them that hold 95 %."""
     order = np.argsort(-weights, kind="stable")
     kept = GROWTHS[order[: int(np.searchsorted(np.cumsum(weights[order]), 0.95)) + 1]]
@@ -296,18 +259,14 @@ def growth_of(weights: Floats, strokes: int) -> Estimate:
     return Estimate(value=value, low=float(kept.min()), high=float(kept.max()), strokes=strokes)
 
 
-def quantiles(weights: Floats, shares: Sequence[float]) -> Floats:
-    """Quantiles of a posterior over ``SCALES``."""
-    return np.exp(np.interp(shares, np.cumsum(weights) - 0.5 * weights, np.log(SCALES)))
-
-
 def estimate(weights: Floats, unit: float, strokes: int) -> Estimate:
     """Median and 95 % interval of a posterior, in units of a professional's error."""
-    value, low, high = (unit * quantiles(weights, (0.5, 0.025, 0.975))).tolist()
+    middles = np.cumsum(weights) - 0.5 * weights
+    value, low, high = (unit * np.exp(np.interp((0.5, 0.025, 0.975), middles, np.log(SCALES)))).tolist()
     return Estimate(value=value, low=low, high=high, strokes=strokes)
 
 
-def mean_of(e: Floats, unit: float) -> Estimate | None:
+def estimate_mean(e: Floats, unit: float) -> Estimate | None:
     """The mean of errors (n,), its 95 % interval by Student's law (Hill's expansion); None if n < 3."""
     n = len(e)
     if n < 3:
@@ -318,7 +277,7 @@ def mean_of(e: Floats, unit: float) -> Estimate | None:
     return Estimate(value=middle * unit, low=(middle - half) * unit, high=(middle + half) * unit, strokes=n)
 
 
-class Measured(NamedTuple):
+class Measurement(NamedTuple):
     """What strokes tell of errors, (n,), NaN where they do not."""
 
     directions: Floats  # errors, in a professional's standard deviations for a level cue at rest
@@ -327,18 +286,18 @@ class Measured(NamedTuple):
     paces: Floats  # the cue speeds [m/s]; where nothing is known ``POT_SPEED``
 
 
-def measured(strokes: list[Recorded], practice: Practice) -> Measured:
+def measure_errors(strokes: list[Recorded], practice: Practice) -> Measurement:
     """Errors of direction and speed of strokes."""
     directions, widths, speeds = np.full((3, len(strokes)), np.nan)
     paces = np.full(len(strokes), POT_SPEED)
     base, physics = LEVELS[BASE], practice.options.rules.physics
     unit = np.radians(base.direction_deg(physics, speed=0.0))
     at_pots = {
-        k: as_needed(one, practice)
+        k: lower_cue(one, practice)
         for k, one in enumerate(strokes)
         if one.played is not None and one.ball is not None and one.intended is None
     }
-    lines = dict(zip(at_pots, zip(*lines_of(list(at_pots.values()), practice), strict=True), strict=True))
+    lines = dict(zip(at_pots, zip(*solve_lines(list(at_pots.values()), practice), strict=True), strict=True))
     for k, one in enumerate(strokes):
         if one.intended is not None:
             paces[k] = one.intended.speed
@@ -348,10 +307,10 @@ def measured(strokes: list[Recorded], practice: Practice) -> Measured:
             continue
         if one.intended is not None:
             speeds[k] = (one.played["speed"] - paces[k]) / (base.speed_rel * paces[k])
-            elevation, side = as_meant(one, one.intended.numbers(), practice)
-            cue = one.intended.aim - squirted(one.intended.side, physics)
+            elevation, side = fit_to_room(one, one.intended.numbers(), practice)
+            cue = one.intended.aim - squirt(one.intended.side, physics)
             # as of a stroke without side: the squirt of a tip far off the middle changes less with it
-            aside, more = one.played["aim"] - cue + squirted(one.played["side"] - side, physics), 1.0
+            aside, more = one.played["aim"] - cue + squirt(one.played["side"] - side, physics), 1.0
         else:
             line, more = lines[k]
             elevation, aside = (
@@ -361,10 +320,10 @@ def measured(strokes: list[Recorded], practice: Practice) -> Measured:
         if practice.options.cue == "real":
             more *= 1.0 + elevation / TWICE
         directions[k], widths[k] = remainder(aside, 2.0 * pi) / (unit * more), CALLED / (unit * more)
-    return Measured(directions, widths, speeds, paces)
+    return Measurement(directions, widths, speeds, paces)
 
 
-def as_meant(one: Recorded, stroke: Floats, practice: Practice) -> tuple[float, float]:
+def fit_to_room(one: Recorded, stroke: Floats, practice: Practice) -> tuple[float, float]:
     """Elevation and side of a stroke as rails and balls allow them. The elevation that was played is more: where errors
     take the room of the cue, it is raised once more."""
     if practice.options.cue == "free":
@@ -373,17 +332,17 @@ def as_meant(one: Recorded, stroke: Floats, practice: Practice) -> tuple[float, 
     return room.elevation, room.side
 
 
-def as_needed(one: Recorded, practice: Practice) -> Recorded:
+def lower_cue(one: Recorded, practice: Practice) -> Recorded:
     """A stroke at a pot with the elevation that was likely meant: as low as the cue could be, if it was nearly that."""
     played: dict[str, float] = one.played or {}
     way = direction_of(played, practice.options.rules.physics)
     stroke = np.array([played["speed"], played["side"], played["top"], way, 0.0])
-    needed, _ = as_meant(one, stroke, practice)
+    needed, _ = fit_to_room(one, stroke, practice)
     own = played["elevation"]
     return replace(one, played=played | {"elevation": needed if own < needed + AS_NEEDED else own})
 
 
-def lines_of(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats]:
+def solve_lines(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats]:
     """The lines that strokes at pots should have had [rad]; by how much more their directions differ than they err."""
     physics, base, step = practice.options.rules.physics, LEVELS[BASE], 0.02
     if not strokes:
@@ -394,9 +353,9 @@ def lines_of(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Float
         for name, by in (("side", 0.0), ("side", 1.0), ("side", -1.0), ("top", 1.0), ("top", -1.0))
         for one, its in zip(strokes, played, strict=True)
     ]
-    aims, right, left, up, down = solved(moved, practice)[:, 3].reshape(5, -1)
+    aims, right, left, up, down = solve_strokes(moved, practice)[:, 3].reshape(5, -1)
     turn = lambda a, b: np.array([remainder(x, 2.0 * pi) for x in (a - b).tolist()]) / (2.0 * step)  # noqa: E731
-    squirts = [[squirted(its["side"] + by, physics) for its in played] for by in (step, -step)]
+    squirts = [[squirt(its["side"] + by, physics) for its in played] for by in (step, -step)]
     tip = base.offset_mm * 1e-3 / physics.R  # its error moves the line, too, by the throw of its spin
     parts = (
         np.full(len(strokes), radians(base.aim_deg)),
@@ -406,7 +365,7 @@ def lines_of(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Float
     return aims, np.linalg.norm(parts, axis=0) / np.radians(base.direction_deg(physics, speed=0.0))
 
 
-def solved(strokes: list[Recorded], practice: Practice) -> Floats:
+def solve_strokes(strokes: list[Recorded], practice: Practice) -> Floats:
     """The strokes (n, 5) that were meant: as recorded, else at the middle of the pocket."""
     out, most = np.zeros((len(strokes), 5)), practice.options.rules.physics.max_offset
     for k, one in enumerate(strokes):
@@ -428,15 +387,15 @@ def solved(strokes: list[Recorded], practice: Practice) -> Floats:
     return out
 
 
-def tolerances(strokes: list[Recorded], practice: Practice, seed: int) -> Pots:
+def simulate_pots(strokes: list[Recorded], practice: Practice, seed: int) -> Pots:
     """The called pots whose outcome is known, with their chances for each of ``SCALES``."""
     rows = [k for k, one in enumerate(strokes) if one.ball is not None and one.potted is not None]
     if not rows:
         return Pots([], np.empty((0, len(SCALES))), np.empty(0, np.bool_), np.empty(0))
     called = [strokes[k] for k in rows]
-    meant, many = solved(called, practice), len(RADII) * WAYS
+    meant, many = solve_strokes(called, practice), len(RADII) * WAYS
     # each stroke has errors of its own, so that equal strokes tell more together
-    ways = np.stack([normal_points(WAYS, seed + k) for k in range(len(called))])
+    ways = np.stack([spread_normals(WAYS, seed + k) for k in range(len(called))])
     ways /= np.linalg.norm(ways, axis=2)[..., None]
     errors = (RADII[:, None, None] * ways[:, None]).reshape(-1, 5)
     at = Positions.of([one.position for one in called])
@@ -445,10 +404,10 @@ def tolerances(strokes: list[Recorded], practice: Practice, seed: int) -> Pots:
     balls, pockets = np.array([(one.ball, one.pocket) for one in called]).T
     went = (stops.potted[np.arange(len(each)), balls[each]] == pockets[each]) & (stops.penalty == 0)
     shares = went.reshape(len(called), len(RADII), WAYS).mean(axis=2)
-    return Pots(rows, shares @ radius_weights(), np.array([one.potted for one in called]), meant[:, 0])
+    return Pots(rows, shares @ weigh_radii(), np.array([one.potted for one in called]), meant[:, 0])
 
 
-def radius_weights() -> Floats:
+def weigh_radii() -> Floats:
     """How likely an error of each size in ``SCALES`` is to have each of ``RADII``: (radii, scales), columns sum to 1."""
     edges = np.sqrt(RADII[1:] * RADII[:-1])[:, None] / SCALES
     below = np.vstack([np.zeros(len(SCALES)), chi5(edges), np.ones(len(SCALES))])
@@ -461,6 +420,6 @@ def chi5(x: Floats) -> Floats:
     return half - sqrt(2.0 / pi) * np.exp(-0.5 * x * x) * (x + x**3 / 3.0)
 
 
-def normal_points(n: int, seed: int) -> Floats:
+def spread_normals(n: int, seed: int) -> Floats:
     """n evenly spread standard normal points (n, 5)."""
     return np.vectorize(NormalDist().inv_cdf)(sobol_points(n, 5, seed))

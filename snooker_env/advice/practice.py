@@ -8,18 +8,20 @@ from typing import Any
 import numpy as np
 
 from .._lib.check import choice, integer, refuse, refuse_what
-from .._lib.types import Floats, Ints, Words
+from .._lib.types import Bools, Floats, Ints, Words
 from ..game import frame_columns as columns
 from ..game.in_hand import place_cue
 from ..planning import FrameJudge, Outcomes, Planner, Positions, Search, VisitJudge
 from ..planning.positions import bare
+from ..planning.trials import turned
 from ..planning.worth import chosen
+from ..players.cue_stroke import CueStroke
+from ..players.player import placed
 from ..players.seen import begun
 from ..players.tactician import Tactician
 from ..tasks.noise import Noise, errors_of
 from ..tasks.options import Options
 from ..tasks.tables import Tables
-from .strokes import CueStroke
 
 PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")  # of the table
 FRAME_OPTIONS = tuple(Options.group("frame"))  # those that count as well where a position is of a frame
@@ -127,7 +129,7 @@ def _with_scores(at: Positions, scores: Any) -> Positions:
     return at
 
 
-def played_from(at: Positions, stroke: CueStroke) -> Positions:
+def start_from(at: Positions, stroke: CueStroke) -> Positions:
     """``at`` with a cue ball in hand at the free place nearest to that of the stroke."""
     if stroke.place is None:
         return at
@@ -136,6 +138,28 @@ def played_from(at: Positions, stroke: CueStroke) -> Positions:
     at = at.copy()
     at.positions[0, 0] = place_cue(at.positions[0], at.on_table[0], *stroke.place)
     return at
+
+
+def join(positions: list[Positions]) -> Positions:
+    """Several positions of one table as the rows of one."""
+    places, present, game = zip(*((one.positions, one.on_table, one.game) for one in positions), strict=True)
+    own = [one.conditions for one in positions if one.conditions is not None]
+    saved = [one.saved for one in positions if one.saved is not None]
+    layouts = columns.Layouts(*map(np.concatenate, zip(*saved, strict=True))) if saved else None
+    tables = np.concatenate(own) if own else None
+    return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game), layouts, tables)
+
+
+def find_arrivals(after: Positions) -> Bools:
+    """Where the other comes to the table next: bool (n,)."""
+    game = after.game
+    plays = np.isin(game[:, columns.PHASE], (columns.STROKE, columns.CHOICE))
+    return plays & (game[:, columns.STRIKER] == 1)
+
+
+def arrive(after: Positions) -> Positions:
+    """What the opponent meets: as it plays, after a foul as the balls lie, with a cue ball in hand where it is good."""
+    return placed(chosen(turned(after), columns.PLAY), np.zeros(len(after), np.int64))[0]
 
 
 def keys(seed: int, purpose: int, n: int, *more: int) -> Any:

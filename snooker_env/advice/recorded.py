@@ -24,17 +24,14 @@ from ..physics.cue import strike
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from ..planning import Position, pots
+from ..players.cue_stroke import CueStroke
 from ..replays import replay
 from ..replays.encode import physics_data, table_data, table_from
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.options import CUES, Options
-from .strokes import CueStroke
 
 FORMAT, VERSION = "snooker-strokes", 1
-VERSIONS = {
-    FORMAT: (VERSION,),
-    "snooker-replay": (1, 2),
-}  # of files that are read: replays of version 1 say less
+VERSIONS = {FORMAT: VERSION, "snooker-replay": 2}  # of files that are read
 PLAYED_ON = ("cue", "physics", "table")  # what errors are told by beside the strokes: never assumed
 # How far a stroke may be from the pot that it is guessed for: 4 sigma of a club player's hard one
 CALLED = radians(2.0)
@@ -262,9 +259,8 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
         raise refuse("path", str(path), allowed)
     if not isinstance(kept.get("strokes"), list):
         raise refuse_what(f"strokes of {path}", f"a {type(kept.get('strokes')).__name__}", "must be a list")
-    if kept.get("version") not in VERSIONS[form] or kept["version"] is True:
-        allowed = f"must be {' or '.join(map(str, VERSIONS[form]))}"
-        raise refuse(f"version of {path}", kept.get("version"), allowed)
+    if kept.get("version") != VERSIONS[form] or kept["version"] is True:
+        raise refuse(f"version of {path}", kept.get("version"), f"must be {VERSIONS[form]}")
     if player is not None:
         integer("player", player, 0, 1)
     try:
@@ -373,7 +369,7 @@ def _of_replay(
         after = None if left[1:].any() else Position(over=True)
     played = {name: one["cue"][name] for name in CUE_PARTS}
     line = direction_of(played, Physics.of(where["physics"])) if intended is None else intended.aim
-    meant = None if word == "free_ball" else called(position, line)
+    meant = None if word == "free_ball" else call_pot(position, line)
     ids = np.flatnonzero(here).tolist()
     # a position numbers its reds anew
     reds = {ball: 1 + k for k, ball in enumerate(ball for ball in ids if 1 <= ball <= 15)}
@@ -407,17 +403,17 @@ def _position(places: Floats, here: Any, on: str | None) -> Position:
 
 def direction_of(played: Mapping[str, float], physics: Physics) -> float:
     """The direction in which the cue ball leaves a level cue [rad]: that of the cue, and its squirt."""
-    return played["aim"] + squirted(played["side"], physics)
+    return played["aim"] + squirt(played["side"], physics)
 
 
-def squirted(side: float, physics: Physics) -> float:
+def squirt(side: float, physics: Physics) -> float:
     """The squirt of a tip that is off to the side [rad]."""
     inside = min(physics.max_offset, max(-physics.max_offset, side))
     (vx, vy, _), _ = strike(1.0, 0.0, inside, 0.0, 0.0, physics)
     return atan2(vy, vx)
 
 
-def agreed(strokes: Sequence[Recorded], options: Any) -> Any:
+def agree_options(strokes: Sequence[Recorded], options: Any) -> Any:
     """``options`` with what the strokes say of where they were played; ValueError where they contradict, or none says it."""
     if not (options is None or isinstance(options, Options | Mapping)):
         allowed = f"must be None, an Options, or a dict with keys as {PLAYED_ON}"
@@ -448,7 +444,7 @@ def _data(name: str, value: Any) -> Any:
     return physics_data(Physics.of(value)) if name == "physics" else table_data(Table.of(value))
 
 
-def called(position: Position, direction: float) -> tuple[int, int] | None:
+def call_pot(position: Position, direction: float) -> tuple[int, int] | None:
     """Ball and pocket of the direct pot whose line is nearest to a direction [rad]; None beyond ``CALLED``."""
     direct = pots(position, 16)
     x, y = position.cue or (0.0, 0.0)

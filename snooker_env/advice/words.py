@@ -6,9 +6,9 @@ from math import copysign, cos, degrees, hypot, sin, sqrt
 from ..game.balls import REFEREE_TOUCH
 from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from ..physics.parameters import Physics
+from ..players.cue_stroke import CueStroke
 from ..replays.words import ball_name
 from .room import Room
-from .strokes import CueStroke
 
 POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")
 """Names of ``snooker_env.POCKETS`` in words: baulk corners by the colour beside them, black's "top"."""

@@ -14,8 +14,8 @@ from .._lib.check import integer, refuse
 from .._lib.command import exit_code
 from .._lib.files import write_atomic
 from .._lib.tables import shown, text_table
-from ..play.program import AgentError
 from ..players.model_options import add_model_options, options_of_words
+from ..players.program import AgentError
 from ..progress import Progress
 from .agents import Agent, is_known, seated
 from .checking import afresh, faults, faults_of_replay

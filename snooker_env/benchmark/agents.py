@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from .._lib.check import integer, number, refuse
-from ..play.program import ProgramPlayer
 from ..players import Player
 from ..players import player as player_named
 from ..players.degenerate import is_degenerate
 from ..players.model_options import LEFT_OUT, checked
+from ..players.program import ProgramPlayer
 from ..players.resolver import PROGRAM, is_name
 from ..players.seen import SeenPlayer
 from ..players.weights import levels

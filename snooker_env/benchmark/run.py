@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from .._lib.check import refuse
-from ..play.program import AgentError
+from ..players.program import AgentError
 from .agents import Agent, seated
 from .checking import faults
 from .playing import PlayedEpisodes, play_episodes

@@ -12,8 +12,8 @@ import numpy as np
 from .._lib.check import integer, refuse
 from .._lib.files import read_json, with_checksum, write_atomic
 from ..planning import Positions
-from ..play.program import AnswerError, ProgramPlayer
 from ..players import Player, Strokes, decided, decision_seeds
+from ..players.program import AnswerError, ProgramPlayer
 from ..players.resolver import PROGRAM
 from .agents import Agent
 from .playing import tables_for
@@ -37,11 +37,11 @@ class TextPlayer(ProgramPlayer):
         self.counts: dict[str, int] = {}
         self._error: str | None = None
 
-    def _stroke(self, at: Positions, k: int, seed: int) -> Strokes:
+    def _stroke(self, at: Positions, seed: int) -> Strokes:
         self._error = None
         for left in reversed(range(TRIES)):
             try:
-                return super()._stroke(at, k, seed)
+                return super()._stroke(at, seed)
             except AnswerError as error:
                 self.counts["refused"] += 1
                 self._error = str(error)
@@ -49,8 +49,8 @@ class TextPlayer(ProgramPlayer):
                     raise
         raise AssertionError
 
-    def _answered(self, state: dict[str, Any]) -> bytes:
-        answer = super()._answered(state | {"error": self._error})
+    def _answer(self, state: dict[str, Any]) -> bytes:
+        answer = super()._answer(state | {"error": self._error})
         for name, more in (("answers", 1), ("read", len(state["text"])), ("written", len(answer))):
             self.counts[name] += more
         return answer

@@ -49,7 +49,7 @@ def service_of(args: argparse.Namespace) -> "Service":
     import numpy as np
 
     from ..players.resolver import named
-    from .acts import opened
+    from .game_record import open_game
     from .routes import position_of
     from .service import OPPONENT, PERSON, Seats, Service
     from .session import Session
@@ -65,7 +65,7 @@ def service_of(args: argparse.Namespace) -> "Service":
     if args.position is not None:
         read = _read(args.position)
         if read.get("format") == "snooker-game":
-            opened(session, read)
+            open_game(session, read)
         else:
             session.set_up(position_of(read), scores=(0, 0), striker=0, free_ball=False)
     return Service(session, seats)
@@ -82,7 +82,7 @@ def warm_up(service: "Service") -> None:
             stroke = CueStroke(speed=2.0, aim=1.0)
             questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
             for name in {service.seats.advisers(session.practice)[0], service.seats.who[1]}:
-                service.seats.decided(name, session)
+                service.seats.decide(name, session)
     with service.reading():
         report(service)
 

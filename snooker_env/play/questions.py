@@ -1,73 +1,24 @@
-"""Which stroke does a request contain, and what would it do? Answered on copies of the table."""
+"""What would a stroke do, and which ones would an agent play? Answered on copies of the table."""
 
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from .._lib.check import choice, number, refuse
 from ..advice import CueStroke, Suggestion, advise, destinations
-from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
+from ..game.balls import CUE, NAMES
 from ..game.frame import CHOICES
-from ..geometry import BAULK_Y, POCKET_AIMS, POCKETS
+from ..geometry import BAULK_Y, POCKETS
 from ..physics.engine import EventKind
-from ..planning import Planner
 from ..render.scene import trace_paths
 from ..replays.encode import pack
 from ..simulation.shot import Shot
 from .service import Seats, Service
 from .session import Session
 
-
-def stroke_in(fields: dict[str, Any], aim: float | None = None) -> CueStroke:
-    """The stroke in a request, its "aim" unless passed separately; ValueError if invalid."""
-    for name in ("speed",) if aim is not None else ("speed", "aim"):
-        if name not in fields:
-            form = '{"speed": m/s, "aim": rad, "side": 0, "top": 0, "elevation": 0}'
-            raise refuse(name, None, f"must be given: {form}")
-    parts = {name: fields[name] for name in ("speed", "side", "top", "elevation") if name in fields}
-    return CueStroke(aim=number("aim", fields["aim"], -1e6, 1e6) if aim is None else aim, **parts)
-
-
-def place_asked(field: str, value: object) -> tuple[float, float]:
-    """Two numbers [m]; ValueError for anything else."""
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise refuse(field, value, "must be [x, y] in metres")
-    return number(f"{field}[0]", value[0], -10, 10), number(f"{field}[1]", value[1], -10, 10)
-
-
-def colour_named(field: str, value: object) -> int:
-    """Id of the colour with a name."""
-    return colour(choice(field, value, COLOUR_NAMES))
-
-
-def pocket_named(field: str, value: object) -> int:
-    """Index of the pocket with a name; "right middle" is "middle right"."""
-    if isinstance(value, str):
-        for k, name in enumerate(POCKETS):
-            if sorted(value.lower().split()) == sorted(name.split()):
-                return k
-    raise refuse(field, value, "must be one of " + ", ".join(map(repr, POCKETS)))
-
-
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
 RIVALS = 2  # further strokes judged for each suggestion after the first: many are other ways of one pot
-
-
-def aim_at(session: Session, asked: object, stroke: CueStroke) -> float:
-    """The direction of the cue ball that pots a ball, with throw; ``asked``: {"pot": [ball, pocket]}."""
-    pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
-    if not isinstance(pair, list) or len(pair) != 2:
-        raise refuse("aim_at", asked, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
-    ball = NAMES.index(choice("aim_at.pot[0]", pair[0], NAMES[1:]))
-    pocket = pocket_named("aim_at.pot[1]", pair[1])
-    if not session.tables.on_table[0, ball]:
-        raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
-    target = POCKET_AIMS[[pocket], :2]
-    numbers = [[stroke.speed, stroke.side, stroke.top, 0.0, stroke.elevation]]
-    planner = Planner({"cue": session.cue})
-    return float(planner.pot_aim(session.planned(), [0], [ball], target, numbers)[0])
 
 
 def exact(session: Session, stroke: CueStroke) -> Shot:
@@ -95,7 +46,7 @@ def paths(shot: Shot) -> dict[str, Any]:
 def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any]:
     """Where cue ball and object ball stop with ``errors`` (noise, samples, seed), and the paths without them."""
     shot = exact(session, stroke)
-    stops = destinations(session.planned(), stroke, **errors, options={"cue": session.cue})
+    stops = destinations(session.as_visit(), stroke, **errors, options={"cue": session.cue})
     figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
     return paths(shot) | figures | {"cue": pack(stops.cue, "f4"), "ball": pack(stops.ball, "f4")}
 
@@ -107,14 +58,14 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
         (chance,) = service.win_chances([session.twin().choose(what)], session.noise[seat])
         win = chance if chance is None or seat == 0 else 1.0 - chance
         found.append({"choice": what, "win": win})
-    decided = service.seats.decided(agent, session)
+    decided = service.seats.decide(agent, session)
     return {"choice": CHOICES[int(decided.decision[0])], "choices": found}
 
 
 def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:
     """At most n strokes of the agent, the best of each ``_idea``, in words, data and paths; their order."""
     how: Any = {**errors, "n": n + RIVALS * (n - 1), "options": {"cue": session.cue}}
-    at = session.planned()
+    at = session.as_visit()
     if not session.practice:  # alone at the table nobody wins
         at, how["options"] = (
             session.position,

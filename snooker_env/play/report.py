@@ -1,24 +1,25 @@
-"""What is on the table, and what may be done? The game as JSON types for page and programs, and as text."""
+"""What does the page show? The game as JSON types, and as text."""
 
+from math import radians
 from typing import Any
 
 from ..advice import POCKET_WORDS
-from ..game.balls import CUE, NAMES, YELLOW, ids_of
 from ..game.frame import Frame
-from ..game.rule_sets import RULES, rule_set
-from ..game.snookered import is_snookered
+from ..game.rule_sets import RULES
 from ..geometry import POCKET_AIMS
 from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
 from ..planning.stroke_columns import FARTHEST
+from ..players.table_report import report_game, report_turn, say_score, say_table
 from ..render.scene import scene_data
 from ..replays.encode import encode_stroke
-from ..replays.words import ERRORS, errors_words
+from ..replays.words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import Service
-from .session import Act, Session
-from .words import asked_words, freedom, last_words, lines_of, table_text
+from .session import Act
+
+STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
 
 
 def scene(service: Service) -> dict[str, Any]:
@@ -42,26 +43,42 @@ def scene(service: Service) -> dict[str, Any]:
     }
 
 
+_DECIDED = {
+    "play": "played on",
+    "play_again": "asked for another stroke from there",
+    "replace": "had the balls put back",
+    "anywhere": "took the cue ball in hand",
+}
+
+
+def last_words(act: Act, labels: tuple[str, str], before: Act | None = None) -> str:
+    """An act in a sentence; ``before``: the act before it, whose foul a choice answers."""
+    who = "" if act.player is None else labels[act.player]
+    if act.what == "choice":
+        said = f"{who} {_DECIDED[act.detail]}."
+        return said if before is None or before.played is None else f"{last_words(before, labels)} {said}"
+    if act.played is not None:
+        nominated = f" ({act.detail} nominated)" if act.detail else ""
+        said = f"{who}{nominated}: {sentence(act.played, labels)}"
+        if act.room is None or not (act.room.moved or act.room.elevation > STEEP) or not act.room.words:
+            return said
+        return f"{said} {act.room.words[:1].upper()}{act.room.words[1:]}."
+    return {
+        "concede": f"{who} conceded the frame.",
+        "claim": f"{who} claimed the frame.",
+        "set_up": "Position set up.",
+        "load": "Game loaded.",
+        "new": "New frame.",
+    }[act.what]
+
+
 def table_after(
     act: Act, labels: tuple[str, str], win_chance: float | None, before: Act | None = None
 ) -> dict[str, Any]:
     """The table and the scoreboard after an act; ``win_chance``: of seat 0; ``before``: the act before it."""
-    state, frame = act.state, Frame.from_dict(act.state["frame"])
-    present = [ball for ball, on in enumerate(state["on_table"]) if on]
-    over = frame.phase == "over"
-    names = ("phase", "striker", "breaker", "free_ball", "in_hand", "anywhere", "winner")
-    return {name: getattr(frame, name) for name in names} | {
-        "scores": list(frame.scores),
-        "win_chance": win_chance,
-        "break": frame.break_points,
-        "ball_on": None if over else frame.ball_on.name.lower(),
-        "reds": sum(0 < ball < YELLOW for ball in present),
-        "available": 0 if over else frame.available,
-        "time_left": (clock - frame.clock) / 1000 if (clock := rule_set(frame.rules).clock) else None,
-        "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present},
-        "words": asked_words(frame, labels),
-        "last": last_words(act, labels, before),
-    }
+    frame, table = Frame.from_dict(act.state["frame"]), (act.state["positions"], act.state["on_table"])
+    own = {"win_chance": win_chance, "last": last_words(act, labels, before)}
+    return report_game(frame, *table, labels) | own
 
 
 def stroke_report(service: Service, k: int) -> dict[str, Any]:
@@ -77,70 +94,38 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
 
 def report(service: Service) -> dict[str, Any]:
     """The current state of the game."""
-    session, seats = service.session, service.seats
-    frame, tables = session.frame, session.tables
-    on = tables.on(0) if frame.phase == "stroke" else 0
-    hidden, lines = False, []
-    if on:
-        present = tables.on_table[0].copy()
-        present[CUE] = not frame.in_hand
-        hidden = is_snookered(tables.positions[0], present, on, jaws=tables.rules.table.jaws[:, :3])[0]
-        positions = [session.planned(free_ball=free) for free in (False, True)[: 1 + frame.free_ball]]
-        lines = lines_of(positions, on, session.noise[frame.striker])
-    act = session.acts[session.at - 1]
+    session, seats, labels = service.session, service.seats, service.labels
+    frame, act = session.frame, session.acts[session.at - 1]
     before = session.acts[session.at - 2] if session.at > 1 else None
-    state = table_after(act, service.labels, service.win_chances([act])[0], before)
-    waits = f"{seats.label(frame.striker)} {'waits: press Continue.' if service.paused else 'is thinking.'}"
+    state = table_after(act, labels, service.win_chances([act])[0], before)
+    table, noise = session.tables.rules.table, session.noise[frame.striker]
+    turn, lines = report_turn(frame, session.position, table, noise)
     of_session = ("begun", "practice", "game", "best_of", "frames", "match_over", "cue")
-    state |= {name: getattr(session, name) for name in of_session}
+    state |= turn | {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
     state |= {
         "players": list(seats.who),
-        "labels": list(service.labels),
+        "labels": list(labels),
         "advisers": seats.advisers(session.practice),
         "level": seats.level(session),
         "noise": list(session.noise),
-        "balls_on": [NAMES[i] for i in ids_of(on)],
-        "snookered": hidden,
-        "miss_called": frame.miss_called,
-        "choices": list(frame.choices),
-        "nominations": [NAMES[i] for i in session.nominations()],
-        "needs_snookers": frame.phase != "over" and frame.needs_snookers(frame.striker),
-        "lines": [line.to_dict() for line in lines],
         "paused": service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
         "undo": session.at > 1,
         "redo": session.at < len(session.acts),
-        "words": (service.trouble or waits) if service.agent_to_play() else state["words"],
     }
-    places = {NAMES.index(name): (x, y) for name, (x, y) in state["positions"].items()}
-    return state | {"text": table_text(places, on, lines, _facts(session, state, places))}
+    if service.agent_to_play():
+        waits = "waits: press Continue." if service.paused else "is thinking."
+        state["words"] = service.trouble or f"{seats.label(frame.striker)} {waits}"
+    said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
+    return state | {"text": say_table(state, lines, said)}
 
 
-def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[float, float]]) -> list[str]:
-    """The sentences before the list of balls."""
-    facts, ((one, other), reds) = [state["last"], state["words"]], (state["labels"], state["reds"])
-    facts.append(f"Score: {one} {state['scores'][0]}, {other} {state['scores'][1]}; break {state['break']}.")
-    if state["phase"] == "over":
-        return facts
-    if (chance := state["win_chance"]) is not None:
-        sure = chance in (0.0, 1.0)  # by the rules; as the page shows it, rounding makes nothing certain
-        share = round(100 * chance) if sure else min(99, max(1, round(100 * chance)))
-        errors = errors_words(state["level"])
-        facts.append(f"Chance to win, both {errors}: {one} {share} %, {other} {100 - share} %.")
-    left = f"{state['available']} points are left on the table"
-    facts.append(f"{left}, {reds} red{'' if reds == 1 else 's'} among the balls.")
-    if state["needs_snookers"]:
-        facts.append("The striker needs penalty points to win.")
-    if state["phase"] == "choice":
-        facts.append("Choices: " + ", ".join(state["choices"]) + ".")
-        return facts
-    if state["nominations"]:
-        colours = ", ".join(state["nominations"])
-        facts.append(f"May be nominated: {colours}; without a nomination it is the colour first struck.")
-    if state["in_hand"]:
-        where = "x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475"
-        facts.append(f"The cue ball may be placed anywhere in the D ({where}).")
-    if state["snookered"]:
-        facts.append("The cue ball is snookered: no ball on can be struck at both edges in a straight line.")
-    return facts + freedom(places)
+def _say_chance(state: dict[str, Any]) -> list[str]:
+    """How likely both are to win; nothing where nobody says it, or the frame is over."""
+    if (chance := state["win_chance"]) is None or state["phase"] == "over":
+        return []
+    sure = chance in (0.0, 1.0)  # by the rules; as the page shows it, rounding makes nothing certain
+    share = round(100 * chance) if sure else min(99, max(1, round(100 * chance)))
+    one, other = state["labels"]
+    return [f"Chance to win, both {errors_words(state['level'])}: {one} {share} %, {other} {100 - share} %."]

@@ -4,7 +4,6 @@ A handler takes the checked fields of a request and returns JSON types; a ValueE
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -13,17 +12,17 @@ from ..advice import CueStroke
 from ..game.frame import MOST_BREAK
 from ..game.ruling import AUTO
 from ..planning.position import Position
+from ..players.requests import STROKE, read_colour, read_place, read_stroke
 from ..replays import Replay
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
-from . import acts, questions
-from .questions import colour_named, place_asked, stroke_in
+from . import questions
+from .game_record import open_game, record_game
 from .report import report, scene, stroke_report
 from .service import Service, StaleError
 from .session import Session
 
-STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")  # fields that define a stroke
 Handler = Callable[[Service, dict[str, Any]], Any]
 
 
@@ -47,23 +46,18 @@ def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         return {"revision": service.revision, "strokes": strokes}
 
 
-def stroke_asked(session: Session, fields: dict[str, Any]) -> CueStroke:
-    """The stroke in a request, with its aim solved if it is given by a pot; the cue ball is placed first."""
+def take_stroke(session: Session, fields: dict[str, Any]) -> CueStroke:
+    """The stroke in a request; the cue ball is placed first."""
     if "place" in fields:
-        session.place(*place_asked("place", fields["place"]))
-    if "aim_at" not in fields:
-        return stroke_in(fields)
-    if "aim" in fields:
-        raise refuse("aim", fields["aim"], "must be left out with aim_at")
-    stroke = stroke_in(fields, 0.0)
-    return replace(stroke, aim=questions.aim_at(session, fields["aim_at"], stroke))
+        session.place(*read_place("place", fields["place"]))
+    return read_stroke(fields, session.as_visit(), {"cue": session.cue})
 
 
 def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     strikes = any(name in fields for name in STROKE)
     if not strikes and "choice" not in fields:
         raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
-    nominated = colour_named("nominate", fields["nominate"]) if "nominate" in fields else AUTO
+    nominated = read_colour("nominate", fields["nominate"]) if "nominate" in fields else AUTO
     struck = None
     with service.acting(_revision(fields)) as session:
         if "choice" in fields:
@@ -72,7 +66,7 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
                 raise refuse("choice", fields["choice"], allowed)
             session.choose(fields["choice"])
         if strikes:
-            session.play(stroke_asked(session, fields), nominated=nominated)
+            session.play(take_stroke(session, fields), nominated=nominated)
             struck = stroke_report(service, session.at - 1)
     with service.reading():
         return {"stroke": struck, "state": report(service)}
@@ -80,7 +74,7 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
-        place = list(session.place(*place_asked("place", fields.get("place"))))
+        place = list(session.place(*read_place("place", fields.get("place"))))
     with service.reading():
         return {"place": place, "state": report(service)}
 
@@ -117,7 +111,7 @@ def position_of(fields: object) -> Position:
     return Position(**fields | points)
 
 
-def _moved(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
+def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
     """Undo or redo until a person has a stroke or decision to make."""
     with service.acting(pause=True, any_turn=True) as session:
         people = not all(map(service.seats.is_agent, (0, 1)))
@@ -167,12 +161,12 @@ def _concede(service: Service, fields: dict[str, Any]) -> None:
 def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     whole = truth("acts", fields.get("acts", False))
     with service.reading() as session:
-        return acts.written(session) if whole else session.save()
+        return record_game(session) if whole else session.save()
 
 
 def _load(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(pause=True, any_turn=True) as session:
-        acts.opened(session, fields.get("saved"))
+        open_game(session, fields.get("saved"))
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -192,13 +186,13 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
         errors = _errors(fields, 500, session.noise[session.frame.striker])
-        return questions.scatter(session, stroke_asked(session, fields), **errors)
+        return questions.scatter(session, take_stroke(session, fields), **errors)
 
 
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading(_revision(fields)) as session:  # at once: it does not wait for long questions
         twin = session.twin()
-    return twin.room(stroke_asked(twin, fields)).to_dict()
+    return twin.room(take_stroke(twin, fields)).to_dict()
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
@@ -238,8 +232,8 @@ POST: dict[str, Route] = {
     "destinations": Route(_destinations, (*STROKE, *ERRORS)),
     "room": Route(_room, (*STROKE, "revision")),
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
-    "undo": Route(partial(_moved, move=Session.undo)),
-    "redo": Route(partial(_moved, move=Session.redo)),
+    "undo": Route(partial(_move, move=Session.undo)),
+    "redo": Route(partial(_move, move=Session.redo)),
     "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),

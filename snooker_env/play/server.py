@@ -2,8 +2,7 @@
 
 Every request is checked before anything is done: the token in its path, in constant time; ``Host``, and the host of a
 target that has one, so that no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
-path, length, type and form of the body. Requests are limited in head, body, time and number. Every error is
-answered by one JSON object."""
+path, length, type and form of the body. Every error is answered by one JSON object."""
 
 import hmac
 import json
@@ -11,8 +10,6 @@ import re
 import secrets
 import socket
 import sys
-import threading
-import time
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -21,6 +18,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 from .._lib.check import refuse
 from .._lib.files import strict_json
+from ..players.requests import read_object
 from ..replays.web import table_js
 from ..simulation import SimulationError
 from .routes import GET, POST, answer, parts_of
@@ -30,14 +28,8 @@ PARTS = ("aim", "ask", "drill", "first", "parts", "room", "setup", "share", "sou
 SCRIPTS = ("table.js", "play.js", *(f"play_{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
-MOST_HEAD = 16_384
-MOST_BODY = 131_072  # largest head and body of a request [bytes]; a replay has about 200 for each stroke
-MOST_AT_ONCE = 32
-"""Largest number of connections; a browser keeps six. One that waits gives way to a further one."""
-_FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
-_HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"
-FULL = b"%sContent-Length: %d\r\n\r\n%s" % (_HEAD, len(_FULL), _FULL)  # the answer to further connections
-IDLE, REQUEST = 20.0, 10.0  # how long a connection may wait for a request, and a request for its end [s]
+MOST_BODY = 131_072  # largest body of a request [bytes]; a replay has about 200 for each stroke
+IDLE = 20.0  # how long a connection waits for the next byte [s]
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -61,76 +53,13 @@ class RefusedError(Exception):
         self.headers: dict[str, str] = headers
 
 
-class TimedReader:
-    """A connection for ``http.server``: limited bytes in a head, and ``REQUEST`` seconds for a request."""
-
-    def __init__(self, connection: socket.socket):
-        self._socket, self._held = connection, b""
-        self._until = 0.0
-        self._left = 0
-
-    def expect(self) -> None:
-        """Allow a new request to begin."""
-        self._until, self._left = 0.0, MOST_HEAD
-
-    def readline(self, limit: int = -1) -> bytes:
-        """A line of the head; RefusedError if the head is too long."""
-        while b"\n" not in self._held and len(self._held) <= self._left and self._fill():
-            pass
-        line, mark, self._held = self._held.partition(b"\n")
-        line += mark
-        self._left -= len(line)
-        if self._left < 0:
-            raise RefusedError(431, f"the head of a request must be at most {MOST_HEAD} bytes")
-        return line
-
-    def read(self, n: int) -> bytes:
-        """n bytes of a body, fewer at the end of the connection."""
-        while len(self._held) < n and self._fill():
-            pass
-        part, self._held = self._held[:n], self._held[n:]
-        return part
-
-    def close(self) -> None:
-        """Nothing: the socket is closed by its server."""
-
-    def _fill(self):
-        now = time.monotonic()
-        self._socket.settimeout(max(0.01, self._until - now) if self._until else IDLE)
-        part = self._socket.recv(65_536)
-        if part and not self._until:
-            self._until = time.monotonic() + REQUEST
-        self._held += part
-        return bool(part)
-
-
 class PlayHandler(BaseHTTPRequestHandler):
     """One connection."""
 
     server: "PlayServer"
     protocol_version = default_request_version = "HTTP/1.1"
     server_version, sys_version = "snooker_env", ""
-
-    def setup(self) -> None:
-        """Install the limited reader."""
-        super().setup()
-        self.connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self.rfile: Any = TimedReader(self.connection)
-
-    def handle_one_request(self) -> None:
-        """Handle one request, its head within the limits."""
-        self.rfile.expect()
-        self.path = self.command = self.requestline = ""
-        self.request_version, self.close_connection = "HTTP/1.1", True
-        try:
-            super().handle_one_request()
-        except RefusedError as refused:
-            self._refuse(refused)
-            self.close_connection = True
-        except (TimeoutError, ConnectionError):
-            self.close_connection = True
-        finally:
-            self.server.answered(self.connection)
+    timeout = IDLE
 
     def log_message(self, format: str, *args: object) -> None:
         """Log nothing: a path holds the token."""
@@ -158,7 +87,7 @@ class PlayHandler(BaseHTTPRequestHandler):
 
     def _serve(self):
         try:
-            name, query = self._checked()
+            name, query = self._check_request()
             if not name.startswith("api/"):
                 self._file(name)
                 return
@@ -179,7 +108,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         except SimulationError as error:
             self._refuse(RefusedError(500, f"this stroke cannot be computed: {error}"))
 
-    def _checked(self) -> tuple[str, dict[str, Any]]:
+    def _check_request(self) -> tuple[str, dict[str, Any]]:
         """The path after the token and the query, of a valid request."""
         head = self.headers
         try:
@@ -204,7 +133,6 @@ class PlayHandler(BaseHTTPRequestHandler):
         known = hmac.compare_digest(token.encode(), self.server.token.encode())
         if not parts.path.startswith("/") or not known:
             raise self._last(403, "the address must hold this server's token: open the one that it printed")
-        self.server.waiting.pop(self.connection, None)
         if self.command not in ("GET", "POST"):
             raise self._last(405, "the method must be GET or POST", Allow="GET, POST")
         methods = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
@@ -247,7 +175,10 @@ class PlayHandler(BaseHTTPRequestHandler):
         raw = self.rfile.read(int(length[0]))
         if len(raw) < int(length[0]):
             raise self._last(400, "the body ended before its Content-Length")
-        return parsed(raw)
+        try:
+            return read_object(raw)
+        except ValueError as error:
+            raise RefusedError(400, str(error)) from None
 
     def _last(
         self, status: int, message: str, field: str | None = None, value: object = None, **headers: str
@@ -269,7 +200,6 @@ class PlayHandler(BaseHTTPRequestHandler):
             self.close_connection = True
 
     def _send(self, status: int, body: bytes, kind: str, more: dict[str, str] | None = None) -> None:
-        self.connection.settimeout(REQUEST)
         self.send_response(status)
         about = {"Content-Type": kind, "Content-Length": str(len(body))}
         for name, value in (HEADERS | (more or {}) | about).items():
@@ -281,22 +211,10 @@ class PlayHandler(BaseHTTPRequestHandler):
             self.wfile.write(body)
 
 
-def parsed(raw: bytes) -> dict[str, Any]:
-    """The JSON object in a body; RefusedError for others, NaN, Infinity and repeated names."""
-    try:
-        fields = strict_json(raw or b"{}")
-    except ValueError as error:
-        raise RefusedError(400, f"the body must be JSON in UTF-8 ({error})") from None
-    if not isinstance(fields, dict):
-        raise RefusedError(400, "the body must be a JSON object")
-    return fields
-
-
 class PlayServer(ThreadingHTTPServer):
     """The server of one game, on 127.0.0.1; port 0 stands for any that is free."""
 
     daemon_threads = True
-    request_queue_size = MOST_AT_ONCE
 
     def __init__(self, service: Service, port: int = 0):
         try:
@@ -306,45 +224,11 @@ class PlayServer(ThreadingHTTPServer):
             raise refuse("port", port, allowed) from error
         self.service, self.token = service, secrets.token_urlsafe(24)
         self.hosts = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
-        self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
-        self.waiting: dict[socket.socket, bool] = {}
-        """The connections without a request that shows the token, the longest first; and whether one did so before."""
 
     @property
     def address(self) -> str:
         """Address of the page; the protocol is at its ``api/``."""
         return f"http://127.0.0.1:{self.server_port}/{self.token}/"
-
-    def process_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection in its own thread, unless there are too many that do not wait."""
-        if not (self._free.acquire(blocking=False) or self._made_room()):
-            with suppress(OSError):
-                request.settimeout(1.0)
-                request.sendall(FULL)
-            self.shutdown_request(request)
-            return
-        self.waiting[request] = False
-        super().process_request(request, client_address)
-
-    def _made_room(self) -> bool:
-        """Close the connection that has waited longest, of those that never showed the token if there are any."""
-        for one, _ in sorted(self.waiting.copy().items(), key=lambda item: item[1])[:1]:
-            with suppress(OSError):
-                one.shutdown(socket.SHUT_RDWR)
-            return self._free.acquire(timeout=1.0)
-        return False
-
-    def answered(self, request: Any) -> None:
-        """A connection waits again."""
-        self.waiting.setdefault(request, True)
-
-    def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Serve a connection, then free its place."""
-        try:
-            super().process_request_thread(request, client_address)
-        finally:
-            self.waiting.pop(request, None)
-            self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Report errors, except for connections that were cut."""

@@ -14,11 +14,12 @@ import numpy as np
 from .._lib.check import choice, refuse, refuse_what
 from .._lib.types import NoiseName
 from ..advice.ask import AGENT
-from ..advice.strokes import cue_strokes
 from ..game.frame import CHOICES, Frame
 from ..game.frame_columns import STROKES
 from ..game.ruling import AUTO
 from ..players import Player, Strokes, player
+from ..players.cue_stroke import cue_strokes
+from ..players.table_report import nominations_of
 from ..replays.chances import Judge, Standing, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
@@ -82,7 +83,7 @@ class Seats:
         """The names of both."""
         return self.label(0), self.label(1)
 
-    def decided(self, name: str, session: Session) -> Strokes:
+    def decide(self, name: str, session: Session) -> Strokes:
         """What an agent does in the frame: a decision, a declaration or a stroke, without changing it."""
         options = session.options_with(session.noise[session.frame.striker])
         decided = self.players[name].at(options).play(session.position, session.tables.game[:, STROKES])
@@ -108,10 +109,9 @@ class Service:
     paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
     trouble: str  # why the last agent did not play, or ""
 
-    def __init__(self, session: Session, seats: Seats, *, judged: bool = True):
+    def __init__(self, session: Session, seats: Seats):
         self.session: Session = session
         self.seats: Seats = seats
-        self._judged = judged
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
         self.revision: int = 0
         self.paused, self.trouble = False, ""
@@ -154,7 +154,7 @@ class Service:
             with session.as_a_whole():
                 yield session
             self.paused, self.trouble = pause, ""
-            self._moved()
+            self._announce()
 
     @contextmanager
     def asking(self, revision: int | None = None) -> Iterator[Session]:
@@ -169,8 +169,10 @@ class Service:
             self._asking.release()
 
     def judge(self, noise: NoiseName | None = None) -> Judge | None:
-        """Who says how likely each seat wins, with these errors, by default those of ``Seats.level``; or None."""
-        if not self._judged or self.session.practice:
+        """Who says how likely each seat wins, with these errors, by default those of ``Seats.level``.
+
+        None in practice, where nobody wins."""
+        if self.session.practice:
             return None
         options = self.session.options_with(noise or self.seats.level(self.session))
         if self._judge[0] is not options:
@@ -198,7 +200,7 @@ class Service:
             if not self.paused:
                 return  # it is thinking already: another page was first
             self.paused, self.trouble = False, ""
-            self._moved()
+            self._announce()
 
     def agent_to_play(self) -> bool:
         """Whether it is an agent's turn."""
@@ -210,7 +212,7 @@ class Service:
         """Whether an agent is thinking about its stroke, or about to."""
         return self.agent_to_play() and not self.paused
 
-    def _moved(self):
+    def _announce(self):
         self.revision += 1
         self._changed.notify_all()
 
@@ -225,7 +227,7 @@ class Service:
                 who, twin = self.seats.who[self.session.frame.striker], self.session.twin()
             decided, trouble = None, ""
             try:
-                decided = self.seats.decided(who, twin)
+                decided = self.seats.decide(who, twin)
             # a custom player may raise anything: it is reported, and the game waits
             except Exception as error:
                 trouble = f"{who} gave no stroke ({type(error).__name__}: {error})"
@@ -235,7 +237,7 @@ class Service:
                 if decided is not None:
                     trouble = self._carry_out(decided)
                 self.trouble, self.paused = trouble, bool(trouble) or all(map(self.seats.is_agent, (0, 1)))
-                self._moved()
+                self._announce()
 
     def _carry_out(self, decided: Strokes) -> str:
         """What an agent has decided; why it could not be carried out, or ""."""
@@ -264,5 +266,7 @@ class Service:
         if session.frame.in_hand and np.isfinite(decided.place[0]).all():
             session.place(*decided.place[0].tolist())
         nominated = int(decided.nominate[0])
-        sensible = nominated in session.nominations() or (nominated == DECLINED and session.frame.free_ball)
+        sensible = nominated in nominations_of(session.frame) or (
+            nominated == DECLINED and session.frame.free_ball
+        )
         session.play(stroke, nominated=nominated if sensible else AUTO)

@@ -15,7 +15,7 @@ from .._lib.check import choice, integer, refuse, refuse_what, truth
 from .._lib.types import CueKind, NoiseName
 from ..advice import CueStroke, Room
 from ..advice.room import room_for
-from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
+from ..game.balls import CUE, NAMES, BallOn, mask_of_present
 from ..game.frame import Choice, Frame, write_frame
 from ..game.frame_columns import STROKES
 from ..game.in_hand import place_cue
@@ -24,6 +24,7 @@ from ..game.ruling import AUTO
 from ..planning.position import Position
 from ..planning.positions import Positions, of_tables
 from ..players import Strokes
+from ..players.table_report import nominations_of, visit_of
 from ..tasks.frame import Frames, Seat
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES, Options
@@ -115,7 +116,7 @@ class Session:
 
     def room(self, stroke: CueStroke) -> Room:
         """How the cue finds room for a stroke as the table lies; nothing is played."""
-        return room_for(stroke.numbers(), self.planned(), self._options.rules)
+        return room_for(stroke.numbers(), self.as_visit(), self._options.rules)
 
     @property
     def state(self) -> dict[str, Any]:
@@ -128,30 +129,16 @@ class Session:
         """Indices of the acts that are strokes, in order."""
         return [k for k, act in enumerate(self.acts[: self.at]) if act.played is not None]
 
-    def nominations(self) -> tuple[int, ...]:
-        """The colours that the striker may nominate before the stroke: after a red, and as a free ball."""
-        frame = self.frame
-        if frame.phase != "stroke":
-            return ()
-        if frame.ball_on == BallOn.ANY_COLOUR:
-            return tuple(i for i in ids_of(frame.on_table) if i > 15)
-        on = frame.ball_on + 14 if frame.ball_on > BallOn.RED else 0
-        return tuple(i for i in ids_of(frame.on_table) if i > 15 and i != on) if frame.free_ball else ()
-
     @property
     def position(self) -> Positions:
         """The frame as its striker sees it."""
         return of_tables(self.tables)
 
-    def planned(self, *, free_ball: bool = False) -> Positions:
-        """The next stroke's position, as one of a visit; with ``free_ball`` every colour is on instead."""
-        frame, tables = self.frame, self.tables
-        if frame.phase == "over":
+    def as_visit(self) -> Positions:
+        """The next stroke's position, as one of a visit."""
+        if self.frame.phase == "over":
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
-        on = BallOn.ANY_COLOUR if free_ball else frame.ball_on
-        game = [[int(on), int(frame.in_hand), frame.break_points, 0, 0]]
-        own = tables.conditions if tables.rules.drawn else None
-        return Positions(tables.positions.copy(), tables.on_table.copy(), game, None, own)
+        return visit_of(self.frame, self.position)
 
     def options_with(self, noise: NoiseName) -> Options:
         """The options of this frame for a player with these execution errors."""
@@ -224,28 +211,23 @@ class Session:
         self._write(replace(self.frame, striker=breaker, breaker=breaker), 0)
         self._begin("new")
 
-    def check_stroke(self, nominated: int = AUTO) -> None:
-        """Raise ValueError unless a stroke may be played now, and that colour be nominated."""
-        frame = self.frame
+    def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
+        """Play the stroke; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
+        frame, tables, before = self.frame, self.tables, self.state
         if frame.phase != "stroke":
             choose = 'must be "stroke": choose first (play, play_again, replace or anywhere)'
             raise refuse("phase", frame.phase, choose if frame.phase == "choice" else "must not be over")
-        declined = nominated == DECLINED and frame.free_ball
-        if nominated != AUTO and not declined and nominated not in self.nominations():
-            names = [NAMES[i] for i in self.nominations()]
+        declined, colours = nominated == DECLINED and frame.free_ball, nominations_of(frame)
+        if nominated != AUTO and not declined and nominated not in colours:
+            names = [NAMES[i] for i in colours]
             allowed = f"must be one of {names}" if names else "must be left out: no colour is to be named now"
             raise refuse("nominate", NAMES[nominated], allowed)
-
-    def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
-        """Play the stroke; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
-        self.check_stroke(nominated)
-        before, tables = self.state, self.tables
-        striker = self.frame.striker
+        striker = frame.striker
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
         self._played, room = None, self.room(stroke)
         asked = {**stroke.to_dict(), "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
-        asked["place"] = before["positions"][CUE] if self.frame.in_hand else None
+        asked["place"] = before["positions"][CUE] if frame.in_hand else None
         asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
         tables.nominated[0] = nominated
         crew = Crew(self._buffers, self._watch)
@@ -281,13 +263,13 @@ class Session:
         """End the frame: the striker concedes."""
         if self.frame.phase == "over":
             raise refuse("phase", "over", "must not be over")
-        return self._ended("concede", self.frame.concede(self.frame.striker))
+        return self._end("concede", self.frame.concede(self.frame.striker))
 
     def claim(self) -> Act:
         """The striker, more than seven points ahead with the black alone on the table, claims the frame."""
-        return self._ended("claim", self.frame.claim())
+        return self._end("claim", self.frame.claim())
 
-    def _ended(self, what: str, after: Frame) -> Act:
+    def _end(self, what: str, after: Frame) -> Act:
         striker = self.frame.striker
         self._write(after, int(self.tables.game[0, STROKES]))
         return self._did(Act(what, self.state, striker, asked={"declare": what}))
@@ -322,7 +304,7 @@ class Session:
         rules: Any = {"miss": self.miss, "rules": self.game}
         frame = Frame(**game, **rules, ball_on=BallOn[str(position.on).upper()])
         state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
-        sound = self._checked(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
+        sound = self._check(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
         if not check:
             self.tables.set_state(0, sound)
             self._did(Act("set_up", self.state))
@@ -346,7 +328,6 @@ class Session:
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
             allowed = 'must be a saved game, with "format": "snooker-game"'
             raise refuse_what("saved", "something else", allowed)
-        saved = {"cue": "free"} | saved  # games were saved without it while every cue was free
         if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
             what = f"version {saved.get('version')!r} with {sorted(saved)}"
             raise refuse_what("saved", what, f"must be version 1 with {list(fields)}")
@@ -359,17 +340,12 @@ class Session:
         if not isinstance(state, dict) or set(state) != set(STATE):
             raise refuse_what("saved.state", "something else", f"must be a dict with {list(STATE)}")
         frame = state["frame"]
-        twin = self.twin()
-        twin._play_by(self._but(None, frame.get("rules", "snooker") if isinstance(frame, dict) else None))
-        twin._set(state)
-        twin.practice, twin.cue = practice, cast(CueKind, cue)
-        twin.noise, twin.best_of, twin.won = levels, 1, [0, 0]
-        twin._begin("load")
-        self.become(twin)
-
-    def become(self, twin: "Session") -> None:
-        """Take over all of a copy."""
-        self.__dict__.update(twin.__dict__)
+        with self.as_a_whole():
+            self._play_by(self._but(None, frame.get("rules", "snooker") if isinstance(frame, dict) else None))
+            self._set(state)
+            self.practice, self.cue = practice, cast(CueKind, cue)
+            self.noise, self.best_of, self.won = levels, 1, [0, 0]
+            self._begin("load")
 
     def _begin(self, what: str) -> None:
         self.acts, self.at, self.begun = [Act(what, self.state)], 1, self.begun + 1
@@ -388,9 +364,9 @@ class Session:
         return True
 
     def _set(self, state):
-        self.tables.set_state(0, self._checked(state))
+        self.tables.set_state(0, self._check(state))
 
-    def _checked(self, state: dict[str, Any]) -> FrameState:
+    def _check(self, state: dict[str, Any]) -> FrameState:
         try:
             # no rewards are paid here
             alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from .._lib.check import refuse, refuse_what, truth
-from .._lib.registration import PROGRAM_PLAYER
 from ..planning import VisitJudge
 from ..planning.search import BUDGET, MOST
 from .choices import GhostBall, Random
 from .model_options import LEFT_OUT, checked, of_others
 from .player import Player
+from .program import ProgramPlayer
 from .search import SearchPlayer
 from .stroke_value import StrokeValuePlayer
 from .tactician import Tactician
@@ -93,7 +93,7 @@ def player(name: Any, *, trust: bool = False, options: Mapping[str, Any] | None 
     if (built_in := _built_in(text)) is not None:
         return built_in
     if text.startswith(PROGRAM):
-        return EntryPoint(text, PROGRAM_PLAYER, GROUP).load()(text.removeprefix(PROGRAM))
+        return ProgramPlayer(text.removeprefix(PROGRAM))
     if (entry := _installed().get(text)) is not None:
         return _of_object(_made(text, entry.load))
     if text and Path(text).exists():

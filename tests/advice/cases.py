@@ -4,8 +4,8 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env.advice.practice import one_position, practice_of
-from snooker_env.advice.strokes import cue_strokes
 from snooker_env.players import Ranked, Strokes
+from snooker_env.players.cue_stroke import cue_strokes
 
 REDS = [(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)]
 OPEN = sn.Position(cue=(0.25, -0.4), reds=REDS, blue=(0.0, 0.0), pink=(0.2, 0.1), black=(0.0, 1.4605))

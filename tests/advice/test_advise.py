@@ -7,7 +7,6 @@ import pytest
 from cases import ALL, ENDGAME, IN_HAND, OPEN, RESPOTTED, SNOOKERED, played, state_of, stroke_of
 
 import snooker_env as sn
-from snooker_env.advice.__main__ import main
 from snooker_env.planning import clear_paths
 from tests.refusals import refused
 
@@ -32,13 +31,6 @@ def test_chances_are_those_of_the_environment():
         cue = np.array([s["positions"][0] for s in after if s["on_table"][0]])
         assert one.stops == pytest.approx(cue.mean(axis=0), abs=apart * one.spread)
         assert one.spread == pytest.approx(np.sqrt(((cue - cue.mean(axis=0)) ** 2).sum(1).mean()), rel=0.2)
-
-
-def test_points_expected_of_the_last_ball_are_its_chance_times_its_value():
-    last = sn.Position(cue=(0.3, 1.0), black=(0.0, 1.4605))
-    (one,) = sn.advise(last, noise="club", n=1, samples=300, visits=20)
-    assert one.points == pytest.approx(7 * one.chance) and 0.0 < one.chance < 1.0
-    assert one.points_interval[0] < one.points < one.points_interval[1]
 
 
 def test_points_expected_hold_what_follows():
@@ -91,14 +83,6 @@ def test_strokes_that_read_the_same_are_given_once():
     advice = sn.advise(ENDGAME, n=8, **QUICK)
     words = [one.words.split(" m/s, ")[1].split(", pot ")[0] for one in advice]
     assert len({(w, one.ball, one.pocket) for w, one in zip(words, advice, strict=True)}) == len(advice) > 2
-    assert len({round(one.speed, 3) for one in sn.advise(ENDGAME, n=8, distinct=False, **QUICK)}) > 1
-
-
-def test_the_first_advice_is_good():
-    """The blue goes in nine times of ten; the best stroke scores more than the widest pot alone."""
-    agents = "planner_500", "ghost_ball"
-    best, plain = (sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0] for agent in agents)
-    assert best.points > plain.points
 
 
 def test_without_noise_everything_is_certain():
@@ -203,29 +187,3 @@ def test_wrong_positions_and_environments_before_reset_are_refused():
             sn.advise(env, **QUICK)
         env.reset(seed=1)
         assert len(sn.advise(env, **QUICK)) >= 1
-
-
-def test_the_command_prints_advice(tmp_path, capsys):
-    file = tmp_path / "one.json"
-    OPEN.save(file)
-    few = ["--position", str(file), "--agent", "ghost_ball", "--n", "2", "--samples", "30", "--visits", "2"]
-    assert main(few) == 0
-    printed = capsys.readouterr().out.splitlines()
-    advice = sn.advise(OPEN, agent="ghost_ball", n=2, samples=30, visits=2)
-    assert [line for line in printed if not line.startswith("   ")] == str(advice).splitlines()
-    assert "(95 %); cue ball stops at (" in printed[2] and len(printed) == 1 + 2 * len(advice)
-    assert main([*few, "--json"]) == 0 and json.loads(capsys.readouterr().out) == advice.to_dict()
-
-
-def test_what_is_wrong_is_said_in_a_line(tmp_path, capsys):
-    file = tmp_path / "one.json"
-    ENDGAME.save(file)
-    for wrong, said in (
-        (["--agent", "nobody"], "player = 'nobody'"),
-        (["--n", "0"], "n = 0: must be"),
-        (["--noise", "x"], "noise = 'x'"),
-    ):
-        assert main(["--position", str(file), *wrong]) == 2
-        out, error = capsys.readouterr()
-        assert not out and error.startswith(f"error: {said}") and error.count("\n") == 1
-    assert main(["--position", str(tmp_path / "none.json")]) == 2 and "none.json" in capsys.readouterr().err

@@ -129,8 +129,3 @@ def test_players_are_asked_by_their_names(name, position):
     advice = sn.advise(position, agent=name, n=2, **QUICK)
     assert len(advice) >= 1 and advice.agent == name
     assert (advice[0].place is not None) == position.in_hand
-
-
-def test_a_pretrained_agent_ranks_several_strokes():
-    pytest.importorskip("sb3_contrib")
-    assert len({one.stroke.aim for one in sn.advise(OPEN, agent="ppo_value", n=4, **QUICK)}) > 1

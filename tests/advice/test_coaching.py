@@ -13,17 +13,16 @@ from snooker_env.advice import (
     CueStroke,
     Recorded,
     coach,
-    estimate_errors,
     read_strokes,
     strokes_of,
     write_strokes,
 )
 from snooker_env.advice import errors as estimating
 from snooker_env.advice.__main__ import main
-from snooker_env.advice.costs import lost, values
+from snooker_env.advice.costs import count_costs, value_strokes
 from snooker_env.advice.errors import Estimate
 from snooker_env.advice.practice import practice_of
-from snooker_env.advice.recorded import _from_replay, agreed
+from snooker_env.advice.recorded import _from_replay, agree_options
 from snooker_env.planning import Planner, pot_aim, pots
 from snooker_env.players import VISITS
 from snooker_env.tasks import LEVELS, Noise
@@ -34,7 +33,11 @@ ALONE = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
 CUE, MEANT = {"speed": 2.0, "aim": 0.8}, CueStroke(speed=2.0, aim=0.8)
 WHERE = {"cue": "free", "physics": "paper", "table": "match"}
 TOLD = [word for name, value in WHERE.items() for word in (f"--{name}", value)]
-errors_of, coached = partial(estimate_errors, options=WHERE), partial(coach, options=WHERE)
+coached = partial(coach, options=WHERE)
+
+
+def errors_of(strokes):
+    return coached(strokes).errors
 
 
 def pot_of(position):
@@ -82,7 +85,7 @@ def test_errors_of_strokes_meant_and_played(noise):
 
 def test_the_interval_is_that_of_chi_square():
     """20 errors whose squares sum to 20: quantiles 0.025, 0.5, 0.975 of chi^2 with 20 degrees, from tables."""
-    weights = estimating.posterior(estimating.direct(np.ones(20), np.ones((1, 20)))[0])
+    weights = estimating.normalise(estimating.weigh_errors(np.ones(20), np.ones((1, 20)))[0])
     one = estimating.estimate(weights, 1.0, 20)
     expected = [np.sqrt(20 / q) for q in (19.337, 34.170, 9.591)]
     assert [one.value, one.low, one.high] == pytest.approx(expected, rel=2e-3)
@@ -90,7 +93,7 @@ def test_the_interval_is_that_of_chi_square():
 
 def test_the_law_of_the_radius():
     assert estimating.chi5(np.sqrt([0.831, 4.351, 11.070])) == pytest.approx([0.025, 0.5, 0.95], abs=1e-3)
-    assert estimating.radius_weights().sum(axis=0) == pytest.approx(1.0)
+    assert estimating.weigh_radii().sum(axis=0) == pytest.approx(1.0)
 
 
 def test_a_bias_is_told_apart():
@@ -115,7 +118,7 @@ def test_pots_and_misses_alone_tell_the_direction(noise):
     assert found.direction.low < truth < found.direction.high and found.speed is None
     assert 0.15 < found.direction.high / found.direction.low - 1.0 < 1.0
     practice = practice_of("professional")
-    p = estimating.tolerances(known[:40], practice, 0).chances.mean(axis=0)
+    p = estimating.simulate_pots(known[:40], practice, 0).chances.mean(axis=0)
     here = np.abs(estimating.SCALES * LEVELS["professional"].direction_deg(speed=2.0) - truth).argmin()
     assert p[here] == pytest.approx(made.mean(), abs=0.04)
     line = errors_of([Recorded(position=ALONE, ball=ball, pocket=pocket, played=cue) for cue in cues[:400]])
@@ -126,11 +129,13 @@ def test_safeties_among_guessed_pots_are_no_errors():
     rng = np.random.default_rng(5)
     pots_, width = rng.normal(0.0, 2.0, 70), np.full(100, 15.0)
     e = np.concatenate([pots_, rng.uniform(-15.0, 15.0, 30)])
-    log_l, meant = estimating.guesses(e, width, np.ones((1, 100)))
-    one = estimating.estimate(estimating.posterior(log_l[0]), 1.0, 100)
+    log_l, meant = estimating.weigh_guesses(e, width, np.ones((1, 100)))
+    one = estimating.estimate(estimating.normalise(log_l[0]), 1.0, 100)
     assert one.low < 2.0 < one.high < 3.5
     assert meant[:70].mean() > 0.9 and meant[70:].mean() < 0.6
-    naive = estimating.estimate(estimating.posterior(estimating.direct(e, np.ones((1, 100)))[0]), 1.0, 100)
+    naive = estimating.estimate(
+        estimating.normalise(estimating.weigh_errors(e, np.ones((1, 100)))[0]), 1.0, 100
+    )
     assert naive.low > 3.5
 
 
@@ -185,33 +190,28 @@ def test_a_replay_says_where_it_was_played(tmp_path):
     assert all({name: getattr(one, name) for name in where} == where for one in mine)
     write_strokes(tmp_path / "mine.json", mine)
     assert read_strokes(tmp_path / "mine.json") == mine
-    bench = agreed(mine, None)
+    bench = agree_options(mine, None)
     assert practice_of("none", bench).options.cue == "real" and bench["physics"].mu_r == 0.012
-    assert agreed(mine, {"fidelity": "fast"}) == bench | {"fidelity": "fast"}
-    assert agreed(mine, env.options) is env.options
+    assert agree_options(mine, {"fidelity": "fast"}) == bench | {"fidelity": "fast"}
+    assert agree_options(mine, env.options) is env.options
     for name, value in (("cue", "free"), ("physics", "paper"), ("table", "tight")):
         refused(
-            partial(agreed, mine, {name: value}),
+            partial(agree_options, mine, {name: value}),
             f"strokes[0].{name}",
             "",
             f"must be {value!r}, as options say",
         )
     refused(
-        partial(agreed, [mine[0], replace(mine[1], cue="free")], None),
+        partial(agree_options, [mine[0], replace(mine[1], cue="free")], None),
         "strokes[1].cue",
         "free",
         "first stroke",
     )
-    old = kept | {"version": 1, "strokes": [dict(one) for one in kept["strokes"]]}
-    for one in (old, *old["strokes"]):
-        for name in ("cue_kind", "noise", "physics", "table"):
-            one.pop(name, None)
-    (tmp_path / "old.json").write_text(json.dumps(old))
-    ours = read_strokes(tmp_path / "old.json", player=0)
+    ours = [replace(one, **dict.fromkeys(WHERE)) for one in mine]
     for name in WHERE:
         told = {key: value for key, value in WHERE.items() if key != name}
         refused(partial(coach, ours, options=told), name, "None", f"must be given (options={{{name!r}: ...}}")
-    assert agreed(ours, WHERE) == WHERE
+    assert agree_options(ours, WHERE) == WHERE
 
 
 def test_a_table_of_ones_own_is_read_back(tmp_path):
@@ -263,7 +263,7 @@ def test_growth_with_the_speed_is_estimated(g):
 def test_an_error_grows_as_strokes_under_that_noise_do():
     """By the law of ``Noise`` itself, which is stated as a professional's at the speed that the error is of."""
     speeds = np.array([0.5, 2.0, 6.0])
-    for g, each in zip(estimating.GROWTHS, estimating.grown(speeds, 2.0), strict=True):
+    for g, each in zip(estimating.GROWTHS, estimating.grow_with_speed(speeds, 2.0), strict=True):
         noise = Noise(aim_deg=1.0, growth=float(g))
         law = np.array([noise.direction_deg(speed=v) for v in speeds.tolist()])
         assert each / each[1] == pytest.approx(law / law[1], rel=1e-9)
@@ -273,7 +273,7 @@ def test_an_error_grows_as_strokes_under_that_noise_do():
 def test_side_takes_nothing_from_the_errors_of_direction():
     """The squirt of a tip at 0.4 R changes by a quarter less with the tip: so much must not be missed."""
     rng = np.random.default_rng(3)
-    seen = estimating.measured(strokes_that_grow(1.0, 4000, rng), practice_of("professional", WHERE))
+    seen = estimating.measure_errors(strokes_that_grow(1.0, 4000, rng), practice_of("professional", WHERE))
     z = seen.directions / np.hypot(1.0, seen.paces)
     truth = 0.2 / LEVELS["professional"].direction_deg()
     assert z.std() == pytest.approx(truth, rel=3.0 / np.sqrt(2 * 4000))
@@ -297,12 +297,12 @@ def test_a_cue_that_errors_raised_once_more_was_meant_lower():
     at = sn.Position(cue=(0.0, -1.70), black=(0.0, 1.0))
     real = practice_of("professional", WHERE | {"cue": "real"})
     meant = CueStroke(speed=2.0, aim=np.pi / 2)
-    needed, _ = estimating.as_meant(Recorded(position=at), meant.numbers(), real)
+    needed, _ = estimating.fit_to_room(Recorded(position=at), meant.numbers(), real)
     assert np.radians(2.0) < needed < np.radians(15.0)
     cue = {"speed": 2.0, "aim": np.pi / 2 + 0.003, "elevation": needed + np.radians(0.8)}
     unit = np.radians(LEVELS["professional"].direction_deg(speed=0.0)) * (1.0 + needed / np.radians(15.0))
     played = Recorded(position=at, intended=meant, played=cue)
-    assert estimating.measured([played], real).directions[0] == pytest.approx(0.003 / unit)
+    assert estimating.measure_errors([played], real).directions[0] == pytest.approx(0.003 / unit)
 
 
 def missed_and_made():
@@ -318,7 +318,7 @@ def missed_and_made():
 def test_costs_have_the_signs_of_what_happened():
     bench = practice_of("professional", of_frames=True)
     missed, made = missed_and_made()
-    parts = lost([missed, made], bench, 0)[0]
+    parts = count_costs([missed, made], bench, 0)[0]
     assert (
         parts[0, 0] > 1.0 > 0.0 >= parts[1, 0]
     )  # a pot missed costs, one that the target makes too gains nothing
@@ -330,12 +330,12 @@ def test_costs_have_the_signs_of_what_happened():
         position=AT,
         after=sn.Position(cue=(0.0, -1.6), reds=[(0.0, 1.74)], brown=(0.0, -1.5), yellow=(0.7, -1.7)),
     )
-    easy, safe = lost([hanging, hidden], bench, 0)[0][:, 2]
+    easy, safe = count_costs([hanging, hidden], bench, 0)[0][:, 2]
     assert easy > safe
 
 
 def values_of(bench, one):
-    return float(values(bench, [one])[0])
+    return float(value_strokes(bench, [one])[0])
 
 
 def test_the_drill_is_that_of_the_largest_cost():
@@ -370,7 +370,7 @@ def test_the_command(tmp_path, capsys):
         ('{"format": "snooker-strokes", "version": 2, "strokes": []}', "must be 1"),
         ('{"format": "snooker-strokes", "version": 1, "strokes": []}', "must hold at least one stroke"),
         ('{"format": "snooker-strokes", "version": 1, "strokes": [{"colour": 1}]}', "strokes[0]"),
-        ('{"format": "snooker-replay", "version": 1, "strokes": [{}]}', "a damaged file"),
+        ('{"format": "snooker-replay", "version": 2, "strokes": [{}]}', "a damaged file"),
     ):
         (tmp_path / "bad.json").write_text(text)
         assert main(["coach", str(tmp_path / "bad.json")]) == 2
@@ -427,9 +427,9 @@ def test_a_potted_free_ball_counts_as_the_ball_on(reds, on):
 
 
 def test_called_is_the_nearest_line():
-    from snooker_env.advice.recorded import called
+    from snooker_env.advice.recorded import call_pot
 
     ball, pocket, meant = pot_of(ALONE)
-    assert called(ALONE, meant.aim + 0.005) == (ball, pocket)
+    assert call_pot(ALONE, meant.aim + 0.005) == (ball, pocket)
     x, y = ALONE.cue
-    assert called(ALONE, atan2(-1.0 - y, -x)) is None
+    assert call_pot(ALONE, atan2(-1.0 - y, -x)) is None

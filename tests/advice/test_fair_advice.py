@@ -28,7 +28,7 @@ def after_break_offs():
         thin = rng.uniform(0.3, 0.95) * side * asin(2 * 0.02625 / hypot(ex - x, ey - y))
         session.play(CueStroke(speed=rng.uniform(1.8, 4.5), aim=atan2(ey - y, ex - x) - thin))
         if session.frame.phase == "stroke" and session.frame.striker == 1:
-            found.append(session.planned()[0])
+            found.append(session.as_visit()[0])
     return found
 
 

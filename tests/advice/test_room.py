@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.advice import CueStroke, Room, advise, judging
-from snooker_env.advice.__main__ import main
+from snooker_env.advice import CueStroke, Room, advise
+from snooker_env.advice.intentions import drop_alike, intend
 from snooker_env.advice.practice import practice_of
 from snooker_env.advice.room import room_for
 from snooker_env.geometry import BALL_RADIUS as R
@@ -95,22 +95,13 @@ def test_suggestions_say_their_room():
 def test_strokes_that_differ_in_their_room_alone_are_one():
     practice, at = practice_of("none", {"cue": "real"}), Positions.of(FROZEN)
     strokes = [replace(ACROSS, top=top) for top in (0.1, 0.0, -0.1)]
-    some = judging.tried(practice, at, strokes)
+    some = intend(practice, at, strokes)
     assert len({one.words for one in some}) == len({one.room.words for one in some}) == 3
-    assert judging.distinct(some) == some[:1]
-    screws = judging.tried(practice, at, [replace(ACROSS, speed=5.0, top=top) for top in (-0.5, -0.25)])
-    assert len(judging.distinct(screws)) == 1  # both are played with the one tip that the cue reaches
-    raised = judging.tried(practice, at, [replace(ACROSS, aim=0.5 * pi, elevation=e) for e in (0.0, 0.4)])
-    assert len(judging.distinct(raised)) == 2  # a cue raised on purpose is another stroke
-
-
-def test_the_command_knows_the_cue(tmp_path, capsys):
-    FROZEN.save(tmp_path / "p.json")
-    ask = ["--position", str(tmp_path / "p.json"), "--n", "2", "--samples", "10", "--visits", "1"]
-    assert main([*ask, "--cue", "real"]) == 0
-    assert "over the rail" in capsys.readouterr().out
-    assert main(ask) == 0
-    assert "over the rail" not in capsys.readouterr().out
+    assert drop_alike(some) == some[:1]
+    screws = intend(practice, at, [replace(ACROSS, speed=5.0, top=top) for top in (-0.5, -0.25)])
+    assert len(drop_alike(screws)) == 1  # both are played with the one tip that the cue reaches
+    raised = intend(practice, at, [replace(ACROSS, aim=0.5 * pi, elevation=e) for e in (0.0, 0.4)])
+    assert len(drop_alike(raised)) == 2  # a cue raised on purpose is another stroke
 
 
 def test_words_of_a_room():

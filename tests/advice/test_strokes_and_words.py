@@ -8,7 +8,8 @@ from cases import OPEN, Given, played
 from scipy.stats import binomtest
 
 import snooker_env as sn
-from snooker_env.advice import POCKET_WORDS, CueStroke, judging, words
+from snooker_env.advice import POCKET_WORDS, CueStroke, words
+from snooker_env.advice.outcomes import expect_points, wilson
 from snooker_env.physics.events import EventKind
 from snooker_env.tasks import box_actions
 from tests.shots import shot
@@ -143,12 +144,12 @@ def test_the_words_of_a_suggestion_are_its_data():
 def test_intervals_hold_the_truth_as_often_as_they_say():
     for made, tries in ((0, 10), (3, 10), (10, 10), (87, 100), (199, 200)):
         interval = binomtest(made, tries).proportion_ci(0.95, "wilson")
-        assert judging.wilson(made, tries) == pytest.approx((interval.low, interval.high), abs=1e-6)
+        assert wilson(made, tries) == pytest.approx((interval.low, interval.high), abs=1e-6)
     rng, inside, runs = np.random.default_rng(3), 0, 600
     for _ in range(runs):
         goes_on = rng.random(200) < 0.8
         points, rest = np.where(goes_on, 1.0, 0.0), rng.exponential(10.0, 60)
-        mean, (low, high) = judging.points_expected(points, goes_on, rest)
+        mean, (low, high) = expect_points(points, goes_on, rest)
         assert mean == pytest.approx(goes_on.mean() * (1.0 + rest.mean()))
         inside += low <= 0.8 * 11.0 <= high
     assert 0.92 < inside / runs < 0.97

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from cases import ENDGAME, OPEN
 
+from snooker_env.advice.outcomes import play_on
 from snooker_env.advice.practice import GOING_ON, QUICK, practice_of
-from snooker_env.advice.visits import played_on
 from snooker_env.planning import Planner, Positions, Search, VisitJudge
 
 
@@ -26,7 +26,7 @@ def one_by_one(position, visit, visits, seed, noise):
 def test_visits_are_played_on_stroke_by_stroke(noise):
     positions = [OPEN, ENDGAME, OPEN, ENDGAME, OPEN]
     numbers = np.array([0, 0, 1, 3, 2])
-    found = played_on(practice_of(noise), Positions.of(positions), numbers, 7)
+    found = play_on(practice_of(noise), Positions.of(positions), numbers, 7)
     asked = zip(positions, numbers.tolist(), strict=True)
     own = [one_by_one(position, visit, 4, 7, noise) for position, visit in asked]
     assert found.tolist() == [total for total, _ in own]
@@ -34,4 +34,4 @@ def test_visits_are_played_on_stroke_by_stroke(noise):
 
 
 def test_no_visits_bring_no_points():
-    assert played_on(practice_of("club"), Positions.of(OPEN)[:0], np.empty(0, np.int64), 0).shape == (0,)
+    assert play_on(practice_of("club"), Positions.of(OPEN)[:0], np.empty(0, np.int64), 0).shape == (0,)

@@ -13,8 +13,8 @@ from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, writ
 from snooker_env.benchmark.__main__ import main, suspicious
 from snooker_env.benchmark.playing import BATCH, COLUMNS
 from snooker_env.benchmark.results import strokes_of
-from snooker_env.play.program import AgentError, ProgramPlayer
 from snooker_env.players import VISITS, Strokes, decided
+from snooker_env.players.program import AgentError, ProgramPlayer
 from tests.processes import ROOT
 
 EXAMPLE = f"program:{sys.executable} {ROOT / 'examples/program_player.py'}"

@@ -76,7 +76,7 @@ ELSEWHERE = {
     "tests.golden": "tests/test_golden.py",
     "snooker_env": "tests/commands/test_lifecycle.py",
     "snooker_env.play": "tests/play/test_server.py",
-    "snooker_env.advice": "tests/advice/test_advise.py",
+    "snooker_env.advice": "tests/advice/test_coaching.py",
     "snooker_env.benchmark": "tests/benchmark/test_results.py",
     "benchmarks.paper": "tests/benchmarks/test_benchmark_commands.py",
     "benchmarks.left_out": "tests/benchmarks/test_benchmark_commands.py",

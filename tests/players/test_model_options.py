@@ -7,7 +7,6 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import watch
-from snooker_env.advice.__main__ import main as advice
 from snooker_env.benchmark import HELD_OUT_SEED, Agent
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.planning import Planner, Positions
@@ -154,26 +153,14 @@ def test_a_frame_of_a_model_is_watched_on_either_side(model, both):
     assert {stroke.player for stroke in env.history} == {0, 1}
 
 
-def test_a_model_sits_at_the_page_and_gives_advice(model, tmp_path, capsys):
+def test_a_model_sits_at_the_page_and_gives_advice(model):
     service = service_of(_arguments(["--agent", model, *WORDS, "--seed", "1"]))
     (its,) = (one for name, one in service.seats.players.items() if name == "ppo")
     assert its.sees["aim"] == "target"
     service.close()
-    sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)).save(tmp_path / "p.json")
-    few = [
-        "--position",
-        str(tmp_path / "p.json"),
-        "--n",
-        "1",
-        "--samples",
-        "10",
-        "--visits",
-        "1",
-        "--noise",
-        "none",
-    ]
-    assert advice([*few, "--agent", model, *WORDS]) == 0 and "pot" in capsys.readouterr().out
-    assert advice([*few, *WORDS]) == 2 and "must be left out" in capsys.readouterr().err
+    position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    (one,) = sn.advise(position, agent=its, n=1, samples=10, visits=1, noise="none")
+    assert one.kind == "pot"
 
 
 # What acts on observations

@@ -1,4 +1,6 @@
-"""How is the game described without a picture? In plain words, with the straight lines to each pocket."""
+"""What is on the table, and what may be done? As JSON types and in words, for programs and the page.
+
+docs/play/protocol.md describes the fields; the page adds what is its own."""
 
 from dataclasses import asdict, dataclass
 from math import acos, atan2, degrees, hypot, radians
@@ -6,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from ..game.balls import CUE, NAMES, SPOTS, YELLOW, ids_of, mask_of_present
+from .._lib.types import NoiseName
+from ..game.balls import CUE, NAMES, SPOTS, YELLOW, BallOn, ids_of, mask_of_present
 from ..game.frame import Frame
+from ..game.snookered import is_snookered
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS, POCKETS
+from ..physics.table import Table
 from ..planning.geometry import obstructions, pots
 from ..planning.positions import Positions
 from ..planning.pot_chance import pot_chances
-from ..replays.words import on_words, sentence
 from ..tasks.noise import LEVELS
-from .session import Act
 
 MOST = 126  # largest number of lines: from 21 balls to 6 pockets
-STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ class Line:
         return f"{way}open, {cut}, {far}, may err {degrees(self.tolerance):.2f} deg{likely}"
 
 
-def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
+def find_lines(positions: list[Positions], on: int, noise: str) -> list[Line]:
     """Lines to pockets for the balls ``on``; ``positions``: the table, with a free ball also for colours."""
     errors = LEVELS[noise]
     sigma = 0.0 if errors.silent else radians(errors.direction_deg())
@@ -109,7 +111,7 @@ _ALONG = (
 )
 
 
-def asked_words(frame: Frame, labels: tuple[str, str]) -> str:
+def _say_turn(frame: Frame, labels: tuple[str, str]) -> str:
     """What the rules ask for next, in a sentence; ``labels``: the names of both players."""
     who = labels[frame.striker]
     yours = "Your stroke" if who == "You" else f"{who}'s stroke"
@@ -118,38 +120,11 @@ def asked_words(frame: Frame, labels: tuple[str, str]) -> str:
     if frame.phase == "choice":
         miss = " and a miss" if frame.miss_called else ""
         return f"Foul{miss} by {labels[1 - frame.striker]}: {'choose' if who == 'You' else f'{who} chooses'}."
-    on = on_words(frame.ball_on) + (", and a free ball are" if frame.free_ball else " is")
+    on = frame.ball_on.name.lower().replace("_", " ") + (
+        ", and a free ball are" if frame.free_ball else " is"
+    )
     placing = "; the cue ball is in hand" if frame.in_hand else ""
     return f"{yours}: {on} on{placing}."
-
-
-_DECIDED = {
-    "play": "played on",
-    "play_again": "asked for another stroke from there",
-    "replace": "had the balls put back",
-    "anywhere": "took the cue ball in hand",
-}
-
-
-def last_words(act: Act, labels: tuple[str, str], before: Act | None = None) -> str:
-    """An act in a sentence; ``before``: the act before it, whose foul a choice answers."""
-    who = "" if act.player is None else labels[act.player]
-    if act.what == "choice":
-        said = f"{who} {_DECIDED[act.detail]}."
-        return said if before is None or before.played is None else f"{last_words(before, labels)} {said}"
-    if act.played is not None:
-        nominated = f" ({act.detail} nominated)" if act.detail else ""
-        said = f"{who}{nominated}: {sentence(act.played, labels)}"
-        if act.room is None or not (act.room.moved or act.room.elevation > STEEP) or not act.room.words:
-            return said
-        return f"{said} {act.room.words[:1].upper()}{act.room.words[1:]}."
-    return {
-        "concede": f"{who} conceded the frame.",
-        "claim": f"{who} claimed the frame.",
-        "set_up": "Position set up.",
-        "load": "Game loaded.",
-        "new": "New frame.",
-    }[act.what]
 
 
 def where(ball: int, x: float, y: float) -> str:
@@ -173,14 +148,81 @@ def where(ball: int, x: float, y: float) -> str:
     return f"{along}, {across}, {f'{100 * gap:.0f} cm from' if gap >= 0.003 else 'tight on'} the {near}"
 
 
-def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line], facts: list[str]) -> str:
-    """The whole description; ``places``: of the balls, ``on``: mask of those that may be struck first."""
+def visit_of(frame: Frame, at: Positions, *, free_ball: bool = False) -> Positions:
+    """The one position ``at`` of a frame as one of a visit; with ``free_ball`` every colour is on instead."""
+    on = BallOn.ANY_COLOUR if free_ball else frame.ball_on
+    game = [[int(on), int(frame.in_hand), frame.break_points, 0, 0]]
+    return Positions(at.positions, at.on_table, game, None, at.conditions)
+
+
+def nominations_of(frame: Frame) -> tuple[int, ...]:
+    """The colours that the striker may nominate before the stroke: after a red, and as a free ball."""
+    if frame.phase != "stroke":
+        return ()
+    if frame.ball_on == BallOn.ANY_COLOUR:
+        return tuple(i for i in ids_of(frame.on_table) if i > 15)
+    on = frame.ball_on + 14 if frame.ball_on > BallOn.RED else 0
+    return tuple(i for i in ids_of(frame.on_table) if i > 15 and i != on) if frame.free_ball else ()
+
+
+def report_game(
+    frame: Frame, positions: list[list[float]], on_table: list[bool], labels: tuple[str, str]
+) -> dict[str, Any]:
+    """The table and the scoreboard as JSON types; ``labels``: the names of both players."""
+    present, over = [ball for ball, on in enumerate(on_table) if on], frame.phase == "over"
+    names = ("phase", "striker", "breaker", "free_ball", "in_hand", "anywhere", "winner")
+    return {name: getattr(frame, name) for name in names} | {
+        "scores": list(frame.scores),
+        "break": frame.break_points,
+        "ball_on": None if over else frame.ball_on.name.lower(),
+        "reds": sum(0 < ball < YELLOW for ball in present),
+        "available": 0 if over else frame.available,
+        "time_left": (clock - frame.clock) / 1000 if (clock := frame.rule_set.clock) else None,
+        "positions": {NAMES[ball]: list(positions[ball]) for ball in present},
+        "words": _say_turn(frame, labels),
+    }
+
+
+def report_turn(
+    frame: Frame, at: Positions, table: Table, noise: NoiseName
+) -> tuple[dict[str, Any], list[Line]]:
+    """What the striker may do in the one position ``at``, as JSON types, and the lines to pockets.
+
+    ``noise``: the striker's."""
+    hidden, lines, on = False, [], 0
+    if frame.phase == "stroke":
+        both = [visit_of(frame, at, free_ball=free) for free in (False, True)[: 1 + frame.free_ball]]
+        on = mask_of_present(np.any([one.balls_on[0] for one in both], axis=0))
+        present = at.on_table[0].copy()
+        present[CUE] = not frame.in_hand
+        hidden = is_snookered(at.positions[0], present, on, jaws=table.jaws[:, :3])[0]
+        lines = find_lines(both, on, noise)
+    return {
+        "balls_on": [NAMES[i] for i in ids_of(on)],
+        "snookered": hidden,
+        "miss_called": frame.miss_called,
+        "choices": list(frame.choices),
+        "nominations": [NAMES[i] for i in nominations_of(frame)],
+        "needs_snookers": frame.phase != "over" and frame.needs_snookers(frame.striker),
+        "lines": [line.to_dict() for line in lines],
+    }, lines
+
+
+def say_score(state: dict[str, Any], labels: tuple[str, str]) -> str:
+    """Both scores and the break in a sentence."""
+    (one, other), (mine, others) = labels, state["scores"]
+    return f"Score: {one} {mine}, {other} {others}; break {state['break']}."
+
+
+def say_table(state: dict[str, Any], lines: list[Line], said: list[str]) -> str:
+    """The whole table in words, of ``report_game`` and ``report_turn``, after the sentences ``said``."""
     axes = "x to the right, y to the black end, metres from the middle of the table"
-    text = [*facts, "", f"Balls ({axes}; * may be struck first):"]
-    for ball, (x, y) in places.items():
+    text = [*said, *_facts(state), "", f"Balls ({axes}; * may be struck first):"]
+    for name, (x, y) in state["positions"].items():
+        ball = NAMES.index(name)
         racked = 0 < ball < YELLOW and hypot(x - SPOTS[ball, 0], y - SPOTS[ball, 1]) < 1e-6
         place = "in the rack" if racked else where(ball, x, y)
-        text.append(f"  {'*' if on >> ball & 1 else ' '} {NAMES[ball]}: ({x:+.3f}, {y:+.3f}), {place}")
+        text.append(f"  {'*' if name in state['balls_on'] else ' '} {name}: ({x:+.3f}, {y:+.3f}), {place}")
     if lines:
         text += ["", "Lines to pockets (straight lines; throw and swerve are not in them):"]
         for ball in dict.fromkeys(line.ball for line in lines):
@@ -192,7 +234,28 @@ def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line
     return "\n".join(text)
 
 
-def freedom(places: dict[int, tuple[float, float]]) -> list[str]:
+def _facts(state: dict[str, Any]) -> list[str]:
+    """The sentences before the list of balls."""
+    if state["phase"] == "over":
+        return []
+    reds, left = state["reds"], f"{state['available']} points are left on the table"
+    facts = [f"{left}, {reds} red{'' if reds == 1 else 's'} among the balls."]
+    if state["needs_snookers"]:
+        facts.append("The striker needs penalty points to win.")
+    if state["phase"] == "choice":
+        return [*facts, "Choices: " + ", ".join(state["choices"]) + "."]
+    if state["nominations"]:
+        colours = ", ".join(state["nominations"])
+        facts.append(f"May be nominated: {colours}; without a nomination it is the colour first struck.")
+    if state["in_hand"]:
+        where = "x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475"
+        facts.append(f"The cue ball may be placed anywhere in the D ({where}).")
+    if state["snookered"]:
+        facts.append("The cue ball is snookered: no ball on can be struck at both edges in a straight line.")
+    return facts + _surroundings({NAMES.index(name): at for name, at in state["positions"].items()})
+
+
+def _surroundings(places: dict[int, Any]) -> list[str]:
     """The surroundings of the cue ball: touching balls, and the nearest ball."""
     if CUE not in places:
         return []

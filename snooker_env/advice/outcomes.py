@@ -1,0 +1,151 @@
+"""How do strokes turn out under execution errors? Chances, points, and in frames the chance to win, on common errors.
+
+The visits that strokes leave, the player's or the other's, are played on by a fast search, with errors, many at once."""
+
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._lib.types import Bools, Floats, Ints
+from ..game.balls import CUE
+from ..planning import Outcomes, Positions, clear_paths
+from ..planning.worth import lead_of
+from . import words as say
+from .intentions import Intention
+from .practice import GOING_ON, JUDGING, Practice, arrive, find_arrivals, join, keys
+from .suggestions import Suggestion
+
+Z = 1.959964  # standard deviations of a 95 % interval
+OFTEN = 0.05  # share of misses from which is said what a missed pot leaves
+
+
+class Trials(NamedTuple):
+    """How strokes are judged, as in ``advise``."""
+
+    samples: int
+    visits: int
+    seed: int
+
+
+def judge_strokes(practice: Practice, strokes: list[Intention], trials: Trials) -> list[Suggestion]:
+    """Strokes with their outcomes under execution errors, in their order."""
+    n, sure = len(strokes), practice.sure
+    tries = 1 if sure else trials.samples
+    trials = trials._replace(visits=min(1, trials.visits) if sure else trials.visits)
+    rows, starts = [one.stroke.numbers() for one in strokes], join([one.start for one in strokes])
+    each, noise = np.repeat(np.arange(n), tries), np.tile(keys(trials.seed, JUDGING, tries), n)
+    stops = practice.play(starts, each, np.repeat(rows, tries, 0), noise)
+    groups = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries]) for k in range(n)]
+    rests = _play_on_groups(practice, stops.afterstates, groups, trials)
+    looks: list[dict[str, Any]] = [{} for _ in strokes]
+    if starts.of_frames:
+        looks = _look_ahead(practice, starts, each, stops, trials, n)
+    out = []
+    for k, (one, rest, look) in enumerate(zip(strokes, rests, looks, strict=True)):
+        mine = slice(k * tries, (k + 1) * tries)
+        no_foul = stops.penalty[mine] == 0
+        made = no_foul & (stops.potted[mine, one.ball] == one.pocket) if one.kind == "pot" else no_foul
+        chance, stayed = float(made.mean()), stops.potted[mine, CUE] < 0
+        points, interval = expect_points(stops.points[mine], stops.goes_on[mine], rest)
+        middle, spread = _cloud(stops.places[mine, CUE][stayed])
+        figures = say.figures_words(one.kind, chance, points, bool(look))
+        out.append(
+            Suggestion(
+                **vars(one.stroke),
+                **{name: getattr(one, name) for name in ("room", "kind", "ball", "pocket", "first")},
+                **look,
+                chance=chance,
+                chance_interval=(chance, chance) if sure else wilson(int(made.sum()), tries),
+                points=points,
+                points_interval=interval,
+                foul=float((~no_foul).mean()),
+                in_off=float((~stayed).mean()),
+                stops=middle,
+                spread=spread,
+                words=f"{one.words}, {figures}{_say_why(one.kind, chance, look) if look else ''}",
+            )
+        )
+    return out
+
+
+def _look_ahead(
+    practice: Practice, starts: Positions, each: Ints, stops: Outcomes, trials: Trials, n: int
+) -> list[dict[str, Any]]:
+    """What n strokes of a frame lead to, ``each`` (n * tries,) says which: fields of ``Suggestion``."""
+    after = stops.afterstates
+    wins = practice.judge.valued(lead_of(starts)[each], after)[:, 0].reshape(n, -1)
+    comes = np.flatnonzero(find_arrivals(after))
+    theirs = arrive(after[comes])
+    hidden = ~clear_paths(theirs).any_part
+    groups = [np.flatnonzero(each[comes] == k) for k in range(n)]
+    out = []
+    for mine, group, rest in zip(
+        wins, groups, _play_on_groups(practice, theirs, groups, trials), strict=True
+    ):
+        half = Z * sqrt(float(mine.var(ddof=1)) / len(mine)) if len(mine) > 1 else 0.0
+        win = float(mine.mean())
+        look = {"win": win, "win_interval": (max(0.0, win - half), min(1.0, win + half))}
+        look["replies"], look["leaves"] = (
+            (float((rest > 0.0).mean()), float(rest.mean())) if len(rest) else (None, None)
+        )
+        look["snookers"] = float(hidden[group].mean()) if len(group) else None
+        out.append(look)
+    return out
+
+
+def _play_on_groups(practice: Practice, left: Positions, groups: list[Ints], trials: Trials) -> list[Floats]:
+    """For each group of rows of ``left``: the points of the visits from its first ``trials.visits`` rows."""
+    rows = [group[: trials.visits] for group in groups]
+    numbers = np.concatenate([np.arange(len(some)) for some in rows]).astype(np.int64)
+    rest = play_on(practice, left[np.concatenate(rows).astype(np.int64)].as_visits(), numbers, trials.seed)
+    return np.split(rest, np.cumsum([len(some) for some in rows])[:-1])
+
+
+def play_on(practice: Practice, left: Positions, visits: Ints, seed: int) -> Floats:
+    """Points (n,) of the rest of n visits from ``left``; equal numbers ``visits`` (n,) meet equal errors."""
+    total, going, number = np.zeros(len(left)), np.arange(len(left)), 0
+    most = int(visits.max()) + 1 if len(visits) else 0
+    while len(going):
+        ranked = practice.quick.rank(left, visits[going])
+        strokes = np.array([one.strokes.values[0] for one in ranked])
+        samples = keys(seed, GOING_ON, most, number)[visits[going]]
+        stops = practice.play(left, np.arange(len(left)), strokes, samples)
+        total[going] += stops.points
+        left, going, number = stops.afterstates[stops.goes_on], going[stops.goes_on], number + 1
+    return total
+
+
+def wilson(made: int, tries: int) -> tuple[float, float]:
+    """The 95 % interval of a probability with ``made`` successes in ``tries`` samples (Wilson 1927)."""
+    share, z2 = made / tries, Z * Z / tries
+    middle = (share + 0.5 * z2) / (1.0 + z2)
+    half = Z * sqrt(share * (1.0 - share) / tries + 0.25 * z2 / tries) / (1.0 + z2)
+    return max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half))
+
+
+def expect_points(points: Floats, goes_on: Bools, rest: Floats) -> tuple[float, tuple[float, float]]:
+    """Mean points of a visit and its 95 % interval: first strokes (samples,), and the ``rest`` (visits,)."""
+    n, follows = len(points), float(rest.mean()) if len(rest) else 0.0
+    share, each = float(goes_on.mean()), points + goes_on * follows
+    mean = float(each.mean())
+    # delta method: the samples' part, then that of the rest
+    variance = float(each.var(ddof=1)) / n if n > 1 else 0.0
+    variance += share * share * float(rest.var(ddof=1)) / len(rest) if len(rest) > 1 else 0.0
+    half = Z * sqrt(variance)
+    return mean, (max(0.0, mean - half), mean + half)
+
+
+def _cloud(places: Floats) -> tuple[tuple[float, float] | None, float | None]:
+    """The mean of points (m, 2) and their root mean square distance from it; None, None without points."""
+    if not len(places):
+        return None, None
+    x, y = places.mean(axis=0).tolist()
+    return (x, y), float(np.sqrt(((places - (x, y)) ** 2).sum(axis=1).mean()))
+
+
+def _say_why(kind: str, chance: float, look: dict[str, Any]) -> str:
+    """The words of what a stroke of a frame leads to."""
+    seldom = kind == "pot" and 1.0 - chance < OFTEN
+    reply = "" if seldom else say.reply_words(kind, look["replies"], look["leaves"], look["snookers"])
+    return f"{reply and f', {reply}'}; win chance {say.percent(look['win'])}"

@@ -1,0 +1,244 @@
+"""How does an external program play? JSON lines: a state on its standard input, a stroke on its output.
+
+It is started at the first question. For each stroke it gets one line, what ``GET api/state`` says of the table with a
+"seed", and answers with one, as ``POST api/stroke`` takes it, without "nominate". In phase "choice" of a frame it answers
+with a "choice"; after "play" or "anywhere" alone it gets the state once more, for its stroke. Its standard error is that of
+this process.
+"""
+
+import contextlib
+import json
+import os
+import queue
+import shlex
+import subprocess
+import threading
+import time
+from typing import Any
+
+import numpy as np
+
+from .._lib.check import choice, number, refuse
+from ..game.balls import CUE
+from ..game.frame import CHOICES, Frame, frame_of
+from ..game.frame_columns import PLAY, Layouts
+from ..game.in_hand import place_cue
+from ..planning import Positions
+from ..planning.positions import seeds_of
+from ..planning.worth import chosen
+from ..tasks.box_actions import MIN_SPEED
+from ..tasks.noise import LEVELS
+from ..tasks.options import Options
+from .player import BoundPlayer, Strokes
+from .requests import STROKE, read_object, read_place, read_stroke
+from .seen import begun
+from .table_report import report_game, report_turn, say_score, say_table, visit_of
+
+LONGEST = 1 << 20  # the longest answer [bytes]
+LABELS = ("Player 1", "Player 2")  # the program is always the first
+
+
+class AgentError(RuntimeError):
+    """An agent that stopped playing: it died, was too slow, or answered something that is no stroke."""
+
+
+class AnswerError(AgentError):
+    """An answer in time that is no stroke here: the program goes on, and may be asked again."""
+
+
+class ProgramPlayer(BoundPlayer):
+    """An external program as a player. All that ``at`` makes of it share one process.
+
+    Parameters
+    ----------
+    command : str
+        The command line, split as by a shell; no shell runs it. ValueError if it is empty.
+    timeout : float
+        The longest time of an answer [s], in (0, 1e6].
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import ProgramPlayer
+    >>> ProgramPlayer("")
+    Traceback (most recent call last):
+    ...
+    ValueError: player = 'program:': must name a program: program:"python my_player.py"
+    """
+
+    def __init__(self, command: str, *, timeout: float = 60.0):
+        try:
+            words = shlex.split(command, posix=os.name == "posix")
+        except ValueError as error:
+            raise refuse("player", f"program:{command}", f"must be a command line ({error})") from None
+        if not words:
+            raise refuse("player", f"program:{command}", 'must name a program: program:"python my_player.py"')
+        self.name = f"program:{command}"
+        self._lines = _Lines(command, words, number("timeout", timeout, 0.0, 1e6, open_low=True))
+
+    def _bind(self, options: Options) -> None:
+        self._noise: Any = choice("noise", options.noise, tuple(LEVELS))
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """Return what the program answers in each of n positions; it is told the ``seeds``, int (n,).
+
+        AgentError if the program ends, is too slow, or its answer is no stroke."""
+        _ = self.options  # it must be bound
+        at = Positions.of(positions)
+        keys = seeds_of(seeds, len(at)).tolist()
+        if not at.of_frames:
+            at = begun(at)
+        return Strokes.join([self._stroke(at[[k]], key) for k, key in enumerate(keys)] or [_one_stroke()[:0]])
+
+    def close(self) -> None:
+        """End the program; the next question starts it again."""
+        self._lines.close()
+
+    def _stroke(self, at: Positions, seed: int) -> Strokes:
+        """What the program does in the one position ``at``, of a frame."""
+        answer, decided = self._ask(at, seed), "play"
+        if answer in ({"choice": "play"}, {"choice": "anywhere"}):
+            choices = self._frame(at).choices
+            if answer["choice"] in choices:
+                decided = answer["choice"]
+                at = chosen(at, CHOICES.index(decided))
+                answer = self._ask(at, seed)  # its stroke
+        try:
+            return self._read(answer, at, decided)
+        except ValueError as error:
+            what = f"answered {_short(json.dumps(answer))}, which is refused: {error}"
+            raise AnswerError(f"the program {self._lines.command!r} {what}") from None
+
+    def _read(self, answer: dict[str, Any], at: Positions, decided: str) -> Strokes:
+        """The stroke that an answer asks for, after what was ``decided``; ValueError names what is wrong."""
+        for name in answer:
+            choice("field", name, (*STROKE, "revision", "choice"))
+        frame, what = self._frame(at), answer.get("choice", decided)
+        if frame.phase == "choice":
+            choice("choice", what, frame.choices)
+            if what in ("play_again", "replace"):
+                return _one_stroke(decision=CHOICES.index(what))
+            at = chosen(at, CHOICES.index(what))
+        elif "choice" in answer:
+            raise refuse("choice", what, "must be left out: the other player has not just fouled")
+        if "place" in answer:
+            x, y = read_place("place", answer["place"])
+            if not at.in_hand[0]:
+                raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
+            at = at.copy()
+            where = place_cue(at.positions[0], at.on_table[0], x, y, anywhere=bool(at.anywhere[0]))
+            at.positions[0, CUE] = where
+        stroke = read_stroke(answer, visit_of(self._frame(at), at), self.options)
+        return _one_stroke(
+            stroke.numbers(), at.positions[0, CUE] if at.in_hand[0] else None, CHOICES.index(what)
+        )
+
+    def _frame(self, at: Positions) -> Frame:
+        """The frame of the one position ``at``."""
+        rules, saved = self.options.rules, at.saved or Layouts(at.positions, at.on_table)
+        return frame_of(at.game[0], rules.miss, saved, 0, rules.game)
+
+    def _ask(self, at: Positions, seed: int) -> dict[str, Any]:
+        """The program's answer to the one position ``at``: an object."""
+        frame = self._frame(at)
+        state = report_game(frame, at.positions[0].tolist(), at.on_table[0].tolist(), LABELS)
+        turn, lines = report_turn(frame, at, self.options.rules.table, self._noise)
+        state |= turn | {
+            "noise": [self._noise] * 2,
+            "cue": self.options.cue,
+            "game": frame.rules,
+            "seed": seed,
+        }
+        state["text"] = say_table(state, lines, [state["words"], say_score(state, LABELS)])
+        answer = self._answer(state)
+        try:
+            return read_object(answer.strip())
+        except ValueError as error:
+            what = f"answered {_short(answer)}, which is no stroke: {error}"
+            raise AnswerError(f"the program {self._lines.command!r} {what}") from None
+
+    def _answer(self, state: dict[str, Any]) -> bytes:
+        """The line that the program answers a state with."""
+        return self._lines.ask(json.dumps(state, separators=(",", ":")).encode() + b"\n")
+
+
+class _Lines:
+    """A process that answers each line with one line; it is started by the first."""
+
+    def __init__(self, command: str, words: list[str], timeout: float):
+        self.command, self.timeout = command, timeout
+        self._words = words
+        self._process: Any = None
+
+    def _start(self):
+        try:
+            self._process = subprocess.Popen(self._words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        except OSError as error:
+            raise AgentError(f"the program {self.command!r} cannot be started: {error}") from None
+        self._answers: queue.Queue[bytes] = queue.Queue(2)  # a program that prints on and on has to wait
+        self._reader = threading.Thread(target=self._read, args=(self._process.stdout,), daemon=True)
+        self._reader.start()
+
+    def ask(self, line: bytes) -> bytes:
+        """The answer to a line, which a pipe holds whether it is read or not."""
+        if self._process is None:
+            self._start()
+        process: Any = self._process
+        if self._answers.empty():
+            with contextlib.suppress(OSError):  # nobody reads; the reader reports that it ended
+                process.stdin.write(line)
+                process.stdin.flush()
+        elif answer := self._answers.queue[0]:
+            raise self._failure(f"answered {_short(answer)} without a state: one line for each")
+        try:
+            answer = self._answers.get(timeout=self.timeout)
+        except queue.Empty:
+            raise self._failure(f"gave no stroke within {self.timeout:g} s") from None
+        if len(answer) > LONGEST:
+            raise self._failure(f"answered a line of more than {LONGEST:,} bytes")
+        if not answer:
+            try:
+                code = process.wait(2.0)
+            except subprocess.TimeoutExpired:
+                raise self._failure("closed its output") from None
+            raise self._failure(f"ended with exit code {code} instead of a stroke")
+        return answer
+
+    def _failure(self, what):
+        return AgentError(f"the program {self.command!r} {what}")
+
+    def close(self) -> None:
+        """End the process."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        with contextlib.suppress(OSError):  # it has gone already
+            process.stdin.close()
+        try:
+            process.wait(2.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        until = time.monotonic() + 2.0
+        while self._reader.is_alive() and time.monotonic() < until:
+            with contextlib.suppress(queue.Empty):  # what it still had to say
+                self._answers.get(timeout=0.02)
+        if not self._reader.is_alive():  # a child of the program may hold its output open
+            process.stdout.close()
+
+    def _read(self, output):
+        line = b" "
+        while line and len(line) <= LONGEST:
+            line = output.readline(LONGEST + 1)
+            self._answers.put(line)
+
+
+def _one_stroke(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:
+    """One stroke."""
+    places: Any = None if place is None else np.array([place])
+    return Strokes(np.array([values]), places, decision=np.array([decision]))
+
+
+def _short(text: Any) -> str:
+    """A text in at most 80 characters, quoted."""
+    text = (text.decode(errors="replace") if isinstance(text, bytes) else text).strip()
+    return repr(text if len(text) <= 80 else text[:77] + "...")
