@@ -1,7 +1,7 @@
 """The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, how agents are judged."""
 
-from ..simulation.count import simulated
 from ..players.program import AgentError, ProgramPlayer
+from ..simulation.count import simulated
 from .agents import Agent
 from .checking import faults
 from .leaderboard import page
