@@ -13,7 +13,7 @@ from tests.pictures import saved_figures, unreadable
 from tests.processes import ROOT
 
 mpl.use("Agg")
-REDRAWN = ("paper", "pockets", "rack", "scene", "speed", "stability", "tradeoff")
+REDRAWN = ("paper", "pockets", "scene", "speed", "stability", "tradeoff")
 """Benchmarks whose figures are kept in benchmarks/figures."""
 COMPUTED = ("paper", "scene", "stability")
 """Those that compute more than they read."""
