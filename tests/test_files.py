@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from agents import curves, report
+from agents import report
 from agents.evaluation import tournament_file
 from agents.learning.policy_files import read_policy
 from agents.learning.run_folder import SETTINGS, keep_settings, kept_settings
@@ -79,7 +79,6 @@ READERS = {
     "a track of texts": lambda file: text._rows_in(file, {"track": "text", "visits": 2}),
     "a report": report.read,
     "a tournament": lambda file: tournament_file.kept(file, {}, {}, []),
-    "curves": in_folder("results.json", curves.run_of),
     "settings of a run": in_folder(SETTINGS, lambda folder: kept_settings(folder, Settings)),
     "a model": zipped,
 }
