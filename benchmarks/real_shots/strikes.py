@@ -39,9 +39,9 @@ def costs(judge, strikes, horizon=np.inf, cap=1.0, others=OTHERS, **how):
     return found
 
 
-def bounds(shot, physics, level=False):
+def bounds(shot, physics):
     """Lowest and highest strikes (6,) that are searched, from the first samples; side and top lie in a disc
-    besides. ``level``: the cue is not raised."""
+    besides."""
     cue = shot.balls[0]
     first = shot.contacts[0][0] if shot.contacts else cue.t[-1]
     moving = cue.t >= shot.moved
@@ -62,7 +62,7 @@ def bounds(shot, physics, level=False):
     turn += 0.004 / max(np.hypot(*gone), 0.03)
     most = physics.max_offset
     low = np.array([slowest, aim - turn, -most, -most, 0.0, max(shot.still, shot.moved - 0.06)])
-    return low, np.array([fastest, aim + turn, most, most, 0.0 if level else MOST_ELEVATION, shot.moved])
+    return low, np.array([fastest, aim + turn, most, most, MOST_ELEVATION, shot.moved])
 
 
 def clipped(strikes, low, high):
@@ -178,14 +178,14 @@ def settled(judge, strike, steps=4):
     return best, cost
 
 
-def fit(judge: Judge, seed=0, runs=3, enough=0.03, bad=0.1, level=False):
+def fit(judge: Judge, seed=0, runs=3, enough=0.03, bad=0.1):
     """The strike of a shot, from nothing but its samples: (6,), and its cost [m^2].
 
     Searched anew up to ``runs`` times, until the cost is below ``enough`` squared or the best was found twice; three times
     as often while it is above ``bad`` squared.
     """
     rng = np.random.default_rng([seed, judge.shot.id])
-    low, high = bounds(judge.shot, judge.physics, level)
+    low, high = bounds(judge.shot, judge.physics)
     found = []
     for k in range(3 * runs):
         pool, cost = evolve(judge, rng, low, high)
@@ -208,14 +208,3 @@ def refit(judge, strike, seed=0, sigma=0.3, generations=25, population=12):
     rng = np.random.default_rng([seed, judge.shot.id])
     low, high = bounds(judge.shot, judge.physics)
     return refine(judge, rng, strike, low, high, sigma, generations, population)
-
-
-def refine_from(judge, strike, seed=0, level=False):
-    """The same from a strike that may lie farther off: searched around it with small and large steps."""
-    rng = np.random.default_rng([seed, judge.shot.id])
-    low, high = bounds(judge.shot, judge.physics, level)
-    start = clipped(strike[None], low, high)[0]
-    found = [refine(judge, rng, start, low, high, sigma, 30) for sigma in (0.5, 2.0, 6.0)]
-    best, _ = min(found, key=lambda f: f[1])
-    best, _ = settled(judge, best)
-    return refine(judge, rng, best, low, high, 1.0, 30)

@@ -7,7 +7,7 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.real_shots import __main__ as command
-from benchmarks.real_shots import against_pooltool, cma, constants, strikes, tracks, verdict
+from benchmarks.real_shots import cma, constants, strikes, tracks, verdict
 from benchmarks.real_shots.paths import AIM, SPEED, Judge
 
 PHYSICS = sn.Physics.preset("carom", tables=False)
@@ -132,12 +132,6 @@ def test_cma_finds_the_foot_of_a_narrow_valley():
         x = search.ask()
         search.tell(x, 100 * (x[:, 1] - x[:, 0]) ** 2 + (x[:, 0] - 1) ** 2)
     assert search.mean == pytest.approx([1.0, 1.0], abs=1e-3)
-
-
-def test_pooltool_gets_our_constants():
-    given = against_pooltool._constants(PHYSICS)
-    assert given["u_s"] == PHYSICS.mu_s
-    assert PHYSICS.mu_r < given["u_r"] < 1.2 * PHYSICS.mu_r
 
 
 def spoiled(data, change):

@@ -7,13 +7,12 @@ import matplotlib as mpl
 import pytest
 
 from agents import evaluate
-from benchmarks import layouts_picture, pictures
 from commands import picture_style
 from tests.pictures import saved_figures, unreadable
 from tests.processes import ROOT
 
 mpl.use("Agg")
-REDRAWN = ("paper", "pockets", "scene", "speed", "stability", "tradeoff")
+REDRAWN = ("paper", "scene", "speed", "stability", "tradeoff")
 """Benchmarks whose figures are kept in benchmarks/figures."""
 COMPUTED = ("paper", "scene", "stability")
 """Those that compute more than they read."""
@@ -55,15 +54,6 @@ def test_destinations_can_be_read(tmp_path):
                 str(tmp_path / "d.png"),
             ]
         )
-    read(figures)
-
-
-@pytest.mark.parametrize("module", [layouts_picture, pictures])
-def test_a_picture_of_tables_can_be_read(module, tmp_path, monkeypatch):
-    monkeypatch.setattr("sys.argv", ["x", "--out", str(tmp_path)])
-    monkeypatch.setattr(pictures, "SIZE", (700, 400))
-    with saved_figures() as figures:
-        module.main()
     read(figures)
 
 
