@@ -97,9 +97,7 @@ def agents_tables(report):
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
-            by_noise = re.fullmatch(
-                r"(planner(_value|_policy)?|tactician)(_\d+)?|stroke_value", runs[0]["from"]
-            )
+            by_noise = re.fullmatch(r"(planner|tactician)(_\d+)?|stroke_value", runs[0]["from"])
             how = "pre-trained, by the noise played" if by_noise else "not trained"
             trained.append([label, how, *[""] * (len(AXES) + 1)])
             continue

@@ -137,7 +137,7 @@ def test_a_library_that_is_missing_is_named_and_how_to_install_it(tmp_path):
     (tmp_path / "scipy.py").write_text("raise ModuleNotFoundError('No module named scipy', name='scipy')")
     code, out, err = ended(started("paper", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
     said = 'scipy is missing; in a clone of the repository:  pip install -e ".[test]"'
-    assert (code, out, err) == (1, "", f"benchmarks.paper: {said}\n")
+    assert (code, out, err) == (1, "", f"{said}\n")
 
 
 def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
