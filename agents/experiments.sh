@@ -46,5 +46,5 @@ evaluate() { # name of the output, then the options of agents.evaluate
     module agents.evaluate "$@" ${RAY:+--ray "$RAY"} --json "agents/results/$name.json" --markdown "agents/results/$name.md"
 }
 # the published models, by their names
-evaluate visits --layouts held_out=500 --noise professional --against search best_pot --picture agents/pictures/destinations.png --agent \
+evaluate visits --layouts held_out=500 --noise professional --against search best_pot --agent \
     planner best_pot ghost_ball search stroke_value ppo_value random

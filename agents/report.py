@@ -6,9 +6,7 @@ writes ``agents/results/*.md`` again from what agents.evaluate keeps as JSON, wi
 --show prints the tables instead.
 """
 
-import os
 import re
-import shlex
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -23,7 +21,7 @@ with needs("agents.report"):
     from snooker_env.checks import refuse
 
     from .evaluation import tournament_report
-    from .evaluation.metrics import AXES, PICTURE, USUAL, bounded, main_condition
+    from .evaluation.metrics import AXES, USUAL, bounded, main_condition
 
 SEEDS = 5
 """Fewer training seeds than that are pointed out."""
@@ -275,25 +273,14 @@ def parts(report):
     yield LEGEND
 
 
-def markdown(report, picture=None):
+def markdown(report):
     """The same as a Markdown page."""
     if tournament_report.is_tournament(report):
         return tournament_report.markdown(report)
     version = report.get("version", "of an unknown version")
     where = f"commit {report['commit']} on {report['machine']}, Python {report['python']}"
     made = f"snooker_env {version}, at {where}"
-    drawn = [f"![where the cue ball stops after a red, and what follows]({picture})"] if picture else []
-    return page(title(report), report["command"], made, [*drawn, *parts(report)])
-
-
-def picture_of(report, folder):
-    """The picture that the report's command drew, as seen from ``folder``; None if it drew none."""
-    words = shlex.split(report["command"])
-    if "--picture" not in words:
-        return None
-    named = words[words.index("--picture") + 1 :][:1]
-    file = Path(named[0]) if named and not named[0].startswith("--") else PICTURE
-    return Path(os.path.relpath(file, folder)).as_posix()
+    return page(title(report), report["command"], made, parts(report))
 
 
 def read(file):
@@ -325,7 +312,7 @@ def main(argv=None):
             show(parts(report))
             continue
         target = file.with_suffix(".md")
-        write_atomic(target, markdown(report, picture_of(report, target.parent)))
+        write_atomic(target, markdown(report))
         print(target)
     return 0
 

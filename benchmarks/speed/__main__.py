@@ -1,7 +1,7 @@
-"""How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; how it
-grows; the start.
+"""How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; the
+start.
 
-    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots start growth]
+    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots start]
     [--seed 0]
         [--json FILE] [--out FOLDER]
     python -m benchmarks.speed --against COMMIT
@@ -14,12 +14,10 @@ there is no x86 counter, each shot is called from Python ``--repeats`` times, it
 call's own cost taken off. An event is one entry of the shot's log. Errors are against ``reference``, in units
 of the incoming speed.
 
-``start``: see ``first_shot.py``; ``growth``, with its picture: ``growth.py``; ``--against COMMIT``:
-``against_commit.py``. With ``--against`` and no ``--parts``, only this is done.
+``start``: see ``first_shot.py``; ``--against COMMIT``: ``against_commit.py``. With ``--against`` and no ``--parts``, only this is done.
 """
 
 import time
-from functools import partial
 
 import numpy as np
 
@@ -35,7 +33,7 @@ from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
 
 from .._common.command import Command, at_least, run, save_json
-from . import against_commit, clock, first_shot, growth
+from . import against_commit, clock, first_shot
 from .clock import time_shots
 
 R = 0.02625
@@ -49,8 +47,7 @@ GOALS = {
     "break-off": (450.0, 250.0),
 }
 """Microseconds at ``standard``: what must be reached and what is aimed at."""
-PARTS = ("impacts", "shots", "start", "growth")
-FILE = "speed.png"
+PARTS = ("impacts", "shots", "start")
 
 
 @entry(what="the benchmark of an impact", uses=(contact.collide_balls,))
@@ -202,9 +199,7 @@ def measure_shots(n, repeats, seed=0):
             )
             row["ns_event"] = 1e3 * row["mean"] / row["events"]
             for threads in (1, 2):
-                row[f"threads_{threads}"] = growth.per_shot(
-                    growth.kernel_call, shots_, threads, fidelity, repeats=repeats
-                )
+                row[f"threads_{threads}"] = clock.time_batch(*shots_, fidelity, threads, repeats)
             found[f"{kind} {fidelity}"] = row
             print(
                 f"  {kind:16s} {fidelity:10s} {row['median']:7.1f} ({row['median_low']:7.1f}, {row['median_high']:7.1f})"
@@ -246,17 +241,12 @@ def measure_against_commit(commit, n, repeats, seed=0):
 
 def main():
     """Command line."""
-    parser = Command("speed", __doc__, pictures=(FILE,), seed=0, redraws=True)
+    parser = Command("speed", __doc__, seed=0)
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots (and impacts) in a set")
     parser.add_argument("--repeats", type=at_least(1), default=7, help="passes over a set")
     parser.add_argument("--parts", nargs="+", choices=PARTS, help="only these")
     parser.add_argument("--against", metavar="COMMIT", help="play the same shots with a commit, in turn")
-    parser.add_argument("--largest-batch", type=at_least(1), default=65_536)
     options = parser.options()
-    if options.figures is not None:
-        growth.draw(options.figures, options.folder / FILE)
-        print(options.folder / FILE)
-        return
     parts = options.parts or (() if options.against else PARTS)
     figures: dict[str, object] = {"machine": provenance.machine()}
     print(provenance.line() + ("" if clock.HAS_COUNTER else "; no cycle counter: best of the calls"))
@@ -266,23 +256,6 @@ def main():
         figures["shots"] = measure_shots(options.shots, options.repeats, options.seed)
     if "start" in parts:
         figures["start"] = measure_start()
-    if "growth" in parts:
-
-        def middle(p, v, w):
-            return np.median(time_shots(p, v, w, "standard", options.repeats), axis=0)
-
-        found = growth.growth(
-            partial(shots, seed=options.seed),
-            middle,
-            min(options.shots, 300),
-            options.largest_batch,
-            options.repeats,
-        )
-        figures["growth"] = found
-        growth.print_growth(found)
-        if options.pictures:
-            growth.draw(figures, options.folder / FILE)
-            print(f"  picture: {options.folder / FILE}")
     if options.against:
         found = measure_against_commit(options.against, options.shots, options.repeats, options.seed)
         figures[f"against {options.against}"] = found

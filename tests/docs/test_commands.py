@@ -15,7 +15,7 @@ SHORT = {
     "benchmarks.scene": "--shots 12 --repeats 1 --models 'spin decay' 'jaw arcs' --out {tmp}",
     "benchmarks.pockets": "--out {tmp}",
     "benchmarks.stability": "--fuzz 2000 --out {tmp}",
-    "benchmarks.speed": "--shots 20 --repeats 1 --parts impacts shots growth --largest-batch 64 --out {tmp}",
+    "benchmarks.speed": "--shots 20 --repeats 1 --parts impacts shots --out {tmp}",
     "benchmarks.fit_cushion": "--steps 200",
     "benchmarks.make_opened": "--tables 2 --out {tmp}",
     "benchmarks.make_safety": "--tables 2 --player tactician_30 --out {tmp}",
