@@ -26,11 +26,10 @@ from commands.tables import text_table
 from snooker_env.physics.parameters import PRESETS, Physics
 
 from .._common.command import Command, at_least, run, save_json
-from . import constants, picture, tracks, verdict
+from . import constants, tracks, verdict
 from .paths import Judge
 from .strikes import fit
 
-FILE = "real_shots.png"
 USED, HELD_OUT = "used for the constants", "held out"
 
 
@@ -41,7 +40,7 @@ def part(number):
 
 def main(argv=None):
     """Command line."""
-    parser = Command("real_shots", __doc__, pictures=(FILE,), seed=0)
+    parser = Command("real_shots", __doc__, seed=0)
     parser.add_argument("file", type=Path, metavar="FILE", help="the tracked shots, JSON")
     parser.add_argument(
         "--physics", default="carom", choices=sorted(PRESETS), help="the constants of all shots [carom]"
@@ -56,11 +55,7 @@ def main(argv=None):
     except ValueError as error:
         parser.error(str(error))
     shots = shots[: options.shots]
-    figures, judges, strikes = measure(options, shots)
-    save_json(options.json, figures)
-    if options.pictures:
-        picture.draw(figures, judges, strikes, options.folder / FILE)
-        print(f"\n{options.folder / FILE}")
+    save_json(options.json, measure(options, shots))
 
 
 def constants_of(options):
@@ -70,7 +65,7 @@ def constants_of(options):
 
 
 def measure(options, shots):
-    """Measure and print everything; the figures, and each shot's judge and strike."""
+    """Measure and print everything; the figures."""
     print(provenance.line())
     physics = constants_of(options)
     if options.fit:
@@ -83,12 +78,10 @@ def measure(options, shots):
     print(
         f"{len(shots)} shots of {options.file.name}, physics {'fitted anew' if options.fit else repr(options.physics)}"
     )
-    judges, strikes, found = [], [], []
+    found = []
     for shot in shots:
         judge = Judge(shot, physics)
         strike = fit(judge, options.seed)[0]
-        judges.append(judge)
-        strikes.append(strike)
         found.append({"part": part(shot.id)} | verdict.judge_shot(judge, strike))
     figures = {
         "machine": provenance.machine(),
@@ -98,7 +91,7 @@ def measure(options, shots):
         "medians": {name: verdict.medians(rows) for name, rows in parts(found).items()},
     }
     say(figures)
-    return figures, judges, strikes
+    return figures
 
 
 def parts(found):

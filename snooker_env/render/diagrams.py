@@ -4,10 +4,7 @@ They draw with matplotlib on the axes that they are given, or on a new figure, a
 and black right, y [m] to the right and x [m] down."""
 
 from .chance_diagram import win_chance
-from .density_diagram import bandwidth_of as bandwidth_of
 from .density_diagram import density
-from .density_diagram import density_of as density_of
-from .density_diagram import level_of as level_of
 from .shot_diagram import compare, plot
 
 __all__ = ["compare", "density", "plot", "win_chance"]

@@ -50,7 +50,7 @@ def file(tmp_path, data):
 
 
 def test_the_command_finds_the_strikes(file, tmp_path, capsys):
-    command.main([str(file), "--no-pictures", "--json", str(tmp_path / "figures.json")])
+    command.main([str(file), "--json", str(tmp_path / "figures.json")])
     figures = json.loads((tmp_path / "figures.json").read_text())
     for shot, (speed, aim, side, top, _) in zip(figures["shots"], STRIKES, strict=True):
         assert shot["cue_rms"] < 0.004
@@ -160,12 +160,12 @@ def test_a_bad_file_is_refused_in_one_line(tmp_path, data, capsys, change, says)
     path = tmp_path / "bad.json"
     path.write_text(json.dumps(spoiled(data, change)))
     with pytest.raises(SystemExit) as stopped:
-        command.main([str(path), "--no-pictures"])
+        command.main([str(path)])
     assert stopped.value.code == 2
     assert says in capsys.readouterr().err
 
 
 def test_a_missing_file_is_said(tmp_path, capsys):
     with pytest.raises(SystemExit):
-        command.main([str(tmp_path / "none.json"), "--no-pictures"])
+        command.main([str(tmp_path / "none.json")])
     assert "none.json" in capsys.readouterr().err

@@ -11,9 +11,9 @@ from tests.pictures import saved_figures, unreadable
 from tests.processes import ROOT
 
 mpl.use("Agg")
-REDRAWN = ("paper", "scene", "stability", "tradeoff")
+REDRAWN = ("paper", "scene", "tradeoff")
 """Benchmarks whose figures are kept in benchmarks/figures."""
-COMPUTED = ("paper", "scene", "stability")
+COMPUTED = ("paper", "scene")
 """Those that compute more than they read."""
 
 
