@@ -51,7 +51,7 @@ with needs("agents.evaluate"):
     from .cluster import KEPT, ClusterError, Here, add_ray, checked_ray, ended, in_order, kept_at, place
     from .evaluation.entrants import Entrant, entrants_of
     from .evaluation.metrics import AXES, EntrantMetrics
-    from .evaluation.travel import sent
+    from .evaluation.travel import pack
     from .evaluation.visits import joined, parts_of, play
     from .report import markdown, parts, verdict
 
@@ -63,7 +63,7 @@ REFERENCE = "ghost_ball"
 
 def parts_of_agent(agent, condition, seeds, rekey):
     """The parts of an agent under a condition, a list for each of its runs."""
-    return [parts_of(sent(agent, k), k, condition, seeds, rekey) for k in range(len(agent.runs))]
+    return [parts_of(pack(agent, k), k, condition, seeds, rekey) for k in range(len(agent.runs))]
 
 
 def play_agent(agent, condition, seeds, resamples, rekey=False, results=None):

@@ -21,7 +21,7 @@ with needs("agents.report"):
     from snooker_env.checks import refuse
 
     from .evaluation import tournament_report
-    from .evaluation.metrics import AXES, USUAL, bounded, main_condition
+    from .evaluation.metrics import AXES, USUAL, add_bound, main_condition
 
 SEEDS = 5
 """Fewer training seeds than that are pointed out."""
@@ -46,7 +46,7 @@ SHARES = {name: below for name, (_, below) in FIGURES.items() if name not in _ME
 
 def _share(row, name, form="{:.1f}", scale=100.0):
     """A share with its interval; where it was never so, or always, with the exact bound of that."""
-    return shown(bounded(row["figures"][name], _trials(row, SHARES[name])), scale, form)
+    return shown(add_bound(row["figures"][name], _trials(row, SHARES[name])), scale, form)
 
 
 def _between(values, form="{:,.0f}"):
@@ -58,18 +58,18 @@ def _between(values, form="{:,.0f}"):
     return low if low == high else f"{low} to {high}"
 
 
-def _picked(report, **condition):
+def _pick(report, **condition):
     return [r for r in report["results"] if all(r[key] == value for key, value in condition.items())]
 
 
 def verdict(report):
     """The points of each agent in the main condition, as one sentence; none if that was not played."""
     at = main_condition(report)
-    made = [f"{row['agent']} {_pm(row['figures']['points_a_visit'])}" for row in _picked(report, **at)]
+    made = [f"{row['agent']} {_pm(row['figures']['points_a_visit'])}" for row in _pick(report, **at)]
     return [f"Points a visit on {at['layout']}, noise {at['noise']}: {', '.join(made)}."] if made else []
 
 
-def _listed(words):
+def _list(words):
     """Words as a sentence lists them."""
     *others, last = map(str, words)
     return f"{', '.join(others)} and {last}" if others else last
@@ -79,14 +79,14 @@ def title(report):
     """What is compared: an axis of training and of play, or agents and where they play; or who met."""
     if tournament_report.is_tournament(report):
         return tournament_report.title(report)
-    p, layouts = report["protocol"], _listed(report["protocol"]["layouts"])
+    p, layouts = report["protocol"], _list(report["protocol"]["layouts"])
     for axis in AXES:
         runs = [run for agent in report["agents"] for run in agent["runs"] if axis in run]
         if len({str(run[axis]) for run in runs}) > 1 and len(p[axis]) > 1:
             who = "planners" if all(run["from"].startswith("planner") for run in runs) else "agents"
-            return f"How {who} trained under one {axis} play under another, on {layouts}: {_listed(p[axis])}"
+            return f"How {who} trained under one {axis} play under another, on {layouts}: {_list(p[axis])}"
     under = "" if len(p["noise"]) > 1 or p["noise"] == [USUAL["noise"]] else f", noise {p['noise'][0]}"
-    return f"How {_listed(agent['label'] for agent in report['agents'])} play on {layouts}{under}"
+    return f"How {_list(agent['label'] for agent in report['agents'])} play on {layouts}{under}"
 
 
 def agents_tables(report):
@@ -157,7 +157,7 @@ AGAIN = {
 def comparison(report):
     """Sentences: each agent against those it is compared with."""
     at, sentences, done = main_condition(report), [], set()
-    rows = {r["agent"]: r for r in _picked(report, **at)}
+    rows = {r["agent"]: r for r in _pick(report, **at)}
     for name, row in rows.items():
         for other, ratios in row["ratios"].items():
             if (other, name) in done:  # the other way round
@@ -178,7 +178,7 @@ def comparison(report):
     return [f"On {where}:", *sentences] if sentences else []
 
 
-def crossed(report):
+def cross(report):
     """Points a visit of every agent under every value of an axis that has more than one."""
     p, tables = report["protocol"], []
     at = main_condition(report)
@@ -190,7 +190,7 @@ def crossed(report):
             rows = []
             for agent in report["agents"]:
                 made = ", ".join(sorted({str(run[axis]) for run in agent["runs"] if axis in run}))
-                played = [_picked(report, agent=agent["label"], **rest, **{axis: value}) for value in p[axis]]
+                played = [_pick(report, agent=agent["label"], **rest, **{axis: value}) for value in p[axis]]
                 points = (_pm(some[0]["figures"]["points_a_visit"]) if some else "" for some in played)
                 rows.append([agent["label"], made, *points])
             under = ", ".join(f"{key} {value}" for key, value in rest.items() if key != "layout")
@@ -204,7 +204,7 @@ def conditions(report):
     p, tables = report["protocol"], []
     for layout, visits in p["layouts"].items():
         for physics, fidelity, cue in product(p["physics"], p["fidelity"], p["cue"]):
-            rows = _picked(report, layout=layout, physics=physics, fidelity=fidelity, cue=cue)
+            rows = _pick(report, layout=layout, physics=physics, fidelity=fidelity, cue=cue)
             where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}, {cue} cue"
             for name, columns in _columns(p["against"], most_points(layout)).items():
                 cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
@@ -267,7 +267,7 @@ def parts(report):
         return
     if "incomplete" in report:
         yield f"INCOMPLETE: {report['incomplete']}."
-    for made in (agents_tables, fairness, comparison, crossed, conditions):
+    for made in (agents_tables, fairness, comparison, cross, conditions):
         for part in made(report):
             yield from [part] if isinstance(part, str) else part.tidy().narrow()
     yield LEGEND

@@ -40,7 +40,7 @@ with needs("agents.tournament"):
     from .evaluation.tournament_file import faults, kept, result_of, seeds_of
     from .evaluation.tournament_play import CHUNK, TABLES, drawn, play
     from .evaluation.tournament_report import markdown, parts
-    from .evaluation.travel import sent
+    from .evaluation.travel import pack
 
 ANCHOR = "ghost_ball"
 """The anchor if it plays; else the first player is."""
@@ -173,7 +173,7 @@ class Tournament:
         done = {tuple(row[:3]) for row in self.rows}
         played = lambda part: all((*part["pair"], seed) in done for seed in part["seeds"])  # noqa: E731
         parts = [part for part in self.parts if not played(part)]
-        shared = {"players": [sent(entrant, 0) for entrant in self.entrants]}
+        shared = {"players": [pack(entrant, 0) for entrant in self.entrants]}
         here = self._here(parts, shared, threads, tick)
         far = where.played(play, [(shared, part) for part in parts])
         for k, result in here if isinstance(where, Here) else far:

@@ -57,7 +57,7 @@ def in_folder(name, read):
     return reader
 
 
-def zipped(file):
+def zip_model(file):
     """The same bytes as the description of a model."""
     content = file.read_bytes()
     with zipfile.ZipFile(file, "w") as made:
@@ -80,7 +80,7 @@ READERS = {
     "a report": report.read,
     "a tournament": lambda file: tournament_file.kept(file, {}, {}, []),
     "settings of a run": in_folder(SETTINGS, lambda folder: kept_settings(folder, Settings)),
-    "a model": zipped,
+    "a model": zip_model,
 }
 
 

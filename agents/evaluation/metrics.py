@@ -38,7 +38,7 @@ def _quotient(above, below):
     return above / below if below else float("nan")
 
 
-def bounded(share, trials):
+def add_bound(share, trials):
     """A share with its interval; one never or always seen with the exact bound of so many trials."""
     if share["low"] is not None or share["value"] not in (0.0, 1.0) or not trials:
         return share

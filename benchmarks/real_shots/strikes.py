@@ -65,7 +65,7 @@ def bounds(shot, physics):
     return low, np.array([fastest, aim + turn, most, most, MOST_ELEVATION, shot.moved])
 
 
-def clipped(strikes, low, high):
+def clip(strikes, low, high):
     """Strikes (b, 6) moved into the bounds, tips on to the disc."""
     found = np.clip(strikes, low, high)
     offset = np.hypot(found[:, SIDE], found[:, TOP])
@@ -76,7 +76,7 @@ def clipped(strikes, low, high):
     return found
 
 
-def _drawn(rng, low, high, n):
+def _draw(rng, low, high, n):
     found = rng.uniform(low, high, (n, 6))
     radius, angle = high[SIDE] * np.sqrt(rng.uniform(0, 1, n)), rng.uniform(-np.pi, np.pi, n)
     found[:, SIDE], found[:, TOP] = radius * np.cos(angle), radius * np.sin(angle)
@@ -99,7 +99,7 @@ def horizons(shot):
 def evolve(judge, rng, low, high, population=96, generations=12, first=5):
     """A population of strikes fitted with longer and longer horizons: (population, 6) and their costs."""
     steps = horizons(judge.shot)
-    pool = _drawn(rng, low, high, first * population)
+    pool = _draw(rng, low, high, first * population)
     cap = 0.15
     cost = costs(judge, pool, steps[0], cap, max_events=judge.events_until(pool[:48], steps[0]), fast=True)
     best = np.argsort(cost)[:population]
@@ -120,7 +120,7 @@ def evolve(judge, rng, low, high, population=96, generations=12, first=5):
             trial = pool + f * (leader - pool) + f * (a - b)
             trial += rng.normal(0, 0.02, (n, 6)) * SCALE
             keep = rng.uniform(size=(n, 6)) > 0.9
-            trial = clipped(np.where(keep, pool, trial), low, high)
+            trial = clip(np.where(keep, pool, trial), low, high)
             found = costs(judge, trial, horizon, cap_now, **how)
             better = found < cost
             pool[better], cost[better] = trial[better], found[better]
@@ -134,7 +134,7 @@ def refine(judge, rng, start, low, high, sigma=0.5, generations=40, population=1
     best, best_cost = start.copy(), float(costs(judge, start[None], np.inf, cap, others)[0])
     search = Cma(rng, start, scale, sigma, population)
     for _ in range(generations):
-        x = clipped(search.ask(), low, high)
+        x = clip(search.ask(), low, high)
         cost = costs(judge, x, np.inf, cap, others)
         k = int(np.argmin(cost))
         if cost[k] < best_cost:
@@ -169,7 +169,7 @@ def settled(judge, strike, steps=4):
             B = A.copy()
             B[np.diag_indices(6)] += damping * np.diag(A) + 1e-12
             tried.append(best - np.linalg.solve(B, g) * SCALE)
-        tried = clipped(np.array(tried), low, high)
+        tried = clip(np.array(tried), low, high)
         found = costs(judge, tried)
         k = int(np.argmin(found))
         if found[k] > 0.999 * cost:

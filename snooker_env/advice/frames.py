@@ -35,7 +35,7 @@ def outlooks(
 ) -> list[Outlook]:
     """The outlook of n strokes: ``each`` (n * tries,) says which; ``visits`` are played to their end."""
     after = stops.afterstates
-    wins = practice.judge.valued(lead_of(starts)[each], after)[:, 0].reshape(n, -1)
+    wins = practice.judge.value_of(lead_of(starts)[each], after)[:, 0].reshape(n, -1)
     comes = np.flatnonzero(others_next(after))
     theirs = met(after[comes])
     hidden = ~clear_paths(theirs).any_part

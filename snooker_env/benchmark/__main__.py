@@ -18,7 +18,7 @@ from .._warmup import warmup
 from ..play.program import AgentError
 from ..players.model_options import add_model_options, options_of_words
 from ..progress import Progress
-from .agents import Agent, is_known, seated
+from .agents import Agent, is_known, seat
 from .checking import afresh, faults, faults_of_replay
 from .degenerate import ABOVE, results, winners
 from .leaderboard import board, lines, page
@@ -141,7 +141,7 @@ def _run(args: argparse.Namespace) -> int:
             raise refuse("out", str(file), f"must be a new file; {how}")
         if args.episodes is not None:
             integer("episodes", args.episodes, 2, task.episodes)
-        with seated(agent, task, 0):
+        with seat(agent, task, 0):
             pass
     for file in files:
         file.parent.mkdir(parents=True, exist_ok=True)

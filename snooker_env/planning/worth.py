@@ -91,7 +91,7 @@ def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
     _allowed(at.game, rules, allowed)
     if at.saved is None:
         allowed[:, columns.REPLACE] = False
-    allowed[np.ix_(lead_of(at) > left_of(at), (columns.PLAY_AGAIN, columns.REPLACE))] = False
+    allowed[np.ix_(lead_of(at) > left_of(at), np.array([columns.PLAY_AGAIN, columns.REPLACE]))] = False
     for what in range(4):
         rows = np.flatnonzero(allowed[:, what])
         if len(rows):

@@ -54,14 +54,14 @@ class SearchPlayer(BoundPlayer):
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
-        return self._played(positions, seeds)[0]
+        return self._play(positions, seeds)[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their scores [points]."""
-        strokes, ranked = self._played(positions, seeds)
+        strokes, ranked = self._play(positions, seeds)
         return [shown(one, strokes[k : k + 1]) for k, one in enumerate(ranked)]
 
-    def _played(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, list[Ranked]]:
+    def _play(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, list[Ranked]]:
         """What it plays, and the rankings of its search."""
         visits, places, decisions = self.started(positions, seeds)
         ranked = self.search.rank(visits, seeds)

@@ -141,7 +141,7 @@ def test_a_under_b():
     made = report_of(agent("a"), agent("b", noise="club"))
     points = {("a", "none"): 4.0, ("a", "club"): 1.0, ("b", "none"): 3.0, ("b", "club"): 2.0}
     made["results"] = [row(label, noise, value, (None,) * 3, {}) for (label, noise), value in points.items()]
-    (table,) = report.crossed(made)
+    (table,) = report.cross(made)
     assert (
         table.title
         == "held_out: points a visit, played under noise ..., fidelity standard, physics paper, cue real"
