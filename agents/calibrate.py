@@ -28,7 +28,7 @@ with needs("agents.calibrate"):
     from snooker_env.checks import choice, integer, number, refuse
     from snooker_env.planning import FrameJudge
     from snooker_env.planning.learned.dense_layers import Layers
-    from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, errors_seen
+    from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, read_errors
     from snooker_env.planning.learned.learned_worth import worth_of
     from snooker_env.players.weights import learned_worth
 
@@ -81,7 +81,7 @@ def frames_of(text):
     return frames
 
 
-def frames_played(rows):
+def group_frames(rows):
     """The same of frames played, of the rows of ``frame_self_play.frames``."""
     frames = []
     for k in np.unique(rows["frame"]).tolist():
@@ -171,7 +171,7 @@ def figures_of(frames):
     return {name: out[name] for name in FIGURES}
 
 
-def self_played(scales, many, budget, conditions):
+def play_frames(scales, many, budget, conditions):
     """What two copies of the ``tactician`` play under each scale: a list of the rows of its parts for each."""
     layers, chance = learned_worth()
     options = FRAME | {"says": ["decision", "concede"], "conditions": conditions}
@@ -202,7 +202,7 @@ def chances_of(parts):
         return None
     worth = worth_of(None if layers is None else Layers(layers, "relu"), rows["seen"]).astype(np.float64)
     stand = rows["lead"], rows["left"], rows["last"]
-    said = chance(stand[0], worth, *stand[1:], errors_seen(rows["seen"]))
+    said = chance(stand[0], worth, *stand[1:], read_errors(rows["seen"]))
     return *calibration(said, rows["won"]), by_stage(said, rows["won"], *stand, rows["frame"])
 
 
@@ -251,11 +251,11 @@ def main(argv=None):
     except (ValueError, OSError) as error:
         p.error(str(error))
     snooker_env.warmup()
-    played = self_played(args.scales, args.frames, args.budget, args.conditions)
+    played = play_frames(args.scales, args.frames, args.budget, args.conditions)
     names = [f"scale {scale:g}" for scale in args.scales]
     columns = {"professionals": figures_of(real)}
     for name, parts in zip(names, played, strict=True):
-        columns[name] = figures_of([one for rows in parts for one in frames_played(rows)])
+        columns[name] = figures_of([one for rows in parts for one in group_frames(rows)])
     tactics = dict(zip(names, map(tactics_of, played), strict=True))
     title = f"{len(real)} frames of professionals, {args.frames} played of each scale"
     parts, chances = [_table(title, FIGURES, columns), _table("Tactics", TACTICS, tactics)], None

@@ -161,7 +161,7 @@ def written(folder, name, task, player, form, parts):
         "error": float(returns.std(ddof=1) / np.sqrt(len(returns))),
         "megabytes": float(storage.get_size()),
     }
-    write_atomic(made / "README.md", card(name, task, player, form, spec, figures))
+    write_atomic(made / "README.md", card(name, task, player, form, figures))
     shutil.rmtree(folder, ignore_errors=True)
     made.rename(folder)
     return figures
@@ -200,60 +200,17 @@ def differing(folder, many):
     return wrong, len(numbers)
 
 
-def card(name, task, player, form, spec, figures):
-    """The data card, in the hub's format: YAML and text."""
+def card(name, task, player, form, figures):
+    """The page beside a data set: what it holds, and how it was made. docs/agents/datasets.md says what the fields mean."""
     origin = provenance()
-    size = next(
-        (words for most, words in ((1e3, "n<1K"), (1e4, "1K<n<10K"), (1e5, "10K<n<100K"), (1e6, "100K<n<1M")) if
-         figures["strokes"] < most),
-        "1M<n<10M",
-    )  # fmt: skip
-    meaning = {
-        "strokes": "a whole stroke: `Box(-1, 1)`: speed, side, top, aim, elevation, place in the D"
-        + (", decision after a foul" if task.frame else ""),
-        "choices": "one of 540 strokes at pots: the available one nearest to what the player would play, and what was "
-        "played; `action_mask` says which are available",
-    }[form]
-    return f"""---
-license: mit
-pretty_name: "{player} at {task.id}"
-task_categories:
-- reinforcement-learning
-tags:
-- minari
-- offline-rl
-- snooker
-size_categories:
-- {size}
----
-
-# {name}
+    return f"""# {name}
 
 {figures["strokes"]:,} strokes of {figures["episodes"]:,} whole episodes: `{player}` plays `{task.id}` ({task.title}),
 with execution errors of the level "{task.frozen["noise"]}". An episode brings {figures["return"]:.2f} +- {figures["error"]:.2f}
 (mean return, standard error).
 
-| field | what it holds |
-|---|---|
-| observations | as the environment shows them, one more than actions |
-| actions | {meaning} |
-| rewards, terminations, truncations | of the environment |
-| infos | `{"`, `".join(INFOS)}` of the stroke that led to the observation; 0 for the first |
-| seed of an episode | its table: `env.reset(seed=...)` deals it again, and the same actions meet the same errors |
-
-```python
-import minari
-
-data = minari.load_dataset("{name}")  # with MINARI_DATASETS_PATH set to the folder above `snooker`
-env = data.recover_environment()  # {spec.id}, after `import snooker_env`
-```
-
-**Made by** `python -m agents.dataset --task {task.id} --player {player} --form {form} --out FOLDER`, snooker_env {origin["version"]},
+Made by `python -m agents.dataset --task {task.id} --player {player} --form {form} --out FOLDER`, snooker_env {origin["version"]},
 commit {origin["commit"]}, {origin["machine"]}.
-
-**What it does not hold.** Strokes of other players, tables of the judging (seeds from {HELD_OUT_SEED:,} on, layouts `held_out`),
-pictures. The player sees more than the observation says: it simulates or predicts strokes. The physics is the
-simulator's, not measured play.
 """
 
 

@@ -3,7 +3,7 @@ several training seeds.
 
     python -m agents.evaluate --agent ghost_ball runs/ppo_value-0
     python -m agents.evaluate --agent "ppo=runs/ppo_value-*" "targets=runs/target-*" --against targets \\
-        --json agents/results/main.json --markdown agents/results/main.md --picture
+        --json agents/results/main.json --markdown agents/results/main.md
     python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/ref-*" --fidelity fast reference
     python -m agents.evaluate --agent search_2000 --visits 50 --noise professional
 
@@ -22,7 +22,6 @@ ones, --options, for example aim=target. Intervals are 95 % bootstrap intervals 
 (snooker_env/benchmark/statistics.py); the ratios are paired: same tables above and below.
 """
 
-import os
 import shlex
 import shutil
 import sys
@@ -43,7 +42,7 @@ with needs("agents.evaluate"):
     from snooker_env.benchmark.rollouts import counts
     from snooker_env.benchmark.statistics import RESAMPLES
     from snooker_env.benchmark.tasks import tables_of
-    from snooker_env.checks import choice, integer, parse_fidelity, refuse
+    from snooker_env.checks import integer, parse_fidelity, refuse
     from snooker_env.game.layouts import plan_of
     from snooker_env.players.model_options import add_model_options
     from snooker_env.progress import Progress
@@ -51,8 +50,8 @@ with needs("agents.evaluate"):
 
     from .cluster import KEPT, ClusterError, Here, add_ray, checked_ray, ended, in_order, kept_at, place
     from .evaluation.entrants import Entrant, entrants_of
-    from .evaluation.metrics import AXES, PICTURE, EntrantMetrics, main_condition
-    from .evaluation.travel import sent
+    from .evaluation.metrics import AXES, EntrantMetrics
+    from .evaluation.travel import pack
     from .evaluation.visits import joined, parts_of, play
     from .report import markdown, parts, verdict
 
@@ -64,7 +63,7 @@ REFERENCE = "ghost_ball"
 
 def parts_of_agent(agent, condition, seeds, rekey):
     """The parts of an agent under a condition, a list for each of its runs."""
-    return [parts_of(sent(agent, k), k, condition, seeds, rekey) for k in range(len(agent.runs))]
+    return [parts_of(pack(agent, k), k, condition, seeds, rekey) for k in range(len(agent.runs))]
 
 
 def play_agent(agent, condition, seeds, resamples, rekey=False, results=None):
@@ -129,8 +128,6 @@ def parser():
     add("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     add("--json", type=Path, help="write every figure here")
     add("--markdown", type=Path, help="write the tables here")
-    what = "draw where the cue ball goes, for the first three agents [agents/pictures/destinations.png]"
-    add("--picture", type=Path, nargs="?", const=PICTURE, help=what)
     return p
 
 
@@ -156,20 +153,16 @@ def checked(args):
         for value in values:
             check(value)
     integer("resamples", args.resamples, 100, 10**6)
-    if args.picture and LAYOUT not in sizes:
-        raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
     checked_ray(args.ray)
-    for name in ("json", "markdown", "picture"):
+    for name in ("json", "markdown"):
         writable(name, getattr(args, name))
     seeds = {name: tables_of(name, visits) for name, visits in sizes.items()}
     return agents, list(dict.fromkeys(args.against)), seeds
 
 
-def evaluate(report, agents, seeds, shown, results):
-    """Add the figures of all that the report's protocol says to it, a whole condition at a time.
-
-    ``shown`` becomes the strokes of the main condition, by label; ``results``: those of ``all_parts``.
-    """
+def evaluate(report, agents, seeds, results):
+    """Add the figures of all that the report's protocol says to it, a whole condition at a time, from the ``results`` of
+    ``all_parts``."""
     p = report["protocol"]
     for condition in _conditions(report, seeds):
         layout, metrics = condition["layout"], {}
@@ -183,8 +176,6 @@ def evaluate(report, agents, seeds, shown, results):
             played = {"visits": len(seeds[layout]), "runs": len(agent.runs)}
             rows.append({"agent": agent.label, **condition, **played, **mine.result(others)})
         report["results"] += rows
-        if condition == main_condition(report):
-            shown |= {label: one.strokes for label, one in metrics.items()}
 
 
 @command("agents.evaluate")
@@ -194,10 +185,6 @@ def main(argv=None):
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_args(argv)
     try:
-        if args.picture:
-            from .evaluation.destinations import formats
-
-            choice("picture", args.picture.suffix, formats())
         agents, references, seeds = checked(args)
     except ValueError as error:
         p.error(str(error))
@@ -209,7 +196,7 @@ def main(argv=None):
     report = {"command": f"python -m agents.evaluate {shlex.join(argv)}", **provenance()}
     report |= {"protocol": protocol | {"resamples": args.resamples, "rekey": args.rekey}}
     report |= {"agents": [{"label": agent.label, "runs": agent.origins()} for agent in agents], "results": []}
-    shown, why, code = {}, "", 0
+    why, code = "", 0
     job = all_parts(report, agents, seeds)
     try:
         total = sum(len(args["seeds"]) for _, args in job)
@@ -222,7 +209,7 @@ def main(argv=None):
                     progress.at(progress.done + len(part["seeds"]), layout)
                     yield k, result
 
-            evaluate(report, agents, seeds, shown, in_order(counted()))
+            evaluate(report, agents, seeds, in_order(counted()))
     except KeyboardInterrupt:
         why, code = "interrupted", INTERRUPTED
     except ClusterError as error:
@@ -235,32 +222,23 @@ def main(argv=None):
         report["incomplete"] = f"{why} when {many} were complete: {kept}"
         print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
     if report["results"]:
-        write(report, shown, args)
+        write(report, args)
     if args.ray and not code:
         shutil.rmtree(kept_at(play, job))
     return code
 
 
-def write(report, shown, args):
+def write(report, args):
     """Write what was asked for and print the tables; files that cannot be written are named at the end."""
-    files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
+    files, failed = {name: getattr(args, name) for name in ("json", "markdown")}, []
     if "incomplete" in report:
         # beside a file that is there already, for that may be whole
         beside = lambda file: file.with_name(f"{file.stem}.incomplete{file.suffix}")  # noqa: E731
         files = {name: beside(file) if file and file.exists() else file for name, file in files.items()}
-    if not shown:
-        files["picture"] = None
-
-    def picture(file):
-        from .evaluation.destinations import draw
-
-        draw(report, shown, file)
-
-    def text(file):
-        drawn = files["picture"] and Path(os.path.relpath(files["picture"], file.parent)).as_posix()
-        write_atomic(file, markdown(report, drawn))
-
-    writers = {"json": lambda file: write_json(file, report), "markdown": text, "picture": picture}
+    writers = {
+        "json": lambda file: write_json(file, report),
+        "markdown": lambda file: write_atomic(file, markdown(report)),
+    }
     for name, file in files.items():
         try:
             if file:

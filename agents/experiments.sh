@@ -45,8 +45,6 @@ evaluate() { # name of the output, then the options of agents.evaluate
     shift
     module agents.evaluate "$@" ${RAY:+--ray "$RAY"} --json "agents/results/$name.json" --markdown "agents/results/$name.md"
 }
-module agents.curves "ppo_value=$folder/ppo_value-[0-4]"
 # the published models, by their names
-evaluate visits --layouts held_out=500 --noise professional --against search best_pot --picture agents/pictures/destinations.png --agent \
+evaluate visits --layouts held_out=500 --noise professional --against search best_pot --agent \
     planner best_pot ghost_ball search stroke_value ppo_value random
-module agents.value_quality --visits 500 --layouts held_out --noise professional --markdown agents/results/value_quality.md

@@ -24,7 +24,7 @@ with needs("agents.learn_worth"):
     from snooker_env.checks import integer, refuse
     from snooker_env.planning import FrameJudge
     from snooker_env.planning.learned.dense_layers import Layers
-    from snooker_env.planning.learned.frame_features import errors_seen
+    from snooker_env.planning.learned.frame_features import read_errors
     from snooker_env.planning.learned.learned_worth import worth_of
     from snooker_env.players.weights import FOLDER, WORTH, learned_worth, worth_in
 
@@ -129,7 +129,7 @@ def learned(rounds, seed, layers=None):
             raise refuse(
                 "frames", len(np.unique(both["unit"])), f"must be more: of those {what} none has ended"
             )
-    known = both["lead"], said.astype(np.float64), both["left"], both["last"], errors_seen(both["seen"])
+    known = both["lead"], said.astype(np.float64), both["left"], both["last"], read_errors(both["seen"])
     chance = fitted_chance(*(part[used & ended] for part in (*known, both["won"])))
     wins, won = chance(*known)[held & ended], both["won"][held & ended]
     rmse = lambda worth: float(np.sqrt(np.mean((worth - both["target"])[held] ** 2)))  # noqa: E731

@@ -6,9 +6,7 @@ writes ``agents/results/*.md`` again from what agents.evaluate keeps as JSON, wi
 --show prints the tables instead.
 """
 
-import os
 import re
-import shlex
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -23,7 +21,7 @@ with needs("agents.report"):
     from snooker_env.checks import refuse
 
     from .evaluation import tournament_report
-    from .evaluation.metrics import AXES, PICTURE, USUAL, bounded, main_condition
+    from .evaluation.metrics import AXES, USUAL, add_bound, main_condition
 
 SEEDS = 5
 """Fewer training seeds than that are pointed out."""
@@ -48,7 +46,7 @@ SHARES = {name: below for name, (_, below) in FIGURES.items() if name not in _ME
 
 def _share(row, name, form="{:.1f}", scale=100.0):
     """A share with its interval; where it was never so, or always, with the exact bound of that."""
-    return shown(bounded(row["figures"][name], _trials(row, SHARES[name])), scale, form)
+    return shown(add_bound(row["figures"][name], _trials(row, SHARES[name])), scale, form)
 
 
 def _between(values, form="{:,.0f}"):
@@ -60,18 +58,18 @@ def _between(values, form="{:,.0f}"):
     return low if low == high else f"{low} to {high}"
 
 
-def _picked(report, **condition):
+def _pick(report, **condition):
     return [r for r in report["results"] if all(r[key] == value for key, value in condition.items())]
 
 
 def verdict(report):
     """The points of each agent in the main condition, as one sentence; none if that was not played."""
     at = main_condition(report)
-    made = [f"{row['agent']} {_pm(row['figures']['points_a_visit'])}" for row in _picked(report, **at)]
+    made = [f"{row['agent']} {_pm(row['figures']['points_a_visit'])}" for row in _pick(report, **at)]
     return [f"Points a visit on {at['layout']}, noise {at['noise']}: {', '.join(made)}."] if made else []
 
 
-def _listed(words):
+def _list(words):
     """Words as a sentence lists them."""
     *others, last = map(str, words)
     return f"{', '.join(others)} and {last}" if others else last
@@ -81,14 +79,14 @@ def title(report):
     """What is compared: an axis of training and of play, or agents and where they play; or who met."""
     if tournament_report.is_tournament(report):
         return tournament_report.title(report)
-    p, layouts = report["protocol"], _listed(report["protocol"]["layouts"])
+    p, layouts = report["protocol"], _list(report["protocol"]["layouts"])
     for axis in AXES:
         runs = [run for agent in report["agents"] for run in agent["runs"] if axis in run]
         if len({str(run[axis]) for run in runs}) > 1 and len(p[axis]) > 1:
             who = "planners" if all(run["from"].startswith("planner") for run in runs) else "agents"
-            return f"How {who} trained under one {axis} play under another, on {layouts}: {_listed(p[axis])}"
+            return f"How {who} trained under one {axis} play under another, on {layouts}: {_list(p[axis])}"
     under = "" if len(p["noise"]) > 1 or p["noise"] == [USUAL["noise"]] else f", noise {p['noise'][0]}"
-    return f"How {_listed(agent['label'] for agent in report['agents'])} play on {layouts}{under}"
+    return f"How {_list(agent['label'] for agent in report['agents'])} play on {layouts}{under}"
 
 
 def agents_tables(report):
@@ -97,9 +95,7 @@ def agents_tables(report):
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
-            by_noise = re.fullmatch(
-                r"(planner(_value|_policy)?|tactician)(_\d+)?|stroke_value", runs[0]["from"]
-            )
+            by_noise = re.fullmatch(r"(planner|tactician)(_\d+)?|stroke_value", runs[0]["from"])
             how = "pre-trained, by the noise played" if by_noise else "not trained"
             trained.append([label, how, *[""] * (len(AXES) + 1)])
             continue
@@ -161,7 +157,7 @@ AGAIN = {
 def comparison(report):
     """Sentences: each agent against those it is compared with."""
     at, sentences, done = main_condition(report), [], set()
-    rows = {r["agent"]: r for r in _picked(report, **at)}
+    rows = {r["agent"]: r for r in _pick(report, **at)}
     for name, row in rows.items():
         for other, ratios in row["ratios"].items():
             if (other, name) in done:  # the other way round
@@ -182,7 +178,7 @@ def comparison(report):
     return [f"On {where}:", *sentences] if sentences else []
 
 
-def crossed(report):
+def cross(report):
     """Points a visit of every agent under every value of an axis that has more than one."""
     p, tables = report["protocol"], []
     at = main_condition(report)
@@ -194,7 +190,7 @@ def crossed(report):
             rows = []
             for agent in report["agents"]:
                 made = ", ".join(sorted({str(run[axis]) for run in agent["runs"] if axis in run}))
-                played = [_picked(report, agent=agent["label"], **rest, **{axis: value}) for value in p[axis]]
+                played = [_pick(report, agent=agent["label"], **rest, **{axis: value}) for value in p[axis]]
                 points = (_pm(some[0]["figures"]["points_a_visit"]) if some else "" for some in played)
                 rows.append([agent["label"], made, *points])
             under = ", ".join(f"{key} {value}" for key, value in rest.items() if key != "layout")
@@ -208,7 +204,7 @@ def conditions(report):
     p, tables = report["protocol"], []
     for layout, visits in p["layouts"].items():
         for physics, fidelity, cue in product(p["physics"], p["fidelity"], p["cue"]):
-            rows = _picked(report, layout=layout, physics=physics, fidelity=fidelity, cue=cue)
+            rows = _pick(report, layout=layout, physics=physics, fidelity=fidelity, cue=cue)
             where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}, {cue} cue"
             for name, columns in _columns(p["against"], most_points(layout)).items():
                 cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
@@ -271,31 +267,20 @@ def parts(report):
         return
     if "incomplete" in report:
         yield f"INCOMPLETE: {report['incomplete']}."
-    for made in (agents_tables, fairness, comparison, crossed, conditions):
+    for made in (agents_tables, fairness, comparison, cross, conditions):
         for part in made(report):
             yield from [part] if isinstance(part, str) else part.tidy().narrow()
     yield LEGEND
 
 
-def markdown(report, picture=None):
+def markdown(report):
     """The same as a Markdown page."""
     if tournament_report.is_tournament(report):
         return tournament_report.markdown(report)
     version = report.get("version", "of an unknown version")
     where = f"commit {report['commit']} on {report['machine']}, Python {report['python']}"
     made = f"snooker_env {version}, at {where}"
-    drawn = [f"![where the cue ball stops after a red, and what follows]({picture})"] if picture else []
-    return page(title(report), report["command"], made, [*drawn, *parts(report)])
-
-
-def picture_of(report, folder):
-    """The picture that the report's command drew, as seen from ``folder``; None if it drew none."""
-    words = shlex.split(report["command"])
-    if "--picture" not in words:
-        return None
-    named = words[words.index("--picture") + 1 :][:1]
-    file = Path(named[0]) if named and not named[0].startswith("--") else PICTURE
-    return Path(os.path.relpath(file, folder)).as_posix()
+    return page(title(report), report["command"], made, parts(report))
 
 
 def read(file):
@@ -327,7 +312,7 @@ def main(argv=None):
             show(parts(report))
             continue
         target = file.with_suffix(".md")
-        write_atomic(target, markdown(report, picture_of(report, target.parent)))
+        write_atomic(target, markdown(report))
         print(target)
     return 0
 

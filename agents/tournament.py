@@ -2,10 +2,9 @@
 both colours of the break.
 
     python -m agents.tournament random ghost_ball ppo_value --frames 200
-    python -m agents.tournament "mine=runs/0" search_2000 --fewer search_2000=20 --out ladder.json --resume
+    python -m agents.tournament "mine=runs/0" search_2000 --out ladder.json --resume
     python -m agents.tournament planner search --match 7 --frames 40 --noise amateur
     python -m agents.tournament --check ladder.json
-    python -m agents.tournament --show ladder.json --markdown ladder.md
 
 A player is a NAME (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS
 for a player of your own, whose module is imported. --trust and --options are those of
@@ -30,7 +29,7 @@ with needs("agents.tournament"):
     from snooker_env.benchmark import read_result, write_result
     from snooker_env.benchmark.provenance import machine
     from snooker_env.benchmark.statistics import RESAMPLES
-    from snooker_env.checks import choice, integer, refuse
+    from snooker_env.checks import integer, refuse
     from snooker_env.players import FRAMES
     from snooker_env.players.model_options import add_model_options
     from snooker_env.progress import Progress
@@ -41,7 +40,7 @@ with needs("agents.tournament"):
     from .evaluation.tournament_file import faults, kept, result_of, seeds_of
     from .evaluation.tournament_play import CHUNK, TABLES, drawn, play
     from .evaluation.tournament_report import markdown, parts
-    from .evaluation.travel import sent
+    from .evaluation.travel import pack
 
 ANCHOR = "ghost_ball"
 """The anchor if it plays; else the first player is."""
@@ -57,8 +56,6 @@ def parser():
     p.add_argument("players", nargs="*", metavar="PLAYER", help=what)
     what = "frames of each pair, or matches with --match; even [100]"
     p.add_argument("--frames", type=int, default=100, metavar="N", help=what)
-    what = "only so many of each pair with a slow player"
-    p.add_argument("--fewer", nargs="+", default=[], metavar="LABEL=N", help=what)
     what = "play matches, each the best of so many frames; odd [1]"
     p.add_argument("--match", type=int, default=1, metavar="BEST_OF", help=what)
     p.add_argument("--noise", default="professional", help="errors: LEVEL or LEVEL*SCALE [professional]")
@@ -70,8 +67,6 @@ def parser():
     what = "strokes after which a frame is stopped, half a win for each [1000]"
     p.add_argument("--max-strokes", type=int, default=1000, help=what)
     p.add_argument("--seed", type=int, default=0, help="seed of the first match of each pair [0]")
-    what = f"the player whose Elo is {ANCHOR_ELO:.0f} [{ANCHOR}, else the first]"
-    p.add_argument("--anchor", metavar="LABEL", help=what)
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     add_model_options(p)
     p.add_argument("--threads", type=int, help="threads that play the tables [one for each core]")
@@ -84,7 +79,6 @@ def parser():
     p.add_argument("--quiet", action="store_true", help="show no progress")
     what = "verify files of tournaments instead; exit code 1 if one is wrong"
     p.add_argument("--check", nargs="+", type=Path, metavar="FILE", help=what)
-    p.add_argument("--show", type=Path, metavar="FILE", help="show a file of a tournament instead")
     return p
 
 
@@ -98,19 +92,21 @@ def checked(args):
         if len(entrant.runs) > 1:
             single = "must be one player or model: give each training seed a label of its own"
             raise refuse("player", text, single)
-    anchor = args.anchor or (ANCHOR if ANCHOR in labels else labels[0])
     protocol = {
         "first_seed": integer("seed", args.seed, 0, 2**53),
-        "matches": _even("frames", args.frames, 2**20),
-        "fewer": dict(_fewer(text, labels, args.frames) for text in args.fewer),
+        "matches": integer("frames", args.frames, 2, 2**20),
         "best_of": integer("match", args.match, 1, 99),
         "tables": TABLES,
         "chunk": CHUNK,
         "resamples": integer("resamples", args.resamples, 100, 10**6),
         "prior": PRIOR,
-        "anchor": choice("anchor", anchor, tuple(labels)),
+        "anchor": ANCHOR if ANCHOR in labels else labels[0],
         "anchor_elo": ANCHOR_ELO,
     }
+    if args.frames % 2:
+        raise refuse(
+            "frames", args.frames, "must be even: each seed is played twice, opened once by each player"
+        )
     if args.match % 2 == 0:
         raise refuse("match", args.match, "must be odd: the best of so many frames")
     game = {
@@ -139,19 +135,6 @@ def checked(args):
     return entrants, protocol, game
 
 
-def _even(name, n, most):
-    if integer(name, n, 2, most) % 2:
-        raise refuse(name, n, "must be even: each seed is played twice, opened once by each player")
-    return n
-
-
-def _fewer(text, labels, most):
-    label, _, n = text.rpartition("=")
-    if label not in labels or not n.isdecimal():
-        raise refuse("fewer", text, f"must be LABEL=N with one of {', '.join(labels)}")
-    return label, _even("fewer", int(n), most)
-
-
 class Tournament:
     """The round robin as far as it was played; ``before``: content of an incomplete file to go on with."""
 
@@ -168,7 +151,7 @@ class Tournament:
         """What is played in one go, in order: a pair and some of its seeds."""
         p, parts = self.protocol, []
         for pair in schedule(self.labels):
-            seeds = seeds_of(p, self.labels, pair)
+            seeds = seeds_of(p)
             for some in (seeds[k : k + CHUNK] for k in range(0, len(seeds), CHUNK)):
                 first, second = (self.labels[k] for k in pair)
                 draws = [drawn(first, second, some[0]), drawn(second, first, some[0])]
@@ -190,7 +173,7 @@ class Tournament:
         done = {tuple(row[:3]) for row in self.rows}
         played = lambda part: all((*part["pair"], seed) in done for seed in part["seeds"])  # noqa: E731
         parts = [part for part in self.parts if not played(part)]
-        shared = {"players": [sent(entrant, 0) for entrant in self.entrants]}
+        shared = {"players": [pack(entrant, 0) for entrant in self.entrants]}
         here = self._here(parts, shared, threads, tick)
         far = where.played(play, [(shared, part) for part in parts])
         for k, result in here if isinstance(where, Here) else far:
@@ -226,8 +209,6 @@ def main(argv=None):
     if args.check:
         return _check(args.check)
     try:
-        if args.show:
-            return _shown(_sound(args.show), args.markdown)
         entrants, protocol, game = checked(args)
         before = None
         if args.resume and args.out.exists():
@@ -283,21 +264,11 @@ def _play(tournament, args):
 
 def _shown(content, file):
     """Print the tables and write them as Markdown."""
-    if content["figures"] is None:
-        raise refuse("show", "a file", "must hold frames")
     show(parts(content))
     if file:
         write_atomic(file, markdown(content))
         print(f"markdown: {file}")
     return 0
-
-
-def _sound(file):
-    """The content of a file without faults. Raises ValueError."""
-    content, wrong = _read(file)
-    if wrong:
-        raise refuse("show", str(file), f"must be the file of a tournament ({wrong[0]})")
-    return content
 
 
 def _read(file):

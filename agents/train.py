@@ -19,8 +19,8 @@ from .evaluation.training_summary import conclusion, evaluate, held_out, show
 from .learning.agent_training import AgentTraining
 from .learning.learn_strokes import AGENT, StrokeTraining
 from .learning.loop import Loop
-from .learning.models import zipped
-from .learning.run_folder import claimed, keep_settings, kept_settings
+from .learning.models import zip_model
+from .learning.run_folder import claim, keep_settings, kept_settings
 from .learning.settings import FREE_ON_RESUME, Settings, parse
 
 
@@ -29,7 +29,7 @@ def open_run(given, out, resume, ending):
     before the work, by ValueError."""
     settings = Settings(**given)
     if resume:
-        ending.enter_context(claimed(out, resume))
+        ending.enter_context(claim(out, resume))
         was = kept_settings(out, Settings)
         for name, value in given.items():
             if value != getattr(was, name) and name not in FREE_ON_RESUME:
@@ -40,7 +40,7 @@ def open_run(given, out, resume, ending):
     training = kind(settings, out, resume)
     ending.callback(training.close)
     if not resume:
-        ending.enter_context(claimed(out, resume))  # last, so that a wrong option leaves no folder behind
+        ending.enter_context(claim(out, resume))  # last, so that a wrong option leaves no folder behind
     keep_settings(out, training.settings)
     return training
 
@@ -58,7 +58,7 @@ def judge_agent(training, loop):
         for p in parts
     ]
     print("\n".join(lines) + " (learning included)", flush=True)
-    write_atomic(training.out / "model.zip", zipped(model))
+    write_atomic(training.out / "model.zip", zip_model(model))
     figures = evaluate(training.recipe, model, settings.eval_visits, loop)
     learned = conclusion(settings.agent, model.num_timesteps, model.imitated, figures, model.start)
     curve = expert.curve if expert else []

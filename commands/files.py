@@ -18,7 +18,7 @@ from snooker_env._lib.files import (
     without_checksum,
     write_atomic,
 )
-from snooker_env._lib.seal import sealed, unsealed
+from snooker_env._lib.seal import seal, unseal
 from snooker_env.checks import refuse
 
 __all__ = [
@@ -31,9 +31,9 @@ __all__ = [
     "read_bytes",
     "read_json",
     "save_figure",
-    "sealed",
+    "seal",
     "strict_json",
-    "unsealed",
+    "unseal",
     "with_checksum",
     "without_checksum",
     "writable",
@@ -79,13 +79,13 @@ def packed_arrays(arrays):
 
 def keep_arrays(file, arrays):
     """Write a dict of arrays and numbers, from which the same command goes on."""
-    write_atomic(file, sealed(packed_arrays(arrays), file.name))
+    write_atomic(file, seal(packed_arrays(arrays), file.name))
 
 
 def kept_arrays(file):
     """What ``keep_arrays`` wrote; numbers come back as arrays of no dimension. ValueError if it is damaged."""
     try:
-        return arrays_in(unsealed(file.read_bytes(), file.name))
+        return arrays_in(unseal(file.read_bytes(), file.name))
     except ValueError as error:
         wanted = f"must be as it was written ({error}): remove it, and the same command plays it again"
         raise refuse("out", str(file), wanted) from None

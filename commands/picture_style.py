@@ -228,13 +228,6 @@ def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, 
         placed.append(box)
 
 
-def colours_of(name: str, places: Any) -> Any:
-    """Colours (n, 4) of a colour map at places (n,) from 0 to 1."""
-    import matplotlib
-
-    return matplotlib.colormaps[name](places)
-
-
 def save(figure: Any, file: Path) -> None:
     """Write a chart, in the format of the file's suffix, whole or not at all."""
     save_figure(figure, file, dpi=DPI)

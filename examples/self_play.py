@@ -30,7 +30,7 @@ from stable_baselines3.common.utils import LinearSchedule
 
 import snooker_env
 from agents.learning.networks import TablePolicy, TableReader
-from commands.files import sealed, unsealed, write_atomic, write_json
+from commands.files import seal, unseal, write_atomic, write_json
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning.learned.pot_view import with_pots
 from snooker_env.players import OpponentPool, SeenPlayer
@@ -246,7 +246,7 @@ class Run(BaseCallback):
             "seconds": time.perf_counter() - self.began,
             "asked": (args.shots, args.tables, args.seed),
         }
-        write_atomic(args.out / CHECKPOINT, sealed(pickle.dumps(state), CHECKPOINT))
+        write_atomic(args.out / CHECKPOINT, seal(pickle.dumps(state), CHECKPOINT))
 
     def _on_step(self):
         won = ", ".join(f"{self.curve[-1][name]:.1%} won against {name}" for name in ("random", "ghost_ball"))
@@ -258,7 +258,7 @@ def train(args):
     """Train, or go on from the checkpoint. Returns the model, the curve and the seconds of training."""
     file = args.out / CHECKPOINT
     try:
-        state = pickle.loads(unsealed(file.read_bytes(), CHECKPOINT)) if file.is_file() else None
+        state = pickle.loads(unseal(file.read_bytes(), CHECKPOINT)) if file.is_file() else None
     except ValueError as error:
         raise SystemExit(f"{file}: {error}; remove it to begin anew") from None
     if state and state["asked"] != (args.shots, args.tables, args.seed):

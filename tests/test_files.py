@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from agents import curves, report
+from agents import report
 from agents.evaluation import tournament_file
 from agents.learning.policy_files import read_policy
 from agents.learning.run_folder import SETTINGS, keep_settings, kept_settings
@@ -57,7 +57,7 @@ def in_folder(name, read):
     return reader
 
 
-def zipped(file):
+def zip_model(file):
     """The same bytes as the description of a model."""
     content = file.read_bytes()
     with zipfile.ZipFile(file, "w") as made:
@@ -79,9 +79,8 @@ READERS = {
     "a track of texts": lambda file: text._rows_in(file, {"track": "text", "visits": 2}),
     "a report": report.read,
     "a tournament": lambda file: tournament_file.kept(file, {}, {}, []),
-    "curves": in_folder("results.json", curves.run_of),
     "settings of a run": in_folder(SETTINGS, lambda folder: kept_settings(folder, Settings)),
-    "a model": zipped,
+    "a model": zip_model,
 }
 
 

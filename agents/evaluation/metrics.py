@@ -2,7 +2,6 @@
 
 import zlib
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -14,7 +13,6 @@ from .entrants import Entrant
 BELOW = sorted({below for _, below in FIGURES.values()})
 """What figures are a share or a mean of: how often there was any, a run, is kept with them."""
 AXES = ("noise", "fidelity", "physics", "cue")
-PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
 USUAL = {
     "layout": "held_out",
     "noise": "professional",
@@ -40,7 +38,7 @@ def _quotient(above, below):
     return above / below if below else float("nan")
 
 
-def bounded(share, trials):
+def add_bound(share, trials):
     """A share with its interval; one never or always seen with the exact bound of so many trials."""
     if share["low"] is not None or share["value"] not in (0.0, 1.0) or not trials:
         return share

@@ -19,7 +19,7 @@ import numpy as np
 
 from snooker_env.benchmark.statistics import RESAMPLES, Resamples, figure
 
-from .metrics import bounded
+from .metrics import add_bound
 
 PRIOR = 1.0
 """Drawn matches that are added to each pair that met."""
@@ -101,7 +101,7 @@ def pairs_of(rows):
 
 def _share(won, matches, drawn, seeds):
     """A share with its interval; of 0 % or 100 % with the exact bound of so many seeds."""
-    return bounded(figure(won / matches, drawn), seeds)
+    return add_bound(figure(won / matches, drawn), seeds)
 
 
 def figures_of(labels, rows, anchor, resamples=RESAMPLES):

@@ -22,7 +22,6 @@ FIELDS = {
     "schema.version": (int, False, f"{VERSION}; another number means other fields"),
     "protocol.first_seed": (int, False, "seed of the first match of each pair"),
     "protocol.matches": (int, False, "matches of each pair, two on each seed"),
-    "protocol.fewer": (dict, False, "label -> matches of each pair with this player, where they are fewer"),
     "protocol.best_of": (int, False, "frames of a match"),
     "protocol.tables": (int, False, "tables side by side"),
     "protocol.chunk": (int, False, "seeds for which a player is made anew"),
@@ -71,10 +70,9 @@ RANGES = {
 }
 
 
-def seeds_of(protocol, labels, pair):
-    """The seeds on which two players meet."""
-    matches = min(protocol["fewer"].get(labels[k], protocol["matches"]) for k in pair)
-    return list(range(protocol["first_seed"], protocol["first_seed"] + matches // 2))
+def seeds_of(protocol):
+    """The seeds on which each pair meets."""
+    return list(range(protocol["first_seed"], protocol["first_seed"] + protocol["matches"] // 2))
 
 
 def result_of(protocol, game, players, rows, *, command, load, incomplete):
@@ -122,12 +120,9 @@ def faults(content):
     labels = [player["label"] for player in content["players"]]
     if len(labels) < 2 or len(set(labels)) < len(labels) or protocol["anchor"] not in labels:
         return ["players: must be two or more with different labels, the anchor among them"]
-    even = "must be an even number, at least 2 and at most protocol.matches"
-    for name, matches in [("matches", protocol["matches"]), *protocol["fewer"].items()]:
-        if type(matches) is not int or not 2 <= matches <= protocol["matches"] or matches % 2:
-            wrong.append(f"protocol: {name} = {matches!r}: {even}")
-    wrong += [f"protocol.fewer: {label!r} is no player" for label in protocol["fewer"] if label not in labels]
-    return wrong or _faults_of_rows(content, labels)
+    if protocol["matches"] % 2:
+        return [f"protocol.matches = {protocol['matches']}: must be even"]
+    return _faults_of_rows(content, labels)
 
 
 def _faults_of_rows(content, labels):
@@ -137,7 +132,7 @@ def _faults_of_rows(content, labels):
         if not whole or len(row) != len(COLUMNS):
             return [f"rows[{k}]: must be {len(COLUMNS)} whole numbers"]
     matches = {key: list(frames) for key, frames in groupby(rows, key=lambda row: tuple(row[:4]))}
-    seeds = [(*pair, seed) for pair in schedule(labels) for seed in seeds_of(protocol, labels, pair)]
+    seeds = [(*pair, seed) for pair in schedule(labels) for seed in seeds_of(protocol)]
     want = [(*seed, opener) for seed in seeds for opener in (0, 1)]
     order = {key: n for n, key in enumerate(want)}
     for key, frames in matches.items():

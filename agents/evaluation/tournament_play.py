@@ -23,7 +23,7 @@ from snooker_env.benchmark import simulated
 from snooker_env.players import FRAMES, decided, decision_seeds
 
 from .tournament_figures import COUNTED
-from .travel import arrived
+from .travel import unpack
 
 TABLES = 128
 """Tables side by side."""
@@ -97,7 +97,7 @@ class Encounter:
         self._opponent(which, info["opponent_score"], info["score"], info["opponent_strokes"])
         self._score(which, info)
 
-    def stepped(self, which, info):
+    def step_all(self, which, info):
         """One step was made on the tables ``which`` (n,) bool."""
         struck = which & (info["strokes"] - self.played - info["opponent_strokes"] > 0)
         points, penalty = (np.where(struck, info[name], 0).astype(int) for name in ("points", "penalty"))
@@ -179,11 +179,11 @@ def drawn(label, other, first):
 def play(shared, args, threads, tick=None):
     """The task of a part, a pair on some seeds: the rows, and each player's decisions, their time [s] and simulated shots.
 
-    ``shared``: "players", of ``travel.sent``. ``args``: "pair" (indices), "seeds" of the matches, "draws"
+    ``shared``: "players", of ``travel.pack``. ``args``: "pair" (indices), "seeds" of the matches, "draws"
     (each player's ``drawn``), "game" as it stands in the file, "best_of"; ``tick`` is that of ``play_pair``.
     """
     both = zip(args["pair"], args["draws"], strict=True)
-    players = [TimedPlayer(arrived(shared["players"][k]), seed) for k, seed in both]
+    players = [TimedPlayer(unpack(shared["players"][k]), seed) for k, seed in both]
     game = args["game"] | {"physics": physics_option(args["game"]["physics"])}
     rows = play_pair(tuple(args["pair"]), players, game, args["seeds"], args["best_of"], threads, tick)
     counted = {name: np.array([player.count[name] for player in players]) for name in players[0].count}
@@ -206,13 +206,13 @@ def _play(meeting, agent, opponent, game, threads, tick):
         actions = decided(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], meeting.decision))
         meeting.decision += 1
         _, _, terminated, truncated, info = tables.step(actions.astype(np.float32))
-        meeting.stepped(going, info)
+        meeting.step_all(going, info)
         done = terminated | truncated
         moved, over = ~done, np.zeros(len(done), bool)
         if done.any():
             before = meeting.unit.copy()
             meeting.ended(going & done, info)
-            over = _renewed(tables, meeting, done, before)
+            over = _renew(tables, meeting, done, before)
         now = matches - len(meeting.queue) - int(meeting.going.sum())
         if tick is not None and now != ended:
             tick(now)
@@ -232,7 +232,7 @@ def _tables(meeting, options, opponent, threads):
     return SnookerVectorEnv(len(meeting.frame), options, opponent=opponent, **how)
 
 
-def _renewed(tables, meeting, done, before):
+def _renew(tables, meeting, done, before):
     """Begin the next frames where frames have ended. Returns where the next frame is over at once.
 
     A new match is dealt from its seed; in a next frame, and on tables without a match, random numbers go on.

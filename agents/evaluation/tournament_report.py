@@ -57,9 +57,8 @@ def sentences(content):
     p, figures, game = content["protocol"], content["figures"], content["game"]
     unit = _unit(content)
     plural = "frames" if p["best_of"] == 1 else f"matches, each the best of {p['best_of']} frames"
-    fewer = ", ".join(f"{n:,} with {label}" for label, n in p["fewer"].items())
     notes = [
-        f"Each pair plays {p['matches']:,} {plural}{f' ({fewer})' if fewer else ''}: two on each seed, each player breaking first in one.",
+        f"Each pair plays {p['matches']:,} {plural}: two on each seed, each player breaking first in one.",
         "Options: " + ", ".join(f"{name}={value}" for name, value in game.items()) + ".",
         f"Who breaks first wins {shown(figures['opener'], 100.0)} %. Frames that were stopped, half for each: {figures['stopped']:,}.",
         "An average break is the points of a player's own pots, for each visit to the table. Intervals are 95 % bootstrap intervals over "

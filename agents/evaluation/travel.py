@@ -13,7 +13,7 @@ from snooker_env.players.resolver import is_name
 from .entrants import Entrant
 
 
-def sent(entrant, k):
+def pack(entrant, k):
     """The run ``k`` of an ``Entrant`` as data: a dict of texts, lists and bytes."""
     from ..learning.models import file_of, pretrained
 
@@ -27,11 +27,11 @@ def sent(entrant, k):
     return made | {"trust": entrant.trust, "options": [list(pair) for pair in entrant.options]}
 
 
-def arrived(agent):
-    """The player of what ``sent`` made."""
+def unpack(agent):
+    """The player of what ``pack`` made."""
     run = agent["run"]
     if agent["model"] is not None:
-        run += _unpacked(agent["model"], agent["suffix"])
+        run += _write_model(agent["model"], agent["suffix"])
     one_thread(run)
     return Entrant(run, (run,), agent["trust"], tuple(map(tuple, agent["options"]))).player(0)
 
@@ -54,7 +54,7 @@ def _folder():
 
 
 @cache
-def _unpacked(model, suffix):
+def _write_model(model, suffix):
     """The path of a file with these bytes, for the life of this process."""
     file = _folder() / f"{hashlib.sha256(model).hexdigest()[:32]}{suffix}"
     write_atomic(file, model)

@@ -11,7 +11,7 @@ import numpy as np
 from commands.physics_option import physics_option
 from snooker_env.benchmark import PlayedStrokes, play_visits
 
-from .travel import arrived
+from .travel import unpack
 
 SIZE = 100
 """Visits of a part."""
@@ -19,7 +19,7 @@ COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "to
 
 
 def parts_of(sent, k, condition, seeds, rekey) -> list[tuple[dict, dict[str, Any]]]:
-    """The parts of the run ``k`` of an agent, of ``travel.sent``, under a condition."""
+    """The parts of the run ``k`` of an agent, of ``travel.pack``, under a condition."""
     same = {"k": k, "condition": condition, "rekey": rekey}
     return [(sent, same | {"seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]
 
@@ -28,7 +28,7 @@ def play(shared, args, threads):
     """The task: the strokes of some visits, a dict of arrays."""
     k, seeds = args["k"], args["seeds"]
     options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
-    one, rekey = arrived(shared), k if args["rekey"] else None
+    one, rekey = unpack(shared), k if args["rekey"] else None
     options |= {"first_seed": seeds, "seed": k, "threads": threads, "rekey": rekey}
     strokes = play_visits(one, len(seeds), **options)
     columns = {name: getattr(strokes, name) for name in COLUMNS}

@@ -60,7 +60,7 @@ class FastPPO(MaskablePPO):
             order = np.random.permutation(n)  # noqa: NPY002 - as SB3: a checkpoint holds its state
             for start in range(0, n, self.batch_size or n):
                 rows = order[start : start + (self.batch_size or n)]
-                scaled[rows] = self._normalised(advantages[rows])
+                scaled[rows] = self._normalise(advantages[rows])
                 fused.zero_grad()
                 figures.append(fused.ppo_gradient(rows, rollout, loss))
                 gradient = fused.gradient
@@ -69,7 +69,7 @@ class FastPPO(MaskablePPO):
             self._n_updates += 1
         self._report(np.array(figures), clip)
 
-    def _normalised(self, advantages):
+    def _normalise(self, advantages):
         """The advantages of a minibatch with mean 0 and deviation 1. A single one stays as it is."""
         if not self.normalize_advantage or len(advantages) < 2:
             return advantages

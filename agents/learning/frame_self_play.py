@@ -91,7 +91,7 @@ def frames(shared, args, threads):
         return strokes
 
     tables = play_frames(rules, args["seed"], many, act, other, threads)
-    played = _followed(_joined(rows), tables)
+    played = _follow(_joined(rows), tables)
     played["equals"] = np.full(len(played["won"]), other is None)
     return _with(played, _joined(beside)) if beside else played
 
@@ -172,7 +172,7 @@ def _seen_by_strikers(tables, which):
     return Positions(tables.positions[which], tables.on_table[which], strikers_own(tables.game[which]), saved)
 
 
-def _followed(rows, tables):
+def _follow(rows, tables):
     """The rows, with what followed each stroke."""
     frame, striker, before = rows["frame"], rows["striker"], rows.pop("before")
     after = np.full(len(frame), -1)

@@ -32,7 +32,7 @@ from snooker_env.players.weights import STROKES, StrokeLayers, layers_of
 
 from .hyperparameters import changes_of
 from .rounds import Perceptron, Rounds, arrays_of, descend, shares_of_parts
-from .stroke_frames import frames_tried
+from .stroke_frames import try_frames
 
 AGENT = "stroke_value"
 STROKES_EACH, PARTS = 8, 8
@@ -100,7 +100,7 @@ def fitted(seen, worth, table, seed, passes, seems=None):
     return layers, figures
 
 
-def visits_tried(layers, noise, cue, seeds, rng):
+def try_visits(layers, noise, cue, seeds, rng):
     """Visits from the tables ``seeds``: what is seen of the strokes tried, float16 (n, k, SIZE), their worth [points],
     float32 (n, k), and the seeds of the tables on which the visits began (n,)."""
     n, env = len(seeds), sn.SnookerVectorEnv(len(seeds), layout="opened", **VISITS, noise=noise, cue=cue)
@@ -230,7 +230,7 @@ class VisitRounds(StrokeRounds):
     """The visits of ``stroke_value``."""
 
     def tried_on(self, noise, part, seeds, rng):
-        return visits_tried(self.layers, noise, self.settings.cue, seeds, rng)
+        return try_visits(self.layers, noise, self.settings.cue, seeds, rng)
 
 
 class FrameRounds(StrokeRounds):
@@ -241,7 +241,7 @@ class FrameRounds(StrokeRounds):
     def tried_on(self, noise, part, seeds, rng):
         learned, other = StrokeLayers(self.visits.layers, self.layers), AGAINST[part % len(AGAINST)]
         tried = BEST, OTHERS, ERRORS, EXPLORE, AMONG
-        return frames_tried(learned, noise, self.settings.cue, seeds, other, tried, rng, processors())
+        return try_frames(learned, noise, self.settings.cue, seeds, other, tried, rng, processors())
 
     def seems(self, seen):
         return POINTS * seen[..., 0]

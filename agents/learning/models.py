@@ -82,7 +82,7 @@ def _simulated(path):
     return shots if isinstance(shots, int) else None
 
 
-def zipped(model):
+def zip_model(model):
     """An SB3 model as the bytes of its zip file."""
     file = io.BytesIO()
     model.save(file)

@@ -49,7 +49,7 @@ def read_policy(path, field):
         many = next(k for k in count() if f"weight_{k}" not in arrays)
         layers = [(arrays[f"weight_{k}"], arrays[f"bias_{k}"]) for k in range(many)]
         _check_layers(layers)
-        return _described(about, layers)
+        return _describe(about, layers)
     except (ValueError, KeyError, TypeError, OSError) as error:
         wanted = "must be a policy's .npz: weights of layers from the flat observation to the choices"
         why = " ".join(str(error).split())[:200]
@@ -70,7 +70,7 @@ def _check_layers(layers):
         raise ValueError(f"the last layer gives {size} numbers and not {CHOICES}")
 
 
-def _described(about, layers):
+def _describe(about, layers):
     if not isinstance(about, dict) or set(about) != set(ABOUT):
         raise ValueError(f"about has not the keys {', '.join(ABOUT)}")
     if not isinstance(about["trainer"], str) or not isinstance(about["env_options"], dict):

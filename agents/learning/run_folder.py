@@ -8,19 +8,19 @@ import numpy as np
 import torch
 from stable_baselines3.common.save_util import load_from_zip_file
 
-from commands.files import UNFINISHED, read_json, sealed, unsealed, with_checksum, write_atomic, write_json
+from commands.files import UNFINISHED, read_json, seal, unseal, with_checksum, write_atomic, write_json
 from commands.lock import NAME as LOCK
 from commands.lock import Lock
 from snooker_env.checks import refuse
 
 from .hyperparameters import algorithm_class
-from .models import CHECKPOINT, zipped
+from .models import CHECKPOINT, zip_model
 
 SETTINGS = "settings.json"
 """What the run was asked for: a folder that holds it is that of a run."""
 
 
-def claimed(out, resume):
+def claim(out, resume):
     """The ``Lock`` on the folder of a new run (made here) or of one to resume. ValueError if it is unfit."""
     if not (out / LOCK).exists():
         _check(out, resume)
@@ -71,11 +71,11 @@ def kept_settings(out, kind):
 def save_checkpoint(out, model, parts):
     """Save the state of parts, model, tables and random generators: a resumed run equals an uninterrupted one."""
     tables = model.get_env()
-    state = {"parts": [part.get_state() for part in parts], "model": zipped(model)}
+    state = {"parts": [part.get_state() for part in parts], "model": zip_model(model)}
     state |= {"tables": tables.env_method("get_state"), "running": tables.running}
     # SB3 draws from the global generator
     state["random"] = np.random.get_state(), torch.get_rng_state(), model.action_space  # noqa: NPY002
-    write_atomic(out / CHECKPOINT, sealed(pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL), CHECKPOINT))
+    write_atomic(out / CHECKPOINT, seal(pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL), CHECKPOINT))
 
 
 def _stale(out):
@@ -92,7 +92,7 @@ def read_checkpoint(out):
     if not (out / CHECKPOINT).is_file():
         return None
     try:
-        state = pickle.loads(unsealed((out / CHECKPOINT).read_bytes(), CHECKPOINT))
+        state = pickle.loads(unseal((out / CHECKPOINT).read_bytes(), CHECKPOINT))
         data, *_ = load_from_zip_file(io.BytesIO(state["model"]), device="cpu")
         if not state.keys() >= {"parts", "tables", "running", "random"}:
             raise KeyError

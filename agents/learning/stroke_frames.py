@@ -14,7 +14,7 @@ from snooker_env.players.tactician import Tactician
 from .frame_self_play import play_frames
 
 
-def frames_tried(learned, noise, cue, seeds, other, tried, rng, threads):
+def try_frames(learned, noise, cue, seeds, other, tried, rng, threads):
     """Frames from the tables ``seeds``, of it with the layers ``learned`` against ``other``: the name of a player; None:
     itself, and both sides count. ``tried``: how many strokes that seem best are tried, how many others, errors of each,
     the share of strokes played that are not the best, and among how many best these are.

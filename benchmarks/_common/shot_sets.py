@@ -49,7 +49,7 @@ class Shots:
         v, w = np.zeros((n, b, 2)), np.zeros((n, b, 3))
         noise, rng = Noise.of("none" if seed is None else errors), np.random.default_rng(seed)
         for k, (speed, line, side, top) in enumerate(self.stroke):
-            speed, side, top, line, elevation = _executed(speed, side, top, line, noise, rng)
+            speed, side, top, line, elevation = _execute(speed, side, top, line, noise, rng)
             inside = max(1.0, hypot(side, top) / self.physics.max_offset)  # as in the environment, no miscues
             side, top = side / inside, top / inside
             v3, w[k, 0] = sn.strike(speed, line + aim, side, top, elevation, self.physics)
@@ -57,7 +57,7 @@ class Shots:
         return v, w
 
 
-def _executed(speed, side, top, aim, noise, rng):
+def _execute(speed, side, top, aim, noise, rng):
     """A level stroke with the errors of a ``Noise``, five numbers of ``rng``; its elevation comes last."""
     if noise.silent:
         return speed, side, top, aim, 0.0
@@ -74,12 +74,12 @@ def _inside(place, margin=0.01):
     return room.all() and np.hypot(*(POCKET_AIMS[:, :2] - place).T).min() > 0.1
 
 
-def _turned(d, angle):
+def _turn(d, angle):
     c, s = np.cos(angle), np.sin(angle)
     return np.array([c * d[0] - s * d[1], s * d[0] + c * d[1]])
 
 
-def _settled(positions, stroke, ball, target, physics):
+def _settle(positions, stroke, ball, target, physics):
     """Turn the aims until each object ball leaves towards its target; the shots that did."""
     pair = np.stack([positions[:, 0], positions[np.arange(len(ball)), ball]], 1)
     line = target - pair[:, 1]
@@ -98,7 +98,7 @@ def _settled(positions, stroke, ball, target, physics):
     return Shots(positions[good], stroke[good], ball[good], physics)
 
 
-def _joined(parts, n):
+def _join(parts, n):
     positions, stroke, ball = (
         np.concatenate([getattr(p, a) for p in parts])[:n] for a in ("positions", "stroke", "ball")
     )
@@ -148,7 +148,7 @@ def two_ball(
                 continue
             d /= far
             angle = np.radians(rng.uniform(*cut)) * rng.choice([-1.0, 1.0])
-            layout[0], layout[1] = b - 2 * R * d - rng.uniform(0.25, 1.3) * _turned(d, angle), b
+            layout[0], layout[1] = b - 2 * R * d - rng.uniform(0.25, 1.3) * _turn(d, angle), b
             if not _inside(layout[0]):
                 continue
             possible = pots(layout, on_table, 2)
@@ -156,11 +156,11 @@ def two_ball(
                 found.append(layout[:2])
                 targets.append(POCKET_AIMS[k, :2])
         parts.append(
-            _settled(
+            _settle(
                 np.array(found), _strokes(rng, n, speed, spin), np.ones(n, int), np.array(targets), physics
             )
         )
-    return _joined(parts, n)
+    return _join(parts, n)
 
 
 def full_table(n, physics, seed=0, *, speed=(1.0, 4.5)):
@@ -178,11 +178,11 @@ def full_table(n, physics, seed=0, *, speed=(1.0, 4.5)):
                 balls.append(int(row[0]))
                 targets.append(POCKET_AIMS[int(row[1]), :2])
         parts.append(
-            _settled(
+            _settle(
                 np.array(found), _strokes(rng, n, speed, 1.0), np.array(balls), np.array(targets), physics
             )
         )
-    return _joined(parts, n)
+    return _join(parts, n)
 
 
 def kicks(n, physics, seed=0, *, speed=(1.5, 4.0)):

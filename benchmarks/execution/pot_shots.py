@@ -12,7 +12,7 @@ from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.table import UNBOUNDED
 from snooker_env.tasks.noise import POT_SPEED, Noise
 
-from .._common.shot_sets import R, Shots, _settled, _turned
+from .._common.shot_sets import R, Shots, _settle, _turn
 
 FIRM = 4.5
 """Cue speed [m/s] of the same pot struck firmly."""
@@ -43,10 +43,10 @@ class Pot:
     @property
     def positions(self):
         """(2, 2) [m]: cue ball, object ball."""
-        way = _turned(POCKET_AIMS[self.pocket, 2:4], radians(self.off))
+        way = _turn(POCKET_AIMS[self.pocket, 2:4], radians(self.off))
         ball, turn = POCKET_AIMS[self.pocket, :2] - self.run * way, radians(self.cut)
         path = sqrt(self.far**2 - (2 * R * np.sin(turn)) ** 2) - 2 * R * np.cos(turn)
-        return np.array([ball - 2 * R * way - path * _turned(way, turn), ball])
+        return np.array([ball - 2 * R * way - path * _turn(way, turn), ball])
 
     @property
     def gain(self):
@@ -144,7 +144,7 @@ def aimed(pot, physics, table, speed=None, in_off=False):
     """The pot with its stroke: no spin, ``speed`` [m/s] or as played."""
     start, aim_point = pot.positions, POCKET_AIMS[pot.pocket, :2]
     stroke = np.array([pot.speed if speed is None else speed, 0.0, 0.0, 0.0])
-    settled = _settled(start[None], stroke[None].copy(), np.ones(1, int), aim_point[None], physics)
+    settled = _settle(start[None], stroke[None].copy(), np.ones(1, int), aim_point[None], physics)
     if len(settled.ball) == 0:
         raise RuntimeError(f"no aim sends the ball of {pot.name!r} to its pocket")
     stroke, fan = settled.stroke[0], np.linspace(-REACH, REACH, FAN)
@@ -181,7 +181,7 @@ def rolls(shot, level, n, seed, physics, table):
     way = shot.stops - shot.meets
     way = way / max(hypot(*way), 1e-12)
     shift = (cue - shot.stops)[made]
-    return Rolls(made, np.column_stack([shift @ way, shift @ _turned(way, np.pi / 2)]))
+    return Rolls(made, np.column_stack([shift @ way, shift @ _turn(way, np.pi / 2)]))
 
 
 def directions(level, n, seed, physics, speed=POT_SPEED):

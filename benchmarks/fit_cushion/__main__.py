@@ -114,7 +114,7 @@ def fitted(misfit, free):
     return whole(min(found, key=lambda one: one.cost).x)
 
 
-def walked(misfit, steps, seed):
+def random_walk(misfit, steps, seed):
     """Metropolis steps: (steps, 5) values as probable as their squares say, uniform within their bounds."""
     rng = np.random.default_rng(seed)
     here, out = START_AT.copy(), np.empty((steps, len(NAMES)))
@@ -196,7 +196,7 @@ def main():
             np.arange(4.0, HIGH[3], 0.05), key=lambda v, at=values: np.sum(misfit((*at[:3], v, at[4])) ** 2)
         )
         fits[name] = values
-    walk = walked(misfit, options.steps, options.seed)
+    walk = random_walk(misfit, options.steps, options.seed)
     left_open = print_constants(misfit, fits, walk)
     print_measurements(misfit, fits["shipped"])
     print_pool(misfit)

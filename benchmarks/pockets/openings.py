@@ -1,15 +1,12 @@
-"""How large are the pockets' openings, what passes them without touching a jaw, and what if they were a
-little larger?"""
+"""How large are the pockets' openings, and what passes them without touching a jaw?"""
 
 from math import cos, sin, sqrt
 
 import numpy as np
 
-import snooker_env as sn
-from snooker_env.geometry import HALF_WIDTH, POCKET_AIMS
 from snooker_env.physics.engine import EventKind
 
-from .windows import Engine, drops, played, strokes
+from .windows import drops, played, strokes
 
 PUBLISHED = (
     "published: a match pocket is 3 1/2 in (88.9 mm) wide at the fall of the slate, a club pocket 3 5/8 in (92.1), a wide one\n"
@@ -68,10 +65,10 @@ def clean(pocket, R):
     return openings(pocket)["throat"] / 2 - R
 
 
-def untouched(pocket, speeds, rolling, physics, engine=None, distance=0.3, halvings=30):
+def untouched(pocket, speeds, rolling, physics, distance=0.3, halvings=30):
     """The largest offset [m] at which a ball that runs along the axis drops without a jaw in its log, by
     speed."""
-    engine, speeds = engine or Engine(), np.asarray(speeds, float)
+    speeds = np.asarray(speeds, float)
     low, high = np.zeros(len(speeds)), np.full(len(speeds), 0.05)
 
     def free(s):
@@ -79,7 +76,6 @@ def untouched(pocket, speeds, rolling, physics, engine=None, distance=0.3, halvi
             pocket,
             strokes(pocket, s, 0.0, distance, speeds, rolling, False, physics),
             physics,
-            engine,
             log=32,
         )
         logged = np.arange(out.event_what.shape[1]) < out.n_events[:, None]
@@ -94,7 +90,7 @@ def untouched(pocket, speeds, rolling, physics, engine=None, distance=0.3, halvi
     return low
 
 
-def all_clean_drop(pocket, speeds, physics, engine=None, distance=0.3, n=41):
+def all_clean_drop(pocket, speeds, physics, distance=0.3, n=41):
     """Do all balls within the clean opening drop, at every speed, rolling or not?"""
     most = clean(pocket, physics.R)
     s = np.linspace(-most, most, n)[:, None, None] * (1 - 1e-9)
@@ -106,22 +102,6 @@ def all_clean_drop(pocket, speeds, physics, engine=None, distance=0.3, n=41):
             np.asarray(speeds)[:, None],
             np.array([True, False]),
             physics,
-            engine or Engine(),
             s,
         ).all()
     )
-
-
-def moved(table, fall=0.0, throat=0.0):
-    """A preset with its falls further out by ``fall`` [m] along the axes of the pockets, and its throats
-    wider by ``throat`` [m]."""
-    noses, jaws, falls = table.noses.copy(), table.jaws.copy(), table.falls.copy()
-    falls[:, :2] += fall * POCKET_AIMS[:, 2:4]
-    corner, middle = throat / sqrt(2), throat / 2  # by how much the arcs move along their rails
-    for nose in noses:
-        nose[3] += middle if abs(nose[3]) < 0.5 else corner
-        nose[4] -= middle if abs(nose[4]) < 0.5 else corner
-    for jaw in jaws:
-        along = 1 if abs(jaw[0]) > HALF_WIDTH else 0  # is it on a long rail?
-        jaw[along] += np.sign(jaw[along]) * (middle if along and abs(jaw[1]) < 0.5 else -corner)
-    return sn.Table(f"{table.name}, moved", noses, jaws, falls)

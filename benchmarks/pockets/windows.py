@@ -9,7 +9,7 @@ missed. Nothing is random and nothing is timed.
 """
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,14 +35,6 @@ AT_POCKET = 0.25
 NEAR = 0.05
 """A ball that would stop less than this [m] past the aim point is not counted as arriving: its speed decides,
 not the pocket."""
-
-
-@dataclass(frozen=True)
-class Engine:
-    """What plays the shots: ``simulation._run`` of the product or of a copy, and the code of a fidelity."""
-
-    run: object = simulation._run
-    code: int = STANDARD
 
 
 class Paths(NamedTuple):
@@ -93,11 +85,6 @@ def alone(table, pocket):
     return LonePocket(here, (float(ax), float(ay)), float(np.arctan2(uy, ux)))
 
 
-def along(pocket, x, y, direction):
-    """The same pocket, aimed at from elsewhere: through (x, y), in that direction [rad]."""
-    return replace(pocket, aim=(x, y), axis=direction)
-
-
 def reach(speed, rolling, physics):
     """How far [m] a ball goes on free cloth."""
     roll = 0.5 / (physics.mu_r * physics.g)
@@ -117,18 +104,18 @@ def strokes(pocket, s, angle, distance, speed, rolling, turned, physics):
     return np.stack([x, y], -1), np.stack([vx, vy], -1), np.stack([-vy * roll, vx * roll, 0.0 * vx], -1)
 
 
-def played(pocket, start, physics, engine, log=0):
+def played(pocket, start, physics, log=0):
     """Play the strokes, one ball each: which drop, which start in a cushion (and are not played), and the run
     itself."""
     r, v, w = (np.ascontiguousarray(a)[:, None] for a in start)
     here = np.ones((len(r), 1), bool)
     here[pocket.table.unfit(r, physics.R)] = False
     threads = os.cpu_count() or 1
-    out = engine.run(
+    out = simulation._run(
         [r, v, w, here.copy()],
         physics,
         pocket.table,
-        (engine.code, 0),
+        (STANDARD, 0),
         10_000,
         simulation.log_space(len(r), log, 0),
         threads,
@@ -138,13 +125,13 @@ def played(pocket, start, physics, engine, log=0):
     return (out.potted[:, 0] >= 0) & here[:, 0], ~here[:, 0], out
 
 
-def drops(pocket, angle, distance, speed, rolling, physics, engine, s):
+def drops(pocket, angle, distance, speed, rolling, physics, s):
     """Does the ball on each path drop, shifted by s? Arrays, or numbers."""
     s, angle, distance, speed, rolling = np.broadcast_arrays(s, angle, distance, speed, rolling)
     start = strokes(
         pocket, s.ravel(), angle.ravel(), distance.ravel(), speed.ravel(), rolling.ravel(), False, physics
     )
-    return played(pocket, start, physics, engine)[0].reshape(s.shape)
+    return played(pocket, start, physics)[0].reshape(s.shape)
 
 
 @dataclass(frozen=True)
@@ -163,25 +150,22 @@ class Windows:
     """Does a piece end where the ball would start in a cushion?"""
 
 
-def windows(pocket, paths, physics, engine=None, half=None, scan=SCAN):
-    """The windows of ``Paths``. half: how far the scan goes to either side."""
-    engine = engine or Engine()
+def windows(pocket, paths, physics):
+    """The windows of ``Paths``."""
     angle, distance, speed, rolling, turned = np.broadcast_arrays(*paths)
     shape, n = angle.shape, angle.size
     angle, distance, speed, rolling, turned = (a.ravel() for a in (angle, distance, speed, rolling, turned))
-    if half is None:
-        half = np.where(turned, np.arctan2(REACH, distance), REACH)
-    half = np.broadcast_to(half, n)
-    grid = half[:, None] * np.linspace(-1.0, 1.0, scan)
+    half = np.where(turned, np.arctan2(REACH, distance), REACH)
+    grid = half[:, None] * np.linspace(-1.0, 1.0, SCAN)
 
     def pots(s, case):
         """Who drops, and who starts in a cushion."""
         start = strokes(
             pocket, s, angle[case], distance[case], speed[case], rolling[case], turned[case], physics
         )
-        return played(pocket, start, physics, engine)[:2]
+        return played(pocket, start, physics)[:2]
 
-    hit = pots(grid.ravel(), np.repeat(np.arange(n), scan))[0].reshape(n, scan)
+    hit = pots(grid.ravel(), np.repeat(np.arange(n), SCAN))[0].reshape(n, SCAN)
     if hit[:, [0, -1]].any():
         raise RuntimeError("a window is wider than the scan")
     # each end of each run: between the points left and left + 1

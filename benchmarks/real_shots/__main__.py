@@ -1,6 +1,6 @@
 """How near does the engine come to the paths of real balls? Tracked three-cushion shots, of which only the strike is fitted.
 
-    python -m benchmarks.real_shots FILE [--physics carom] [--laws] [--peer] [--fit MINUTES] [--json FILE] [--out FOLDER]
+    python -m benchmarks.real_shots FILE [--physics carom] [--fit MINUTES] [--json FILE] [--out FOLDER]
 
 FILE holds shots in metres and seconds (``tracks.py`` says the form). Those of the figures kept here were digitised at 50 Hz
 from one match (December 2022); they are published under the GPL by github tailuge/billiards (dist/fit/trajectories.json)
@@ -13,8 +13,7 @@ on half of the shots, those of even id (``--fit`` makes it anew from the even id
 Error of a path: at the time of each sample, the distance between the measured and the simulated ball; of a shot the root
 mean square over its samples (and the mean). Samples that no ball can have reached are left out (their number is
 printed). Contacts: of the cue ball with cushions, and the first with each ball; the order is right if the first four
-are the same ones in the same order; two within 0.03 s may change places. ``--laws`` leaves out one law after the other, on the held-out
-shots, every strike searched again around the one that was. ``--peer`` plays them with pooltool too (in a virtual environment of its own).
+are the same ones in the same order; two within 0.03 s may change places.
 """
 
 import dataclasses
@@ -23,16 +22,14 @@ from pathlib import Path
 import numpy as np
 
 from commands import provenance
-from commands.files import read_json
 from commands.tables import text_table
 from snooker_env.physics.parameters import PRESETS, Physics
 
 from .._common.command import Command, at_least, run, save_json
-from . import constants, left_out, picture, tracks, verdict
+from . import constants, tracks, verdict
 from .paths import Judge
 from .strikes import fit
 
-FILE = "real_shots.png"
 USED, HELD_OUT = "used for the constants", "held out"
 
 
@@ -43,30 +40,14 @@ def part(number):
 
 def main(argv=None):
     """Command line."""
-    parser = Command("real_shots", __doc__, pictures=(FILE,), seed=0)
+    parser = Command("real_shots", __doc__, seed=0)
     parser.add_argument("file", type=Path, metavar="FILE", help="the tracked shots, JSON")
     parser.add_argument(
         "--physics", default="carom", choices=sorted(PRESETS), help="the constants of all shots [carom]"
     )
     parser.add_argument("--shots", type=at_least(1), metavar="N", help="only the first N shots")
     parser.add_argument(
-        "--laws", action="store_true", help="leave out one law after the other (some minutes)"
-    )
-    parser.add_argument(
-        "--peer", action="store_true", help="play the held-out shots with pooltool too (many minutes)"
-    )
-    parser.add_argument(
         "--fit", type=float, metavar="MINUTES", help="fit the constants anew, for so long, and judge those"
-    )
-    parser.add_argument(
-        "--strikes", type=Path, metavar="FIGURES", help="search none, take those that --json wrote"
-    )
-    parser.add_argument(
-        "--peer-shots",
-        type=at_least(1),
-        default=20,
-        metavar="N",
-        help="only so many of them by pooltool [20]",
     )
     options = parser.options(argv)
     try:
@@ -74,11 +55,7 @@ def main(argv=None):
     except ValueError as error:
         parser.error(str(error))
     shots = shots[: options.shots]
-    figures, judges, strikes = measure(options, shots)
-    save_json(options.json, figures)
-    if options.pictures:
-        picture.draw(figures, judges, strikes, options.folder / FILE)
-        print(f"\n{options.folder / FILE}")
+    save_json(options.json, measure(options, shots))
 
 
 def constants_of(options):
@@ -88,7 +65,7 @@ def constants_of(options):
 
 
 def measure(options, shots):
-    """Measure and print everything; the figures, and each shot's judge and strike."""
+    """Measure and print everything; the figures."""
     print(provenance.line())
     physics = constants_of(options)
     if options.fit:
@@ -101,15 +78,10 @@ def measure(options, shots):
     print(
         f"{len(shots)} shots of {options.file.name}, physics {'fitted anew' if options.fit else repr(options.physics)}"
     )
-    judges, strikes, found, kept = [], [], [], {}
-    if options.strikes:
-        for old in read_json("strikes", options.strikes, "must be what --json wrote")["shots"]:
-            kept[old["id"]] = np.array(list(old["strike"].values()))
+    found = []
     for shot in shots:
         judge = Judge(shot, physics)
-        strike = kept[shot.id] if shot.id in kept else fit(judge, options.seed)[0]
-        judges.append(judge)
-        strikes.append(strike)
+        strike = fit(judge, options.seed)[0]
         found.append({"part": part(shot.id)} | verdict.judge_shot(judge, strike))
     figures = {
         "machine": provenance.machine(),
@@ -119,11 +91,7 @@ def measure(options, shots):
         "medians": {name: verdict.medians(rows) for name, rows in parts(found).items()},
     }
     say(figures)
-    if options.laws:
-        figures["laws"] = laws(judges, strikes, found, physics, options.seed)
-    if options.peer:
-        figures["peer"] = peer(judges, strikes, found, physics, options.peer_shots)
-    return figures, judges, strikes
+    return figures
 
 
 def parts(found):
@@ -157,51 +125,6 @@ def say(figures):
                 f"{len(errors)} runs {word} across (from a cushion to the opposite one and back, nothing between): while it lasts the cue"
                 f" ball is {100 * np.median(errors):.1f} cm off (median)"
             )
-
-
-def laws(judges, strikes, found, physics, seed):
-    """Leave out each law on the held-out shots: the medians, printed and returned."""
-    chosen = [k for k, s in enumerate(found) if s["part"] == HELD_OUT]
-    full = [found[k]["cue_rms"] for k in chosen]
-    rows = {"all of them": {"median": float(np.median(full)), "worse": 0.0}}
-    for name, (without, level) in left_out.laws(physics).items():
-        errors = [left_out.without(judges[k], strikes[k], without, level, seed) for k in chosen]
-        worse = float(np.mean(np.array(errors) > np.array(full)))
-        rows[name] = {"median": float(np.median(errors)), "worse": worse}
-    for k in chosen:
-        judges[k].use(physics)
-    print(f"\nWithout one law, {len(chosen)} shots held out, every strike searched again")
-    print(
-        "\n".join(
-            text_table(
-                ["left out", "error [cm]", "shots worse"],
-                [[n, f"{100 * r['median']:.1f}", f"{r['worse']:.0%}"] for n, r in rows.items()],
-            )
-        )
-    )
-    return rows
-
-
-def peer(judges, strikes, found, physics, most):
-    """The same shots by pooltool: medians by its models, printed and returned; None if it cannot be installed."""
-    from ..speed.against_pooltool import PeerError
-    from . import against_pooltool
-
-    chosen = [k for k, s in enumerate(found) if s["part"] == HELD_OUT][:most]
-    try:
-        rows = against_pooltool.play([judges[k] for k in chosen], [strikes[k] for k in chosen], physics)
-    except PeerError as error:
-        print(f"\npooltool: left out, {error}")
-        return None
-    ours = float(np.median([found[k]["cue_rms"] for k in chosen]))
-    cells = [["this engine, preset", f"{100 * ours:.1f}", ""]]
-    for name, row in rows.items():
-        errors = [e for e in row["cue_rms"] if e is not None]
-        row["median"] = float(np.median(errors))
-        cells.append([name, f"{100 * row['median']:.1f}", str(row["failed"])])
-    print(f"\n{len(chosen)} shots held out by pooltool, its strikes fitted from ours")
-    print("\n".join(text_table(["engine", "error [cm]", "failed"], cells)))
-    return rows
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 from .paths import Judge
-from .strikes import SCALE, bounds, clipped, costs, fit, refit, settled, weights
+from .strikes import SCALE, bounds, clip, costs, fit, refit, settled, weights
 
 SEARCHED = {
     "mu_s": (0.06, 0.40),
@@ -91,7 +91,7 @@ def step(judges, strikes, physics, names, damping):
     return change, [-(s[:, p] + s[:, :p] @ change) for s in kept], curvature
 
 
-def _tried(judges, strikes, physics):
+def _try(judges, strikes, physics):
     """Strikes settled with these constants, and their errors [m]."""
     found = []
     for judge, strike in zip(judges, strikes, strict=True):
@@ -106,7 +106,7 @@ def fitted(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=print, st
     low, high = (np.array([SEARCHED[name][k] for name in names]) for k in (0, 1))
     judges = [Judge(shot, physics) for shot in shots]
     strikes = [fit(judge, seed, runs=2)[0] for judge in judges] if strikes is None else strikes
-    strikes, errors = _tried(judges, strikes, physics)
+    strikes, errors = _try(judges, strikes, physics)
     best = loss(errors)
     say(f"start: {100 * best:.3f} median {100 * np.median(errors):.2f} cm")
     damping, rounds = 0.1, 0
@@ -121,7 +121,7 @@ def fitted(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=print, st
             moved = []
             for judge, strike, move in zip(judges, strikes, moves, strict=True):
                 lo, hi = bounds(judge.shot, other)
-                moved.append(clipped((strike + share * move * SCALE)[None], lo, hi)[0])
+                moved.append(clip((strike + share * move * SCALE)[None], lo, hi)[0])
             # of each shot the better of both: the strike that was, and the one that was moved
             for judge in judges:
                 judge.use(other)
@@ -129,7 +129,7 @@ def fitted(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=print, st
                 min((s, m), key=lambda x, j=judge: float(costs(j, x[None])[0]))
                 for judge, s, m in zip(judges, strikes, moved, strict=True)
             ]
-            found, errors = _tried(judges, moved, other)
+            found, errors = _try(judges, moved, other)
             if loss(errors) < best:
                 physics, strikes, best, better = other, found, loss(errors), True
                 break

@@ -39,9 +39,9 @@ def costs(judge, strikes, horizon=np.inf, cap=1.0, others=OTHERS, **how):
     return found
 
 
-def bounds(shot, physics, level=False):
+def bounds(shot, physics):
     """Lowest and highest strikes (6,) that are searched, from the first samples; side and top lie in a disc
-    besides. ``level``: the cue is not raised."""
+    besides."""
     cue = shot.balls[0]
     first = shot.contacts[0][0] if shot.contacts else cue.t[-1]
     moving = cue.t >= shot.moved
@@ -62,10 +62,10 @@ def bounds(shot, physics, level=False):
     turn += 0.004 / max(np.hypot(*gone), 0.03)
     most = physics.max_offset
     low = np.array([slowest, aim - turn, -most, -most, 0.0, max(shot.still, shot.moved - 0.06)])
-    return low, np.array([fastest, aim + turn, most, most, 0.0 if level else MOST_ELEVATION, shot.moved])
+    return low, np.array([fastest, aim + turn, most, most, MOST_ELEVATION, shot.moved])
 
 
-def clipped(strikes, low, high):
+def clip(strikes, low, high):
     """Strikes (b, 6) moved into the bounds, tips on to the disc."""
     found = np.clip(strikes, low, high)
     offset = np.hypot(found[:, SIDE], found[:, TOP])
@@ -76,7 +76,7 @@ def clipped(strikes, low, high):
     return found
 
 
-def _drawn(rng, low, high, n):
+def _draw(rng, low, high, n):
     found = rng.uniform(low, high, (n, 6))
     radius, angle = high[SIDE] * np.sqrt(rng.uniform(0, 1, n)), rng.uniform(-np.pi, np.pi, n)
     found[:, SIDE], found[:, TOP] = radius * np.cos(angle), radius * np.sin(angle)
@@ -99,7 +99,7 @@ def horizons(shot):
 def evolve(judge, rng, low, high, population=96, generations=12, first=5):
     """A population of strikes fitted with longer and longer horizons: (population, 6) and their costs."""
     steps = horizons(judge.shot)
-    pool = _drawn(rng, low, high, first * population)
+    pool = _draw(rng, low, high, first * population)
     cap = 0.15
     cost = costs(judge, pool, steps[0], cap, max_events=judge.events_until(pool[:48], steps[0]), fast=True)
     best = np.argsort(cost)[:population]
@@ -120,7 +120,7 @@ def evolve(judge, rng, low, high, population=96, generations=12, first=5):
             trial = pool + f * (leader - pool) + f * (a - b)
             trial += rng.normal(0, 0.02, (n, 6)) * SCALE
             keep = rng.uniform(size=(n, 6)) > 0.9
-            trial = clipped(np.where(keep, pool, trial), low, high)
+            trial = clip(np.where(keep, pool, trial), low, high)
             found = costs(judge, trial, horizon, cap_now, **how)
             better = found < cost
             pool[better], cost[better] = trial[better], found[better]
@@ -134,7 +134,7 @@ def refine(judge, rng, start, low, high, sigma=0.5, generations=40, population=1
     best, best_cost = start.copy(), float(costs(judge, start[None], np.inf, cap, others)[0])
     search = Cma(rng, start, scale, sigma, population)
     for _ in range(generations):
-        x = clipped(search.ask(), low, high)
+        x = clip(search.ask(), low, high)
         cost = costs(judge, x, np.inf, cap, others)
         k = int(np.argmin(cost))
         if cost[k] < best_cost:
@@ -169,7 +169,7 @@ def settled(judge, strike, steps=4):
             B = A.copy()
             B[np.diag_indices(6)] += damping * np.diag(A) + 1e-12
             tried.append(best - np.linalg.solve(B, g) * SCALE)
-        tried = clipped(np.array(tried), low, high)
+        tried = clip(np.array(tried), low, high)
         found = costs(judge, tried)
         k = int(np.argmin(found))
         if found[k] > 0.999 * cost:
@@ -178,14 +178,14 @@ def settled(judge, strike, steps=4):
     return best, cost
 
 
-def fit(judge: Judge, seed=0, runs=3, enough=0.03, bad=0.1, level=False):
+def fit(judge: Judge, seed=0, runs=3, enough=0.03, bad=0.1):
     """The strike of a shot, from nothing but its samples: (6,), and its cost [m^2].
 
     Searched anew up to ``runs`` times, until the cost is below ``enough`` squared or the best was found twice; three times
     as often while it is above ``bad`` squared.
     """
     rng = np.random.default_rng([seed, judge.shot.id])
-    low, high = bounds(judge.shot, judge.physics, level)
+    low, high = bounds(judge.shot, judge.physics)
     found = []
     for k in range(3 * runs):
         pool, cost = evolve(judge, rng, low, high)
@@ -208,14 +208,3 @@ def refit(judge, strike, seed=0, sigma=0.3, generations=25, population=12):
     rng = np.random.default_rng([seed, judge.shot.id])
     low, high = bounds(judge.shot, judge.physics)
     return refine(judge, rng, strike, low, high, sigma, generations, population)
-
-
-def refine_from(judge, strike, seed=0, level=False):
-    """The same from a strike that may lie farther off: searched around it with small and large steps."""
-    rng = np.random.default_rng([seed, judge.shot.id])
-    low, high = bounds(judge.shot, judge.physics, level)
-    start = clipped(strike[None], low, high)[0]
-    found = [refine(judge, rng, start, low, high, sigma, 30) for sigma in (0.5, 2.0, 6.0)]
-    best, _ = min(found, key=lambda f: f[1])
-    best, _ = settled(judge, best)
-    return refine(judge, rng, best, low, high, 1.0, 30)

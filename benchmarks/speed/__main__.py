@@ -1,11 +1,9 @@
-"""How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; where it goes;
-how it grows; the start.
+"""How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; the
+start.
 
-    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots breakdown start growth]
+    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots start]
     [--seed 0]
         [--json FILE] [--out FOLDER]
-    python -m benchmarks.speed --profile
-    python -m benchmarks.speed --against pooltool [--peer-shots 100]
     python -m benchmarks.speed --against COMMIT
 
 Times are kernel times on one core, each shot (or impact) timed by itself: one kernel plays the whole set in
@@ -16,15 +14,10 @@ there is no x86 counter, each shot is called from Python ``--repeats`` times, it
 call's own cost taken off. An event is one entry of the shot's log. Errors are against ``reference``, in units
 of the incoming speed.
 
-``breakdown``: see ``breakdown.py``; ``start``: ``first_shot.py``; ``growth``, with its picture:
-``growth.py``; ``--against pooltool`` (needs the network): ``against_pooltool.py``; ``--against COMMIT``:
-``against_commit.py``. With ``--profile`` or ``--against`` and no ``--parts``, only these are done.
+``start``: see ``first_shot.py``; ``--against COMMIT``: ``against_commit.py``. With ``--against`` and no ``--parts``, only this is done.
 """
 
-import tempfile
 import time
-from functools import partial
-from pathlib import Path
 
 import numpy as np
 
@@ -40,7 +33,7 @@ from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
 
 from .._common.command import Command, at_least, run, save_json
-from . import against_commit, against_pooltool, breakdown, clock, first_shot, growth
+from . import against_commit, clock, first_shot
 from .clock import time_shots
 
 R = 0.02625
@@ -54,9 +47,7 @@ GOALS = {
     "break-off": (450.0, 250.0),
 }
 """Microseconds at ``standard``: what must be reached and what is aimed at."""
-PEER_GOAL = (500, 1500)
-PARTS = ("impacts", "shots", "breakdown", "start", "growth")
-FILE = "speed.png"
+PARTS = ("impacts", "shots", "start")
 
 
 @entry(what="the benchmark of an impact", uses=(contact.collide_balls,))
@@ -208,9 +199,7 @@ def measure_shots(n, repeats, seed=0):
             )
             row["ns_event"] = 1e3 * row["mean"] / row["events"]
             for threads in (1, 2):
-                row[f"threads_{threads}"] = growth.per_shot(
-                    growth.kernel_call, shots_, threads, fidelity, repeats=repeats
-                )
+                row[f"threads_{threads}"] = clock.time_batch(*shots_, fidelity, threads, repeats)
             found[f"{kind} {fidelity}"] = row
             print(
                 f"  {kind:16s} {fidelity:10s} {row['median']:7.1f} ({row['median_low']:7.1f}, {row['median_high']:7.1f})"
@@ -219,32 +208,6 @@ def measure_shots(n, repeats, seed=0):
             )
             if fidelity == "standard":
                 print_goals(kind, row["median"])
-    return found
-
-
-def measure_breakdown(n, repeats, detailed, seed=0):
-    """Where the time of a mean shot goes."""
-    found: dict[str, dict] = {}
-    print(
-        f"\nWhere the time goes, `standard`, means over {n} shots, medians of {repeats} passes"
-        + ("" if detailed else " (--profile: each function)")
-    )
-    for kind in KINDS:
-        shots_ = shots(kind, n, seed)
-        of = breakdown.profile(*shots_, passes=repeats)
-        whole, pieces = of["kernel_us"], sum(row["us"] for row in of["rows"])
-        found[kind] = of | {"pieces_us": pieces, "remainder_us": whole - pieces}
-        rest = f"remainder {whole - pieces:+.2f} us ({whole / pieces - 1:+.0%})"
-        print(f"  {kind}: untouched kernel {whole:.2f} us, pieces {pieces:.2f} us, {rest}")
-        for group in breakdown.GROUPS:
-            rows = [row for row in of["rows"] if row["group"] == group]
-            us = sum(row["us"] for row in rows)
-            print(f"    {group:33s} {us:9.3f} us  {us / pieces:5.1%}")
-            for row in sorted(rows, key=lambda row: -row["us"]) if detailed else ():
-                each = f"{1e3 * row['us'] / row['calls']:7.0f} ns each" if row["calls"] else ""
-                print(
-                    f"      {row['piece']:31s} {row['us']:9.3f} us  {row['us'] / pieces:5.1%}  {row['calls']:8.2f} calls a shot {each}"
-                )
     return found
 
 
@@ -258,42 +221,6 @@ def measure_start():
         print(
             f"  {state:5s} cache  "
             + "   ".join(f"{step} {of[step][0]:.2f} ({of[step][1]:.2f})" for step in first_shot.STEPS)
-        )
-    return found
-
-
-def measure_against(n, repeats, seed=0):
-    """The same shots with pooltool, in its own process."""
-    sets = {kind: shots(kind, n, seed) for kind in KINDS}
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "shots.npz"
-        np.savez(
-            file,
-            allow_pickle=False,
-            **{f"{kind}_{part}": a for kind, of in sets.items() for part, a in zip("pvw", of, strict=True)},
-        )
-        theirs = against_pooltool.play(file, sn.Physics.preset("paper"))
-    found = {}
-    print(
-        f"\npooltool {against_pooltool.VERSION} on the same {n} shots of each kind, each by its own models; us a shot, medians; one core"
-    )
-    print(f"  ratio of the kernel: must {PEER_GOAL[0]}, aim {PEER_GOAL[1]}")
-    print(f"  {'':16s} {'pooltool':>10s} events failed   kernel  events    ratio   sn.simulate    ratio")
-    for kind, (p, v, w) in sets.items():
-        peer = theirs[kind]
-        row = {
-            "pooltool": float(np.median(peer["us"])),
-            "pooltool_events": float(np.median(peer["events"])),
-            "failed": peer["failed"],
-            "kernel": summary(time_shots(p, v, w, "standard", repeats))["median"],
-            "simulate": float(np.median([_simulate_seconds(*shot) for shot in zip(p, v, w, strict=True)]))
-            * 1e6,
-            "events": float(np.median(sn.simulate_batch(p, v, w, threads=1).event_count)),
-        }
-        found[kind] = row
-        print(
-            f"  {kind:16s} {row['pooltool']:10.0f} {row['pooltool_events']:6.0f} {row['failed']:6d} {row['kernel']:8.1f}"
-            f" {row['events']:7.0f} {row['pooltool'] / row['kernel']:8.0f} {row['simulate']:13.0f} {row['pooltool'] / row['simulate']:8.1f}"
         )
     return found
 
@@ -312,80 +239,27 @@ def measure_against_commit(commit, n, repeats, seed=0):
     return found
 
 
-def _simulate_seconds(p, v, w):
-    t = time.perf_counter()
-    sn.simulate(p, v, w)
-    return time.perf_counter() - t
-
-
 def main():
     """Command line."""
-    parser = Command("speed", __doc__, pictures=(FILE,), seed=0, redraws=True)
+    parser = Command("speed", __doc__, seed=0)
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots (and impacts) in a set")
     parser.add_argument("--repeats", type=at_least(1), default=7, help="passes over a set")
     parser.add_argument("--parts", nargs="+", choices=PARTS, help="only these")
-    parser.add_argument("--profile", action="store_true", help="the breakdown by function")
-    parser.add_argument(
-        "--against",
-        metavar="PEER",
-        help="pooltool, in a venv of its own, or a commit: play the same shots with it in turn",
-    )
-    parser.add_argument("--peer-shots", type=at_least(1), default=100, help="shots of each kind for the peer")
-    parser.add_argument("--largest-batch", type=at_least(1), default=65_536)
+    parser.add_argument("--against", metavar="COMMIT", help="play the same shots with a commit, in turn")
     options = parser.options()
-    if options.figures is not None:
-        growth.draw(options.figures, options.folder / FILE)
-        print(options.folder / FILE)
-        return
-    parts = options.parts or (() if options.profile or options.against else PARTS)
+    parts = options.parts or (() if options.against else PARTS)
     figures: dict[str, object] = {"machine": provenance.machine()}
     print(provenance.line() + ("" if clock.HAS_COUNTER else "; no cycle counter: best of the calls"))
     if "impacts" in parts:
         figures["impacts"] = measure_impacts(options.shots, options.repeats, options.seed)
     if "shots" in parts:
         figures["shots"] = measure_shots(options.shots, options.repeats, options.seed)
-    if "breakdown" in parts or options.profile:
-        if clock.HAS_COUNTER:
-            figures["breakdown"] = measure_breakdown(
-                options.shots, options.repeats, options.profile, options.seed
-            )
-        else:
-            print("\nNo breakdown: it needs the cycle counter of x86")
     if "start" in parts:
         figures["start"] = measure_start()
-    if "growth" in parts:
-
-        def middle(p, v, w):
-            return np.median(time_shots(p, v, w, "standard", options.repeats), axis=0)
-
-        found = growth.growth(
-            partial(shots, seed=options.seed),
-            middle,
-            min(options.shots, 300),
-            options.largest_batch,
-            options.repeats,
-        )
-        figures["growth"] = found
-        growth.print_growth(found)
-        if options.pictures:
-            growth.draw(figures, options.folder / FILE)
-            print(f"  picture: {options.folder / FILE}")
-    problem = None
     if options.against:
-        try:
-            if options.against == "pooltool":
-                figures["against pooltool"] = measure_against(
-                    options.peer_shots, options.repeats, options.seed
-                )
-            else:
-                figures[f"against {options.against}"] = measure_against_commit(
-                    options.against, options.shots, options.repeats, options.seed
-                )
-        except (against_pooltool.PeerError, against_commit.CommitError) as why:
-            problem = f"\n{why}"
+        found = measure_against_commit(options.against, options.shots, options.repeats, options.seed)
+        figures[f"against {options.against}"] = found
     save_json(options.json, figures)
-    if problem:
-        raise SystemExit(problem)
 
 
 if __name__ == "__main__":

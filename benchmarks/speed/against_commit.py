@@ -56,7 +56,7 @@ def _take_out(commit, folder):
     packed = subprocess.run(["git", "archive", "--format=tar", commit], cwd=ROOT, capture_output=True)
     if packed.returncode:
         raise CommitError(
-            f"against = {commit!r}: must be pooltool or a commit of this repository ({packed.stderr.decode().strip()})"
+            f"against = {commit!r}: must be a commit of this repository ({packed.stderr.decode().strip()})"
         )
     subprocess.run(["tar", "-x", "-C", folder], input=packed.stdout, check=True)
 

@@ -17,12 +17,9 @@ from .. import fuzz
 from .._common.command import Command, at_least, run, save_json
 from .euler import euler_lines, euler_table
 from .impacts import IMPACT_LIMITS, impact_extremes
-from .picture import draw
 from .shots import SHOT_LIMITS, shot_extremes
 from .symmetry import growth, growth_lines, mirrored_fuzz, order_lines, order_matters, symmetry_growth
 from .worst import verdict
-
-FILE = "stability.png"
 
 
 def shown(x):
@@ -43,7 +40,7 @@ def table_of(title, results, limits):
 
 def main():
     """Command line; the exit code."""
-    parser = Command("stability", __doc__, pictures=(FILE,), seed=0, redraws=True)
+    parser = Command("stability", __doc__, seed=0)
     parser.add_argument("--fuzz", type=at_least(0), default=1_000_000, help="random shots; 0 for none")
     parser.add_argument("--threads", type=at_least(1), default=2, help="of the fuzz [2]")
     parser.add_argument(
@@ -56,10 +53,7 @@ def main():
     options = parser.options()
     if options.replay:
         return int(not fuzz.replay(*options.replay))
-    figures = measure(options) if options.figures is None else options.figures
-    if options.pictures:
-        draw(options.folder / FILE, figures)
-    return int(bool(figures["failed"]))
+    return int(bool(measure(options)["failed"]))
 
 
 def measure(options):

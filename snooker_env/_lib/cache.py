@@ -21,7 +21,7 @@ from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
 
-from .seal import sealed, unsealed
+from .seal import seal, unseal
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _WRITE_GROUP, _WRITE_OTHERS, _STICKY = 0o020, 0o002, 0o1000
@@ -170,7 +170,7 @@ class _Files(IndexDataCacheFile):
     def _load_index(self):
         try:
             with suppress(FileNotFoundError):
-                unsealed(Path(self._index_path).read_bytes(), self._name(self._index_path))
+                unseal(Path(self._index_path).read_bytes(), self._name(self._index_path))
             return super()._load_index()
         except OSError:
             raise
@@ -181,7 +181,7 @@ class _Files(IndexDataCacheFile):
 
     def _load_data(self, name):
         path = self._data_path(name)
-        unsealed(Path(path).read_bytes(), self._name(path))
+        unseal(Path(path).read_bytes(), self._name(path))
         return super()._load_data(name)
 
     @contextmanager
@@ -192,7 +192,7 @@ class _Files(IndexDataCacheFile):
         handle, name = tempfile.mkstemp(dir=self._cache_path)
         try:
             with open(handle, "wb") as file:
-                file.write(sealed(data, self._name(filepath)))
+                file.write(seal(data, self._name(filepath)))
             os.replace(name, filepath)
         except BaseException:
             with suppress(OSError):

@@ -145,7 +145,7 @@ def in_file(path: str | Path) -> Iterator[None]:
         raise ValueError(f"{path}: {error}") from None
 
 
-def unzipped(file: zipfile.ZipFile, part: zipfile.ZipInfo) -> bytes:
+def unzip(file: zipfile.ZipFile, part: zipfile.ZipInfo) -> bytes:
     """One part of a zip. Never more than its directory says is unpacked: it may lie, and bzip2 would not stop."""
     if part.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise ValueError(f"{part.filename} is neither stored nor deflated")
@@ -180,7 +180,7 @@ def arrays_in(data: bytes) -> dict[str, np.ndarray]:
             if sum(part.file_size for part in parts) > most:
                 raise ValueError(f"it unpacks to more than {most:,} bytes")
             found = _once([(part.filename.removesuffix(".npy"), part) for part in parts])
-            return {name: _array(unzipped(file, part)) for name, part in found.items()}
+            return {name: _array(unzip(file, part)) for name, part in found.items()}
     except Exception as error:  # zip and NumPy raise many kinds for damaged files
         raise ValueError(str(error).strip() or type(error).__name__) from None
 

@@ -81,7 +81,7 @@ def play_best_pot(
     went = (stops.potted[:, one.ball] == one.pocket) & (stops.penalty == 0)
     if not went.any():
         return None
-    worth = judge.valued(np.repeat(lead_of(at), many), stops.afterstates)[:, 1]
+    worth = judge.value_of(np.repeat(lead_of(at), many), stops.afterstates)[:, 1]
     # where it is never missed: a miss would leave the balls about as they lie
     left = float(worth[~went].mean()) if not went.all() else -float(judge.worth(passed(at))[0])
     return float(went.mean()), float(worth[went].mean()), left

@@ -74,7 +74,7 @@ def _look_ahead(
 ) -> list[dict[str, Any]]:
     """What n strokes of a frame lead to, ``each`` (n * tries,) says which: fields of ``Suggestion``."""
     after = stops.afterstates
-    wins = practice.judge.valued(lead_of(starts)[each], after)[:, 0].reshape(n, -1)
+    wins = practice.judge.value_of(lead_of(starts)[each], after)[:, 0].reshape(n, -1)
     comes = np.flatnonzero(find_arrivals(after))
     theirs = arrive(after[comes])
     hidden = ~clear_paths(theirs).any_part

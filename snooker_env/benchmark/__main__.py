@@ -17,10 +17,10 @@ from .._lib.tables import shown, text_table
 from ..players.model_options import add_model_options, options_of_words
 from ..players.program import AgentError
 from ..progress import Progress
-from .agents import Agent, is_known, seated
+from .agents import Agent, is_known, seat
 from .checking import afresh, faults, faults_of_replay
 from .degenerate import ABOVE, results, winners
-from .leaderboard import board, lines, page, profile
+from .leaderboard import board, lines, page
 from .playing import COLUMNS
 from .results import missing, read_result
 from .run import judge
@@ -80,8 +80,6 @@ def parser() -> argparse.ArgumentParser:
     table.add_argument("--markdown", metavar="FILE", help="write it as a page")
     help_ = "agents that the page names where their result is missing"
     table.add_argument("--awaited", nargs="+", default=[], metavar="LABEL", help=help_)
-    shares = commands.add_parser("profile", help="print performance profiles of result files")
-    shares.add_argument("files", nargs="+", metavar="FILE")
     return p
 
 
@@ -143,7 +141,7 @@ def _run(args: argparse.Namespace) -> int:
             raise refuse("out", str(file), f"must be a new file; {how}")
         if args.episodes is not None:
             integer("episodes", args.episodes, 2, task.episodes)
-        with seated(agent, task, 0):
+        with seat(agent, task, 0):
             pass
     for file in files:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -296,19 +294,7 @@ def _table(args: argparse.Namespace) -> int:
     return 0
 
 
-def _profile(args: argparse.Namespace) -> int:
-    """Print performance profiles."""
-    results = _sound(args.files)
-    for task in TASKS.values():
-        head, rows = profile(results, task)
-        if rows:
-            what = "points" if task.counts else task.score
-            title = f"{task.id}: share of episodes [%] with at least so many {what}"
-            print("\n".join([title, "", *text_table(head, rows), ""]))
-    return 0
-
-
-COMMANDS = {call.__name__[1:]: call for call in (_tasks, _run, _text, _check, _degenerate, _table, _profile)}
+COMMANDS = {call.__name__[1:]: call for call in (_tasks, _run, _text, _check, _degenerate, _table)}
 
 if __name__ == "__main__":
     raise SystemExit(main())

@@ -129,7 +129,7 @@ class Agent:
 
 
 @contextmanager
-def seated(agent: Agent, task: Task, run: int) -> Iterator[Player]:
+def seat(agent: Agent, task: Task, run: int) -> Iterator[Player]:
     """The player of one training seed; a program is ended afterwards."""
     player = agent.player(task, run)
     try:

@@ -11,7 +11,7 @@ from ..players import player as player_named
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
 from . import playing, schema
-from .agents import Agent, is_known, is_reserved, seated
+from .agents import Agent, is_known, is_reserved, seat
 from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic
 from .results import complete, strokes_of
@@ -268,7 +268,7 @@ def _by(agent: Agent, result: dict[str, Any], seeds: Sequence[int], threads: int
         raise refuse("agent", ",".join(agent.texts), f"must have the {runs} training seeds of the file")
     played = PlayedEpisodes([])
     for run in range(runs):
-        with seated(agent, task, run) as player:
+        with seat(agent, task, run) as player:
             for first in range(0, len(seeds), agent.batch):
                 some = list(seeds[first : first + agent.batch])
                 played.add(playing.play_episodes(task, player, some, run, threads))

@@ -7,7 +7,7 @@ from typing import Any
 
 from .._lib.check import refuse
 from ..players.program import AgentError
-from .agents import Agent, seated
+from .agents import Agent, seat
 from .checking import faults
 from .playing import PlayedEpisodes, play_episodes
 from .provenance import machine
@@ -65,7 +65,7 @@ def judge(
     seeds = task.seeds(task.episodes if episodes is None else episodes)
     many, alone, why = len(seeds), PlayedEpisodes([]), None
     total = many * len(agent.sources)
-    kept, played = _kept(out if resume else None, task, agent, many)
+    kept, played = _read_kept(out if resume else None, task, agent, many)
     if kept is not None and kept["incomplete"] is None:
         return kept
     about, saved = {"command": command, "load": machine()}, time.monotonic()
@@ -102,7 +102,7 @@ def judge(
 
 def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
     """Play the episodes of one training seed, batch after batch; the first one's player decides on one table, too."""
-    with seated(agent, task, run) as player:
+    with seat(agent, task, run) as player:
         while len(played.rows) < (run + 1) * len(seeds):
             first = len(played.rows) - run * len(seeds)
             played.add(play_episodes(task, player, seeds[first : first + agent.batch], run, threads))
@@ -112,7 +112,7 @@ def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
                 alone.add(play_episodes(task, player, [seed], run, threads))
 
 
-def _kept(
+def _read_kept(
     path: str | Path | None, task: Task, agent: Agent, episodes: int
 ) -> tuple[dict[str, Any] | None, PlayedEpisodes]:
     """A file of the same run, and what was played for it; None and nothing if there is no file."""

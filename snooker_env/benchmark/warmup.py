@@ -124,7 +124,7 @@ def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
     pot_chances(np.ones(1), np.ones(1), 1e-3)
     player("ghost_ball").at({"task": "frame"}).play(both, [0])
     player(_Still(task="frame", says=["decision"])).at({"task": "frame"}).play(both, [0])
-    for name in ("search_30", "planner_30", "planner_policy", "stroke_value"):
+    for name in ("search_30", "planner_30", "stroke_value"):
         player(name).at({"noise": "club"}).play(at, [0])
     for name in ("tactician_30", "stroke_value"):
         player(name).at({"task": "frame", "noise": "club", "miss": "clear_path"}).play(both, [0])

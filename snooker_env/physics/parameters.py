@@ -77,7 +77,7 @@ class Physics:
     nap : float
         Acceleration of a rolling ball along +y by the nap, which runs from baulk to the black end [m/s^2]. 0:
         none; else below mu_r g in size, so that a ball at rest stays. Not measured; 0.001 is the most that
-        the range of mu_r allows (``python -m benchmarks.nap``).
+        the range of mu_r allows (docs/physics/limits.md).
     roll_drag : float
         Growth of the rolling resistance with speed [1/m], in [0, 1]: at v m/s a rolling ball decelerates by
         mu_r g + roll_drag v^2. 0: none; must be 0 where nap is not. On heated carom cloth it was measured as

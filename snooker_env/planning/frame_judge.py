@@ -34,7 +34,7 @@ PLANS = Plan((34, 0, 0, 0), ((6, 2), (3, 6))), Plan((24, 116, 20, 24), ((18, 3),
 escapes."""
 
 
-def scaled(plan: Plan, share: float) -> Plan:
+def scale(plan: Plan, share: float) -> Plan:
     """The same plan with about ``share`` times as many shots."""
     root = share**0.5
     looks = tuple(max(4, round(many * share)) if many else 0 for many in plan.looks)
@@ -95,7 +95,7 @@ class FrameJudge:
             raise refuse_what(
                 "propose", f"{len(search.propose)} generators", "must be one: of strokes at pots"
             )
-        easy, hard = (scaled(plan, search.budget / BUDGET) for plan in PLANS)
+        easy, hard = (scale(plan, search.budget / BUDGET) for plan in PLANS)
         if self.noise.silent:
             easy, hard = easy._replace(rounds=()), hard._replace(rounds=())
         if not len(at):
@@ -150,11 +150,11 @@ class FrameJudge:
 
     def score(self, values: Floats) -> Floats:
         """See ``Judge.score``, of (n, m, 7), see ``_parts``: the chance to win, and hardly the points."""
-        return self._one(self._replayed(values))
+        return self._one(self._play_again(values))
 
     def figures(self, values: Floats) -> tuple[Floats, Floats]:
         """See ``Judge.figures``: chances to win, without a law the points; and the points."""
-        both = self._replayed(values)
+        both = self._play_again(values)
         return both[..., 1 if self.chance is None else 0], both[..., 1]
 
     def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Positions:
@@ -165,9 +165,9 @@ class FrameJudge:
     def gains(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Floats:
         """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m, 2), the chance to
         win and the points."""
-        return self.valued(lead_of(at)[rows], self.outcomes(at, rows, strokes, errors))
+        return self.value_of(lead_of(at)[rows], self.outcomes(at, rows, strokes, errors))
 
-    def valued(self, before: Floats, after: Positions) -> Floats:
+    def value_of(self, before: Floats, after: Positions) -> Floats:
         """What strokes that were played at the leads ``before`` (m,) and left ``after`` are worth to their strikers:
         (m, 2), as ``gains``."""
         points = follows(self.worth, after, before, self.rules.rule_set.code)
@@ -200,7 +200,7 @@ class FrameJudge:
         """What strokes on ``at[rows]`` that left ``after`` are worth, (k, 7): chance and points where no miss was called;
         whether one was, and then chance and points if it is not played again, and what they lose by the penalty."""
         before, parts = lead_of(at)[rows], np.zeros((len(rows), 7))
-        both, called = self.valued(before, after), after.game[:, columns.MISS_CALLED] != 0
+        both, called = self.value_of(before, after), after.game[:, columns.MISS_CALLED] != 0
         parts[~called, :2], parts[called, 3:5], parts[:, 2] = both[~called], both[called], called
         some = np.flatnonzero(called)
         if len(some):
@@ -210,7 +210,7 @@ class FrameJudge:
             parts[some, 6] = now - before[some]
         return parts
 
-    def _replayed(self, parts: Floats) -> Floats:
+    def _play_again(self, parts: Floats) -> Floats:
         """Chances and points (n, m, 2) of strokes with these ``_parts`` (n, m, 7) on average: a called miss may be played
         again, so that it is worth no more than the best of the m strokes, less its penalty."""
         fair, called, left, less = parts[..., :2], parts[..., 2:3], parts[..., 3:5], parts[..., 5:]

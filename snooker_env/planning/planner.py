@@ -160,9 +160,9 @@ class Planner:
 
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
         SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
-        at, which = self._asked(positions, rows)
+        at, which = self._read(positions, rows)
         told = self._rules.actions.check_many(cast(ArrayLike, actions), len(which))
-        return self._played(at[which], told, _streams(keys, len(which), self.noise.silent), None)
+        return self._play(at[which], told, _streams(keys, len(which), self.noise.silent), None)
 
     def play_strokes(
         self,
@@ -177,7 +177,7 @@ class Planner:
 
         The errors are drawn by ``keys``, or they are ``errors``, float (n, 5) in standard deviations, of speed, side, top,
         aim and elevation, and no kicks."""
-        at, which = self._asked(positions, rows)
+        at, which = self._read(positions, rows)
         n = len(which)
         told, streams = check_strokes(strokes, n), _streams(keys, n, self.noise.silent or errors is not None)
         if errors is not None:
@@ -185,18 +185,18 @@ class Planner:
                 raise refuse_what(
                     "keys, errors", "both", "must be one of them: the errors are drawn or passed"
                 )
-            return self._played(at[which], told, streams, array("errors", errors, (n, COLUMNS)))
+            return self._play(at[which], told, streams, array("errors", errors, (n, COLUMNS)))
         drawn = np.zeros((n, COLUMNS)) if self.noise.silent else errors_of(streams)
-        return self._played(at[which], told, streams, drawn, self.noise.kick)
+        return self._play(at[which], told, streams, drawn, self.noise.kick)
 
-    def _asked(self, positions: PositionsLike, rows: Integers) -> tuple[Positions, Ints]:
+    def _read(self, positions: PositionsLike, rows: Integers) -> tuple[Positions, Ints]:
         """The positions as visits, and the checked rows."""
         at = Positions.of(positions).as_visits().known_to(self._rules)
         which = rows_of(at, rows)
         check_played(at, which, self.table, self.physics.R)
         return at, which
 
-    def _played(
+    def _play(
         self, after: Positions, told: Floats, streams: Words, errors: Floats | None, kick: float = 0.0
     ) -> Outcomes:
         """Play checked actions, or strokes under ``errors``, on ``after``, which is played in place."""

@@ -98,7 +98,7 @@ class Position:
             positions[CUE] = place_cue(positions, on_table, *SPOTS[CUE].tolist())
             put("cue", tuple(positions[CUE].tolist()))
         _check_layout(positions, on_table, Table.of(table))
-        put("on", _named(self.on, mask_of_present(on_table)))
+        put("on", _name_on(self.on, mask_of_present(on_table)))
         if not self.over:
             on = BallOn[str(self.on).upper()]
             check_playable(on_table, on, on="on", cue="cue", balls="the balls given")
@@ -143,7 +143,7 @@ class Position:
     @classmethod
     def from_dict(cls, kept: Mapping[str, Any], *, table: TableLike = "match") -> "Position":
         """Make the position that a dict of ``to_dict`` describes; ValueError for an unknown key."""
-        return cls(**_checked(kept), table=table)
+        return cls(**_check(kept), table=table)
 
     def save(self, path: str | Path) -> None:
         """Write the position as JSON. An existing file is replaced in one step: it is never half written."""
@@ -153,13 +153,13 @@ class Position:
     def load(cls, path: str | Path, *, table: TableLike = "match") -> "Position":
         """Read a file of ``save``, or one written by hand; ValueError names what is wrong in it."""
         with in_file(path):
-            return cls(**_checked(read_json(path), str(path)), table=table)
+            return cls(**_check(read_json(path), str(path)), table=table)
 
 
 _NAMES = tuple(f.name for f in fields(Position))  # keys that a position in JSON may have
 
 
-def _known(init: Any) -> Any:
+def _with_names(init: Any) -> Any:
     """``Position.__init__`` whose TypeError says which fields there are, and that the reds are one list."""
     names = (*_NAMES, "table")
 
@@ -175,10 +175,10 @@ def _known(init: Any) -> Any:
     return checked
 
 
-Position.__init__ = _known(Position.__init__)
+Position.__init__ = _with_names(Position.__init__)
 
 
-def _named(on: Any, balls: int) -> str:
+def _name_on(on: Any, balls: int) -> str:
     """What is on, as a word of ``ON``."""
     if on is None:
         return BallOn(next_on(balls)).name.lower()
@@ -221,7 +221,7 @@ def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue
     check_ball_on(on, ball_on, present, balls)
 
 
-def _checked(raw: Any, field: str = "position") -> Mapping[str, Any]:
+def _check(raw: Any, field: str = "position") -> Mapping[str, Any]:
     """A dict of JSON types that has keys of ``names`` only and no truth values where numbers belong."""
     if not isinstance(raw, Mapping):
         allowed = f"must be a dict with keys of {', '.join(_NAMES)}"

@@ -183,9 +183,9 @@ class Strokes:
                 raise refuse("elevation", float(steep), allowed)
             parts.append(2.0 * self.elevation / box.steepest - 1.0)
         if box.placement:
-            parts += self._placed(at)
+            parts += self._place(at)
         if "nominate" in box.says:
-            parts.append(self._nominated(at))
+            parts.append(self._nominate(at))
         if "decision" in box.says:
             again = np.where(self.decision == PLAY_AGAIN, -1.0, 1.0)
             parts.append(np.where(self.decision == PLAY, 0.0, again))
@@ -211,7 +211,7 @@ class Strokes:
             raise refuse(f"aim[{k}]", float(self.aim[k]), allowed)
         return off
 
-    def _placed(self, at: Positions) -> list[Floats]:
+    def _place(self, at: Positions) -> list[Floats]:
         """The two components of the place."""
         x, y = np.where(np.isnan(self.place), at.positions[:, 0], self.place).T
         across = np.clip(x / D_RADIUS, -1.0, 1.0)
@@ -219,7 +219,7 @@ class Strokes:
         back = np.clip((BAULK_Y - y) / np.maximum(depth, 1e-9), 0.0, 1.0)
         return list(np.where(at.anywhere, (x / HALF_WIDTH, y / HALF_LENGTH), (across, 2.0 * back - 1.0)))
 
-    def _nominated(self, at: Positions) -> Floats:
+    def _nominate(self, at: Positions) -> Floats:
         """The component of the nomination: sixths of the range after a red, sevenths with a free ball."""
         n = np.maximum(self.nominate - YELLOW + 1, 0)  # 0 none, 1 to 6 yellow to black
         after_red = at.game[:, BALL_ON] == 0

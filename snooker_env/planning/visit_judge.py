@@ -114,17 +114,17 @@ class VisitJudge:
     def propose(self, search: Search, at: Positions, seeds: Ints, plan: Plan) -> Proposed:
         """Pots; where none is likelier than ``doubtful``, strokes at balls and over cushions, too."""
         (m,), at = plan.looks, at.as_visits()
-        strokes, chances, kinds = self._shared(search, search.propose, at, m, seeds)
+        strokes, chances, kinds = self._share(search, search.propose, at, m, seeds)
         doubt = chances.max(axis=1) <= self.doubtful
         if doubt.any():
             strokes, chances, kinds = strokes.copy(), chances.copy(), kinds.copy()
             every = (*search.propose, *WITHOUT_POTS)
-            strokes[doubt], chances[doubt], kinds[doubt] = self._shared(
+            strokes[doubt], chances[doubt], kinds[doubt] = self._share(
                 search, every, at[doubt], m, seeds[doubt]
             )
         return Proposed(strokes, chances, kinds, doubt | kinds.any(axis=1))
 
-    def _shared(
+    def _share(
         self, search: Search, generators: tuple[Propose, ...], at: Positions, m: int, seeds: Ints
     ) -> tuple[Floats, Floats, Ints]:
         """Strokes of the generators that have any, in turn; chances; which generator each is of."""

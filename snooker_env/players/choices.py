@@ -59,22 +59,22 @@ class ChoicePlayer(BoundPlayer):
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
-        visits, places, decisions, scores = self._scored(positions, seeds)
-        return Strokes(self._meant(visits, scores.argmax(axis=1)), places, decision=decisions)
+        visits, places, decisions, scores = self._score(positions, seeds)
+        return Strokes(self._read_choices(visits, scores.argmax(axis=1)), places, decision=decisions)
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """Rank the choices of each position: at most 100 strokes, highest score first."""
-        visits, places, decisions, scores = self._scored(positions, seeds)
+        visits, places, decisions, scores = self._score(positions, seeds)
         ranked = []
         for k, row in enumerate(scores):
             choices = np.argsort(-row, kind="stable")[: max(1, min(MOST, int(np.isfinite(row).sum())))]
-            values = self._meant(visits[np.full(len(choices), k)], choices)
+            values = self._read_choices(visits[np.full(len(choices), k)], choices)
             where, what = np.repeat(places[k : k + 1], len(choices), 0), np.full(len(choices), decisions[k])
             strokes = Strokes(values, where, decision=what)
             ranked.append(Ranked(strokes, self.figures(row[choices])))
         return ranked
 
-    def _meant(self, visits: Positions, choices: Ints) -> Floats:
+    def _read_choices(self, visits: Positions, choices: Ints) -> Floats:
         """The strokes (n, 5) that a choice in each of n visits means; cue balls have been placed."""
         rules, n = self._rules, len(visits)
         own, buffers, packed = visits.known_to(rules).conditions, ShotBuffers(n, 0), self._packed
@@ -87,7 +87,7 @@ class ChoicePlayer(BoundPlayer):
         )
         return meant(buffers, packed[1])
 
-    def _scored(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints, Floats]:
+    def _score(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints, Floats]:
         """The visits with placed cue balls, their places, the decisions after fouls, and the scores."""
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))
@@ -130,24 +130,24 @@ class GhostBall(ChoicePlayer):
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
-        return self._played(positions, seeds)[0]
+        return self._play(positions, seeds)[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """Its stroke, then the same at the other direct pots, with the tolerance of each pot [mrad]."""
-        strokes, start = self._played(positions, seeds)
+        strokes, start = self._play(positions, seeds)
         direct = pots(start)
         ranked = []
         for k, many in enumerate((direct.ball >= 0).sum(axis=1).tolist()):
             if many < 2:
                 ranked.append(Ranked(strokes[k : k + 1], None))
                 continue
-            values = self._meant(start[np.full(many, k)], STROKES * np.arange(many) + _PLAIN)
+            values = self._read_choices(start[np.full(many, k)], STROKES * np.arange(many) + _PLAIN)
             others = Strokes(values, np.repeat(strokes.place[k : k + 1], many, 0))
             joined = Strokes.join([strokes[k : k + 1], others[1:]])
             ranked.append(Ranked(joined, 1e3 * direct.tolerance[k, :many]))
         return ranked
 
-    def _played(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, Positions]:
+    def _play(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, Positions]:
         """What it plays, and from where: visits with placed cue balls."""
         at = Positions.of(positions)
         own = at.positions.copy(), at.on_table.copy(), at.game.copy()
@@ -168,7 +168,7 @@ class GhostBall(ChoicePlayer):
             nominated[:] = AUTO
         start, rows = Positions(positions, on_table, visits, None, conditions), np.flatnonzero(solves)
         if len(rows):
-            values[rows] = self._meant(start[rows], np.full(len(rows), _PLAIN))
+            values[rows] = self._read_choices(start[rows], np.full(len(rows), _PLAIN))
         return (values, places, nominated, decisions, np.full(n, SAYS_NOTHING)), start
 
 

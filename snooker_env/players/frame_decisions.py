@@ -78,7 +78,7 @@ class FramePlayer(BoundPlayer):
             declare[some[behind]] = CONCEDES
         return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)
 
-    def _considered(self, at: Positions, seeds: Integers) -> list[Ranked]:
+    def _consider(self, at: Positions, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, else all, at most ``RANKED``, best first, with chances or points."""
         strokes, tried, _ = self.decided(at, seeds)
         own = [strokes[k : k + 1] for k in range(len(tried))]

@@ -61,7 +61,7 @@ def of_others(path: str | Path) -> bool:
         return Path(path).suffix == ".zip"
 
 
-def say_assumed(path: str | Path, options: Mapping[str, Any]) -> None:
+def say_assumption(path: str | Path, options: Mapping[str, Any]) -> None:
     """Say on stderr, once in a process, that nobody told how the aim of a model with these options is read."""
     if options.get("action", "box") == "box" and "aim" not in options and not _SAID:
         _SAID.append(str(path))

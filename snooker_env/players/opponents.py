@@ -135,13 +135,13 @@ def opponent_of(opponent: str | Path | Player | OpponentPool, options: Options) 
         raise refuse("opponent", opponent, f"must be an instance and not the class: {opponent.__name__}(...)")
     if isinstance(opponent, str | Path):
         name = str(opponent)
-        return PlayerOpponent(_named(name, options).at(options), name)
+        return PlayerOpponent(_find_player(name, options).at(options), name)
     if not isinstance(opponent, Player):
         raise refuse("opponent", opponent, OPPONENTS)
     return PlayerOpponent(opponent.at(options), getattr(opponent, "name", "") or type(opponent).__name__)
 
 
-def _named(name: str, options: Options) -> Player:
+def _find_player(name: str, options: Options) -> Player:
     """The player with a name; errors say that it is the opponent's."""
     if Path(name).suffix == ".zip" and (of_others(name) or not Path(name).is_file()):
         return _model(name, options)

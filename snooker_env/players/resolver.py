@@ -24,7 +24,7 @@ READERS = "snooker_env.models"  # entry points that read models, called with a p
 BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician", "stroke_value")
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
 PROGRAM = "program:"
-_KINDS = "best_pot|search|tactician|stroke_value|planner(?:_value|_policy)?"
+_KINDS = "best_pot|search|tactician|stroke_value|planner"
 _SEARCHING = re.compile(rf"({_KINDS})(?:_(\d+))?(?:@(.+))?")
 
 
@@ -137,7 +137,7 @@ def _built_in(name: str) -> Player | None:
         if budget:
             raise refuse("player", name, "must not name a number of shots: stroke_value simulates none")
         return StrokeValuePlayer(None if model is None else _strokes(name, Path(model)))
-    if model is not None and not kind.startswith("planner"):
+    if model is not None and kind != "planner":
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
     if budget and not VisitJudge.least <= int(budget) <= MOST:
         raise refuse(

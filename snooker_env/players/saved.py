@@ -10,7 +10,7 @@ from .._lib.check import refuse
 from .._lib.types import Bools, Ints, Observation
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options
-from .model_options import say_assumed
+from .model_options import say_assumption
 from .saved_models import SavedModel, by_train, entries, one_thread, outline
 from .seen import SeenPlayer
 
@@ -94,5 +94,5 @@ def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = 
         raise refuse(field, str(path), f"{words}: it is a model or a run of train.py")
     model = FittingModel.of(path, options, field)
     made = SeenPlayer(SavedNetwork(model, trust), name=str(path))
-    say_assumed(path, model.options)
+    say_assumption(path, model.options)
     return made

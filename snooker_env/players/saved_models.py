@@ -12,7 +12,7 @@ from typing import Any
 from gymnasium import spaces
 
 from .._lib.check import refuse
-from .._lib.files import MOST_JSON, strict_json, unzipped
+from .._lib.files import MOST_JSON, strict_json, unzip
 from .._lib.install import missing
 
 PLAIN = "model.json"
@@ -52,7 +52,7 @@ def part(path: str | Path, name: str, most: int) -> bytes:
     with zipfile.ZipFile(path) as file:
         if file.getinfo(name).file_size > most:
             raise ValueError(f"{name} is larger than {most:,} bytes")
-        return unzipped(file, file.getinfo(name))
+        return unzip(file, file.getinfo(name))
 
 
 def entries(path: str | Path) -> dict[str, Any]:

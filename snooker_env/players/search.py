@@ -23,7 +23,7 @@ from ..tasks.options import Options
 from .player import BoundPlayer, Ranked, Strokes
 from .weights import Learned, learned_at, learned_worth, level_for
 
-KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")  # the last two: half a planner
+KINDS = ("best_pot", "search", "planner")
 RANKED = 40  # most strokes of a ranking
 
 
@@ -35,20 +35,17 @@ class SearchPlayer(BoundPlayer):
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
         self.budget = integer("budget", budget, VisitJudge.least, MOST)
-        self._learned, self.training_shots = learned, None if kind.startswith("planner") else 0
+        self._learned, self.training_shots = learned, None if kind == "planner" else 0
         self._worth: LearnedWorth | None = None
 
     def _bind(self, options: Options) -> None:
         self.judge = judge = VisitJudge(options, pots_only=self.kind == "best_pot")
         propose: Propose = at_pots
-        if self.kind.startswith("planner"):
+        if self.kind == "planner":
             learned = self._learned or learned_at(level_for(judge.noise))
             value = LearnedValue(learned.value, judge.spread, judge.planner.threads)
             self._worth = LearnedWorth(value, learned_worth()[0])
-            if self.kind != "planner_policy":
-                judge.value = value
-            if self.kind != "planner_value":
-                propose = PolicyProposals(learned.policy)
+            judge.value, propose = value, PolicyProposals(learned.policy)
         self.search = Search(judge, self.budget, propose)
 
     def worth(self, at: Positions) -> Floats:
@@ -57,14 +54,14 @@ class SearchPlayer(BoundPlayer):
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
-        return self._played(positions, seeds)[0]
+        return self._play(positions, seeds)[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their scores [points]."""
-        strokes, ranked = self._played(positions, seeds)
+        strokes, ranked = self._play(positions, seeds)
         return [shown(one, strokes[k : k + 1]) for k, one in enumerate(ranked)]
 
-    def _played(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, list[Ranked]]:
+    def _play(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, list[Ranked]]:
         """What it plays, and the rankings of its search."""
         visits, places, decisions = self.started(positions, seeds)
         ranked = self.search.rank(visits, seeds)

@@ -103,7 +103,7 @@ class SeenPlayer(BoundPlayer):
         """See ``Player.play``."""
         at = Positions.of(positions).known_to(self.options.rules)
         keys = seeds_of(seeds, len(at))
-        shown, places = self._shown(at, keys)
+        shown, places = self._show(at, keys)
         actions = self._actions(shown, keys)
         said: Any = ()
         if self.frames:
@@ -114,7 +114,7 @@ class SeenPlayer(BoundPlayer):
         puts = (shown.in_hand & bool(self._rules.actions.placement))[:, None]
         return Strokes(values, np.where(puts, start.positions[:, 0], places), *said)
 
-    def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, Floats]:
+    def _show(self, at: Positions, keys: Ints) -> tuple[Positions, Floats]:
         """The positions as it sees them, and where cue balls in hand were placed for it (n, 2), else NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
@@ -132,7 +132,7 @@ class SeenPlayer(BoundPlayer):
         n, rules = len(at), self._rules
         tables: Any = (Frames if self.frames else Visits)(rules, 0)
         tables.n, tables.positions, tables.on_table, tables.game = n, at.positions, at.on_table, at.game
-        tables.conditions = _conditions_known(at, rules)
+        tables.conditions = _known_conditions(at, rules)
         if self.frames:
             none = np.zeros_like(at.positions), np.zeros_like(at.on_table)
             tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved
@@ -149,7 +149,7 @@ class SeenPlayer(BoundPlayer):
             raise ValueError(f"player {self.name}: act(...) returned {error}") from None
 
 
-def _conditions_known(at: Positions, rules: Rules) -> Floats:
+def _known_conditions(at: Positions, rules: Rules) -> Floats:
     """The constants (n, 8) of the tables as who plays under ``rules`` knows them: if not drawn the nominal ones."""
     own = at.known_to(rules).conditions
     return np.tile(nominal(rules.physics), (len(at), 1)) if own is None else own

@@ -53,7 +53,7 @@ class StrokeValuePlayer(FramePlayer):
             return self.decided(at, seeds).strokes
         if self.options.rules.reward == "legal":
             return self._fairest(at, seeds)
-        at, places, found, scores = self._scored(at, seeds)
+        at, places, found, scores = self._score(at, seeds)
         values = np.zeros((len(at), COLUMNS))
         values[found.rows] = found.strokes[np.arange(len(scores)), scores.argmax(axis=1)]
         others = np.setdiff1d(np.arange(len(at)), found.rows)
@@ -66,11 +66,11 @@ class StrokeValuePlayer(FramePlayer):
         """Its strokes, best first, with what they are worth [points]; the one that need only be fair alone."""
         at = Positions.of(positions)
         if at.of_frames:
-            return self._considered(at, seeds)
+            return self._consider(at, seeds)
         if self.options.rules.reward == "legal":
             strokes = self._fairest(at, seeds)
             return [Ranked(strokes[k : k + 1], None) for k in range(len(at))]
-        at, places, found, scores = self._scored(at, seeds)
+        at, places, found, scores = self._score(at, seeds)
         made: list[Ranked] = self._plain.rank(at, seeds)
         for j, k in enumerate(found.rows.tolist()):
             order = np.argsort(-scores[j], kind="stable")
@@ -92,7 +92,7 @@ class StrokeValuePlayer(FramePlayer):
         values = np.where(some > 0.0, over[:, 0], np.where(fair > 0.0, found, plain))
         return Strokes(np.where(fair >= LIKELY, found, values), places)
 
-    def _scored(self, at: Positions, seeds: Integers) -> tuple[Positions, Floats, Candidates, Any]:
+    def _score(self, at: Positions, seeds: Integers) -> tuple[Positions, Floats, Candidates, Any]:
         """Positions of visits, the places of cue balls in hand, the strokes that are looked at, and their values."""
         options, values = self.options, self.values  # it must be bound
         assert values is not None, options

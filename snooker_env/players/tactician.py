@@ -52,7 +52,7 @@ class Tactician(FramePlayer):
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their chances to win; in visits their points."""
         at = Positions.of(positions)
-        return self._considered(at, seeds) if at.of_frames else self._visits.rank(at, seeds)
+        return self._consider(at, seeds) if at.of_frames else self._visits.rank(at, seeds)
 
     def chance_to_win(self, positions: PositionsLike) -> Floats:
         """Return how likely the strikers of n positions of frames win, if both play on as the ``tactician`` does.

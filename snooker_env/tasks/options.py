@@ -40,7 +40,7 @@ LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
 MAX_STROKES = 1000
 """Default number of strokes after which the referee stops a frame. Random players that aim near a pot needed
-284 on average, at most 560 in 2,000 frames (``benchmarks.frames``); some players never finish."""
+284 on average, at most 560 in 2,000 frames (docs/environment/frames.md); some players never finish."""
 FRAMES = 7
 """Default length of a match: best of 7."""
 OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \

@@ -7,7 +7,7 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.real_shots import __main__ as command
-from benchmarks.real_shots import against_pooltool, cma, constants, strikes, tracks, verdict
+from benchmarks.real_shots import cma, constants, strikes, tracks, verdict
 from benchmarks.real_shots.paths import AIM, SPEED, Judge
 
 PHYSICS = sn.Physics.preset("carom", tables=False)
@@ -50,7 +50,7 @@ def file(tmp_path, data):
 
 
 def test_the_command_finds_the_strikes(file, tmp_path, capsys):
-    command.main([str(file), "--no-pictures", "--json", str(tmp_path / "figures.json")])
+    command.main([str(file), "--json", str(tmp_path / "figures.json")])
     figures = json.loads((tmp_path / "figures.json").read_text())
     for shot, (speed, aim, side, top, _) in zip(figures["shots"], STRIKES, strict=True):
         assert shot["cue_rms"] < 0.004
@@ -134,12 +134,6 @@ def test_cma_finds_the_foot_of_a_narrow_valley():
     assert search.mean == pytest.approx([1.0, 1.0], abs=1e-3)
 
 
-def test_pooltool_gets_our_constants():
-    given = against_pooltool._constants(PHYSICS)
-    assert given["u_s"] == PHYSICS.mu_s
-    assert PHYSICS.mu_r < given["u_r"] < 1.2 * PHYSICS.mu_r
-
-
 def spoiled(data, change):
     copy = json.loads(json.dumps(data))
     change(copy["shots"][1])
@@ -166,12 +160,12 @@ def test_a_bad_file_is_refused_in_one_line(tmp_path, data, capsys, change, says)
     path = tmp_path / "bad.json"
     path.write_text(json.dumps(spoiled(data, change)))
     with pytest.raises(SystemExit) as stopped:
-        command.main([str(path), "--no-pictures"])
+        command.main([str(path)])
     assert stopped.value.code == 2
     assert says in capsys.readouterr().err
 
 
 def test_a_missing_file_is_said(tmp_path, capsys):
     with pytest.raises(SystemExit):
-        command.main([str(tmp_path / "none.json"), "--no-pictures"])
+        command.main([str(tmp_path / "none.json")])
     assert "none.json" in capsys.readouterr().err

@@ -16,7 +16,7 @@ from agents import cluster, evaluate, tournament
 from agents.cluster import ClusterError, Here, ended, in_order, place
 from agents.evaluation import visits
 from agents.evaluation.entrants import Entrant
-from agents.evaluation.travel import sent
+from agents.evaluation.travel import pack
 from agents.learning.frame_self_play import frames
 from snooker_env.benchmark.tasks import tables_of
 from tests.cluster.players import AT, same
@@ -70,7 +70,7 @@ def where(nodes):
 
 def parts_of(name, many, size, monkeypatch):
     monkeypatch.setattr(visits, "SIZE", size)
-    return visits.parts_of(sent(Entrant.of(name), 0), 0, AT, tables_of("held_out", many), False)
+    return visits.parts_of(pack(Entrant.of(name), 0), 0, AT, tables_of("held_out", many), False)
 
 
 def alike(one, other):

@@ -31,9 +31,9 @@ def links(text):
 
 
 def paths(text):
-    """Files and folders of the repository between backticks, as patterns."""
+    """Files and folders of the repository between backticks, as patterns, but for those of an older commit."""
     tops = "tests|benchmarks|agents|snooker_env|docs|examples|commands|leaderboard|[.]github|[.]ci"
-    found = re.findall(rf"`((?:{tops})/[\w./*-]+)`", text)
+    found = re.findall(rf"`((?:{tops})/[\w./*-]+)`(?! at\s+commit\s+[0-9a-f]{{8}})", text)
     return [path for path in found if not re.search(r"NAME|\bmy_", path)]
 
 

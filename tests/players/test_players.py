@@ -14,7 +14,7 @@ from tests.positions import tables
 from tests.processes import copy_of_package, python
 from tests.tables import begun
 
-SEARCHING = ("best_pot_30", "search_30", "planner_30", "planner_value_30", "planner_policy_30")
+SEARCHING = ("best_pot_30", "search_30", "planner_30")
 NAMES = ("random", "ghost_ball", *SEARCHING)
 
 

@@ -40,8 +40,6 @@ def test_each_kind_has_its_value_and_its_proposals():
         "best_pot": (False, False, True),
         "search": (False, False, False),
         "planner": (True, True, False),
-        "planner_value": (True, False, False),
-        "planner_policy": (False, True, False),
     }
 
 

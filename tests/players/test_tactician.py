@@ -204,7 +204,7 @@ def test_a_called_miss_is_worth_no_more_than_the_best_stroke_and_its_penalty():
     parts[0, 0, :2] = 0.5, 6.0
     parts[0, 1] = 0.3, 5.0, 0.5, 0.45, 40.0, -0.02, -2.0  # as often missed, for 4 points
     parts[0, 2, 2:] = 1.0, 0.9, 60.0, -0.04, -4.0  # on purpose
-    chances, points = judge._replayed(parts)[0].T
+    chances, points = judge._play_again(parts)[0].T
     best = (0.3 - 0.02) / 0.5, (5.0 - 2.0) / 0.5  # the second, played until no miss is called
     assert (chances[1], points[1]) == pytest.approx(best)
     assert (chances[2], points[2]) == pytest.approx((best[0] - 0.04, best[1] - 4.0))

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from snooker_env._lib import cache
-from snooker_env._lib.seal import sealed
+from snooker_env._lib.seal import seal
 from tests.processes import ROOT, python
 
 TOY = """
@@ -171,7 +171,7 @@ def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
     folder = toy.folder if which == "top" else index.parent
 
     def plant():
-        index.write_bytes(sealed(pickle.dumps(Planted(mark)) + planted, name_of(toy, index)))
+        index.write_bytes(seal(pickle.dumps(Planted(mark)) + planted, name_of(toy, index)))
 
     plant()
     folder.chmod(0o777)
@@ -213,7 +213,7 @@ def test_a_damaged_file_is_compiled_and_kept_anew(toy, what, how):
     toy()
     (path,) = files(toy, what)
     data = DAMAGED[how](path.read_bytes())
-    path.write_bytes(sealed(data, name_of(toy, path)) if how == "another numba's" else data)
+    path.write_bytes(seal(data, name_of(toy, path)) if how == "another numba's" else data)
     out, err = toy()
     assert out == MIXED and err.count("RuntimeWarning") == 1
     assert how == "another numba's" or f"machine code kept in {path.parent} cannot be used" in err

@@ -6,16 +6,14 @@ import importlib.util
 import matplotlib as mpl
 import pytest
 
-from agents import evaluate
-from benchmarks import layouts_picture, pictures
 from commands import picture_style
 from tests.pictures import saved_figures, unreadable
 from tests.processes import ROOT
 
 mpl.use("Agg")
-REDRAWN = ("paper", "pockets", "rack", "scene", "speed", "stability", "tradeoff")
+REDRAWN = ("paper", "scene", "tradeoff")
 """Benchmarks whose figures are kept in benchmarks/figures."""
-COMPUTED = ("paper", "scene", "stability")
+COMPUTED = ("paper", "scene")
 """Those that compute more than they read."""
 
 
@@ -41,29 +39,6 @@ def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch
     read(figures)
     kept = {file.name for file in (ROOT / "benchmarks/pictures").iterdir()}
     assert {file.name for file in tmp_path.glob("*.png")} <= kept
-
-
-def test_destinations_can_be_read(tmp_path):
-    few = str.split("--visits 60 --layouts held_out --noise professional --resamples 100")
-    with saved_figures() as figures:
-        evaluate.main(
-            [
-                "--agent",
-                *str.split("best_pot_30 ghost_ball random"),
-                *few,
-                "--picture",
-                str(tmp_path / "d.png"),
-            ]
-        )
-    read(figures)
-
-
-@pytest.mark.parametrize("module", [layouts_picture, pictures])
-def test_a_picture_of_tables_can_be_read(module, tmp_path, monkeypatch):
-    monkeypatch.setattr("sys.argv", ["x", "--out", str(tmp_path)])
-    with saved_figures() as figures:
-        module.main()
-    read(figures)
 
 
 def test_labels_beside_points_avoid_each_other(tmp_path):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from benchmarks import fair
 from snooker_env import SnookerEnv
 from snooker_env.game import pots
 from snooker_env.game.balls import BLACK, BLUE, BROWN, CUE, N_BALLS, SPOTS, BallOn, mask_of
+from snooker_env.game.frame_columns import IN_HAND
 from snooker_env.game.layouts import layout
 from snooker_env.game.pots import POT_COLUMNS
 from snooker_env.game.ruling import Foul
@@ -17,6 +17,7 @@ from snooker_env.tasks import CHOICES, choice_of, lines, windows
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
 from snooker_env.tasks.stroke import VX, VY, WX, WY, WZ
 from tests.tables import begun, table_state
+from tests.tasks import fair_choices as fair
 
 
 def test_the_numbers_count_pots_speeds_sides_and_tops():
@@ -180,9 +181,9 @@ def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
 )
 def test_there_is_a_fair_choice_and_a_fair_target(kind, n, least, target):
     """In frames the target line leads full at balls in the mouth of a pocket too, which the cue ball follows."""
-    found = fair.measured(kind, n, seed=0)
-    assert found["tables"] > 0.7 * n and found["with_a_fair_choice"] >= least and found["target"] >= target
-    assert found["target_at"]["3.6"] >= target - 0.1 and found["fair_choices"] > 0.6
+    shares, aimed = fair.fair_strokes(kind, n, seed=0)
+    assert len(shares) > 0.7 * n and (shares > 0.0).mean() >= least and shares.mean() > 0.6
+    assert aimed.any(axis=1).mean() >= target and aimed[:, SPEEDS.index(3.6)].mean() >= target - 0.1
 
 
 def test_an_escape_is_solved_for_the_stroke_that_is_played():
@@ -217,12 +218,12 @@ def test_choices_over_cushions_are_the_same_strokes_as_actions():
 
 def touching(ball, others):
     """The fouls of all choices, and the lines, where the cue ball touches a ball on its right; red is on."""
-    tables = fair.dealt(CHOICES, 0, action="discrete")
+    tables = fair.deal(CHOICES, 0, action="discrete")
     positions, on_table = SPOTS.copy(), np.isin(np.arange(N_BALLS), (CUE, BLACK, ball, *others))
     positions[CUE], positions[ball] = (0.3, 0.3), (0.3 + 2 * R + 1e-5, 0.3)
     for i, place in others.items():
         positions[i] = place
-    tables.positions[0], tables.on_table[0], tables.game[0, fair.IN_HAND] = positions, on_table, 0
+    tables.positions[0], tables.on_table[0], tables.game[0, IN_HAND] = positions, on_table, 0
     assert not fair.has_pot(tables, 0)
     offered = np.flatnonzero(tables.action_masks()[0])
     found = fair.fouls(tables, fair.states(tables, [0])[0], offered[:, None].astype(float))

@@ -98,7 +98,7 @@ def _features(positions, on_table, game, spread, out):
         row[o + 17] = log(min(max(spread, NARROWEST), WIDEST) / SPREAD)
 
 
-def errors_seen(seen: np.ndarray) -> Floats:
+def read_errors(seen: np.ndarray) -> Floats:
     """The errors of direction [rad] under which features (n, ``SIZE`` or more) were seen: float64 (n,)."""
     return SPREAD * np.exp(seen[:, SIZE - 1].astype(np.float64))
 

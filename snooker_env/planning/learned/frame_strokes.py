@@ -132,13 +132,13 @@ class FrameStrokes:
         of = others[j]
         strokes[of, LOOKS + c], there[of, LOOKS + c] = made.strokes[j, c], True
         if len(of):
-            seems, more = self._predicted(at, of, made.strokes[j, c], missed, goes_on)
+            seems, more = self._predict(at, of, made.strokes[j, c], missed, goes_on)
             kinds[of, c, 0], kinds[of, c, SHARED + POT_SIZE :] = seems, more
         seen[..., 1], seen[..., 2] = missed[:, None] / 40.0, goes_on[:, None] / 40.0
         seen[..., 3] = at.on_table[:, 1:16].sum(axis=1)[:, None] / 15.0
         return Looked(strokes, there, seen)
 
-    def _predicted(
+    def _predict(
         self, at: Positions, rows: Ints, strokes: Floats, missed: Floats, goes_on: Floats
     ) -> tuple[Floats, Floats]:
         """What safeties (m, 5) in ``at[rows]`` seem to be worth, in units of ``POINTS``, (m,), and what is predicted of

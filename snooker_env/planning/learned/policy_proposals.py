@@ -20,7 +20,7 @@ from .pot_view import with_pots
 from .stroke_policy import StrokePolicy
 
 TEMPERATURE = 4.0
-"""Of the scores: above 1, so that less likely ones are tried too (``python -m benchmarks.temperature``)."""
+"""Of the scores: above 1, so that less likely ones are tried too."""
 _SPEEDS, _SIDES, _TOPS = np.array(SPEEDS), np.array(SIDES), np.array(TOPS)
 _STEP = np.gradient(np.log(_SPEEDS))  # width of a cell in the logarithm of the speed
 _SIDE_STEP, _TOP_STEP = _SIDES[1] - _SIDES[0], _TOPS[1] - _TOPS[0]

@@ -129,7 +129,7 @@ class StrokeValue:
 
     def _ahead(self, at: Positions, strokes: Floats, pot: Pots) -> list[Floats]:
         """What is predicted: columns (n, m)."""
-        out, values = self._predicted(at, strokes, pot)
+        out, values = self._predict(at, strokes, pot)
         first, mean = out[:, :, 0], out.mean(axis=2)
         values = values / 20.0
         return [
@@ -155,7 +155,7 @@ class StrokeValue:
             strokes[..., SPEED] * np.cos(pot.cut),  # what a stun shot gives the object ball [m/s]
         ]
 
-    def _predicted(self, at: Positions, strokes: Floats, pot: Pots) -> tuple[Floats, Floats]:
+    def _predict(self, at: Positions, strokes: Floats, pot: Pots) -> tuple[Floats, Floats]:
         """What ``cue_ball_path`` predicts of strokes (n, m, 5) under each error, (n, m, k, SEEN), and the values of what
         they leave (n, m, k) [points]; 0 where the visit ends."""
         n, m = strokes.shape[:2]

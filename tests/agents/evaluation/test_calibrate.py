@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from agents import calibrate
-from agents.calibrate import figures_of, frames_of, frames_played, main, tactics_of
+from agents.calibrate import figures_of, frames_of, group_frames, main, tactics_of
 from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, SIZE
 from snooker_env.planning.worth import Chance
 from tests.pictures import saved_figures, unreadable
@@ -59,7 +59,7 @@ def rows_of(strokes):
 def test_breaks_of_frames_played_are_counted():
     first = [(0, 0, 0, 0), (1, 1, 0.95, 0), (1, 7, 0.9, 0), (1, 0, 0.3, 0)]
     rows = rows_of([*first, (0, -4, 0, 1), (1, 5, 0.99, 0), (1, 0, 0.2, 0), (0, 2, 0.5, 0)])
-    (frame,) = frames_played(rows)
+    (frame,) = group_frames(rows)
     assert frame["breaks"] == [8.0, 5.0, 2.0] and frame["fouls"] == 1 and frame["strokes"] == 8
     assert frame["points"].tolist() == [2.0, 17.0]
     tactics = tactics_of([rows])

@@ -6,7 +6,6 @@ import gymnasium
 import numpy as np
 import pytest
 import torch
-import yaml
 
 from agents import dataset
 from agents.players.trained import load_player
@@ -113,9 +112,7 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
     again = list(minari.MinariDataset(folder / "data").iterate_episodes())
     assert all(np.array_equal(a.actions, b.actions) for a, b in zip(long, again, strict=True))
     assert abs((folder / "data" / "main_data.hdf5").stat().st_size - before) < 1000
-    _, head, text = (folder / "README.md").read_text(encoding="utf-8").split("---\n", 2)
-    card = yaml.safe_load(head)
-    assert card["license"] == "mit" and "minari" in card["tags"] and card["size_categories"] == ["n<1K"]
+    text = (folder / "README.md").read_text(encoding="utf-8")
     assert f"{data.total_steps} strokes of {data.total_episodes} whole episodes" in text
 
 

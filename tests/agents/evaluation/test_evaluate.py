@@ -22,7 +22,7 @@ QUICK = str.split("--visits 12 --layouts held_out --noise professional --resampl
 
 
 def outputs(folder):
-    files = (("--json", "r.json"), ("--markdown", "r.md"), ("--picture", "p.png"))
+    files = (("--json", "r.json"), ("--markdown", "r.md"))
     return [word for option, name in files for word in (option, str(folder / name))]
 
 
@@ -45,7 +45,7 @@ def models(tmp_path_factory):
     return folder
 
 
-def test_json_markdown_and_picture(models, tmp_path, capsys):
+def test_json_and_markdown(models, tmp_path, capsys):
     options = "--visits 12 --layouts held_out=20 colours --noise none club --resamples 200 --physics"
     agents = ["--agent", f"model={models / 'm-*'}", "random", "--against", "ghost_ball", "random"]
     files = outputs(tmp_path / "new")
@@ -71,7 +71,7 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
         mean = row["figures"]["points_a_visit"]["value"]
         assert np.mean(row["by_run"]["points_a_visit"]) == pytest.approx(mean)
     text, printed = (tmp_path / "new" / "r.md").read_text(), capsys.readouterr().out
-    assert found["command"] in text and found["machine"] in text and "](p.png)" in text
+    assert found["command"] in text and found["machine"] in text
     assert found["command"].startswith("python -m agents.evaluate --agent")
     lines = text.splitlines()
     for k, line in enumerate(lines):
@@ -80,7 +80,6 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
             assert lines[k - 1].count("|") == width == lines[k + 1].count("|")
     points = report._pm(found["results"][0]["figures"]["points_a_visit"])
     assert points in text and points in printed and "2 training seeds, fewer than 5" in printed
-    assert (tmp_path / "new" / "p.png").read_bytes()[:4] == b"\x89PNG"
 
 
 def test_held_out_tables_alone_are_played_unless_others_are_named():
@@ -135,10 +134,7 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
         ("random --json tests", "json = 'tests': must be a file"),
         ("random --json pyproject.toml/r.json", "json = 'pyproject.toml/r.json': must be a file"),
         ("random --markdown /proc/none/r.md", "markdown = '/proc/none/r.md': must be a file"),
-        ("random --picture tests", "picture = '': must be one of .*'.png'"),
-        ("random --picture p.md", "picture = '.md': must be one of .*'.png'"),
         ("random --resamples 5", "resamples = 5: must be an integer in"),
-        ("random --layouts colours --picture p.png", "layouts = 'colours': must hold held_out"),
     ],
 )
 def test_bad_input_ends_with_one_clear_line(options, says, refused):
@@ -206,16 +202,6 @@ def test_a_broken_file_is_named(file, text, says, models, tmp_path):
         evaluate.Entrant.of(str(tmp_path / "model.zip" if file == "model.json" else tmp_path)).trained()
 
 
-def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
-    def draw(report, strokes, file):
-        raise RuntimeError("no ink")
-
-    monkeypatch.setattr("agents.evaluation.destinations.draw", draw)
-    with pytest.raises(RuntimeError, match="no ink"):
-        evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
-    assert read(tmp_path / "r.json")["results"] and (tmp_path / "r.md").read_text()
-
-
 BOTH = ["--agent", "random", *QUICK, "--layouts", "held_out", "colours"]
 
 
@@ -234,7 +220,7 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     assert complete == [("held_out", "random"), ("held_out", "ghost_ball")]
     assert (tmp_path / "r.md").read_text() == "whole" and f"INCOMPLETE: {lost}." in part.read_text()
     assert f"json: {tmp_path / 'r.json'}" in printed.out and f"markdown: {part}" in printed.out
-    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "r.incomplete.md", "p.png"}
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "r.incomplete.md"}
 
 
 def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatch, capsys):
@@ -252,7 +238,7 @@ def test_ctrl_c_before_play_is_one_line(monkeypatch, capsys):
     assert capsys.readouterr().err == "agents.evaluate: interrupted\n"
 
 
-@pytest.mark.parametrize("full", ["r.json", "r.md", "p.png"])
+@pytest.mark.parametrize("full", ["r.json", "r.md"])
 def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys, full):
     original = os.replace
 
@@ -265,7 +251,7 @@ def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys, full):
     with pytest.raises(SystemExit) as stop:
         evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
     assert stop.value.code == f"agents.evaluate: {tmp_path / full} cannot be written: No space left on device"
-    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"} - {full}
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md"} - {full}
     printed = capsys.readouterr().out
     assert "points a visit" in printed and str(tmp_path / full) not in printed
 
@@ -277,7 +263,7 @@ def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
     monkeypatch.setattr(evaluate, "show", gone)
     with pytest.raises(SystemExit):
         evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
-    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"}
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md"}
 
 
 def test_a_physics_is_named_as_it_was_given():

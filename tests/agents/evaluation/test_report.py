@@ -141,7 +141,7 @@ def test_a_under_b():
     made = report_of(agent("a"), agent("b", noise="club"))
     points = {("a", "none"): 4.0, ("a", "club"): 1.0, ("b", "none"): 3.0, ("b", "club"): 2.0}
     made["results"] = [row(label, noise, value, (None,) * 3, {}) for (label, noise), value in points.items()]
-    (table,) = report.crossed(made)
+    (table,) = report.cross(made)
     assert (
         table.title
         == "held_out: points a visit, played under noise ..., fidelity standard, physics paper, cue real"
@@ -252,7 +252,7 @@ def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
     """``python -m agents.report agents/results/*.json`` was run since report.py changed; no table is wide."""
     for file in KEPT:
         made = report.read(file)
-        written = report.markdown(made, report.picture_of(made, file.parent))
+        written = report.markdown(made)
         assert file.with_suffix(".md").read_text() == written, file
         report.show(report.parts(made))
         assert max(len(line.rstrip()) for line in capsys.readouterr().out.splitlines()) <= 100
@@ -268,7 +268,7 @@ def test_the_command_writes_the_markdown_beside(tmp_path, capsys, refused):
     file.write_bytes(KEPT[1].read_bytes())
     assert report.main([str(file)]) == 0 and capsys.readouterr().out == f"{tmp_path / 'r.md'}\n"
     read = report.read(file)
-    assert (tmp_path / "r.md").read_text() == report.markdown(read, report.picture_of(read, tmp_path))
+    assert (tmp_path / "r.md").read_text() == report.markdown(read)
     assert report.main(["--show", str(file)]) == 0 and "IQM" in capsys.readouterr().out
     for text in ("{}", "[", json.dumps(json.loads(file.read_text()) | {"results": [{}]})):
         file.write_text(text)

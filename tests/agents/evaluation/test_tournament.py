@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from agents import tournament
+from agents import report, tournament
 from agents.evaluation import tournament_play
 from agents.evaluation.tournament_figures import COLUMNS, figures_of
 from agents.evaluation.tournament_file import FIELDS, PLAYER, faults
@@ -30,13 +30,13 @@ def played(tmp_path, *more, name="t.json", players=PLAYERS, code=0):
     return read_result(file)
 
 
-def test_json_markdown_check_and_show(tmp_path, capsys):
-    found = played(tmp_path, "--markdown", str(tmp_path / "t.md"), "--fewer", "random=2")
+def test_json_markdown_check_and_report(tmp_path, capsys):
+    found = played(tmp_path, "--markdown", str(tmp_path / "t.md"))
     assert faults(found) == [] and found["incomplete"] is None
     assert [p["label"] for p in found["players"]] == ["ghost_ball", "random", "Softly"]
     assert found["protocol"]["anchor"] == "ghost_ball" and found["game"]["noise"] == "professional"
     assert found["game"]["cue"] == "real"
-    assert len(found["rows"]) == 2 + 6 + 2
+    assert len(found["rows"]) == 3 * 6
     assert {(row[2], row[3]) for row in found["rows"]} == {(s, o) for s in range(3) for o in (0, 1)}
     first, second = COLUMNS.index("strokes_first"), COLUMNS.index("strokes_second")
     for k, player in enumerate(found["players"]):
@@ -48,7 +48,6 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
     assert printed.err == "" and "Who wins" in printed.out and found["command"] in text
     for label in ("ghost_ball", "random", "Softly"):
         assert label in text and label in printed.out
-    assert "2 with random" in " ".join(printed.out.split())
     for p in found["figures"]["players"].values():
         assert f"{p['elo']['value']:.0f}" in text and f"{p['average_break']['value']:.2f}" in text
     for line, under in zip(text.splitlines(), text.splitlines()[1:], strict=False):
@@ -56,9 +55,8 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
             assert line.count("|") == under.count("|")
     file = str(tmp_path / "t.json")
     assert tournament.main(["--check", file]) == 0
-    assert capsys.readouterr().out == f"{file}: complete, 3 players, 10 frames\n"
-    assert tournament.main(["--show", file, "--markdown", str(tmp_path / "again.md")]) == 0
-    assert (tmp_path / "again.md").read_text() == text
+    assert capsys.readouterr().out == f"{file}: complete, 3 players, 18 frames\n"
+    assert report.main([file]) == 0 and text == (tmp_path / "t.md").read_text()
 
 
 def test_the_simulated_shots_of_each_player_are_counted(tmp_path):
@@ -119,9 +117,6 @@ def test_frames_do_not_depend_on_the_company(tmp_path):
     assert rows[0] == rows[1] and len(rows[0]) == 6
 
 
-MAIN = "agents/results/visits.json"
-
-
 @pytest.mark.parametrize(
     ("options", "says"),
     [
@@ -134,9 +129,6 @@ MAIN = "agents/results/visits.json"
         ("ghost_ball random --frames 7", "frames = 7: must be even"),
         ("ghost_ball random --frames 0", "frames = 0: must be an integer in \\[2"),
         ("ghost_ball random --match 4", "match = 4: must be odd"),
-        ("ghost_ball random --fewer me=2", "fewer = 'me=2': must be LABEL=N"),
-        ("ghost_ball random --fewer random=200", "fewer = 200: must be an integer in \\[2, 100\\]"),
-        ("ghost_ball random --anchor me", "anchor = 'me': must be one of"),
         ("ghost_ball random --noise loud", "noise = 'loud': must be one of"),
         ("ghost_ball random --physics mars", "physics = 'mars': must be one of"),
         ("ghost_ball random --miss always", "miss = 'always': must be one of"),
@@ -148,8 +140,6 @@ MAIN = "agents/results/visits.json"
         ("ghost_ball random --out pyproject.toml", "out = 'pyproject.toml': must be a new file"),
         ("ghost_ball random --out pyproject.toml --resume", "pyproject.toml': must be JSON"),
         ("ghost_ball random --out tests --force", "out = 'tests': must be a file"),
-        ("--show nothing.json", "show = 'nothing.json': must be the file of a tournament .cannot be read"),
-        (f"--show {MAIN}", f"show = '{MAIN}': must be the file of a tournament"),
     ],
 )
 def test_bad_input_ends_with_one_clear_line(options, says, refused, monkeypatch):
@@ -174,7 +164,7 @@ def sound():
     rows = [[0, 1, s, o, 0, (s + o) % 2, *counted] for s in range(3) for o in (0, 1)]
     found = json.loads((ROOT / "agents" / "results" / "ladder.json").read_text())
     players = [found["players"][k] | {"label": label} for k, label in enumerate("ab")]
-    protocol = found["protocol"] | {"matches": 6, "fewer": {}, "anchor": "a", "resamples": 100}
+    protocol = found["protocol"] | {"matches": 6, "anchor": "a", "resamples": 100}
     figures = figures_of(["a", "b"], rows, "a", 100)
     return found | {"players": players, "protocol": protocol, "rows": rows, "figures": figures}
 
@@ -186,8 +176,7 @@ def sound():
         ("protocol.best_of", "7", "protocol.best_of = '7': must be a whole number"),
         ("protocol.anchor", "c", "players: must be two or more"),
         ("protocol.prior", 0.5, "protocol.prior = 0.5"),
-        ("protocol.fewer", {"c": 2}, "protocol.fewer: 'c' is no player"),
-        ("protocol.fewer", {"b": 3}, "protocol: b = 3: must be an even number"),
+        ("protocol.matches", 7, "protocol.matches = 7: must be even"),
         ("protocol.matches", 8, "rows: must be 8 matches, not 6"),
         ("machine.cores", 0, "machine.cores = 0"),
         ("commit", "dirty", "commit = 'dirty'"),

@@ -12,7 +12,7 @@ from agents.learning import expert_iteration
 from agents.learning.expert_iteration import FRESH, STARTS, ExpertIteration, Starts, judge_rewards
 from agents.learning.hyperparameters import Recipe
 from agents.learning.model_files import packed, read
-from agents.learning.models import zipped
+from agents.learning.models import zip_model
 from agents.learning.value_network import value_of
 from snooker_env import player
 from snooker_env.planning import Positions, spread_of
@@ -256,7 +256,7 @@ def test_policy_and_value_are_saved_and_read_together(tmp_path):
     at = Positions.of(tables(30, layout="random:5"))
     expected = value_of(model.policy.position_value, 1e-3)(at)
     scores = PolicyProposals(model.policy.fused).scores(at)[0]
-    (tmp_path / "model.zip").write_bytes(zipped(model))
+    (tmp_path / "model.zip").write_bytes(zip_model(model))
     trained = read(tmp_path / "model.zip", "agent")
     (tmp_path / "plain.zip").write_bytes(packed(trained))
     again = read(tmp_path / "plain.zip", "agent")

@@ -80,7 +80,7 @@ def test_files_of_others_are_left_to_others(tmp_path):
     assert Noise().silent
 
 
-PLAYERS = ["planner_60", "planner_value_60", "planner_policy_60", "ppo_value"]
+PLAYERS = ["planner_60", "ppo_value"]
 MEASURE = """if True:
     import json, os, sys, time
     import numpy as np, torch

@@ -16,8 +16,8 @@ from snooker_env.planning.learned.frame_features import (
     RED_ENTRIES,
     SIZE,
     WIDEST,
-    errors_seen,
     frame_features,
+    read_errors,
 )
 from snooker_env.planning.learned.value_features import SIZE as VISIT_SIZE
 from tests.planning.test_frame_judge import frame_of
@@ -77,7 +77,7 @@ def test_the_state_of_the_frame_and_the_size_of_the_errors_are_told():
         assert plain[SHARED + entry] == 0.0 and seen(changed)[SHARED + entry] == 1.0
     for spread, shown in ((1e-3, 1e-3), (1e-5, NARROWEST), (0.1, WIDEST)):
         assert seen(at, spread)[SHARED + 17] == pytest.approx(log(shown / 1.2e-3), rel=1e-5)
-        assert errors_seen(frame_features(at, spread)) == pytest.approx([shown], rel=1e-5)
+        assert read_errors(frame_features(at, spread)) == pytest.approx([shown], rel=1e-5)
 
 
 def test_the_likeliest_pot_is_the_one_that_a_straight_line_makes():

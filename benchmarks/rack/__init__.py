@@ -1,1 +1,0 @@
-"""Breaks of a touching rack by several models: ``python -m benchmarks.rack``."""

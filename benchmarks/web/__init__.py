@@ -1,1 +1,0 @@
-"""How fluently the browser plays: ``python -m benchmarks.web``."""
