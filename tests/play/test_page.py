@@ -1,9 +1,11 @@
 """Does the page play? In a real headless Chromium, by mouse, keys and touch."""
 
 import json
+import re
 import time
 from math import pi
 
+import numpy as np
 import pytest
 
 from snooker_env.play.server import FILES
@@ -136,6 +138,30 @@ def test_keys_and_dial_change_the_stroke(shown):
     before = shown("page.aim.wish.aim")
     shown.page.mouse.wheel(0, -100)
     assert shown("page.aim.wish.aim") - before == pytest.approx(0.05 * 0.017453293, abs=1e-9)
+
+
+def test_a_held_key_turns_the_aim_by_the_time(shown):
+    """Not by how often its keyboard repeats it; and no longer than it is held."""
+    shown.set_up(EASY)
+    press = "document.body.dispatchEvent(new KeyboardEvent('keydown', { key: argument, bubbles: true, repeat: k > 0 }))"
+    for key, part, step in (
+        ("ArrowLeft", "aim", 0.1 * pi / 180),
+        ("ArrowUp", "speed", 0.1),
+        ("d", "side", 0.05),
+    ):
+        shown("page.aim.set({aim: 1, speed: 2, side: 0})")
+        start = shown(f"page.aim.wish.{part}")
+        shown.page.evaluate(
+            f"argument => {{ for (let k = 0; k < 20; k++) {press}; page.pressed = null; }}", key
+        )
+        assert shown(f"page.aim.wish.{part}") == pytest.approx(start + step)
+        shown.page.keyboard.down(key)
+        shown.until(f"page.aim.wish.{part} > argument", start + 4.5 * step, 20)
+        shown.page.keyboard.up(key)
+        end = shown(f"page.aim.wish.{part}")
+        shown.page.wait_for_timeout(100)
+        assert shown(f"page.aim.wish.{part}") == end
+    assert shown("page.state.strokes") == 0
 
 
 def test_after_a_foul_the_choices_are_shown(shown):
@@ -365,6 +391,39 @@ def test_the_end_of_a_frame_is_seen(shown):
     assert shown.page.get_attribute("#last", "class") != "trouble"
 
 
+def test_the_end_of_a_frame_is_seen_when_its_last_ball_is_down(shown):
+    shown.set_up({"cue": [0.6, 1.5], "black": [0.76, 1.66]}, scores=[5, 13])
+    shown("page.aim.set({aim: Math.PI / 4, speed: 1})")
+    shown.page.keyboard.press("Enter")
+    shown.until("page.moving")
+    assert not shown.page.is_visible("#over")
+    shown.played(1)
+    assert shown.page.inner_text("#over-who") == "Player 2 won the frame"
+    assert shown.page.inner_text("#over-score") == "Player 1 12 : 13 Player 2"
+
+
+def test_the_odds_are_those_of_the_errors_of_the_persons_seat(shown):
+    noise = "club"
+    shown.set_up(EASY)
+    state = shown.line("api/players", {"noise": [noise, "professional"]})[1]
+    shown.until("page.settled === argument", state["revision"])
+    shown("page.aim.set({aim: argument, speed: 2})", STRAIGHT + 0.01)
+    found = shown.line("api/destinations", {"speed": 2.0, "aim": STRAIGHT + 0.01, "noise": noise})[1]
+    assert found["samples"] == 500
+    shown.until("page.advisor.found && !page.advisor.wait.busy")
+    odds = shown("[page.advisor.found.samples, page.advisor.found.potted]")
+    assert odds == [found["samples"], found["potted"]]
+    assert f"red: potted {100 * found['potted']:.0f} %" in shown.page.inner_text("#odds")
+    shown.page.click("#options summary")
+    shown.page.select_option("#guide", "line")
+    assert shown("page.advisor.found") is None and shown.page.inner_text("#odds") == ""
+    shown.page.click("#advise")
+    shown.until("page.advisor.list.length")
+    asked = {"agent": shown.page.input_value("#agent"), "noise": noise}
+    words = [one["words"] for one in shown.line("api/advise", asked)[1]["suggestions"]]
+    assert shown("page.advisor.list.map(one => one.words)") == words
+
+
 def test_two_agents_play_on_by_themselves_until_paused(shown):
     """Each stroke is seen before the other agent plays; Pause stops them, Continue lets them play on."""
     shown.set_up(EASY)
@@ -445,6 +504,23 @@ def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
     assert shown("[page.balls.x[0], page.balls.y[0]]") == pytest.approx(place, abs=1e-6)
     assert shown("document.querySelectorAll('#advice button').length") == many
     shown.until("page.advisor.found")
+
+
+def test_reds_off_leaves_it_to_the_balls_what_is_on(shown):
+    shown.set_up(EASY)
+    shown.page.click("#files summary")
+    shown.page.click("#set")
+    shown.until("page.setup.open")
+    shown.page.click("#set-clear")
+    shown.until("!document.getElementById('set-done').disabled")
+    shown.page.select_option("#set-on", "red")
+    shown.until("document.getElementById('set-done').disabled")
+    assert shown.page.inner_text("#set-wrong") == "There is no red left to be on."
+    assert not shown.page.is_visible("#bubble")
+    shown.page.select_option("#set-on", "automatic")
+    shown.until("!document.getElementById('set-done').disabled")
+    shown.page.click("#set-done")
+    shown.until("page.state.ball_on === 'pink'")
 
 
 @pytest.mark.parametrize(
@@ -529,6 +605,33 @@ def test_the_page_says_and_draws_how_the_cue_finds_room_before_the_stroke(shown)
     assert "Cue raised to 45 degrees over the rail, tip moved up" in shown.page.inner_text("#last")
 
 
+def test_a_ball_behind_is_drawn_and_a_free_cue_passes_through_it(shown):
+    shown.set_up({"cue": [0.0, 0.0], "reds": [[-0.5, 0.0]], "blue": [0.06, 0.0], "black": [0.0, 1.4605]})
+    shown("page.aim.set({aim: Math.PI, speed: 2, side: 0, top: 0, elevation: 0})")
+    shown.until(f"{ROOM} && page.room.found.over === 'blue'")
+    assert "over the blue" in shown.page.inner_text("#room")
+    assert shown.page.locator("#side .ball").count() == 1 and shown.page.locator("#side .wood").count() == 0
+    shown.page.click("#options summary")
+    shown.page.select_option("#cue", "free")
+    shown.until("page.state.cue === 'free' && page.room.found && !page.room.found.raised")
+    assert shown.page.inner_text("#room") == "" and shown.page.locator("#side .ball").count() == 0
+    assert shown("page.aim.overlay().cue.elevation") == 0 and shown("page.aim.wish.aim") == pytest.approx(
+        3.14159265
+    )
+    shown.page.select_option("#cue", "real")
+    shown.until("page.state.cue === 'real' && page.room.found && page.room.found.raised")
+
+
+def test_the_latest_answer_about_the_room_wins(shown):
+    shown.set_up(FROZEN)
+    shown("[3, 2.6, 2.2, 3.6, 4.6, 1.5].map(aim => page.aim.set({aim, top: 0, elevation: 0}))")
+    shown.until(f"{ROOM} && !page.room.found.raised")
+    shown("[1.5, 2.2, 3.6, 3.14159265].map(aim => page.aim.set({aim, top: 0, elevation: 0}))")
+    shown.until(f"{ROOM} && page.room.found.raised")
+    square = shown("page.room.found.elevation")
+    assert 0.5 < square < 0.63
+
+
 def test_the_cue_is_pulled_back_and_let_go(shown):
     """The further, the harder; pushed back to the ball it is no stroke, and the power is as before."""
     shown.set_up(EASY)
@@ -555,6 +658,31 @@ def test_the_cue_is_pulled_back_and_let_go(shown):
     assert cue["speed"] == pytest.approx(wanted) and cue["aim"] == pytest.approx(pi / 2)
 
 
+def test_the_strip_aims_finely_and_says_how_full_the_ball_is_struck(shown):
+    shown.set_up({"cue": [0.0, 0.0], "reds": [[0.0, 0.8]], "black": [0.0, 1.4605]})
+    said = {}
+    for offset in (
+        0.0,
+        0.5,
+        -0.5,
+        0.95,
+        1.2,
+    ):  # of the cue ball's path over the ball's diameter, to its right
+        aim = f"page.aim.set({{aim: Math.PI / 2 - Math.asin({offset} * 0.0525 / 0.8)}})"
+        shown(aim)
+        said[offset] = shown.page.inner_text("#aim-out")
+    halves = {0.5: "red: half ball, right", -0.5: "red: half ball, left"}
+    assert said == {0.0: "red: full ball", **halves, 0.95: "red: thin, right", 1.2: "cushion first"}
+    before, box = shown("page.aim.wish.aim"), shown.page.locator("#fine").bounding_box()
+    middle = box["y"] + box["height"] / 2
+    shown.page.mouse.move(box["x"] + 40, middle)
+    shown.page.mouse.down()
+    shown.page.mouse.move(box["x"] + 90, middle, steps=5)
+    shown.page.mouse.up()
+    turned = shown("page.aim.wish.aim") - before
+    assert turned == pytest.approx(-50 * 0.01 * pi / 180, abs=1e-6)  # to the right, as the pointer
+
+
 def test_the_first_look_is_calm_and_the_tutorial_is_shown_once(chromium, line):  # noqa: F811
     shown = Shown(chromium, line, new=True)
     shown.line("api/new", {"layout": "break_off", "seed": 1})
@@ -573,6 +701,30 @@ def test_the_first_look_is_calm_and_the_tutorial_is_shown_once(chromium, line): 
     shown.page.click("#tour-skip")
     assert not shown.page.is_visible("#tour")
     shown.close()
+
+
+def test_the_controls_stay_where_they_are(shown):
+    """Before a stroke, while it moves, on a colour, after a foul: whatever stays visible has not moved."""
+    ids = "['asked', 'last', 'dial', 'left', 'speed', 'act', 'advise', 'undo'].map(id => document.getElementById(id))"
+    places = f"{ids}.filter(one => one.offsetParent).map(one => [one.id, one.getBoundingClientRect().top])"
+    shown.set_up(EASY)
+    shown("page.aim.set({aim: argument, speed: 2, side: 0, top: 0})", STRAIGHT)
+    first = dict(shown(places))
+    shown.page.click("#play")
+    shown.until("page.moving")
+    moving = dict(shown(places))
+    shown.played(1)
+    colour = dict(shown(places))
+    shown("page.aim.set({aim: 0, speed: 0.2})")
+    shown.page.click("#play")
+    shown.played(2)
+    assert shown.page.is_visible("#choices")
+    foul = dict(shown(places))
+    assert first == moving == colour
+    assert len(first) == 8
+    assert {name: first[name] for name in foul if name != "act"} == {
+        k: v for k, v in foul.items() if k != "act"
+    }
 
 
 def test_advice_after_a_foul_says_what_to_choose(shown):
@@ -637,6 +789,22 @@ def test_a_match_of_six_red_is_played_on_the_page(shown):
     shown.until(f"page.state.game === 'shoot_out' && {SETTLED}")
     assert "time 10:00" in shown.page.inner_text("#now").replace("\n", " ")
     shown.line("api/new", {"layout": "break_off", "game": "snooker", "best_of": 1})
+
+
+def test_the_last_stroke_is_shown_again_in_slow_motion(shown):
+    shown.set_up(EASY)
+    shown.line("api/stroke", {"speed": 1.0, "aim": STRAIGHT})
+    shown.until("page.moving")
+    shown.played(1)
+    shown.page.click("#slow")
+    shown.until("page.moving && page.moving.at > 0")
+    assert shown("page.moving.rate") == 0.2
+    begun, at = shown("[page.moving.now, page.moving.at]")
+    shown.until("page.moving.at > argument", at + 0.08)
+    now, later = shown("[page.moving.now, page.moving.at]")
+    assert (later - at) == pytest.approx(0.2 * (now - begun) / 1000, abs=1e-6)
+    shown("page.skip()")
+    shown.until("!page.behind")
 
 
 def test_statistics_count_the_frame(shown):
@@ -742,6 +910,17 @@ def test_a_position_and_a_stroke_are_passed_on_as_links(shown):
     assert "copied whole" in shown.page.inner_text("#last")
 
 
+def test_a_link_says_whether_it_was_copied(shown):
+    shown.set_up(EASY)
+    shown.page.click("#files summary")
+    for answer, says in (("resolve", "copied"), ("reject", "in the field Link")):
+        shown(f"(navigator.clipboard.writeText = () => Promise.{answer}(), 0)")
+        link_of(shown, "game")
+        shown.until(
+            "document.getElementById('last').textContent.startsWith(argument)", f"The link is {says}: ", 20
+        )
+
+
 def test_a_whole_replay_is_passed_on_as_a_link(shown):
     """It is shown from its first stroke, and gone on with; it meets the same errors as when it was played."""
     shown.set_up(VISIT)
@@ -792,6 +971,42 @@ def test_a_whole_replay_is_passed_on_as_a_link(shown):
     shown.line("api/players", PERSONS)
 
 
+def test_a_link_that_cannot_be_made_or_opened_is_refused_in_one_sentence(shown):
+    shown.set_up(EASY)
+    code = (
+        "async text => (await import('./play_share.js')).packed('replay', text).catch(error => error.message)"
+    )
+    text = json.dumps(np.random.default_rng(1).uniform(size=3000).tolist())
+    assert len(shown.page.evaluate(code, text[:40_000])) < 30_000
+    instead = "use Save or Replay file instead."
+    said = shown.page.evaluate(code, text)
+    assert re.fullmatch(r"A link can have 30 kB, this one has (3\d): " + instead, said)
+    shown.page.click("#files summary")
+    for link, words in (
+        ("#replay=" + "A" * 29_993, f"A link can have 30 kB, this one has 31: {instead}"),
+        ("#constructor=AAAA", "This is no link to a position, a stroke or a replay."),
+        ("#replay=AAAA", "The link is damaged: was it copied whole?"),
+    ):
+        shown.page.fill("#link", link)
+        shown.page.keyboard.press("Enter")
+        shown.until("document.getElementById('last').textContent === argument", words)
+    wrong = shown.page.evaluate(code, '{"format": "snooker-game", "acts": [], "end": {}}')
+    shown("[window.CompressionStream, window.DecompressionStream] = [undefined, window.DecompressionStream]")
+    shown.page.click("#share-game")
+    old = f"This browser is too old for links: {instead}"
+    shown.until("document.getElementById('last').textContent === argument", old)
+    shown.page.fill("#link", wrong)
+    shown.page.keyboard.press("Enter")
+    shown.until("document.getElementById('last').textContent.startsWith('saved')")
+    shown("window.DecompressionStream = undefined")
+    shown.page.fill("#link", wrong)
+    shown.page.keyboard.press("Enter")
+    shown.until("document.getElementById('last').textContent === argument", old)
+    shown.errors = [
+        e for e in shown.errors if "422" not in e
+    ]  # the browser's own line for the refused replay
+
+
 def test_a_shot_clock_plays_the_stroke_as_it_is_aimed(shown):
     shown.set_up(EASY)
     assert not shown.page.is_visible("#clock")
@@ -809,6 +1024,20 @@ def test_a_shot_clock_plays_the_stroke_as_it_is_aimed(shown):
     shown.played(1)
     cue = shown.line("api/strokes")[1]["strokes"][0]["cue"]
     assert (cue["speed"], cue["aim"]) == pytest.approx((0.5, AWAY))
+
+
+def test_zoom_shows_the_stroke_twice_as_large_and_is_aimed_in_as_before(shown):
+    shown.set_up(EASY)
+    whole = shown("page.view.scale")
+    shown.page.keyboard.press("z")
+    assert shown("page.view.scale") == pytest.approx(2 * whole)
+    for place in (EASY["cue"], [0.0, 0.89225]):
+        x, y = shown("page.view.toScreen(...argument)", place)
+        assert shown("page.view.toTable(...argument)", [x, y]) == pytest.approx(place)
+    shown.page.mouse.click(*shown.at(0.0, 0.89225))
+    assert shown("page.aim.wish.aim") == pytest.approx(-2.738, abs=0.005)
+    shown.page.keyboard.press("z")
+    assert shown("page.view.scale") == pytest.approx(whole)
 
 
 def test_sounds_are_made_after_the_first_touch_and_can_be_switched_off(shown):

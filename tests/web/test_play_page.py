@@ -60,6 +60,15 @@ def test_a_phone_shows_the_table_and_the_controls_of_the_stroke(chromium, line):
     shown.close()
 
 
+def test_folded_controls_keep_the_stroke(shown):
+    shown.set_up(EASY)
+    shown.page.click("#fold")
+    assert all(seen(shown, name) for name in CONTROLS) and not shown.page.is_visible("#undo")
+    shown.page.click("#fold")
+    shown.page.evaluate("document.getElementById('panel').scrollTop = 9999")
+    assert seen(shown, "last") and seen(shown, "play")
+
+
 def test_a_match_goes_on_after_a_look_at_the_table_and_is_not_lost_by_a_click(shown):
     shown.set_up(EASY)
     shown.line("api/new", {"layout": "break_off", "best_of": 3, "seed": 1})
@@ -79,6 +88,24 @@ def test_a_match_goes_on_after_a_look_at_the_table_and_is_not_lost_by_a_click(sh
         shown.until(f"page.state.phase !== 'over' && {SETTLED} && page.aiming")
     assert sum(shown("page.state.frames")) == 2
     shown.line("api/new", {"layout": "break_off", "best_of": 1})
+
+
+def test_a_pull_is_cancelled_by_escape_and_ignores_other_fingers(shown):
+    shown.set_up(EASY)
+    shown("page.aim.set({aim: Math.PI / 2, speed: 2, side: 0, top: 0})")
+    x, y = EASY["cue"]
+    shown.page.mouse.move(*shown.at(x, y - 0.3))
+    shown.page.mouse.down()
+    shown.page.mouse.move(*shown.at(x, y - 0.5))
+    pulled = shown("page.aim.wish.speed")
+    other = "document.getElementById('table').dispatchEvent(new PointerEvent(argument, { pointerId: 99, clientX: 200, clientY: 200 }))"
+    for kind in ("pointerdown", "pointermove", "pointerup"):
+        shown(other, kind)
+    assert shown("[page.aim.held, page.aim.wish.speed]") == ["cue", pulled] and pulled > 2
+    shown.page.keyboard.press("Escape")
+    shown.page.mouse.up()
+    time.sleep(0.2)
+    assert shown("[page.aim.wish.speed, page.state.strokes]") == [2, 0]
 
 
 def test_a_link_is_opened_as_often_as_it_is_pasted_and_errors_are_seen(shown):
@@ -147,6 +174,14 @@ def test_a_drill_outlives_a_reload_and_gives_the_seats_back(shown):
     assert {name: shown("page.state")[name] for name in before} == before
 
 
+def test_the_clock_of_a_first_visitor_is_a_number(chromium, line):  # noqa: F811
+    """The tutorial is open before the first state has come."""
+    shown = Shown(chromium, line, new=True)
+    shown.until(f"{SETTLED} && page.aiming")
+    assert shown.page.is_visible("#tour") and shown("Number.isFinite(page.stats.spent)")
+    shown.close()
+
+
 def test_the_shot_clock_stands_while_something_is_read(shown):
     shown.set_up(EASY)
     shown.page.click("#options summary")
@@ -160,6 +195,28 @@ def test_the_shot_clock_stands_while_something_is_read(shown):
     assert shown("page.state.strokes") == 0 and shown.page.inner_text("#clock") == left
     shown.page.click("#help-close")
     shown.played(1)
+
+
+def test_the_shot_clock_is_not_wound_back_but_by_another_table(shown):
+    shown.set_up(EASY)
+    shown.page.click("#options summary")
+    shown.page.select_option("#limit", "15 s")
+    shown("page.stats.spent += 6")
+    shown.page.click("#set")
+    assert not shown.page.is_visible("#clock")
+    shown.page.click("#set-cancel")
+    assert int(shown.page.inner_text("#clock")) <= 9
+    shown.page.click("#set")
+    shown.drag(EASY["reds"][1], (-0.3, 0.4))
+    shown.page.click("#set-done")
+    shown.until(f"{SETTLED} && page.aiming")
+    assert 12 <= int(shown.page.inner_text("#clock")) <= 15
+    shown("page.stats.spent += 6")
+    shown.page.click("#play")
+    shown.until("page.moving")
+    shown.page.click("#undo")
+    shown.until(f"{SETTLED} && page.aiming")
+    assert 12 <= int(shown.page.inner_text("#clock")) <= 15
 
 
 def test_after_a_foul_the_choices_cover_no_words_and_the_next_aim_is_a_new_one(chromium, line):  # noqa: F811
@@ -177,3 +234,35 @@ def test_after_a_foul_the_choices_cover_no_words_and_the_next_aim_is_a_new_one(c
     shown.until(f"{SETTLED} && page.aiming")
     assert shown("page.aim.words").startswith("red")
     shown.close()
+
+
+def test_keys_turn_the_pages_of_the_tutorial_and_play_nothing(chromium, line):  # noqa: F811
+    shown = Shown(chromium, line, new=True)
+    shown.until(f"{SETTLED} && page.aiming")
+    before = shown("page.state.revision")
+    shown.page.keyboard.press("Enter")
+    assert shown.page.inner_text("#tour-step") == "2 of 6"
+    shown.page.keyboard.press("Escape")
+    assert not shown.page.is_visible("#tour") and not shown("page.sending")
+    assert shown("page.state.revision") == before
+    shown.close()
+
+
+def test_after_a_slider_was_clicked_the_keys_are_for_the_stroke(shown):
+    shown.set_up(EASY)
+    shown.page.click("#speed")
+    speed, aim = shown("[page.aim.wish.speed, page.aim.wish.aim]")
+    shown.page.keyboard.press("ArrowLeft")
+    assert shown("[page.aim.wish.speed, page.aim.wish.aim]") == pytest.approx(
+        [speed, aim + 0.1 * 0.017453293]
+    )
+
+
+def test_what_a_stroke_brought_is_not_called_over_set_up(shown):
+    shown.set_up(EASY)
+    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})
+    shown.until("page.moving")
+    shown.page.click("#set")
+    shown.until("!page.busy")
+    assert shown("page.state.scores[0]") == 1 and not shown.page.is_visible("#call")
+    shown.page.click("#set-cancel")
