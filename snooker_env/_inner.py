@@ -12,7 +12,9 @@ It uses parts of numba that are not public; without them numba compiles as usual
 from contextlib import contextmanager
 from typing import Any
 
-from numba.core import codegen, compiler
+from llvmlite import binding
+from numba.core import codegen, compiler, sigutils, typed_passes, untyped_passes
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.types.functions import BaseFunction, Function
 
@@ -38,13 +40,33 @@ KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names)
 class _Library(codegen.JITCodeLibrary):
     """Code to be linked into that of callers, and optimised there."""
 
-    def _optimize_final_module(self):
-        pass
+    def _optimize_functions(self, ll_module):
+        """Keep variables in registers and no more: so there is less to link and to optimise."""
+        ll_module.data_layout = self._codegen._data_layout
+        passes, builder = binding.create_new_module_pass_manager(), self._codegen._pass_builder()
+        passes.add_sroa_pass()
+        passes.add_simplify_cfg_pass()
+        passes.run(ll_module, builder)
 
-    def _finalize_final_module(self):
-        self._finalize_dynamic_globals()
-        self._verify_declare_only_symbols()
+    def finalize(self):
+        """Let callers link it as it is; they link all that it calls too (see ``Inner.add_overload``)."""
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == binding.Linkage.external:
+                function.linkage = "weak_odr"  # not "linkonce": LLVM would link what is referred to already
+        self._shared_module = self._final_module
+        for library in self._linking_libraries:
+            self._reload_init.update(library._reload_init)
         self._finalized = True
+
+
+class _EntryLibrary(codegen.JITCodeLibrary):
+    """Code of an entry kernel, with that of all inner kernels that it uses."""
+
+    def _optimize_final_module(self):
+        for function in self._final_module.functions:
+            if function.linkage == binding.Linkage.weak_odr:
+                function.linkage = "linkonce_odr"  # it goes if all its callers have taken it in
+        super()._optimize_final_module()
 
 
 _found: dict[Any, Any] = {}
@@ -76,6 +98,22 @@ def _finding_once():
         setattr(BaseFunction, FIND, before)
 
 
+_UNUSED = {
+    untyped_passes.WithLifting,
+    untyped_passes.InlineClosureLikes,
+    untyped_passes.RewriteDynamicRaises,
+    untyped_passes.MakeFunctionToJitFunction,
+    untyped_passes.FindLiterallyCalls,
+    untyped_passes.LiteralUnroll,
+    untyped_passes.LiteralPropagationSubPipelinePass,
+    typed_passes.InlineOverloads,
+    typed_passes.NopythonRewrites,
+    typed_passes.NoPythonSupportedFeatureValidation,
+    typed_passes.DumpParforDiagnostics,
+}
+"""Passes of numba for what no inner kernel has: closures, contexts, exceptions, sums of arrays."""
+
+
 class _Compiler(compiler.Compiler):
     """Compiles one inner kernel."""
 
@@ -87,9 +125,24 @@ class _Compiler(compiler.Compiler):
             typingctx, targetctx, _Library(made, "inner kernel"), args, return_type, flags, locals
         )
 
+    def define_pipelines(self):
+        (passes,) = super().define_pipelines()
+        passes.passes = [(made, what) for made, what in passes.passes if made not in _UNUSED]
+        passes.finalize()
+        return [passes]
+
     def compile_extra(self, func):
         with _finding_once():
             return super().compile_extra(func)
+
+
+class EntryCompiler(compiler.Compiler):
+    """Compiles one entry kernel."""
+
+    def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
+        library = _EntryLibrary(targetctx.codegen(), "entry kernel")
+        library.enable_object_caching()
+        super().__init__(typingctx, targetctx, library, args, return_type, flags, locals)
 
 
 class EntryPoint:
@@ -105,14 +158,25 @@ class Inner(CPUDispatcher):
 
     if KNOWN:
 
+        def compile(self, sig: Any) -> Any:
+            """Compile it for these types, without numba's clocks and disk cache, which slow each call into LLVM."""
+            args, return_type = sigutils.normalize_signature(sig)
+            with global_compiler_lock, self._compiling_counter:
+                if args not in self.overloads:
+                    self.add_overload(self._compiler.compile(args, return_type))
+            return self.overloads[args].entry_point
+
         def add_overload(self, cres: Any) -> None:
             """Keep what was compiled for one signature."""
             cres = cres._replace(entry_point=EntryPoint())
-            cres.target_context.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
+            libraries = list(dict.fromkeys([cres.library, *cres.library._linking_libraries]))
+            cres.target_context.insert_user_function(cres.entry_point, cres.fndesc, libraries)
             self.overloads[tuple(cres.signature.args)] = cres
 
 
 OPTIONS: dict[str, Any] = {"_nrt": False, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
 """Of ``numba.njit``. Without ``_nrt`` a kernel makes no arrays and counts no references (see ``kernel``)."""
+ENTRY_OPTIONS: dict[str, Any] = {"no_cfunc_wrapper": True}
 if KNOWN:
     OPTIONS["pipeline_class"] = _Compiler
+    ENTRY_OPTIONS["pipeline_class"] = EntryCompiler
