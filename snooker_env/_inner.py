@@ -13,8 +13,9 @@ from contextlib import contextmanager
 from typing import Any
 
 from llvmlite import binding
-from numba.core import codegen, compiler, sigutils, typed_passes, untyped_passes
+from numba.core import cgutils, codegen, compiler, lowering, sigutils, typed_passes, types, untyped_passes
 from numba.core.compiler_lock import global_compiler_lock
+from numba.core.compiler_machinery import register_pass
 from numba.core.registry import CPUDispatcher
 from numba.core.types.functions import BaseFunction, Function
 
@@ -114,6 +115,28 @@ _UNUSED = {
 """Passes of numba for what no inner kernel has: closures, contexts, exceptions, sums of arrays."""
 
 
+class _Lower(lowering.Lower):
+    """Writes LLVM's code of an inner kernel, which counts no references and is not for a debugger."""
+
+    def alloca_lltype(self, name, lltype, datamodel=None):
+        return cgutils.alloca_once(self.builder, lltype, name=name, zfill=False)
+
+    def incref(self, typ, val):
+        pass
+
+    decref = incref
+
+    def delvar(self, name):
+        pass
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _Lowering(typed_passes.NativeLowering):
+    """Writes it by ``_Lower``."""
+
+    _name, lowering_class = "lowering of inner kernels", _Lower
+
+
 class _Compiler(compiler.Compiler):
     """Compiles one inner kernel."""
 
@@ -127,7 +150,8 @@ class _Compiler(compiler.Compiler):
 
     def define_pipelines(self):
         (passes,) = super().define_pipelines()
-        passes.passes = [(made, what) for made, what in passes.passes if made not in _UNUSED]
+        of_ours = {typed_passes.NativeLowering: _Lowering}
+        passes.passes = [(of_ours.get(made, made), what) for made, what in passes.passes if made not in _UNUSED]
         passes.finalize()
         return [passes]
 
@@ -157,6 +181,11 @@ class Inner(CPUDispatcher):
         raise TypeError(f"{self.py_func.__qualname__} is an inner kernel: only kernels can call it")
 
     if KNOWN:
+
+        def get_call_template(self, args: Any, kws: Any) -> Any:
+            """What it gives for these types; a constant integer is an integer, or each would be compiled anew."""
+            args = [types.unliteral(a) if isinstance(a, types.IntegerLiteral) else a for a in args]
+            return super().get_call_template(args, kws)
 
         def compile(self, sig: Any) -> Any:
             """Compile it for these types, without numba's clocks and disk cache, which slow each call into LLVM."""
