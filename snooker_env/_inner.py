@@ -133,7 +133,8 @@ class _Lower(lowering.Lower):
 class _Lowering(typed_passes.NativeLowering):
     """Writes it by ``_Lower``."""
 
-    _name, lowering_class = "lowering of inner kernels", _Lower
+    _name = "lowering of inner kernels"
+    lowering_class: Any = _Lower
 
 
 class _Compiler(compiler.Compiler):
@@ -194,7 +195,8 @@ class Inner(CPUDispatcher):
             args, return_type = sigutils.normalize_signature(sig)
             with global_compiler_lock, self._compiling_counter:
                 if args not in self.overloads:
-                    self.add_overload(self._compiler.compile(args, return_type))
+                    compiler: Any = getattr(self, "_compiler")  # noqa: B009 - a type checker does not know it
+                    self.add_overload(compiler.compile(args, return_type))
             return self.overloads[args].entry_point
 
         def add_overload(self, cres: Any) -> None:
