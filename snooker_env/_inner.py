@@ -25,8 +25,8 @@ FIND = "get_call_type"
 """The method of numba's functions that finds what they give for some types."""
 _PARTS = (
     (codegen.JITCodeLibrary, ("_optimize_functions", "_optimize_final_module")),
-    (codegen.JITCPUCodegen, ("_pass_builder",)),
-    (binding, ("create_new_module_pass_manager",)),
+    (codegen.JITCPUCodegen, ("_function_pass_manager",)),
+    (binding, ("create_new_module_pass_manager",)),  # numba before it calls passes another way
     (compiler.CompileResult, ("_replace", "entry_point")),
     (compiler.Compiler, ("compile_extra", "define_pipelines")),
     (lowering.Lower, ("alloca_lltype", "incref", "decref", "delvar")),
@@ -41,12 +41,12 @@ class _Library(codegen.JITCodeLibrary):
     """Code to be linked into that of callers, and optimised there."""
 
     def _optimize_functions(self, ll_module):
-        """Keep variables in registers and no more: so there is less to link and to optimise."""
+        """As numba does, but with one manager of passes for all functions, and none for declarations."""
         ll_module.data_layout = self._codegen._data_layout
-        passes, builder = binding.create_new_module_pass_manager(), self._codegen._pass_builder()
-        passes.add_sroa_pass()
-        passes.add_simplify_cfg_pass()
-        passes.run(ll_module, builder)
+        passes, builder = self._codegen._function_pass_manager()
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                passes.run(function, builder)
 
     def finalize(self):
         """Let callers link it as it is; they link all that it calls too (see ``Inner.add_overload``)."""
