@@ -1,10 +1,12 @@
 """How is an inner kernel compiled? To LLVM's intermediate code, which its callers take in; no machine code.
 
 numba optimises every function with all that it calls, and makes machine code of it: for inner kernels, which
-never run alone, two fifths of a first shot's time. So their library is complete as it is; the entry kernel
-that takes them in optimises all at once, and callers find them under an entry point that is only a name. And
-numba works out anew what each operator gives for its types, a seventh of the time: here the first answer
-stays.
+never run alone, two fifths of a first shot's time. So their library is complete as it is, with none of what
+they call in it; the entry kernel takes in each of them once and optimises all together, and callers find them
+under an entry point that is only a name. And most of what numba does for a function in general an inner kernel
+does not need: passes for closures and exceptions, code that counts references, a compile for each value of a
+constant integer, a clock around each call into LLVM, and what an operator gives for its types worked out anew
+each time. Without it a first shot takes three quarters of the time.
 
 It uses parts of numba that are not public; without them numba compiles as usual: the same results, later.
 """
@@ -12,23 +14,23 @@ It uses parts of numba that are not public; without them numba compiles as usual
 from contextlib import contextmanager
 from typing import Any
 
-from numba.core import codegen, compiler
+from llvmlite import binding
+from numba.core import cgutils, codegen, compiler, lowering, sigutils, typed_passes, types
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.compiler_machinery import register_pass
 from numba.core.registry import CPUDispatcher
 from numba.core.types.functions import BaseFunction, Function
 
 FIND = "get_call_type"
 """The method of numba's functions that finds what they give for some types."""
-_OF_CODE = (
-    "optimize_final_module",
-    "finalize_final_module",
-    "finalize_dynamic_globals",
-    "verify_declare_only_symbols",
-)
 _PARTS = (
-    (codegen.JITCodeLibrary, tuple(f"_{name}" for name in _OF_CODE)),
+    (codegen.JITCodeLibrary, ("_optimize_functions", "_optimize_final_module")),
+    (codegen.JITCPUCodegen, ("_function_pass_manager",)),
+    (binding, ("create_new_module_pass_manager",)),  # numba before it calls passes another way
     (compiler.CompileResult, ("_replace", "entry_point")),
-    (CPUDispatcher, ("add_overload",)),
-    (compiler.Compiler, ("compile_extra",)),
+    (compiler.Compiler, ("compile_extra", "define_pipelines")),
+    (lowering.Lower, ("alloca_lltype", "incref", "decref", "delvar")),
+    (CPUDispatcher, ("add_overload", "get_call_template")),
     (BaseFunction, (FIND,)),
 )
 KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names)
@@ -38,13 +40,33 @@ KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names)
 class _Library(codegen.JITCodeLibrary):
     """Code to be linked into that of callers, and optimised there."""
 
-    def _optimize_final_module(self):
-        pass
+    def _optimize_functions(self, ll_module):
+        """As numba does, but with one manager of passes for all functions, and none for declarations."""
+        ll_module.data_layout = self._codegen._data_layout
+        passes, builder = self._codegen._function_pass_manager()
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                passes.run(function, builder)
 
-    def _finalize_final_module(self):
-        self._finalize_dynamic_globals()
-        self._verify_declare_only_symbols()
+    def finalize(self):
+        """Let callers link it as it is; they link all that it calls too (see ``Inner.add_overload``)."""
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == binding.Linkage.external:
+                function.linkage = "weak_odr"  # not "linkonce": LLVM would link what is referred to already
+        self._shared_module = self._final_module
+        for library in self._linking_libraries:
+            self._reload_init.update(library._reload_init)
         self._finalized = True
+
+
+class _EntryLibrary(codegen.JITCodeLibrary):
+    """Code of an entry kernel, with that of all inner kernels that it uses."""
+
+    def _optimize_final_module(self):
+        for function in self._final_module.functions:
+            if function.linkage == binding.Linkage.weak_odr:
+                function.linkage = "linkonce_odr"  # it goes if all its callers have taken it in
+        super()._optimize_final_module()
 
 
 _found: dict[Any, Any] = {}
@@ -76,6 +98,45 @@ def _finding_once():
         setattr(BaseFunction, FIND, before)
 
 
+_UNUSED = {
+    "WithLifting",
+    "InlineClosureLikes",
+    "RewriteDynamicRaises",
+    "MakeFunctionToJitFunction",
+    "FindLiterallyCalls",
+    "LiteralUnroll",
+    "LiteralPropagationSubPipelinePass",
+    "InlineOverloads",
+    "NopythonRewrites",
+    "NoPythonSupportedFeatureValidation",
+    "DumpParforDiagnostics",
+}
+"""Passes of numba for what no inner kernel has: contexts, closures, exceptions, literals, sums of arrays."""
+
+
+class _Lower(lowering.Lower):
+    """Writes LLVM's code of an inner kernel, which counts no references and is not for a debugger."""
+
+    def alloca_lltype(self, name, lltype, datamodel=None):
+        return cgutils.alloca_once(self.builder, lltype, name=name, zfill=False)
+
+    def incref(self, typ, val):
+        pass
+
+    decref = incref
+
+    def delvar(self, name):
+        pass
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _Lowering(typed_passes.NativeLowering):
+    """Writes it by ``_Lower``."""
+
+    _name = "lowering of inner kernels"
+    lowering_class: Any = _Lower
+
+
 class _Compiler(compiler.Compiler):
     """Compiles one inner kernel."""
 
@@ -87,9 +148,28 @@ class _Compiler(compiler.Compiler):
             typingctx, targetctx, _Library(made, "inner kernel"), args, return_type, flags, locals
         )
 
+    def define_pipelines(self):
+        (passes,) = super().define_pipelines()
+        of_ours = {typed_passes.NativeLowering: _Lowering}
+        passes.passes = [
+            (of_ours.get(made, made), what) for made, what in passes.passes if made.__name__ not in _UNUSED
+        ]
+        passes.finalize()
+        return [passes]
+
     def compile_extra(self, func):
         with _finding_once():
             return super().compile_extra(func)
+
+
+class _EntryCompiler(compiler.Compiler):
+    """Compiles one entry kernel."""
+
+    def compile_extra(self, func):
+        state: Any = self.state
+        state.library = _EntryLibrary(state.targetctx.codegen(), func.__qualname__)
+        state.library.enable_object_caching()
+        return super().compile_extra(func)
 
 
 class EntryPoint:
@@ -105,14 +185,31 @@ class Inner(CPUDispatcher):
 
     if KNOWN:
 
+        def get_call_template(self, args: Any, kws: Any) -> Any:
+            """What it gives for these types; a constant integer is an integer, or each would be compiled anew."""
+            args = [types.unliteral(a) if isinstance(a, types.IntegerLiteral) else a for a in args]
+            return super().get_call_template(args, kws)
+
+        def compile(self, sig: Any) -> Any:
+            """Compile it for these types, without numba's clocks and disk cache, which slow each call into LLVM."""
+            args, return_type = sigutils.normalize_signature(sig)
+            with global_compiler_lock, self._compiling_counter:
+                if args not in self.overloads:
+                    compiler: Any = getattr(self, "_compiler")  # noqa: B009 - a type checker does not know it
+                    self.add_overload(compiler.compile(args, return_type))
+            return self.overloads[args].entry_point
+
         def add_overload(self, cres: Any) -> None:
             """Keep what was compiled for one signature."""
             cres = cres._replace(entry_point=EntryPoint())
-            cres.target_context.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
+            libraries = list(dict.fromkeys([cres.library, *cres.library._linking_libraries]))
+            cres.target_context.insert_user_function(cres.entry_point, cres.fndesc, libraries)
             self.overloads[tuple(cres.signature.args)] = cres
 
 
 OPTIONS: dict[str, Any] = {"_nrt": False, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
 """Of ``numba.njit``. Without ``_nrt`` a kernel makes no arrays and counts no references (see ``kernel``)."""
+ENTRY_OPTIONS: dict[str, Any] = {"no_cfunc_wrapper": True}
 if KNOWN:
     OPTIONS["pipeline_class"] = _Compiler
+    ENTRY_OPTIONS["pipeline_class"] = _EntryCompiler

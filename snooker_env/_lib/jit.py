@@ -14,10 +14,11 @@ import numba
 from numba.core.registry import CPUDispatcher
 
 from .cache import CACHE_FOLDER, Kept, may_be_kept
-from .inner import OPTIONS, Inner
+from .inner import ENTRY_OPTIONS, OPTIONS, Inner
 from .notices import Cost
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+_ENTRY: dict[str, Any] = _OPTIONS | ENTRY_OPTIONS
 _INNER: dict[str, Any] = _OPTIONS | OPTIONS
 _INLINED: dict[str, Any] = _INNER | {"inline": "always"}
 
@@ -132,7 +133,7 @@ def entry(
     """
     if function is None:
         return partial(entry, what=what, seconds=seconds, uses=uses)
-    made: Any = numba.njit(**_OPTIONS)(function)
+    made: Any = numba.njit(**_ENTRY)(function)
     if made is not function:  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Entry
         made.cost = Cost(what, seconds, uses)

@@ -124,7 +124,7 @@ def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
     return n
 
 
-@entry  # np.sort makes an array, which an inner kernel may not
+@entry  # it makes an array, which an inner kernel may not
 def clear_path(positions, on_table, on, noses, jaws, radius):
     """Whether a straight path leads to any part of a ball on (mask ``on``). It can open or close only at
     tangents to balls and jaws, ends of cushions, and where two are met at once: midpoints tell."""
@@ -159,14 +159,24 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
                     edges[n] = np.arctan2(my, mx) - towards
                     n += 1
         n = _cushion_edges(edges, n, (cx, cy), (tx + cx, ty + cy), towards, noses, jaws, radius)
-        for k in range(n):  # into (-pi, pi], so that the target's window is one interval about 0
-            edges[k] -= 2.0 * np.pi * np.round(edges[k] / (2.0 * np.pi))
-        ordered = np.sort(edges[:n])
-        for k in range(n - 1):
-            low, high = ordered[k], ordered[k + 1]
-            inside = low >= -half and high <= half and high - low > WINDOW
+        inside = 0
+        for k in range(
+            n
+        ):  # into (-pi, pi]: so the target's window is one interval about 0; those in it, in order
+            edge = edges[k] - 2.0 * np.pi * np.round(edges[k] / (2.0 * np.pi))
+            if -half <= edge <= half:
+                j = inside
+                while j > 0 and edges[j - 1] > edge:
+                    edges[j] = edges[j - 1]
+                    j -= 1
+                edges[j] = edge
+                inside += 1
+        for k in range(inside - 1):
+            low, high = edges[k], edges[k + 1]
             angle = towards + 0.5 * (low + high)
-            if inside and _open_direction(positions, on_table, on, target, angle, noses, jaws, radius):
+            if high - low > WINDOW and _open_direction(
+                positions, on_table, on, target, angle, noses, jaws, radius
+            ):
                 return True
     return False
 

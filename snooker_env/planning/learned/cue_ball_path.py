@@ -224,8 +224,9 @@ def _contact(stroke, positions, on_table, cue_law, work, out, its):
 @kernel
 def _with_error(meant, error, noise, most, tried):
     """Fill ``tried`` (5,) with the stroke ``meant`` (5,) under a standard normal ``error`` (5,)."""
-    tried[:] = with_errors(meant[0], meant[1], meant[2], meant[3], meant[4], error, noise)
-    tried[1], tried[2] = tip_on_disc(tried[1], tried[2], most)
+    played = with_errors(meant[0], meant[1], meant[2], meant[3], meant[4], error, noise)
+    tried[0], tried[3], tried[4] = played[0], played[3], played[4]
+    tried[1], tried[2] = tip_on_disc(played[1], played[2], most)
 
 
 @entry(what="the paths of cue balls", seconds=2, uses=(_predicted,))
@@ -279,7 +280,8 @@ def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
         fair = strikeable(game[k], bits(here) & ~1)
         # away from a touching ball on all is fair; into a touching one is a push
         legal[j] = ball > 0 and (not (near >> ball) & 1) and (near & fair or (fair >> ball) & 1)
-        after[j] = p
+        for b in range(N_BALLS):
+            after[j, b, 0], after[j, b, 1] = p[b, 0], p[b, 1]
         if ball:
             after[j, 0, 0], after[j, 0, 1] = out[j, 0, X], out[j, 0, Y]
             after[j, ball, 0], after[j, ball, 1] = out[j, 1, X], out[j, 1, Y]
