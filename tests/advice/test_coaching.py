@@ -325,6 +325,7 @@ def test_costs_have_the_signs_of_what_happened():
     # both of a stroke sum to what it was worth to the target, less what it brought
     assert parts[0].sum() - parts[1].sum() == pytest.approx(7.0 - values_of(bench, missed), abs=1e-9)
     assert parts[1, 2] == parts[0, 1] == 0.0
+    assert values_of(bench, missed) < -5.0  # the other is left a black that hangs over a pocket
     hanging = Recorded(position=AT, after=sn.Position(cue=(-0.5, 1.3), reds=[(-0.80, 1.66)]))
     hidden = Recorded(
         position=AT,
