@@ -39,8 +39,8 @@ class RunnerTables(snooker_env.SnookerVectorEnv):
 
     own_seeds: list[int | None] | None = None
 
-    def reset(self, *, seed=None, options=None, out=None):
-        return super().reset(seed=seed if seed is None else self.own_seeds, options=options, out=out)
+    def reset(self, *, seed=None, options=None):
+        return super().reset(seed=seed if seed is None else self.own_seeds, options=options)
 
 
 def own_seeds(*, env, env_context, env_runner, **more):

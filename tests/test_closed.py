@@ -23,7 +23,6 @@ COACH = (
     "match",
 )
 COMMANDS = {
-    "commands": ("-m", "snooker_env"),
     "coach": COACH,
     "advice": ("-m", "snooker_env.advice", "--help"),
     "benchmark": ("-m", "snooker_env.benchmark", "tasks"),

@@ -175,27 +175,37 @@ class _Lines:
         except OSError as error:
             raise AgentError(f"the program {self.command!r} cannot be started: {error}") from None
         self._answers: queue.Queue[bytes] = queue.Queue(2)  # a program that prints on and on has to wait
+        self._states: queue.Queue[bytes] = queue.Queue()
+        self._taken = threading.Event()  # the program has read all that was written
+        self._taken.set()
         self._reader = threading.Thread(target=self._read, args=(self._process.stdout,), daemon=True)
+        self._writer = threading.Thread(target=self._write, args=(self._process.stdin,), daemon=True)
         self._reader.start()
+        self._writer.start()
 
     def ask(self, line: bytes) -> bytes:
-        """The answer to a line, which a pipe holds whether it is read or not."""
+        """The answer to a line."""
         if self._process is None:
             self._start()
-        process: Any = self._process
-        if self._answers.empty():
-            with contextlib.suppress(OSError):  # nobody reads; the reader reports that it ended
-                process.stdin.write(line)
-                process.stdin.flush()
-        elif answer := self._answers.queue[0]:
-            raise self._failure(f"answered {_short(answer)} without a state: one line for each")
+        until = time.monotonic() + self.timeout
         try:
-            answer = self._answers.get(timeout=self.timeout)
+            answer = self._answers.get_nowait()
         except queue.Empty:
-            raise self._failure(f"gave no stroke within {self.timeout:g} s") from None
+            self._taken.clear()
+            self._states.put(line)
+            try:
+                answer = self._answers.get(timeout=self.timeout)
+            except queue.Empty:
+                raise self._failure(f"gave no stroke within {self.timeout:g} s") from None
+            if answer and not self._taken.wait(max(0.0, until - time.monotonic())):
+                raise self._failure(f"did not read its state within {self.timeout:g} s") from None
+        else:
+            if answer:
+                raise self._failure(f"answered {_short(answer)} without a state: one line for each")
         if len(answer) > LONGEST:
             raise self._failure(f"answered a line of more than {LONGEST:,} bytes")
         if not answer:
+            process: Any = self._process
             try:
                 code = process.wait(2.0)
             except subprocess.TimeoutExpired:
@@ -211,8 +221,13 @@ class _Lines:
         process, self._process = self._process, None
         if process is None:
             return
-        with contextlib.suppress(OSError):  # it has gone already
-            process.stdin.close()
+        if not self._taken.is_set():  # it does not read: the end of its input would not reach it
+            process.kill()
+        self._states.put(b"")
+        self._writer.join(2.0)
+        if not self._writer.is_alive():
+            with contextlib.suppress(OSError):  # it has gone already
+                process.stdin.close()
         try:
             process.wait(2.0)
         except subprocess.TimeoutExpired:
@@ -230,6 +245,15 @@ class _Lines:
         while line and len(line) <= LONGEST:
             line = output.readline(LONGEST + 1)
             self._answers.put(line)
+
+    def _write(self, input_):
+        """Write states, in a thread of its own: a program that does not read stops whoever writes to it."""
+        pipe = input_.fileno()
+        while text := self._states.get():
+            with contextlib.suppress(OSError):  # nobody reads; the reader reports that it ended
+                while text:
+                    text = text[os.write(pipe, text) :]
+                self._taken.set()
 
 
 def _one_stroke(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:

@@ -393,7 +393,7 @@ class Frames(Tables):
         self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False
     ) -> FrameState:
         """See ``Tables.check_state``. The striker must be the agent, unless ``either``."""
-        sound = check_frame_state(state, self.rules, generator)
+        sound = check_frame_state(state, self.rules, generator, lot=self._lot)
         over, stopped = sound.frame.phase == "over", sound.strokes >= self.rules.max_strokes
         if sound.due and not (over or stopped):
             raise refuse("state.due", True, "must be False: the frame goes on")

@@ -167,8 +167,11 @@ def check_visit(
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"], conditions)
 
 
-def check_frame_state(state: Mapping[str, Any], rules: Rules, generator: np.random.Generator) -> FrameState:
-    """The ``FrameState`` that a dict describes, under these rules; ValueError names the first wrong part."""
+def check_frame_state(
+    state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, lot: bool
+) -> FrameState:
+    """The ``FrameState`` that a dict describes, under these rules; ``lot``: a player may be asked who begins at a
+    re-spotted black. ValueError names the first wrong part."""
     conditions = check_conditions(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
@@ -180,7 +183,7 @@ def check_frame_state(state: Mapping[str, Any], rules: Rules, generator: np.rand
         raise refuse("state.frame.miss", frame.miss, f"must be {miss!r}, as this environment plays")
     if frame.rules != rules.game:
         raise refuse("state.frame.rules", frame.rules, f"must be {rules.game!r}, as this environment plays")
-    if frame.phase == "lot" and "lot" not in rules.actions.says:
+    if frame.phase == "lot" and not lot:
         allowed = "must not be between two steps: the lot is drawn in the step of the stroke before"
         raise refuse("state.frame.phase", frame.phase, allowed)
     if frame.phase != "over":

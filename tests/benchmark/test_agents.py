@@ -87,6 +87,20 @@ def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tm
     assert not result["protocol"]["official"]
 
 
+def test_a_program_that_does_not_read_is_ended_in_time(tmp_path):
+    """A pipe holds a few states, then a write waits: for no longer than the program has for its answer."""
+    answer = json.dumps({"speed": 2.0, "aim": 0.0})
+    body = f"import time\nwhile True: print({answer!r}, flush=True); time.sleep(0.3)"
+    (tmp_path / "silent.py").write_text(body)
+    env = sn.SnookerEnv(task="frame")
+    env.reset(seed=0)
+    at = sn.Positions.of(env)
+    silent = ProgramPlayer(f"{sys.executable} {tmp_path / 'silent.py'}", timeout=1.0).at(env)
+    with closing(silent), pytest.raises(AgentError, match="did not read its state within 1 s"):
+        for seed in range(20):
+            silent.play(at, [seed])
+
+
 def test_a_program_that_is_not_there(capsys):
     name = "program:no-such-program-here"
     assert main(["run", "SnookerEscape-v0", "--agent", name, "--episodes", "6"]) == 1

@@ -35,13 +35,6 @@ def test_a_command_to_paste_starts_the_python_that_runs(tmp_path, monkeypatch, b
     assert lifecycle.python().endswith(".venv/bin/python")
 
 
-def test_the_package_lists_its_commands():
-    said = python("-m", "snooker_env").stdout
-    assert [
-        f"python -m snooker_env.{name} " in said for name in ("watch", "play", "advice", "benchmark")
-    ] == [True] * 4
-
-
 def without(package, target, *arguments):
     """A command where a package is not installed: train.py, or a module of agents."""
     start = "run_path('train.py'" if target == "train.py" else f"run_module({target!r}"

@@ -263,6 +263,20 @@ def test_the_state_of_a_respotted_black_that_the_frame_began_without_is_taken(mi
     assert plain(other.get_state()) == state
 
 
+def test_a_lot_that_one_player_may_decide_is_taken():
+    options = {"aim": "target", "placement": True, "says": [], "seats": [{}, {"says": ["lot"]}]}
+    env = frame_state(
+        sn.match_env(**options),
+        {CUE: (0.326, 1.031), YELLOW: (0.6, 1.4)},
+        {"ball_on": BallOn.YELLOW, "scores": (5, 7), "rack": 1 << YELLOW},
+    )
+    env.step(np.zeros(6, np.float32))
+    assert env.frame.phase == "lot"
+    other, state = sn.match_env(**options), plain(env.get_state())
+    other.reset(options={"state": state})
+    assert plain(other.get_state()) == state
+
+
 # What a call is given is left as it is, neither written into, repaired nor kept
 
 

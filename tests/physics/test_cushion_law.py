@@ -152,7 +152,7 @@ def test_match_is_the_fit_to_the_measurements(misfit):
 
 
 def test_the_intervals_are_those_of_the_docstring(misfit):
-    walk = fit_cushion.walked(misfit, 20_000, seed=3)
+    walk = fit_cushion.random_walk(misfit, 20_000, seed=3)
     low, high = np.quantile(walk, (0.025, 0.975), axis=0)
     assert (low[2], high[2]) == pytest.approx((0.0088, 0.0132), abs=0.0004)
     assert (low[1], high[1]) == pytest.approx((0.19, 0.38), abs=0.02)

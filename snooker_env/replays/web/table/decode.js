@@ -4,8 +4,8 @@
  * Each phase of motion is a closed form, in the arithmetic of `physics/cloth.py`, so places equal the simulation's.
  * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units.
  *
- * The files of this folder are joined to one module, `table.js`, by `snooker_env/replays/web/__init__.py`: a name of an
- * earlier file is known in the later ones. `TableView` draws a table from its scene, `mount` makes a `Player`.
+ * The files of this folder are joined to one module, `table.js` (`web/__init__.py`): a name of an earlier file is
+ * known in the later ones. `TableView` draws a table from its scene, `mount` makes a `Player`.
  */
 
 const { PI, abs, atan2, ceil, cos, floor, hypot, max, min, round, sign, sin, sqrt } = Math;
