@@ -1,12 +1,12 @@
 """How is a whole game passed on? As its first table, with its random stream, and what was asked for from there.
 
-Played again, strokes meet the same execution errors, so that it must end as it did."""
+Played again, strokes meet the same execution errors, so each act must lead to the scores and places written with it."""
 
 from typing import Any, cast
 
 import numpy as np
 
-from .._lib.check import choice, refuse, refuse_what, truth
+from .._lib.check import choice, number, refuse, refuse_what, truth
 from .._lib.types import CueKind
 from ..advice import CueStroke
 from ..game.balls import NAMES
@@ -18,16 +18,18 @@ from ..tasks.options import CUES
 from .session import DECLINED, Session
 
 MOST_ACTS = 1000
-NEAR = 1e-3  # how far balls may lie at the end from where they lay [m]
+NEAR = 1e-3  # how far balls may lie from where they were written down [m]
 STROKE = ("speed", "aim", "side", "top", "elevation", "place", "nominate", "noise", "practice", "cue")
 
 
 def record_game(session: Session) -> dict[str, Any]:
-    """The game from its last new table on: a ``Session.save`` of the first table, "acts", and the "end"."""
+    """The game from its last new table on: a ``Session.save`` of the first table, and "acts" with what each left."""
     acts = session.acts[: session.at]
     first = max(k for k, act in enumerate(acts) if not act.asked)
-    asked = [act.asked for act in acts[first + 1 :]]
-    return session.save() | {"state": acts[first].state, "acts": asked, "end": _end(session)}
+    states = [act.state for act in acts[first:]]
+    asked = zip(acts[first + 1 :], states, states[1:], strict=False)
+    told = [act.asked | {"left": _left(before, after)} for act, before, after in asked]
+    return session.save() | {"state": acts[first].state, "acts": told}
 
 
 def open_game(session: Session, saved: object) -> None:
@@ -36,7 +38,7 @@ def open_game(session: Session, saved: object) -> None:
         session.load(saved)
         return
     game = dict(saved)
-    acts, end = game.pop("acts"), game.pop("end", None)
+    acts = game.pop("acts")
     if not isinstance(acts, list) or len(acts) > MOST_ACTS:
         raise refuse_what("saved.acts", "something else", f"must be a list of at most {MOST_ACTS}")
     with session.as_a_whole():
@@ -44,19 +46,19 @@ def open_game(session: Session, saved: object) -> None:
         noise, practice, cue = list(session.noise), session.practice, session.cue
         for k, act in enumerate(acts):
             try:
-                _do(session, act)
+                if not isinstance(act, dict):
+                    raise refuse("act", act, "must be an object")
+                before, asked = session.state, dict(act)
+                left = asked.pop("left", None)
+                _do(session, asked)
+                _compare(left, before, session.state)
             except (ValueError, SimulationError) as error:
                 raise ValueError(f"saved.acts[{k}].{error}") from None
-        if not _same(end, here := _end(session)):
-            allowed = f"must be {here}: that is where it ends here, maybe another version played it"
-            raise refuse("saved.end", end, allowed)
         session.noise, session.practice, session.cue = noise, practice, cue  # as at the end
 
 
-def _do(session: Session, act: Any) -> None:
+def _do(session: Session, act: dict[str, Any]) -> None:
     """Do what was asked for; ValueError names the field that is invalid."""
-    if not isinstance(act, dict):
-        raise refuse("act", act, "must be an object")
     kind = next((name for name in ("choice", "declare") if name in act), None)
     for name in act:
         choice("field", name, STROKE if kind is None else (kind,))
@@ -82,27 +84,36 @@ def _play(session: Session, act: dict[str, Any]) -> None:
     session.play(stroke, nominated=nominated)
 
 
-def _end(session: Session) -> dict[str, Any]:
-    """The scores, and where each ball lies, to 0.1 mm; None: it is off the table, or in hand."""
-    state, hand = session.state, session.frame.in_hand
-    balls = zip(NAMES, state["positions"], state["on_table"], strict=True)
-    lie = {
+def _left(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
+    """What an act leaves: the scores, and the place of each ball that it moved, to 0.1 mm."""
+    was = _places(before)
+    return {name: place for name, place in _places(after).items() if place != was[name] or name == "scores"}
+
+
+def _places(state: dict[str, Any]) -> dict[str, Any]:
+    """The scores, and where each ball lies; None: it is off the table, or in hand."""
+    hand, balls = state["frame"]["in_hand"], zip(NAMES, state["positions"], state["on_table"], strict=True)
+    places = {
         name: np.round(at, 4).tolist() if on and not (hand and name == "cue") else None
         for name, at, on in balls
     }
-    return {"scores": list(session.frame.scores)} | lie
+    return {"scores": list(state["frame"]["scores"])} | places
 
 
-def _same(end: object, here: dict[str, Any]) -> bool:
-    """Whether a game ended ``here``, its balls to within ``NEAR``."""
-    if not isinstance(end, dict) or set(end) != set(here):
-        return False
-    pairs = [(end[name], place) for name, place in here.items()]
-    if any((one is None) != (other is None) for one, other in pairs):
-        return False
-    try:
-        return all(
-            bool(np.allclose(one, other, rtol=0.0, atol=NEAR)) for one, other in pairs if other is not None
-        )
-    except (TypeError, ValueError):  # they are no places
-        return False
+def _compare(left: object, before: dict[str, Any], after: dict[str, Any]) -> None:
+    """ValueError names what an act was said to leave and does not leave here."""
+    if not isinstance(left, dict):
+        raise refuse("left", left, 'must be an object: {"scores": [0, 0], "cue": [x, y], ...}')
+    said, here = _places(before) | left, _places(after)
+    for name, place in said.items():
+        if not _alike(place, here[choice("field of left", name, here)]):
+            led = "off the table" if here[name] is None else here[name]
+            allowed = f"must be {led}: that is what this act leads to here, maybe another version played it"
+            raise refuse(f"left.{name}", place, allowed)
+
+
+def _alike(one: object, other: object) -> bool:
+    """Whether these are the same scores, or the same place to within ``NEAR``."""
+    if not isinstance(one, list) or not isinstance(other, list) or len(one) != len(other):
+        return one is other
+    return all(abs(number("left", a) - b) < NEAR for a, b in zip(one, other, strict=True))

@@ -107,9 +107,9 @@ def test_a_free_ball_that_was_declined_is_declined_again():
 
 
 def pushed(saved, by):
-    """With the cue ball elsewhere at the end, by so many metres."""
-    x, y = saved["end"]["cue"]
-    saved["end"]["cue"] = [x, y + by]
+    """With the cue ball elsewhere after its stroke, by so many metres."""
+    x, y = saved["acts"][0]["left"]["cue"]
+    saved["acts"][0]["left"]["cue"] = [x, y + by]
 
 
 def test_another_machine_may_round_a_little():
@@ -121,7 +121,7 @@ def test_another_machine_may_round_a_little():
     assert other.state == session.state
 
 
-ACT, END = r"^saved\.acts\[0\]\.", r"^saved\.end = \{.*\}: must be \{.*another version"
+ACT = r"^saved\.acts\[0\]\."
 WRONG = {  # what is done to a record | what is said
     "s.update(acts={})": r"^saved\.acts = something else: must be a list of at most 1000",
     "s.update(acts=s['acts'] * (MOST_ACTS + 1))": "must be a list of at most 1000",
@@ -138,15 +138,15 @@ WRONG = {  # what is done to a record | what is said
     "s['acts'].append({'declare': 'claim'})": r"^saved\.acts\[2\]\.lead",
     "s['acts'].append({'declare': 'resign'})": r"^saved\.acts\[2\]\.declare = 'resign'",
     "s['acts'].append({'declare': 'concede', 'aim': 1})": r"^saved\.acts\[2\]\.field = 'aim'",
-    "s['acts'][0].update(aim=1.0)": END,
-    "s['acts'][1].update(speed=1.1)": END,
-    "s.pop('end')": r"^saved\.end = None: must be \{",
-    "s['end'].pop('cue')": END,
-    "s['end'].update({'red 1': [0.0, 0.0]})": END,
-    "pushed(s, 1.3e-3)": END,
-    "s['end'].update(pink='x')": END,
-    "s['end'].update(scores=[1, None])": END,
-    "s['end'].update(scores=[2, 0])": END,
+    "s['acts'][0].update(aim=1.0)": ACT + r"left\.scores = \[1, 0\]: must be \[0, 0\]",
+    "s['acts'][1].update(speed=1.1)": r"^saved\.acts\[1\]\.left\.[\w ]+ = \[.*\]: must be \[.*another version",
+    "s['acts'][0].pop('left')": ACT + "left = None: must be an object",
+    "s['acts'][0]['left'].pop('cue')": ACT + r"left\.cue",
+    "s['acts'][0]['left'].pop('red 1')": ACT + r"left\.red 1 = \[.*: must be off the table",
+    "pushed(s, 1.3e-3)": ACT + r"left\.cue",
+    "s['acts'][0]['left'].update(pink='x')": ACT + r"left\.pink = 'x'",
+    "s['acts'][0]['left'].update(scores=[1, None])": ACT + "left = None: must be a finite",
+    "s['acts'][0]['left'].update(white=[0, 0])": ACT + "field of left = 'white'",
     "s.pop('noise')": "^saved = version 1",
     "s['state'].update(stream=[1])": "stream",
 }
