@@ -2,7 +2,7 @@
 
 Every request is checked before anything is done: the token in its path, in constant time; ``Host``, and the host of a
 target that has one, so that no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
-path, length, type and form of the body. Every error is answered by one JSON object."""
+path, length, type and form of the body. Connections are bounded in number. Every error is answered by one JSON object."""
 
 import hmac
 import json
@@ -10,6 +10,7 @@ import re
 import secrets
 import socket
 import sys
+import threading
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -30,6 +31,11 @@ FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_BODY = 131_072  # largest body of a request [bytes]; a replay has about 200 for each stroke
 IDLE = 20.0  # how long a connection waits for the next byte [s]
+MOST_AT_ONCE = 32
+"""Largest number of connections; a browser keeps six. One that waits gives way to a further one."""
+_FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
+_HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"
+FULL = b"%sContent-Length: %d\r\n\r\n%s" % (_HEAD, len(_FULL), _FULL)  # the answer to further connections
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -60,6 +66,9 @@ class PlayHandler(BaseHTTPRequestHandler):
     protocol_version = default_request_version = "HTTP/1.1"
     server_version, sys_version = "snooker_env", ""
     timeout = IDLE
+    disable_nagle_algorithm = (
+        True  # an answer is two writes: the second must not wait for the first to be acknowledged
+    )
 
     def log_message(self, format: str, *args: object) -> None:
         """Log nothing: a path holds the token."""
@@ -74,6 +83,11 @@ class PlayHandler(BaseHTTPRequestHandler):
         if name.startswith("do_"):  # any method: the same checks refuse it, after the token
             return self._serve
         raise AttributeError(name)
+
+    def handle_one_request(self) -> None:
+        """Handle one request; then the connection waits again."""
+        super().handle_one_request()
+        self.server.waiting.setdefault(self.connection, True)
 
     def finish(self) -> None:
         """Read the rest of a refused request: closing with unread bytes would lose the answer."""
@@ -133,6 +147,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         known = hmac.compare_digest(token.encode(), self.server.token.encode())
         if not parts.path.startswith("/") or not known:
             raise self._last(403, "the address must hold this server's token: open the one that it printed")
+        self.server.waiting.pop(self.connection, None)
         if self.command not in ("GET", "POST"):
             raise self._last(405, "the method must be GET or POST", Allow="GET, POST")
         methods = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
@@ -215,6 +230,7 @@ class PlayServer(ThreadingHTTPServer):
     """The server of one game, on 127.0.0.1; port 0 stands for any that is free."""
 
     daemon_threads = True
+    request_queue_size = MOST_AT_ONCE
 
     def __init__(self, service: Service, port: int = 0):
         try:
@@ -223,12 +239,42 @@ class PlayServer(ThreadingHTTPServer):
             allowed = f"must be free ({error.strerror}): choose another with --port, or leave it out for any that is"
             raise refuse("port", port, allowed) from error
         self.service, self.token = service, secrets.token_urlsafe(24)
+        self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
+        self.waiting: dict[socket.socket, bool] = {}
+        """The connections without a request that shows the token, the longest first; and whether one did so before."""
         self.hosts = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
 
     @property
     def address(self) -> str:
         """Address of the page; the protocol is at its ``api/``."""
         return f"http://127.0.0.1:{self.server_port}/{self.token}/"
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Serve a connection in its own thread, unless there are too many that do not wait."""
+        if not (self._free.acquire(blocking=False) or self._make_room()):
+            with suppress(OSError):
+                request.settimeout(1.0)
+                request.sendall(FULL)
+            self.shutdown_request(request)
+            return
+        self.waiting[request] = False
+        super().process_request(request, client_address)
+
+    def _make_room(self) -> bool:
+        """Close the connection that has waited longest, of those that never showed the token if there are any."""
+        for one, _ in sorted(self.waiting.copy().items(), key=lambda item: item[1])[:1]:
+            with suppress(OSError):
+                one.shutdown(socket.SHUT_RDWR)
+            return self._free.acquire(timeout=1.0)
+        return False
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Serve a connection, then free its place."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self.waiting.pop(request, None)
+            self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Report errors, except for connections that were cut."""

@@ -187,3 +187,17 @@ def test_wrong_positions_and_environments_before_reset_are_refused():
             sn.advise(env, **QUICK)
         env.reset(seed=1)
         assert len(sn.advise(env, **QUICK)) >= 1
+
+
+def test_points_expected_of_the_last_ball_are_its_chance_times_its_value():
+    last = sn.Position(cue=(0.3, 1.0), black=(0.0, 1.4605))
+    (one,) = sn.advise(last, noise="club", n=1, samples=300, visits=20)
+    assert one.points == pytest.approx(7 * one.chance) and 0.0 < one.chance < 1.0
+    assert one.points_interval[0] < one.points < one.points_interval[1]
+
+
+def test_the_first_advice_is_good():
+    """The blue goes in nine times of ten; the best stroke scores more than the widest pot alone."""
+    agents = "planner_500", "ghost_ball"
+    best, plain = (sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0] for agent in agents)
+    assert best.points > plain.points

@@ -223,3 +223,24 @@ def test_the_order_says_with_whose_errors(noise, words):
     few: dict = {"noise": noise, "n": 1, "samples": 20, "visits": 0}
     assert sn.advise(ENDGAME, agent="search", **few).order == f"Pots by points expected, {words}:"
     assert sn.advise(ENDGAME, scores=(0, 0), **few).order == f"By chance to win, {words}:"
+
+
+def test_scores_decide_what_the_chance_is():
+    ahead, behind = (sn.advise(HIDDEN, n=1, **QUICK | {"scores": pair})[0] for pair in ((60, 0), (0, 60)))
+    assert behind.win < 0.2 < 0.8 < ahead.win
+
+
+def test_figures_in_words():
+    say = words.reply_words
+    assert (
+        say("safety", 0.12, 3.04, 0.34)
+        == "the opponent pots next in 12 %, leaves the opponent 3 points, snookered in 34 %"
+    )
+    assert say("escape", 0.5, 12.6, 0.004) == "the opponent pots next in 50 %, leaves the opponent 13 points"
+    assert (
+        say("pot", 0.5, 18.2, 0.0) == "leaves the opponent 18 points if missed"
+        and say("pot", None, None, None) == ""
+    )
+    assert words.against_words(0.55, "pot") == " against 55 % for the best pot"
+    assert words.against_words(0.55, "") == " against 55 % for the next best"
+    assert words.what_words("safety", 3, -1, 3, "thin on the left") == "safety off the red, thin on the left"

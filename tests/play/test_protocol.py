@@ -13,11 +13,12 @@ import pytest
 from snooker_env.advice import advise
 from snooker_env.game.balls import PINK
 from snooker_env.game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
-from snooker_env.planning import Position
+from snooker_env.geometry import POCKETS
+from snooker_env.planning import Position, Positions
 from snooker_env.play import routes
 from snooker_env.players import Strokes, player
 from snooker_env.players.program import ProgramPlayer
-from snooker_env.players.table_report import where
+from snooker_env.players.table_report import find_lines, where
 from snooker_env.simulation import SimulationError
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
 from snooker_env.tasks.frame import Frames
@@ -635,3 +636,43 @@ def test_after_a_foul_the_advice_says_what_to_choose(game):
     game("position", position=EASY)
     plain = game("advise", agent="ghost_ball", n=1)
     assert plain["choice"] is None and plain["choices"] == []
+
+
+def test_lines_agree_with_geometry():
+    at = Positions.of(Position(**EASY))
+    lines = {(line.ball, POCKETS[line.pocket]): line for line in find_lines([at], 0b110, "none")}
+    assert len(lines) == 12
+    straight = lines[1, "top right"]
+    assert straight.open and straight.cut < 0.01 and straight.aim == pytest.approx(STRAIGHT, abs=1e-3)
+    assert straight.chance is None
+    assert straight.to_pocket == pytest.approx(np.hypot(0.87376 - 0.6, 1.76926 - 1.4), abs=1e-6)
+    away = lines[1, "bottom left"]
+    assert not away.open and away.why == "cut too thin"
+
+
+def test_the_chance_is_for_the_larger_errors_and_nobody_wins_practice(game):
+    game("position", position=EASY, scores=[20, 30])
+    said = [
+        game("players", noise=noise)["win_chance"]
+        for noise in (["none"] * 2, ["club", "none"], ["amateur", "robot"])
+    ]
+    assert said[0] == said[2] != said[1]
+    alone = game("players", practice=True, noise=["none", "none"])
+    assert alone["labels"][0] == "You" and alone["words"].startswith("Your stroke")
+    assert alone["win_chance"] is None and "Chance to win" not in alone["text"]
+    game("stroke", speed=2.0, aim=STRAIGHT)
+    assert game.get("strokes")["strokes"][0]["tables"][1]["win_chance"] is None
+    assert game.get("replay")["win_chance"] is None
+
+
+def test_questions_are_answered_for_the_errors_of_the_seat(game):
+    game("position", position=EASY)
+    for noise, samples in (("club", 500), ("none", 1)):
+        game("players", noise=[noise, "professional"])
+        found = game("destinations", speed=2.0, aim=STRAIGHT + 0.01)
+        assert found["samples"] == samples
+        assert found == game("destinations", speed=2.0, aim=STRAIGHT + 0.01, noise=noise)
+    game("players", practice=True)
+    alone = game("advise", agent="ghost_ball", n=2)  # where nobody wins
+    assert alone["order"] == "Pots by points expected, with an amateur's errors:"
+    assert alone["suggestions"][0]["win"] is None

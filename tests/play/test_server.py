@@ -1,5 +1,6 @@
 """Does the server answer those alone who know its address, and stay within its bounds?"""
 
+import http.client
 import json
 import signal
 import socket
@@ -181,6 +182,58 @@ def test_a_connection_that_says_nothing_more_is_cut_off(line, monkeypatch):
     monkeypatch.setattr(module.PlayHandler, "timeout", 0.3)
     start = time.monotonic()
     assert raw(line, b"GET /x HTTP/1.1\r\n", b"Host: x\r\n") == b"" and time.monotonic() - start < 5
+
+
+def closed(connection):
+    """Has the other side closed it?"""
+    connection.settimeout(0.5)
+    try:
+        return connection.recv(1) == b""
+    except TimeoutError:
+        return False
+    except OSError:
+        return True
+
+
+def test_connections_that_wait_give_way(line):
+    """Others on this machine who hold all places do not shut the player out, whose own connection stays."""
+    address = "127.0.0.1", line.server.server_port
+    own = http.client.HTTPConnection(*address, timeout=20)
+    own.request("GET", f"/{line.server.token}/api/scene")
+    assert own.getresponse().read()
+    held = [socket.create_connection(address) for _ in range(module.MOST_AT_ONCE + 4)]
+    for one in held[-8:]:
+        one.sendall(b"GET /")  # a request that does not end
+    try:
+        assert line("api/state")[0] == 200
+        assert closed(held[0]) and not closed(held[-1])
+        own.request("GET", f"/{line.server.token}/api/scene")
+        assert own.getresponse().status == 200
+    finally:
+        for one in (own, *held):
+            one.close()
+
+
+def test_connections_that_are_answered_are_bounded(line):
+    """A further one is told so, and served once one of them has ended."""
+    wait = f"GET /{line.server.token}/api/state?after={line('api/state')[1]['revision']}&wait=20 HTTP/1.1\r\n"
+    address = "127.0.0.1", line.server.server_port
+    held = [socket.create_connection(address) for _ in range(module.MOST_AT_ONCE)]
+    try:
+        for one in held:
+            one.sendall(f"{wait}Host: localhost:{address[1]}\r\n\r\n".encode())
+        time.sleep(0.5)
+        with socket.create_connection(address, timeout=5) as further:
+            reply = further.recv(1000)
+        assert reply.startswith(b"HTTP/1.1 503 ") and b'"message": "busy: too many connections"' in reply
+        assert not closed(held[0])
+        with line.server.service.acting():  # a change, which they wait for
+            pass
+        assert [one.recv(12) for one in held] == [b"HTTP/1.1 200"] * len(held)
+        assert line("api/state")[0] == 200
+    finally:
+        for one in held:
+            one.close()
 
 
 def test_one_connection_serves_many_requests(line):
