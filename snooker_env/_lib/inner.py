@@ -177,7 +177,7 @@ class EntryPoint:
 
 
 class Inner(CPUDispatcher):
-    """What ``_jit.kernel`` makes of a function: other kernels can call it, and Python cannot."""
+    """What ``jit.kernel`` makes of a function: other kernels can call it, and Python cannot."""
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         """Raise TypeError."""

@@ -1,4 +1,4 @@
-"""How are kernels compiled? The one place of numba's options; where machine code is kept: ``_cache.py``.
+"""How are kernels compiled? The one place of numba's options; where machine code is kept: ``cache.py``.
 
 * Strict IEEE: with ``fastmath`` a fresh and a cached kernel could give different trajectories.
 * No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch.

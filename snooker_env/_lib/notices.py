@@ -20,7 +20,7 @@ def say(text: str) -> None:
 
 
 class Cost(NamedTuple):
-    """The time that the compiling of a kernel takes; fields as the arguments of ``_jit.entry``."""
+    """The time that the compiling of a kernel takes; fields as the arguments of ``jit.entry``."""
 
     what: str
     seconds: int

@@ -158,7 +158,7 @@ def is_known(text: str) -> bool:
 
 def is_reserved(label: str, sources: Sequence[str]) -> bool:
     """Whether the label is, or looks like, the name of a known player that these sources are not."""
-    alike = re.sub("[.+-]", "_", label.lower()).strip("_")  # what a reader would take for it
+    alike = re.sub("[.+_-]+", "_", label.lower()).strip("_")  # what a reader would take for it
     return (is_known(label) or is_known(alike)) and list(sources) != [label]
 
 

@@ -250,7 +250,7 @@ class Positions:
 
 
 def _floats(field: str, values: Any, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """``_check.array``, but without a copy of an array that is valid already."""
+    """``check.array``, but without a copy of an array that is valid already."""
     a = np.asarray(values)
     right = a.dtype == np.float64 and a.ndim == len(shape) and a.shape[1:] == shape[1:]
     plain = a.flags.c_contiguous and not isinstance(values, np.ma.MaskedArray)

@@ -244,7 +244,7 @@ POST: dict[str, Route] = {
 
 
 def parts_of(error: ValueError) -> dict[str, Any]:
-    """The parts of an error message that ``_check.refuse`` made."""
+    """The parts of an error message that ``check.refuse`` made."""
     text = str(error)
     form = r"(?P<field>[\w\[\]., ]+?) = (?P<value>.*?): (?P<message>(must|overlaps|lies|ball).*)\Z"
     at = re.match(form, text, re.DOTALL)

@@ -90,6 +90,7 @@ WRONG = [
     ("agent.sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared'"),
     ("agent.sources", ["search_60"], BEGINS),
     ("agent.label", "random", f"agent.label = 'random': {OTHER}"),
+    ("agent.label", "ghost__ball", f"agent.label = 'ghost__ball': {OTHER}"),
     ("protocol.episodes", 200_000, "protocol.episodes = 200000: must be at most 500 on SnookerBreakClub-v0"),
     *(("agent.label", name, "agent.label = ") for name in ALIKE),
     *(("command", text, "command = ") for text in TEXTS),
