@@ -388,8 +388,10 @@ def test_what_is_called_unproved_can_be_changed_unseen(boxes):
     record["agent"] |= {"label": "other", "sources": ["there"], "training_shots": 60_000, "budget": "1M"}
     record["agent"] |= {"simulated_shots": 9.0, "class": "planning", "declared": True}
     record["software"] |= {name: "1.0" for name in record["software"] if name != "snooker_env"}
-    record["machine"] = {"platform": "one", "cpu": "two", "cores": 3, "load": 4.0, "load_at_end": 5.0}
-    record["machine"]["arithmetic"] = "0" * 16
+    busier = {
+        name: boxes["machine"][name] + 1.0 for name in ("load", "load_at_end")
+    }  # than it happened to be
+    record["machine"] = {"platform": "one", "cpu": "two", "cores": 3, "arithmetic": "0" * 16} | busier
     record["timing"] = {"seconds": 1.0, "simulated_shots": 6, "one_table_ms": 2.0}
     record |= {"command": "none", "commit": "0" * 40, "date": "2026-11-22T00:00:00Z", "incomplete": "stopped"}
     assert faults(record) == []
