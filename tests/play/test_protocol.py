@@ -5,7 +5,7 @@ import json
 import re
 import sys
 import time
-from math import pi
+from math import erf, pi
 
 import numpy as np
 import pytest
@@ -20,6 +20,7 @@ from snooker_env.players import Strokes, player
 from snooker_env.players.program import ProgramPlayer
 from snooker_env.players.table_report import find_lines, where
 from snooker_env.simulation import SimulationError
+from snooker_env.tasks import LEVELS
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
 from snooker_env.tasks.frame import Frames
 from snooker_env.tasks.options import Options
@@ -646,6 +647,10 @@ def test_lines_agree_with_geometry():
     assert straight.open and straight.cut < 0.01 and straight.aim == pytest.approx(STRAIGHT, abs=1e-3)
     assert straight.chance is None
     assert straight.to_pocket == pytest.approx(np.hypot(0.87376 - 0.6, 1.76926 - 1.4), abs=1e-6)
+    (club,) = (line for line in find_lines([at], 0b010, "club") if line.pocket == straight.pocket)
+    sigma = np.radians(LEVELS["club"].direction_deg())
+    within = erf(straight.tolerance / (np.sqrt(2.0) * sigma))
+    assert club.chance == pytest.approx(within * np.exp(-0.01 * (straight.to_ball + straight.to_pocket)))
     away = lines[1, "bottom left"]
     assert not away.open and away.why == "cut too thin"
 
