@@ -115,11 +115,11 @@ def test_a_choice_in_a_frame_is_asked_as_the_stroke_to_come():
 
     session = Session(seed=1)
     balls = Position(cue=(0.0, -0.5), reds=[(0.6, 1.4)], blue=(0.3, -0.5))
-    session.set_up(balls, scores=(0, 0), striker=0, free_ball=False)
+    session.set_up(balls, scores=(90, 0), striker=0, free_ball=False)
     session.play(sn.advice.CueStroke(speed=0.3, aim=-1.0))
     assert session.frame.phase == "choice"
     assert stroke_of(OfFrames(), session.position).aim == pytest.approx(np.pi / 2)
-    assert len(sn.advise(session.position, **QUICK)) >= 1
+    assert sn.advise(session.position, **QUICK)[0].win < 0.05  # of the one who plays on, far behind
 
 
 @pytest.mark.parametrize("name", ["planner", "ppo_value_club", "test_asked_players:Soft"])
