@@ -26,9 +26,9 @@ sn.simulate([(0.0, 0.0), (0.5, 0.01)], [(2.0, 0.0), (0.0, 0.0)], [(0.0, 0.0, 0.0
 found = {"first shot, cold cache [s of processor]": time.process_time() - began}
 from benchmarks.speed.clock import time_shots
 try:
-    from benchmarks.speed.__main__ import KINDS, shots as shots_of
-except ModuleNotFoundError:  # there it was command.py until 1.0
     from benchmarks.speed.command import KINDS, shots as shots_of
+except ModuleNotFoundError:  # before 1.0 it is there, and importing __main__ would run it
+    from benchmarks.speed.__main__ import KINDS, shots as shots_of
 for kind in KINDS:
     found[f"{kind} [us]"] = float(np.median(np.min(time_shots(*shots_of(kind, shots, seed), "standard", repeats), axis=0)))
 p, v, w = shots_of(KINDS[0], shots, seed)
