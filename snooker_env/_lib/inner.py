@@ -26,7 +26,6 @@ FIND = "get_call_type"
 _PARTS = (
     (codegen.JITCodeLibrary, ("_optimize_functions", "_optimize_final_module")),
     (codegen.JITCPUCodegen, ("_function_pass_manager",)),
-    (binding, ("create_new_module_pass_manager",)),  # numba before it calls passes another way
     (compiler.CompileResult, ("_replace", "entry_point")),
     (compiler.Compiler, ("compile_extra", "define_pipelines")),
     (lowering.Lower, ("alloca_lltype", "incref", "decref", "delvar")),
@@ -34,7 +33,8 @@ _PARTS = (
     (BaseFunction, (FIND,)),
 )
 KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names)
-"""Whether this numba has the parts."""
+"""Whether this numba has the parts, and its passes are asked for as here (until 0.61 by the module)."""
+KNOWN = KNOWN and codegen.JITCPUCodegen._function_pass_manager.__code__.co_argcount == 1
 
 
 class _Library(codegen.JITCodeLibrary):
