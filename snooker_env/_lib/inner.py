@@ -32,9 +32,10 @@ _PARTS = (
     (CPUDispatcher, ("add_overload", "get_call_template")),
     (BaseFunction, (FIND,)),
 )
-KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names)
-"""Whether this numba has the parts, and its passes are asked for as here (until 0.61 by the module)."""
-KNOWN = KNOWN and codegen.JITCPUCodegen._function_pass_manager.__code__.co_argcount == 1
+KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names) and (
+    codegen.JITCPUCodegen._function_pass_manager.__code__.co_argcount == 1  # numba 0.61 has one for each module
+)
+"""Whether this numba has the parts."""
 
 
 class _Library(codegen.JITCodeLibrary):
