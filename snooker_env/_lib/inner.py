@@ -33,7 +33,8 @@ _PARTS = (
     (BaseFunction, (FIND,)),
 )
 KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names) and (
-    codegen.JITCPUCodegen._function_pass_manager.__code__.co_argcount == 1  # numba 0.61 has one for each module
+    codegen.JITCPUCodegen._function_pass_manager.__code__.co_argcount
+    == 1  # numba 0.61 has one for each module
 )
 """Whether this numba has the parts."""
 
