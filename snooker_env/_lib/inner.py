@@ -32,10 +32,8 @@ _PARTS = (
     (CPUDispatcher, ("add_overload", "get_call_template")),
     (BaseFunction, (FIND,)),
 )
-KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names) and (
-    codegen.JITCPUCodegen._function_pass_manager.__code__.co_argcount
-    == 1  # numba 0.61 has one for each module
-)
+_ONE_FOR_ALL = codegen.JITCPUCodegen._function_pass_manager.__code__.co_argcount == 1  # 0.61: one a module
+KNOWN = _ONE_FOR_ALL and all(hasattr(owner, name) for owner, names in _PARTS for name in names)
 """Whether this numba has the parts."""
 
 
