@@ -26,13 +26,14 @@ SHORT = {
     "benchmarks.vector": "--seconds 0.1 --repeats 1 --tables 64",
     "snooker_env.watch": "--agent ghost_ball --out {tmp}/visit.html",
     "tests.rules_cases": "tests/data/rules_cases.json",
+    "tests/advice/coach.py": "stroke_value",
     "tests.oracles.frame_oracle": "--frames 2 --kind tables",
     "docs/pictures/make.py": "--out {tmp}",
     "docs/films/make.py": "--only pot_easy --out {tmp}",
 }
 """Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
 
-SLOW = {"docs/pictures/make.py"} | {
+SLOW = {"docs/pictures/make.py", "tests/advice/coach.py"} | {
     f"benchmarks.{name}"
     for name in [
         "coach",
