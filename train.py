@@ -17,7 +17,7 @@ Where to read on: ``agents/hyperparams/``, the settings of each agent; ``agents/
 
 import sys
 
-from commands.lifecycle import needs
+from agents._lib.lifecycle import needs
 
 with needs("train.py"):
     import numpy  # noqa: F401, I001 - PyTorch would warn if it is missing

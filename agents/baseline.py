@@ -1,6 +1,6 @@
 """How well does plain PPO do with 50,000 shots of training? A baseline for each task: masked PPO over 540 strokes.
 
-    python leaderboard/baseline.py SnookerBreak-v0 [--seeds 5] [--out runs/baseline]
+    python -m agents.baseline SnookerBreak-v0 [--seeds 5] [--out runs/baseline]
 
 writes ``TASK.SEED.zip`` for each training seed; those that are there are left as they are. The settings are README's, the
 same for all tasks: nothing is tuned. Frames are trained against ghost_ball, whose strokes count as shots; of ``planner``
@@ -22,7 +22,7 @@ SETTINGS = {"n_steps": 16, "batch_size": 1024, "n_epochs": 4, "learning_rate": 2
 SETTINGS |= {"gae_lambda": 0.5, "vf_coef": 0.05, "ent_coef": 0.003}
 
 
-def trained(task, seed):
+def train(task, seed):
     """The agent of a training seed; its tables begin below those of the judging."""
     options = TASKS[task].options(action="discrete")
     if TASKS[task].frame:
@@ -40,7 +40,7 @@ def trained(task, seed):
 
 def main():
     """Train what is missing."""
-    parser = argparse.ArgumentParser("leaderboard/baseline.py", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser("python -m agents.baseline", description=str(__doc__).splitlines()[0])
     parser.add_argument("task", choices=TASKS, help="id of the task")
     parser.add_argument("--seeds", type=int, default=5, help="training seeds [5]")
     parser.add_argument("--out", type=Path, default=Path("runs/baseline"), help="folder [runs/baseline]")
@@ -53,7 +53,7 @@ def main():
         file = args.out / f"{args.task}.{seed}.zip"
         if not file.exists():
             partial = file.with_suffix(".partial.zip")
-            trained(args.task, seed).save(partial)
+            train(args.task, seed).save(partial)
             partial.replace(file)
         print(file, flush=True)
 

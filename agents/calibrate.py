@@ -6,7 +6,7 @@ errors of several sizes, and the frames are compared with those of professionals
 FILE: frames of professionals, a line for each: VISITS/VISITS/MINUTES:SECONDS. VISITS are the points of a player's
 scoring visits, and F4 for 4 points from the other's foul. Before the frames of a match a line M A B may say how many
 seconds both players take for a stroke, 0 where it is not known; lines with # are comments. A scale is a factor of the
-errors of ``noise="professional"`` (``commands.noise_option``). A visit scores if it pots a ball; its points are its
+errors of ``noise="professional"`` (``agents._lib.noise_option``). A visit scores if it pots a ball; its points are its
 break. Frames that are lost are conceded, as in matches. Standard errors are over frames. The chance to win that the
 ``tactician`` sees before each stroke is compared with who won.
 """
@@ -15,16 +15,16 @@ import re
 import sys
 from pathlib import Path
 
-from commands.lifecycle import command, needs, parser_of
+from agents._lib.lifecycle import command, needs, parser_of
 
 with needs("agents.calibrate"):
     import numpy as np
 
     import snooker_env
-    from commands import picture_style
-    from commands.files import writable, write_json
-    from commands.provenance import provenance
-    from commands.tables import TextTable, show
+    from agents._lib import picture_style
+    from agents._lib.files import writable, write_json
+    from agents._lib.provenance import provenance
+    from agents._lib.tables import TextTable, show
     from snooker_env.checks import choice, integer, number, refuse
     from snooker_env.planning import FrameJudge
     from snooker_env.planning.learned.dense_layers import Layers

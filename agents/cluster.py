@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
-from commands.files import keep_arrays, kept_arrays
+from agents._lib.files import keep_arrays, kept_arrays
 from snooker_env.benchmark.provenance import software
 from snooker_env.checks import refuse
 
@@ -80,9 +80,7 @@ def _far(task, shared, args, wanted):
 @cache
 def source():
     """A digest of all that has to be the same on all nodes: this source, its weights and the libraries."""
-    files = (
-        file for name in ("snooker_env", "agents", "commands") for file in sorted((ROOT / name).rglob("*"))
-    )
+    files = (file for name in ("snooker_env", "agents") for file in sorted((ROOT / name).rglob("*")))
     content = [file.read_bytes() for file in files if file.suffix in (".py", ".npz", ".yml", ".zip")]
     return digest_of([software(), *content])
 

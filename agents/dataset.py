@@ -14,15 +14,15 @@ import time
 from pathlib import Path
 from typing import Any
 
-from commands.lifecycle import command, needs, parser_of
+from agents._lib.lifecycle import command, needs, parser_of
 
 with needs("agents.dataset"):
     import gymnasium
     import numpy as np
 
     import snooker_env as sn
-    from commands.files import keep_arrays, kept_arrays, write_atomic
-    from commands.provenance import provenance
+    from agents._lib.files import keep_arrays, kept_arrays, write_atomic
+    from agents._lib.provenance import provenance
     from snooker_env.benchmark import HELD_OUT_SEED, TASKS
     from snooker_env.benchmark.tasks import task_of
     from snooker_env.checks import choice, integer, refuse, refuse_what

@@ -3,7 +3,7 @@ several training seeds.
 
     python -m agents.evaluate --agent ghost_ball runs/ppo_value-0
     python -m agents.evaluate --agent "ppo=runs/ppo_value-*" "targets=runs/target-*" --against targets \\
-        --json agents/results/main.json --markdown agents/results/main.md
+        --json results/agents/main.json --markdown results/agents/main.md
     python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/ref-*" --fidelity fast reference
     python -m agents.evaluate --agent search_2000 --visits 50 --noise professional
 
@@ -15,7 +15,7 @@ leaderboard are made by ``python -m snooker_env.benchmark`` instead.
 
 An agent is a ``NAME`` (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH,PATH,... with
 one PATH for each training seed (a PATH may be a pattern), or MODULE:CLASS for a player of your own, whose
-module is imported. Models of train.py and agents/pretrained are read as plain data. Any other model of
+module is imported. Models of train.py and results/weights are read as plain data. Any other model of
 Stable-Baselines3 or sb3-contrib that was trained on a visit with the environment's own observation holds
 pickled Python code, which runs when it is loaded: it needs --trust and, if its actions are not the default
 ones, --options, for example aim=target. Intervals are 95 % bootstrap intervals over training seeds and visits
@@ -28,16 +28,16 @@ import sys
 from itertools import islice, product
 from pathlib import Path
 
-from commands.lifecycle import INTERRUPTED, command, needs, parser_of
+from agents._lib.lifecycle import INTERRUPTED, command, needs, parser_of
 
 with needs("agents.evaluate"):
     import numpy as np
 
     import snooker_env
-    from commands.files import writable, write_atomic, write_json
-    from commands.physics_option import physics_option
-    from commands.provenance import provenance
-    from commands.tables import show
+    from agents._lib.files import writable, write_atomic, write_json
+    from agents._lib.physics_option import physics_option
+    from agents._lib.provenance import provenance
+    from agents._lib.tables import show
     from snooker_env.benchmark import HELD_OUT_SEED, play_visits
     from snooker_env.benchmark.rollouts import counts
     from snooker_env.benchmark.statistics import RESAMPLES

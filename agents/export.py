@@ -3,7 +3,7 @@
 Value and policy of the pre-trained ``ppo_value`` models as plain arrays, see ``snooker_env.players.weights``.
 """
 
-from commands.files import packed_arrays, write_atomic
+from agents._lib.files import packed_arrays, write_atomic
 from snooker_env.players.weights import FOLDER
 from snooker_env.tasks import LEVELS
 

@@ -14,13 +14,13 @@ judged, and the chance to win alone is fitted.
 import sys
 from pathlib import Path
 
-from commands.lifecycle import command, needs, parser_of
+from agents._lib.lifecycle import command, needs, parser_of
 
 with needs("agents.learn_worth"):
     import numpy as np
 
     import snooker_env
-    from commands.files import packed_arrays, writable, write_atomic
+    from agents._lib.files import packed_arrays, writable, write_atomic
     from snooker_env.checks import integer, refuse
     from snooker_env.planning import FrameJudge
     from snooker_env.planning.learned.dense_layers import Layers

@@ -1,8 +1,8 @@
 """How is an evaluation reported? Tables and sentences for a terminal and as Markdown, all from its figures.
 
-    python -m agents.report agents/results/*.json
+    python -m agents.report results/agents/*.json
 
-writes ``agents/results/*.md`` again from what agents.evaluate keeps as JSON, without playing;
+writes ``results/agents/*.md`` again from what agents.evaluate keeps as JSON, without playing;
 --show prints the tables instead.
 """
 
@@ -11,11 +11,11 @@ from functools import partial
 from itertools import product
 from pathlib import Path
 
-from commands.lifecycle import command, needs, parser_of
+from agents._lib.lifecycle import command, needs, parser_of
 
 with needs("agents.report"):
-    from commands.files import read_json, write_atomic
-    from commands.tables import TextTable, page, show, shown
+    from agents._lib.files import read_json, write_atomic
+    from agents._lib.tables import TextTable, page, show, shown
     from snooker_env.benchmark import CENTURY, FIGURES, MAXIMUM
     from snooker_env.benchmark.tasks import most_points
     from snooker_env.checks import refuse

@@ -17,14 +17,14 @@ import time
 from pathlib import Path
 from typing import Any
 
-from commands.lifecycle import INTERRUPTED, command, needs, parser_of
+from agents._lib.lifecycle import INTERRUPTED, command, needs, parser_of
 
 with needs("agents.tournament"):
     import snooker_env
-    from commands.files import writable, write_atomic
-    from commands.noise_option import noise_option
-    from commands.physics_option import physics_option
-    from commands.tables import show
+    from agents._lib.files import writable, write_atomic
+    from agents._lib.noise_option import noise_option
+    from agents._lib.physics_option import physics_option
+    from agents._lib.tables import show
     from snooker_env import Options
     from snooker_env.benchmark import read_result, write_result
     from snooker_env.benchmark.provenance import machine

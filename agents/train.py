@@ -11,9 +11,9 @@ import tensorboard  # noqa: F401 - imported here so that a missing package is re
 import torch
 
 import snooker_env
-from commands.files import write_atomic
-from commands.lifecycle import command, python
-from commands.provenance import commit, software
+from agents._lib.files import write_atomic
+from agents._lib.lifecycle import command, python
+from agents._lib.provenance import commit, software
 
 from .evaluation.training_summary import conclusion, evaluate, held_out, show
 from .learning.agent_training import AgentTraining

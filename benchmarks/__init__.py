@@ -4,6 +4,6 @@
 import sys
 
 if sys.argv[0] == "-m":  # Python is about to load a command: what fails in that is said in one line as well
-    from commands.lifecycle import in_one_line
+    from agents._lib.lifecycle import in_one_line
 
     sys.excepthook = in_one_line

@@ -15,8 +15,8 @@ intended stroke, played twice by the truth with the execution errors of ``tasks.
 import numpy as np
 
 import snooker_env as sn
-from commands import picture_style, provenance
-from commands.tables import text_table
+from agents._lib import picture_style, provenance
+from agents._lib.tables import text_table
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 

@@ -76,7 +76,7 @@ add_module_names = False
 # the site
 html_theme = "furo"
 html_title = f"snooker_env {release}"
-html_static_path = ["_static"]
+html_static_path = ["_static", "../results/films"]
 html_css_files = ["snooker.css"]
 html_copy_source = False
 html_show_sourcelink = False

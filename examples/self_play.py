@@ -29,8 +29,8 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.utils import LinearSchedule
 
 import snooker_env
+from agents._lib.files import seal, unseal, write_atomic, write_json
 from agents.learning.networks import TablePolicy, TableReader
-from commands.files import seal, unseal, write_atomic, write_json
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning.learned.pot_view import with_pots
 from snooker_env.players import OpponentPool, SeenPlayer

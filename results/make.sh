@@ -1,68 +1,129 @@
 #!/usr/bin/env bash
-# How is the leaderboard made? Every agent of the repository on every task, then the page. In the root of a clone, on a quiet machine:
+# Makes anew what results/ keeps. In a clone with the extras train, test, render and data, on a quiet machine:
 #
-#     leaderboard/make.sh                  # all that is missing
-#     leaderboard/make.sh ghost_ball       # only these agents
+#     bash results/make.sh PART        physics: charts of benchmarks and their figures, some minutes
+#                                      pictures: films, screenshots, README's break, some minutes
+#                                      agents: trains the models of results/weights, compares all players, hours
+#                                      leaderboard [AGENT ...]: judges them all, or these alone, then its page: days
 #
-# Complete files are left as they are, incomplete ones are resumed; remove a file to play it again. All files are checked: their strokes are
-# played again. Agents whose files are missing stand on the page as missing.
-set -u
+# Complete runs and files are left as they are and incomplete ones resumed; remove one to make it again.
+# agents: FOLDER holds the runs [runs/experiments], JOBS run side by side [2], ONLY='ppo_value_' picks runs and compares
+# nothing, LIST=1 prints the commands, RAY=HEAD:6379 plays on a Ray cluster (docs/scale.md). The tables again, from the
+# stored figures: python -m agents.report results/agents/*.json
+set -uo pipefail
 cd "$(dirname "$0")/.."
 shopt -s nullglob
-bench="python -m snooker_env.benchmark"
-wanted="$*"
-labels=()
+export FOLDER=${FOLDER:-runs/experiments}
 
-wants() {  # whether this agent is to be judged; it stands on the page in any case
+module() { # its name, then its options
+    ${LIST:+printf '%q '} python -m "$@" || exit
+    ${LIST:+echo}
+}
+
+physics() {
+    for name in paper scene tradeoff; do
+        module "benchmarks.$name" --json "results/physics/$name.json" --out results/pictures
+    done
+    module benchmarks.real_shots --json results/physics/real_shots.json
+}
+
+pictures() {
+    python results/make_films.py && python results/make_screens.py || exit
+    module snooker_env.watch --agent planner --at-least 100 --out results/pictures/break.gif --speed 6
+}
+
+models() { # name, then the options of train.py
+    local long="--imitate 153600 --steps 1507328"
+    for seed in 0 1 2 3 4; do echo "ppo_value-$seed --seed $seed $long"; done
+    for noise in none amateur club; do echo "ppo_value_$noise --noise $noise $long"; done
+}
+
+train() {
+    local name=$1
+    shift
+    [[ -f $FOLDER/$name/results.json ]] && return
+    rm -rf "${FOLDER:?}/$name"
+    python train.py "$@" --parallel one --no-progress --out "$FOLDER/$name" > "$FOLDER/$name.txt" 2>&1 ||
+        { echo "$name failed: see $FOLDER/$name.txt" >&2; return 1; }
+    echo "$(date +%H:%M) $name"
+}
+export -f train
+
+train_models() { # those whose names begin as ONLY says
+    chosen=$(models | grep -E "^(${ONLY:-.*})") || { echo "ONLY='$ONLY' names no run" >&2; exit 2; }
+    if [[ -n ${LIST:-} ]]; then
+        sed 's/^[^ ]* /python train.py /' <<< "$chosen"
+    else
+        mkdir -p "$FOLDER"
+        xargs -d '\n' -P "${JOBS:-2}" -I{} bash -c 'train {}' <<< "$chosen" || exit 1
+    fi
+}
+
+agents() {
+    train_models
+    [[ -n ${ONLY:-} ]] && exit
+    module agents.evaluate --layouts held_out=500 --noise professional --against search best_pot --agent \
+        planner best_pot ghost_ball search stroke_value ppo_value random \
+        ${RAY:+--ray "$RAY"} --json results/agents/visits.json --markdown results/agents/visits.md
+    module agents.tournament random ghost_ball best_pot stroke_value search planner tactician \
+        --cue real --miss clear_path --frames 40 --threads 1 --resume --out results/agents/ladder.json --markdown results/agents/ladder.md ${RAY:+--ray "$RAY"}
+}
+
+judge() { # an agent's name, all simulated shots of its training; it stands on the page in any case
     labels+=("$1")
-    [ -z "$wanted" ] || [[ " $wanted " == *" $1 "* ]]
+    [[ -z $wanted || " $wanted " == *" $1 "* ]] || return
+    $bench run all --agent "${3:-$1}" --training-shots "$2" --out results/leaderboard --resume
 }
 
-judge() {  # its name, all simulated shots of its training
-    wants "$1" || return
-    $bench run all --agent "$1" --training-shots "$2" --out leaderboard --resume
+judge_seeds() { # the same of five training seeds, the first of which is the package's
+    if [[ -z $wanted || " $wanted " == *" $1 "* ]]; then
+        (ONLY='ppo_value-[1-4]' train_models) || return
+    fi
+    judge "$1" "$2" "$1=$3,$(seq -s, -f "$4$FOLDER/ppo_value-%g" 1 4)"
 }
 
-judge_seeds() {  # the same of five training seeds, the first of which is the package's
-    local label=$1 shots=$2 first=$3 before=$4
-    wants "$label" || return
-    ONLY='ppo_value-[1-4]' bash agents/experiments.sh || return
-    others=$(seq -s, -f "${before}runs/experiments/ppo_value-%g" 1 4)
-    $bench run all --agent "$label=$first,$others" --training-shots "$shots" --out leaderboard --resume
-}
-
-judge_each() {  # the same of five models that are trained on each task
-    wants "$1" || return
+judge_each() { # the same of five models that are trained on each task
+    labels+=("$1")
+    [[ -z $wanted || " $wanted " == *" $1 "* ]] || return
     tasks=$(python -c "from snooker_env.benchmark import TASKS; print(*TASKS)") || exit 1
     for task in $tasks; do
-        file=leaderboard/$task.$1.json
+        file=results/leaderboard/$task.$1.json
         if [ -e "$file" ] && grep -q '"incomplete": null' "$file"; then continue; fi
-        python leaderboard/baseline.py "$task" || return
+        python -m agents.baseline "$task" || return
         models=$(seq -s, -f "runs/baseline/$task.%g.zip" 0 4)
         $bench run "$task" --agent "$1=$models" --trust --training-shots "$2" --out "$file" --resume
     done
 }
 
-judge random 0
-judge ghost_ball 0
-judge best_pot 0
-judge search 0
-# What train.py learns for each level of errors: 153,600 positions x 64 simulated shots, 147,200 x 48 judged choices, PPO: 18,403,328. To these
-# the worth of positions, by which it decides after a foul: two rounds of 384 frames of tactician against itself and others: 205,141 positions,
-# each with 120 shots of search and 8 that judge, and some 12,000 strokes of the others, 120 shots each.
-judge planner 46101376
-judge tactician 46101376
-# The values of three levels, the worth of the tactician, and 13 million shots of its own: strokes that are tried, play, and who plays against it.
-judge stroke_value 96000000
-judge ppo_value 18403328
-# planner and ppo_value from five training seeds, all with a professional's errors: those of planner above are the task's.
-judge_seeds planner_seeds 46101376 planner@professional planner@
-judge_seeds ppo_value_seeds 18403328 ppo_value ""
+leaderboard() {
+    bench="python -m snooker_env.benchmark" wanted="$*" labels=()
+    judge random 0
+    judge ghost_ball 0
+    judge best_pot 0
+    judge search 0
+    # What train.py learns for each level of errors: 153,600 positions x 64 simulated shots, 147,200 x 48 judged choices,
+    # PPO: 18,403,328. To these the worth of positions, by which it decides after a foul: two rounds of 384 frames of
+    # tactician against itself and others: 205,141 positions, each with 120 shots of search and 8 that judge, and some
+    # 12,000 strokes of the others, 120 shots each.
+    judge planner 46101376
+    judge tactician 46101376
+    # The values of three levels, the worth of the tactician, and 13 million shots of its own: strokes that are tried,
+    # play, and its opponents.
+    judge stroke_value 96000000
+    judge ppo_value 18403328
+    # planner and ppo_value from five training seeds, all with a professional's errors: those of planner above are the
+    # task's.
+    judge_seeds planner_seeds 46101376 planner@professional planner@
+    judge_seeds ppo_value_seeds 18403328 ppo_value ""
+    # Plain PPO, five training seeds.
+    judge_each ppo_50k 49152
+    # What looks at nothing, beside them: it must win no task.
+    [[ -n $wanted ]] || $bench degenerate --out results/leaderboard || exit 1
+    $bench table results/leaderboard/*.json --markdown docs/leaderboard.md --awaited "${labels[@]}"
+}
 
-# Plain PPO, five training seeds.
-judge_each ppo_50k 49152
-
-# What looks at nothing, beside them: it must win no task.
-[ -n "$wanted" ] || $bench degenerate --out leaderboard || exit 1
-
-$bench table leaderboard/*.json --markdown docs/leaderboard.md --awaited "${labels[@]}"
+part=${1:-}
+case $part in
+    physics | pictures | agents | leaderboard) shift && "$part" "$@" ;;
+    *) echo "PART = '$part': must be physics, pictures, agents or leaderboard" >&2 && exit 2 ;;
+esac

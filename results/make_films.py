@@ -1,4 +1,4 @@
-"""How are the films on the pages of the tasks made? ``python docs/films/make.py`` plays one episode for each
+"""How are the films on the pages of the tasks made? ``python results/make_films.py`` plays one episode for each
 film and writes an .mp4 of it.
 
 Run it in a clone with the extras ``render`` and ``train``; ``--only NAME ...`` makes some of the films,
@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))  # agents are found in the clone
 
 import numpy as np  # noqa: E402
@@ -24,7 +24,7 @@ from snooker_env.planning import Positions  # noqa: E402
 from snooker_env.players import FRAMES, VISITS  # noqa: E402
 from snooker_env.replays import replay  # noqa: E402
 
-OUT = ROOT / "docs" / "_static" / "films"
+OUT = ROOT / "results" / "films"
 SIZE, FPS, SPEED = (720, 406), 20.0, 2.0
 MOST_STROKES = 8
 """Strokes of an episode that a film shows: the files stay below 400 kB."""
@@ -112,7 +112,7 @@ def found(film: Film) -> tuple[Any, int]:
         env = episode(film, seed)
         if env is not None:
             return env, seed
-    raise SystemExit(f"docs/films/make.py: {film.title}: nothing to show in {TRIES} episodes")
+    raise SystemExit(f"results/make_films.py: {film.title}: nothing to show in {TRIES} episodes")
 
 
 def write(
@@ -143,7 +143,7 @@ def write(
         for picture in made.frames(fps=fps, speed=speed, size=size):
             encoder.stdin.write(np.ascontiguousarray(picture).data)
     if encoder.returncode:
-        raise SystemExit(f"docs/films/make.py: ffmpeg ended with {encoder.returncode}")
+        raise SystemExit(f"results/make_films.py: ffmpeg ended with {encoder.returncode}")
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -158,7 +158,7 @@ def main(argv: list[str] | None = None) -> int:
         metavar="NAME",
         help="films to make: " + ", ".join(names),
     )
-    parser.add_argument("--out", type=Path, default=OUT, help="folder (default: docs/_static/films)")
+    parser.add_argument("--out", type=Path, default=OUT, help="folder (default: results/films)")
     given = parser.parse_args(argv)
     given.out.mkdir(parents=True, exist_ok=True)
     for name in given.only:

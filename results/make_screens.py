@@ -1,4 +1,4 @@
-"""How are the screenshots in docs made? ``python docs/pictures/make.py`` in a clone with the extra ``test``,
+"""How are the screenshots in docs made? ``python results/make_screens.py`` in a clone with the extra ``test``,
 and Chromium, makes them anew.
 
 The page of ``snooker_env.play`` with advice, and the replay of a frame, each as a browser shows it.
@@ -16,7 +16,7 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
+ROOT = HERE.parent
 QUIET = (
     "--no-sandbox",
     "--disable-gpu",
@@ -86,7 +86,7 @@ def replay(browser, out):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Make the screenshots of the documentation anew.")
     parser.add_argument(
-        "--out", type=Path, default=HERE, metavar="FOLDER", help="where to write them (default: here)"
+        "--out", type=Path, default=HERE / "pictures", metavar="FOLDER", help="[results/pictures]"
     )
     folder = parser.parse_args().out
     with sync_playwright() as playwright:

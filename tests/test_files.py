@@ -10,12 +10,12 @@ import pytest
 
 import snooker_env as sn
 from agents import report
+from agents._lib.files import kept_arrays, read_json
 from agents.evaluation import tournament_file
 from agents.learning.policy_files import read_policy
 from agents.learning.run_folder import SETTINGS, keep_settings, kept_settings
 from agents.learning.settings import Settings
 from agents.players.trained import load_player
-from commands.files import kept_arrays, read_json
 from snooker_env._lib.files import MOST_JSON, MOST_NPZ, read_npz, strict_json, with_checksum
 from snooker_env.advice import read_strokes
 from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, text

@@ -19,7 +19,7 @@ INTERRUPTED = 130
 """The exit code after Ctrl-C, as shells have it."""
 EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "cluster"}
 """The extra of pyproject.toml that brings a package which is not in [train]."""
-OUR_OWN = ("agents", "commands", "snooker_env", "train", "benchmarks")
+OUR_OWN = ("agents", "snooker_env", "train", "benchmarks")
 
 
 def installs(extra):

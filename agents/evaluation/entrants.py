@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from commands.files import read_json
-from commands.physics_option import physics_text
+from agents._lib.files import read_json
+from agents._lib.physics_option import physics_text
 from snooker_env import Options, player, players
 from snooker_env.checks import integer, number, refuse
 from snooker_env.players import SeenPlayer

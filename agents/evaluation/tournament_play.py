@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from commands.physics_option import physics_option
+from agents._lib.physics_option import physics_option
 from snooker_env import Options, SnookerVectorEnv
 from snooker_env.benchmark import simulated
 from snooker_env.players import FRAMES, decided, decision_seeds

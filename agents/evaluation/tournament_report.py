@@ -1,6 +1,6 @@
 """How is a tournament shown? Who won, the cross table and how they play, for a terminal and as Markdown."""
 
-from commands.tables import TextTable, page, shown
+from agents._lib.tables import TextTable, page, shown
 
 from .tournament_figures import PRIOR
 

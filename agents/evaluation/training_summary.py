@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from commands.tables import text_table
+from agents._lib.tables import text_table
 from snooker_env import player
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.benchmark.tasks import tables_of

@@ -7,7 +7,7 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from commands.files import write_atomic
+from agents._lib.files import write_atomic
 from snooker_env.players.resolver import is_name
 
 from .entrants import Entrant

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from commands.physics_option import physics_option
+from agents._lib.physics_option import physics_option
 from snooker_env.benchmark import PlayedStrokes, play_visits
 
 from .travel import unpack

@@ -102,7 +102,7 @@ def recipe_of(settings):
     names = ("layout", "noise", "fidelity", "physics", "conditions", "observe_conditions")
     chosen = {name: value for name in names if (value := getattr(settings, name))}
     if "physics" in chosen:
-        from commands.physics_option import physics_option
+        from agents._lib.physics_option import physics_option
 
         chosen["physics"] = physics_option(settings.physics)
     numbers = {"n_timesteps": settings.steps, "n_envs": settings.envs}

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from commands.noise_option import scaled
+from agents._lib.noise_option import scaled
 from snooker_env import Options
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.sides import strikers_own

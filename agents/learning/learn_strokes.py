@@ -17,8 +17,8 @@ import torch
 from torch import nn
 
 import snooker_env as sn
-from commands.files import packed_arrays, write_atomic
-from commands.noise_option import noise_option
+from agents._lib.files import packed_arrays, write_atomic
+from agents._lib.noise_option import noise_option
 from snooker_env.benchmark import simulated
 from snooker_env.checks import choice, integer, refuse
 from snooker_env.planning import Planner, Positions, processors

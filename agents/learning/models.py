@@ -3,7 +3,7 @@
 import io
 from pathlib import Path
 
-from commands.files import read_json
+from agents._lib.files import read_json
 from snooker_env.checks import refuse
 
 from .hyperparameters import ACTION_OPTIONS
@@ -11,7 +11,7 @@ from .model_files import read
 
 POLICY = "policy.npz"
 """The file of a policy that another trainer made, see ``policy_files``."""
-PRETRAINED = Path(__file__).parents[1] / "pretrained"
+PRETRAINED = Path(__file__).parents[2] / "results" / "weights"
 CHECKPOINT = "checkpoint.pkl"
 """A run's folder holds it from the first save on."""
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from commands.files import MOST_NPZ, arrays_in, read_bytes, strict_json, write_atomic
+from agents._lib.files import MOST_NPZ, arrays_in, read_bytes, strict_json, write_atomic
 from snooker_env.checks import choice, integer, number, refuse
 from snooker_env.planning.learned.dense_layers import ACTIVATIONS, Layers
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE

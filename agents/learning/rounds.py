@@ -10,7 +10,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from commands.files import keep_arrays, kept_arrays, strict_json
+from agents._lib.files import keep_arrays, kept_arrays, strict_json
 from snooker_env.checks import refuse
 
 from .loop import Part

@@ -8,9 +8,9 @@ import numpy as np
 import torch
 from stable_baselines3.common.save_util import load_from_zip_file
 
-from commands.files import UNFINISHED, read_json, seal, unseal, with_checksum, write_atomic, write_json
-from commands.lock import NAME as LOCK
-from commands.lock import Lock
+from agents._lib.files import UNFINISHED, read_json, seal, unseal, with_checksum, write_atomic, write_json
+from agents._lib.lock import NAME as LOCK
+from agents._lib.lock import Lock
 from snooker_env.checks import refuse
 
 from .hyperparameters import algorithm_class

@@ -9,10 +9,11 @@ import signal
 import sys
 from pathlib import Path
 
-from commands import files
-from commands.lifecycle import command
+from agents._lib import files
+from agents._lib.lifecycle import command
 
-PICTURES, FIGURES = (Path(__file__).parents[1] / name for name in ("pictures", "figures"))
+RESULTS = Path(__file__).parents[2] / "results"
+PICTURES, FIGURES = RESULTS / "pictures", RESULTS / "physics"
 _transcripts = []
 """The file for what is printed, once a command has been given ``--out``."""
 
@@ -34,7 +35,7 @@ class Command(argparse.ArgumentParser):
         )
         self._name, self._pictures, self._files, self._folder = name, pictures, files, folder
         made = " and ".join((*pictures, *files))
-        root = PICTURES.parents[1]
+        root = RESULTS.parent
         usual = (
             f"{made} [{folder.relative_to(root) if folder.is_relative_to(root) else folder}] and "
             if made

@@ -31,7 +31,7 @@ also searched with these pots counted as made.
 
 import numpy as np
 
-from commands.tables import text_table
+from agents._lib.tables import text_table
 from snooker_env.game.layouts import POT_WINDOWS
 from snooker_env.physics.parameters import Physics
 from snooker_env.tasks.noise import LEVELS, Noise

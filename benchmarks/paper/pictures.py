@@ -4,7 +4,7 @@ figures of ``python -m benchmarks.paper``."""
 import numpy as np
 
 import snooker_env as sn
-from commands import picture_style
+from agents._lib import picture_style
 from snooker_env.render.scene import outline
 
 from .other_data import A14_SHOTS, CUSHIONS, a14_throw, domenech_throw

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 import snooker_env as sn
-from commands.tables import text_table
+from agents._lib.tables import text_table
 
 from .._common.command import Command, run, save_json
 from . import openings

@@ -21,8 +21,8 @@ from pathlib import Path
 
 import numpy as np
 
-from commands import provenance
-from commands.tables import text_table
+from agents._lib import provenance
+from agents._lib.tables import text_table
 from snooker_env.physics.parameters import PRESETS, Physics
 
 from .._common.command import Command, at_least, run, save_json

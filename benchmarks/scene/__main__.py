@@ -27,7 +27,7 @@ from pathlib import Path
 import numpy as np
 
 import snooker_env as sn
-from commands import provenance
+from agents._lib import provenance
 from snooker_env import simulation
 from snooker_env.physics.engine import EventKind, Status
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from commands import picture_style, provenance
+from agents._lib import picture_style, provenance
 
 from .models import MODELS
 from .verdicts import CHAOS, ERRORS, reasons

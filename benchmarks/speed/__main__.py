@@ -22,8 +22,8 @@ import time
 import numpy as np
 
 import snooker_env as sn
-from commands import provenance
-from commands.tables import text_table
+from agents._lib import provenance
+from agents._lib.tables import text_table
 from snooker_env._lib.jit import entry
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics.arrays import Law

@@ -11,7 +11,7 @@ a table of its own.
 
 import numpy as np
 
-from commands.tables import text_table
+from agents._lib.tables import text_table
 
 from .. import fuzz
 from .._common.command import Command, at_least, run, save_json

@@ -72,7 +72,10 @@ def parser() -> argparse.ArgumentParser:
     )
     silly.add_argument("tasks", nargs="*", metavar="TASK", help="ids of tasks (default: all)")
     silly.add_argument(
-        "--out", metavar="FOLDER", default="leaderboard", help="folder of result files (default: leaderboard)"
+        "--out",
+        metavar="FOLDER",
+        default="results/leaderboard",
+        help="folder of result files [results/leaderboard]",
     )
     silly.add_argument("--threads", type=int, help=help_)
     table = commands.add_parser("table", help="print the leaderboard of result files")

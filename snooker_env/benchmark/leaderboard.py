@@ -150,7 +150,9 @@ def page(results: Sequence[dict[str, Any]], awaited: Sequence[str] = ()) -> str:
     >>> page([]).splitlines()[0]
     '# Leaderboard'
     """
-    words = ["The rules are in [the benchmark](benchmark.md). This page is made by `leaderboard/make.sh`."]
+    words = [
+        "The rules are in [the benchmark](benchmark.md). This page is made by `results/make.sh leaderboard`."
+    ]
     if results:
         versions = sorted({one["software"]["snooker_env"] for one in results})
         machines = sorted({f"{one['machine']['cpu']}, {one['machine']['cores']} cores" for one in results})

@@ -16,7 +16,7 @@ from .._lib.files import MOST_JSON, strict_json, unzip
 from .._lib.install import missing
 
 PLAIN = "model.json"
-"""The part that replaces ``data`` in the zips of ``agents/pretrained``, which hold no pickles."""
+"""The part that replaces ``data`` in the zips of ``results/weights``, which hold no pickles."""
 _ALGORITHMS = (
     ("sb3_contrib", "TQC", {"top_quantiles_to_drop_per_net"}),
     ("sb3_contrib", "TRPO", {"cg_max_steps"}),

@@ -1,4 +1,4 @@
-"""Can the commands behind agents/results/*.md be run as agents/experiments.sh writes them, by their programs?"""
+"""Can the commands behind results/agents/*.md be run as results/make.sh writes them, by their programs?"""
 
 import json
 import os
@@ -17,24 +17,30 @@ from snooker_env.players.weights import levels
 from tests.processes import ROOT
 
 
-def script(name, *arguments, **variables):
-    """A script of agents/, ended."""
-    command = ["bash", str(ROOT / "agents" / name), *map(str, arguments)]
-    return subprocess.run(command, env=os.environ | variables, capture_output=True, text=True, timeout=60)
+def make(folder, **variables):
+    """A part of ``make.sh``, ended."""
+    command = ["bash", str(ROOT / "results/make.sh"), "agents"]
+    return subprocess.run(
+        command,
+        env=os.environ | {"FOLDER": str(folder)} | variables,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
 
 
-def listed(name, *arguments):
-    """The words of the commands that a script would run."""
-    done = script(name, *arguments, LIST="1")
+def listed(folder):
+    """The words of the commands that would run."""
+    done = make(folder, LIST="1")
     assert done.returncode == 0, done.stderr
     return [shlex.split(line) for line in done.stdout.splitlines()]
 
 
 def test_every_command_is_one_that_its_program_takes(tmp_path):
-    lines = listed("experiments.sh", tmp_path)
+    lines = listed(tmp_path)
     runs = [line[2:] for line in lines if line[1] == "train.py"]
     comparisons = [line[3:] for line in lines if line[2] == "agents.evaluate"]
-    assert len(runs) == 8 and len(comparisons) == 1 and len(runs) + 1 == len(lines)
+    assert len(runs) == 8 and len(comparisons) == 1 and len(runs) + 2 == len(lines)
     recipes = {recipe_of(Settings(**parse(run)[1])).name for run in runs}
     assert recipes == {"ppo_value"}
     for comparison in comparisons:
@@ -52,22 +58,20 @@ def test_a_run_that_fails_stops_the_whole(tmp_path):
     fake = tmp_path / "python"
     fake.write_text("#!/bin/sh\necho no memory\nexit 3\n")
     fake.chmod(0o755)
-    done = script(
-        "experiments.sh", tmp_path / "runs", ONLY="ppo_value_club", PATH=f"{tmp_path}:{os.environ['PATH']}"
-    )
+    done = make(tmp_path / "runs", ONLY="ppo_value_club", PATH=f"{tmp_path}:{os.environ['PATH']}")
     assert done.returncode != 0 and "ppo_value_club failed" in done.stderr
     assert (tmp_path / "runs/ppo_value_club.txt").read_text() == "no memory\n"
 
 
 @pytest.mark.parametrize("only", ["nothing-", "value-(0"])
 def test_a_choice_of_no_run_is_an_error(tmp_path, only):
-    done = script("experiments.sh", tmp_path / "runs", ONLY=only, LIST="")
+    done = make(tmp_path / "runs", ONLY=only, LIST="")
     assert done.returncode == 2 and f"ONLY='{only}' names no run" in done.stderr
 
 
 def test_the_command_of_the_ladder_is_the_one_that_made_the_file():
     """That of the page; and a tournament takes it."""
-    file = Path("agents/results/ladder.json")
+    file = Path("results/agents/ladder.json")
     made = json.loads((ROOT / file).read_text(encoding="utf-8"))["command"]
     page = (ROOT / "docs/agents/tournament.md").read_text(encoding="utf-8")
     assert made in " ".join(page.replace("\\\n", "").split())

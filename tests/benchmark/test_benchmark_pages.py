@@ -14,7 +14,7 @@ from tests.processes import ROOT
 TEXT, HOLDS = (
     (ROOT / f"docs/{name}.md").read_text(encoding="utf-8") for name in ("benchmark", "benchmark_files")
 )
-FILES = sorted((ROOT / "leaderboard").glob("*.json"))
+FILES = sorted((ROOT / "results/leaderboard").glob("*.json"))
 KINDS = {str: "text", int: "integer", bool: "boolean", list: "list", dict: "object", NUMBER: "number"}
 
 
@@ -71,15 +71,15 @@ def test_known_players_play_again_what_stands_on_the_leaderboard(file):
 
 def test_the_leaderboard_is_the_page_of_its_files():
     """And it names as missing what ``make.sh`` judges and no file holds."""
-    script = (ROOT / "leaderboard/make.sh").read_text(encoding="utf-8")
-    labels = re.findall(r"^judge\w* (\w+)", script, re.MULTILINE)
+    script = (ROOT / "results/make.sh").read_text(encoding="utf-8")
+    labels = re.findall(r"^ *judge\w* (\w+)", script, re.MULTILINE)
     text = (ROOT / "docs/leaderboard.md").read_text(encoding="utf-8")
     assert text == page([read_result(file) for file in FILES], labels)
     missing = [
         label
         for label in labels
         for task in TASKS
-        if not (ROOT / f"leaderboard/{task}.{label}.json").exists()
+        if not (ROOT / f"results/leaderboard/{task}.{label}.json").exists()
     ]
     assert len(labels) > 6 and ("Missing: " in text) == bool(missing)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from commands import lifecycle
+from agents._lib import lifecycle
 from tests.processes import ROOT
 
 
@@ -79,7 +79,7 @@ def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
 
 
 QUICK = str.split("--agent random --visits 4 --layouts held_out --noise professional --resamples 100")
-LADDER = ROOT / "agents" / "results" / "ladder.json"
+LADDER = ROOT / "results" / "agents" / "ladder.json"
 TINY = str.split("--agent ppo_target --envs 2 --eval-visits 4 --parallel one --steps 1")
 
 

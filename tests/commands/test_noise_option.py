@@ -2,7 +2,7 @@
 
 import pytest
 
-from commands.noise_option import noise_option, scaled
+from agents._lib.noise_option import noise_option, scaled
 from snooker_env.tasks import LEVELS, Noise
 
 

@@ -27,12 +27,15 @@ def links(text):
     text = re.sub(r"`+[^`\n]*`+", "code", text)
     found = re.findall(r"\]\(([^)\s]+)\)", text) + re.findall(r'\b(?:src|href)="([^"]+)"', text)
     found += re.findall(r"^\[[^\]^][^\]]*\]: *(\S+)", text, re.MULTILINE)
+    found = [
+        target.replace("_static/", "../results/films/") for target in found
+    ]  # where sphinx takes films from
     return [target for target in found if not re.match(r"(https?|mailto):", target)]
 
 
 def paths(text):
     """Files and folders of the repository between backticks, as patterns, but for those of an older commit."""
-    tops = "tests|benchmarks|agents|snooker_env|docs|examples|commands|leaderboard|[.]github|[.]ci"
+    tops = "tests|benchmarks|agents|snooker_env|docs|examples|results|[.]github|[.]ci"
     found = re.findall(rf"`((?:{tops})/[\w./*-]+)`(?! at\s+commit\s+[0-9a-f]{{8}})", text)
     return [path for path in found if not re.search(r"NAME|\bmy_", path)]
 

@@ -28,12 +28,12 @@ SHORT = {
     "tests.rules_cases": "tests/data/rules_cases.json",
     "tests/advice/coach.py": "stroke_value",
     "tests.oracles.frame_oracle": "--frames 2 --kind tables",
-    "docs/pictures/make.py": "--out {tmp}",
-    "docs/films/make.py": "--only pot_easy --out {tmp}",
+    "results/make_screens.py": "--out {tmp}",
+    "results/make_films.py": "--only pot_easy --out {tmp}",
 }
 """Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
 
-SLOW = {"docs/pictures/make.py", "tests/advice/coach.py"} | {
+SLOW = {"results/make_screens.py", "tests/advice/coach.py"} | {
     f"benchmarks.{name}"
     for name in [
         "coach",
@@ -104,7 +104,8 @@ def test_commands_have_the_options_that_are_given(name):
     """They stand in the source of the command, or in what all commands of its kind share."""
     top = name.split("/")[0] if name.endswith(".py") else name.split(".")[0]
     shared = {
-        top: (top.replace("train.py", "agents"), "commands") for top in ("train.py", "agents", "benchmarks")
+        top: (top.replace("train.py", "agents"), "agents/_lib")
+        for top in ("train.py", "agents", "benchmarks")
     }
     files = [file for folder in shared.get(top, (top,)) for file in (ROOT / folder).rglob("*.py")]
     files += [ROOT / name] if name.endswith(".py") else []
@@ -130,7 +131,7 @@ def test_commands_run(name, tmp_path):
     assert printed.strip()
     if name == "tests.rules_cases":
         assert printed.splitlines()[-1].endswith(", 0 failed")
-    if name == "docs/films/make.py":
+    if name == "results/make_films.py":
         assert (tmp_path / "pot_easy.mp4").stat().st_size > 5_000
 
 

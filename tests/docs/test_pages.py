@@ -39,7 +39,7 @@ def test_pictures_and_films_are_no_stubs(page):
 
 
 def test_every_film_is_shown_and_small():
-    films, shown = sorted((DOCS / "_static" / "films").iterdir()), set()
+    films, shown = sorted((ROOT / "results/films").iterdir()), set()
     for page in PAGES:
         shown |= {(page.parent / link).resolve() for link in links(page.read_text(encoding="utf-8"))}
     assert films and set(films) <= shown

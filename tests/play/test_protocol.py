@@ -383,7 +383,7 @@ def test_an_agent_nominates_concedes_and_claims(game):
 
 def test_only_agents_of_the_start_may_be_named(game):
     """No path, no module, no file: a name that is not in the list is refused before anything is read."""
-    for name in ("/tmp/model.zip", "os:system", "../agents/pretrained/ppo_value", "ppo_value"):
+    for name in ("/tmp/model.zip", "os:system", "../results/weights/ppo_value", "ppo_value"):
         with pytest.raises(ValueError, match=r"players\[1\]"):
             game("players", players=["person", name])
         with pytest.raises(ValueError, match="agent = "):

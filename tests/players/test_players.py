@@ -188,7 +188,7 @@ ALONE = """if True:
 
     class Barred(importlib.abc.MetaPathFinder):
         def find_spec(self, name, path=None, target=None):
-            if name.partition(".")[0] in "agents commands torch stable_baselines3 sb3_contrib yaml".split():
+            if name.partition(".")[0] in "agents torch stable_baselines3 sb3_contrib yaml".split():
                 raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 
     sys.meta_path.insert(0, Barred())

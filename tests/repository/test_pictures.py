@@ -6,13 +6,13 @@ import importlib.util
 import matplotlib as mpl
 import pytest
 
-from commands import picture_style
+from agents._lib import picture_style
 from tests.pictures import saved_figures, unreadable
 from tests.processes import ROOT
 
 mpl.use("Agg")
 REDRAWN = ("paper", "scene", "tradeoff")
-"""Benchmarks whose figures are kept in benchmarks/figures."""
+"""Benchmarks whose figures are kept in results/physics."""
 COMPUTED = ("paper", "scene")
 """Those that compute more than they read."""
 
@@ -37,7 +37,7 @@ def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch
     with saved_figures() as figures:
         command.main()
     read(figures)
-    kept = {file.name for file in (ROOT / "benchmarks/pictures").iterdir()}
+    kept = {file.name for file in (ROOT / "results/pictures").iterdir()}
     assert {file.name for file in tmp_path.glob("*.png")} <= kept
 
 

@@ -1,4 +1,4 @@
-"""Is every public name there once, documented as numpy does it, and nothing else used by agents and commands?"""
+"""Is every public name there once, documented as numpy does it, and nothing else used by agents?"""
 
 import ast
 import dataclasses
@@ -14,7 +14,7 @@ import snooker_env as sn
 from tests.processes import ROOT, python
 
 PACKAGE = ROOT / "snooker_env"
-FOLDERS = ("agents", "commands", "examples")
+FOLDERS = ("agents", "examples")
 USERS = sorted([ROOT / "train.py", *(path for name in FOLDERS for path in (ROOT / name).rglob("*.py"))])
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
@@ -75,12 +75,16 @@ TRAINED_FOR = (
 
 
 @pytest.mark.parametrize("path", USERS, ids=lambda path: path.relative_to(ROOT).as_posix())
-def test_agents_commands_and_examples_use_public_names_only(path):
-    """But for what ``commands`` passes on, and for the rooms that ``agents`` trains for."""
+def test_agents_and_examples_use_public_names_only(path):
+    """But for what ``agents._lib`` passes on, and for the rooms that ``agents`` trains for."""
     passed_on = {
-        "commands/files.py": ("snooker_env._lib.files", "snooker_env._lib.seal", "snooker_env._lib: files"),
-        "commands/lifecycle.py": ("snooker_env._lib.command",),
-        "commands/tables.py": ("snooker_env._lib.tables",),
+        "agents/_lib/files.py": (
+            "snooker_env._lib.files",
+            "snooker_env._lib.seal",
+            "snooker_env._lib: files",
+        ),
+        "agents/_lib/lifecycle.py": ("snooker_env._lib.command",),
+        "agents/_lib/tables.py": ("snooker_env._lib.tables",),
     }
     known = (*TRAINED_FOR, *passed_on.get(path.relative_to(ROOT).as_posix(), ()))
     assert [name for name in private(path.read_text(encoding="utf-8")) if not name.startswith(known)] == []

@@ -40,7 +40,7 @@ def test_links_of_the_package_page_lead_to_files_of_the_release():
     assert set(absolute(page)) == {link.partition("#")[0] for link in links(README)}
     for kind in ("python", "bash"):
         assert blocks(page, kind) == blocks(README, kind)
-    assert "/raw/v9/agents/pictures/break.gif)" in page and "/blob/v9/docs/index.md)" in page
+    assert "/raw/v9/results/pictures/break.gif)" in page and "/blob/v9/docs/index.md)" in page
 
 
 def test_without_an_address_the_page_has_no_link_that_leads_nowhere():
@@ -78,7 +78,7 @@ def test_one_line_sets_the_address_everywhere(tmp_path):
     named = dict(re.findall(r"^Project-URL: (\w+), (\S+)$", after, re.MULTILINE))
     assert set(named) == {"Homepage", "Documentation", "Source", "Issues", "Changelog"}
     assert all(place.startswith(address) for place in named.values())
-    assert f"{address}/raw/v9.0/agents/pictures/break.gif" in after
+    assert f"{address}/raw/v9.0/results/pictures/break.gif" in after
     assert yaml.safe_load((tmp_path / "CITATION.cff").read_text())["repository-code"] == address
 
 

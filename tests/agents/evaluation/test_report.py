@@ -8,8 +8,8 @@ import pytest
 from scipy import stats
 
 from agents import report
+from agents._lib.tables import WIDTH, TextTable
 from agents.evaluation.training_summary import conclusion
-from commands.tables import WIDTH, TextTable
 from snooker_env.benchmark.statistics import unseen
 from snooker_env.benchmark.tasks import most_points
 
@@ -245,11 +245,11 @@ def test_an_incomplete_evaluation_says_so(capsys):
     assert "INCOMPLETE" in capsys.readouterr().out
 
 
-KEPT = sorted((Path(report.__file__).parent / "results").glob("*.json"))
+KEPT = sorted((ROOT / "results" / "agents").glob("*.json"))
 
 
 def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
-    """``python -m agents.report agents/results/*.json`` was run since report.py changed; no table is wide."""
+    """``python -m agents.report results/agents/*.json`` was run since report.py changed; no table is wide."""
     for file in KEPT:
         made = report.read(file)
         written = report.markdown(made)

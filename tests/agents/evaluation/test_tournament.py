@@ -162,7 +162,7 @@ def sound():
     """The content of a file of two players, without playing."""
     counted = [60, 30, 50, 30, 10, 10, 30, 20, 0, 2, 20, 12]
     rows = [[0, 1, s, o, 0, (s + o) % 2, *counted] for s in range(3) for o in (0, 1)]
-    found = json.loads((ROOT / "agents" / "results" / "ladder.json").read_text())
+    found = json.loads((ROOT / "results" / "agents" / "ladder.json").read_text())
     players = [found["players"][k] | {"label": label} for k, label in enumerate("ab")]
     protocol = found["protocol"] | {"matches": 6, "anchor": "a", "resamples": 100}
     figures = figures_of(["a", "b"], rows, "a", 100)
@@ -210,7 +210,7 @@ def test_each_fault_of_a_file_is_named(path, value, says, tmp_path, capsys):
 
 def test_the_ladder_of_the_repository_is_sound(capsys):
     """And its page is what its figures say."""
-    folder = ROOT / "agents" / "results"
+    folder = ROOT / "results" / "agents"
     assert tournament.main(["--check", str(folder / "ladder.json")]) == 0
     assert "complete" in capsys.readouterr().out
     found = json.loads((folder / "ladder.json").read_text())

@@ -247,7 +247,7 @@ def test_ppo_leaves_the_value_of_positions_alone():
 
 
 def test_policy_and_value_are_saved_and_read_together(tmp_path):
-    """From the zip of train.py and from that of agents/pretrained; what is read plays as what was written."""
+    """From the zip of train.py and from that of results/weights; what is read plays as what was written."""
     model, _ = model_and_tables(seed=9)
     with torch.no_grad():
         for p in model.policy.position_value.parameters():

@@ -55,7 +55,7 @@ def mask(tmp_path_factory):
 
 @pytest.fixture
 def plain(mask, tmp_path):
-    """The same as those of agents/pretrained are written."""
+    """The same as those of results/weights are written."""
     (tmp_path / "plain.zip").write_bytes(packed(read(mask, "agent")))
     return tmp_path / "plain.zip"
 

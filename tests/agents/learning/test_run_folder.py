@@ -12,13 +12,13 @@ import pytest
 
 import snooker_env as sn
 import train
+from agents._lib import lock
+from agents._lib.files import write_atomic
+from agents._lib.lifecycle import python
 from agents.learning import loop
 from agents.learning.models import CHECKPOINT
 from agents.learning.run_folder import SETTINGS, kept_settings, read_checkpoint
 from agents.learning.settings import Settings
-from commands import lock
-from commands.files import write_atomic
-from commands.lifecycle import python
 from tests.agents.test_train import FILES
 from tests.agents.training import TINY, resume, run
 from tests.flips import flipped
@@ -34,7 +34,7 @@ def other(tmp_path):
     code = f"""
 import time
 from pathlib import Path
-from commands.lock import Lock
+from agents._lib.lock import Lock
 held = Lock(Path({str(tmp_path)!r}))
 print("held", flush=True)
 time.sleep(600)
