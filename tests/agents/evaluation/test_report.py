@@ -2,7 +2,6 @@
 
 import json
 import re
-from pathlib import Path
 
 import pytest
 from scipy import stats
@@ -12,6 +11,7 @@ from agents._lib.tables import WIDTH, TextTable
 from agents.evaluation.training_summary import conclusion
 from snooker_env.benchmark.statistics import unseen
 from snooker_env.benchmark.tasks import most_points
+from tests.processes import ROOT
 
 GHOST = {"from": "ghost_ball"}
 
