@@ -22,8 +22,8 @@ Table = tuple[list[str], list[list[str]]]  # heading and rows
 LEGEND = (
     "score: mean of all episodes with its 95 % bootstrap interval over training seeds and episodes; a share that was never or always "
     "seen has the exact one-sided 95 % bound. IQM: mean of the middle half. training: the budget of simulated shots. seeds: training "
-    "seeds. shots: simulated shots a decision (d: declared). ms: time of a decision on one table. *: not official. Thresholds that no "
-    "agent reached are left out."
+    "seeds. shots: simulated shots a decision (d: declared). ms: time of a decision on one table. *: not official. Left out: "
+    "thresholds that no agent reached and, on the page, all but the best degenerate agent."
 )
 PROVED = (
     "A result is its strokes: check plays each episode again from its seed and computes all figures anew. "
@@ -116,7 +116,9 @@ def lines(
 
     made: list[str] = []
     for task in TASKS.values():
-        head, rows = board(results, task)
+        seeing = [one for one in results if one["agent"]["class"] != "degenerate"]
+        blind = _of((one for one in results if one["agent"]["class"] == "degenerate"), task)
+        head, rows = board([*seeing, *(blind[:1] if markdown else blind)], task)
         labels = {one["agent"]["label"] for one in results if one["task"] == task.id}
         lacking = [label for label in awaited if label not in labels]
         if not rows and not lacking:
@@ -125,7 +127,6 @@ def lines(
         made += [f"{'## ' if markdown else ''}{task.id}: {task.title}", "", *wrap(judged, WIDTH), ""]
         made += [*table(head, rows, 1, 2), ""] if rows else []
         made += [*wrap(f"Missing: {', '.join(lacking)}.", WIDTH), ""] if lacking else []
-        seeing = [one for one in results if one["agent"]["class"] != "degenerate"]
         shares = profile(seeing, task)
         if task.counts and shares[1]:
             title = "Share of episodes [%] with at least so many points, of agents that look at the table:"
