@@ -194,7 +194,7 @@ def _columns(against, most):
     breaks["clearances %"] = ("clearances", 0)
     return {
         "points a visit": figure("points_a_visit"),
-        "IQM": figure("points_a_visit_iqm"),
+        "IQM": lambda r: _between([r["figures"]["points_a_visit_iqm"]["value"]], "{:.2f}"),
         **{f"times {other}": times(other) for other in against},
         **{heading: share(name) for heading, (name, least) in breaks.items() if least <= most},
         "best": lambda r: str(r["longest_break"]),
@@ -208,11 +208,10 @@ def _columns(against, most):
 
 
 LEGEND = (
-    "[low, high]: 95 % bootstrap interval over training seeds and visits, of a thing that was never or always seen the exact one-sided "
-    "bound (0 of 30 visits: at most 9.5 %). IQM: mean of the middle half of all visits. times X: points over those of X on the same "
-    "tables, paired. next pot: pots that left a ball and were followed by another. easy left: of these, those that left a pot whose "
-    "line may err by 4 mrad. high after red: potted reds that a potted pink or black followed. ms: a decision's time, all tables played "
-    "at once. Rows and columns without a figure are left out."
+    "[low, high]: 95 % bootstrap interval over training seeds and visits; for what was never or always seen, the exact one-sided bound. "
+    "IQM: mean of the middle half. times X: points over those of X on the same tables, paired. next pot: pots that left a ball and that "
+    "another pot followed. easy left: of these, those that left a pot whose line may err by 4 mrad. high after red: potted reds that a "
+    "potted pink or black followed. ms: a decision's time, all tables played at once. Rows and columns without a figure are left out."
 )
 
 
