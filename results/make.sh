@@ -4,6 +4,7 @@
 #     bash results/make.sh PART        physics: charts of benchmarks and their figures, some minutes
 #                                      pictures: films, screenshots, README's break, some minutes
 #                                      agents: trains the models of results/weights, compares all players, hours
+#                                      weights: those of results/weights for the planners, into the package
 #                                      leaderboard [AGENT ...]: judges them all, or these alone, then its page: days
 #
 # Complete runs and files are left as they are and incomplete ones resumed; remove one to make it again.
@@ -28,7 +29,7 @@ physics() {
 }
 
 pictures() {
-    python results/make_films.py && python results/make_screens.py || exit
+    python results/make_pictures.py films && python results/make_pictures.py screens || exit
     module snooker_env.watch --agent planner --at-least 100 --out results/pictures/break.gif --speed 6
 }
 
@@ -67,6 +68,10 @@ agents() {
         ${RAY:+--ray "$RAY"} --json results/agents/visits.json --markdown results/agents/visits.md
     module agents.tournament random ghost_ball best_pot stroke_value search planner tactician \
         --cue real --miss clear_path --frames 40 --threads 1 --resume --out results/agents/ladder.json --markdown results/agents/ladder.md ${RAY:+--ray "$RAY"}
+}
+
+weights() {
+    python -c "from agents.learning.export import export; export()"
 }
 
 judge() { # an agent's name, all simulated shots of its training; it stands on the page in any case
@@ -124,6 +129,6 @@ leaderboard() {
 
 part=${1:-}
 case $part in
-    physics | pictures | agents | leaderboard) shift && "$part" "$@" ;;
-    *) echo "PART = '$part': must be physics, pictures, agents or leaderboard" >&2 && exit 2 ;;
+    physics | pictures | agents | weights | leaderboard) shift && "$part" "$@" ;;
+    *) echo "PART = '$part': must be physics, pictures, agents, weights or leaderboard" >&2 && exit 2 ;;
 esac
