@@ -70,7 +70,7 @@ def where(nodes):
 
 def parts_of(name, many, size, monkeypatch):
     monkeypatch.setattr(visits, "SIZE", size)
-    return visits.parts_of(pack(Entrant.of(name), 0), 0, AT, tables_of("held_out", many), False)
+    return visits.parts_of(pack(Entrant.of(name), 0), 0, AT, tables_of("held_out", many))
 
 
 def alike(one, other):
