@@ -26,7 +26,7 @@ physics() {
     for name in paper scene tradeoff; do
         module "benchmarks.$name" --json "results/physics/$name.json" --out results/pictures
     done
-    # the tracked shots are not in the clone (docs/validation/real_shots.md)
+    # the tracked shots are not in the clone, see docs/validation/real_shots.md
     [[ -z ${TRACKED:-} ]] || module benchmarks.real_shots "$TRACKED" --json results/physics/real_shots.json
 }
 
