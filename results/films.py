@@ -1,30 +1,21 @@
-"""How are the films on the pages of the tasks made? ``python results/make_films.py`` plays one episode for each
-film and writes an .mp4 of it.
+"""The films on the pages of the tasks: one episode for each, as .mp4.
 
-Run it in a clone with the extras ``render`` and ``train``; ``--only NAME ...`` makes some of the films,
-``--out FOLDER`` writes them elsewhere. An episode is played from the first of a few seeds that has what the
-film is to show; the same code gives the same film.
+An episode is played from the first of a few seeds that has what the film is to show; the same code gives the same film.
 """
 
-import argparse
 import subprocess
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))  # agents are found in the clone
+import numpy as np
 
-import numpy as np  # noqa: E402
+import snooker_env as sn
+from snooker_env.planning import Positions
+from snooker_env.players import FRAMES, VISITS
+from snooker_env.replays import replay
 
-import snooker_env as sn  # noqa: E402
-from snooker_env.planning import Positions  # noqa: E402
-from snooker_env.players import FRAMES, VISITS  # noqa: E402
-from snooker_env.replays import replay  # noqa: E402
-
-OUT = ROOT / "results" / "films"
 SIZE, FPS, SPEED = (720, 406), 20.0, 2.0
 MOST_STROKES = 8
 """Strokes of an episode that a film shows: the files stay below 400 kB."""
@@ -112,7 +103,7 @@ def found(film: Film) -> tuple[Any, int]:
         env = episode(film, seed)
         if env is not None:
             return env, seed
-    raise SystemExit(f"results/make_films.py: {film.title}: nothing to show in {TRIES} episodes")
+    raise SystemExit(f"{film.title}: nothing to show in {TRIES} episodes")
 
 
 def write(
@@ -143,35 +134,15 @@ def write(
         for picture in made.frames(fps=fps, speed=speed, size=size):
             encoder.stdin.write(np.ascontiguousarray(picture).data)
     if encoder.returncode:
-        raise SystemExit(f"results/make_films.py: ffmpeg ended with {encoder.returncode}")
+        raise SystemExit(f"ffmpeg ended with {encoder.returncode}")
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Make the films."""
-    parser = argparse.ArgumentParser(description=str(__doc__).split("\n\n")[0])
-    names = list(FILMS)
-    parser.add_argument(
-        "--only",
-        nargs="+",
-        choices=names,
-        default=names,
-        metavar="NAME",
-        help="films to make: " + ", ".join(names),
-    )
-    parser.add_argument("--out", type=Path, default=OUT, help="folder (default: results/films)")
-    given = parser.parse_args(argv)
-    given.out.mkdir(parents=True, exist_ok=True)
-    for name in given.only:
-        film, path = FILMS[name], given.out / f"{name}.mp4"
+def make(folder: Path, names: list[str]) -> None:
+    """Write the films with these names, of ``FILMS``."""
+    for name in names:
+        film, path = FILMS[name], folder / f"{name}.mp4"
         env, seed = found(film)
         players = [film.agent, film.options["opponent"]] if "opponent" in film.options else [film.agent]
         write(replay(env, title=film.title, players=players), path)
-        print(
-            f"{path}: {film.agent}, seed {seed}, {len(env.history)} strokes, {path.stat().st_size / 1000:.0f} kB",
-            flush=True,
-        )
-    return 0
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())
+        size = path.stat().st_size / 1000
+        print(f"{path}: {film.agent}, seed {seed}, {len(env.history)} strokes, {size:.0f} kB", flush=True)

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Makes anew what results/ keeps. In a clone with the extras train, test, render and data, on a quiet machine:
 #
-#     bash results/make.sh PART        physics: charts of benchmarks and their figures, some minutes
+#     bash results/make.sh PART        physics: charts of benchmarks and their figures, some minutes;
+#                                      with TRACKED=FILE the real shots of that file, too
 #                                      pictures: films, screenshots, README's break, some minutes
 #                                      agents: trains the models of results/weights, compares all players, hours
+#                                      weights: those of results/weights for the planners, into the package
 #                                      leaderboard [AGENT ...]: judges them all, or these alone, then its page: days
 #
 # Complete runs and files are left as they are and incomplete ones resumed; remove one to make it again.
@@ -24,11 +26,12 @@ physics() {
     for name in paper scene tradeoff; do
         module "benchmarks.$name" --json "results/physics/$name.json" --out results/pictures
     done
-    module benchmarks.real_shots --json results/physics/real_shots.json
+    # the tracked shots are not in the clone, see docs/validation/real_shots.md
+    [[ -z ${TRACKED:-} ]] || module benchmarks.real_shots "$TRACKED" --json results/physics/real_shots.json
 }
 
 pictures() {
-    python results/make_films.py && python results/make_screens.py || exit
+    python results/make_pictures.py films && python results/make_pictures.py screens || exit
     module snooker_env.watch --agent planner --at-least 100 --out results/pictures/break.gif --speed 6
 }
 
@@ -67,6 +70,10 @@ agents() {
         ${RAY:+--ray "$RAY"} --json results/agents/visits.json --markdown results/agents/visits.md
     module agents.tournament random ghost_ball best_pot stroke_value search planner tactician \
         --cue real --miss clear_path --frames 40 --threads 1 --resume --out results/agents/ladder.json --markdown results/agents/ladder.md ${RAY:+--ray "$RAY"}
+}
+
+weights() {
+    python -c "from agents.learning.export import export; export()"
 }
 
 judge() { # an agent's name, all simulated shots of its training; it stands on the page in any case
@@ -124,6 +131,6 @@ leaderboard() {
 
 part=${1:-}
 case $part in
-    physics | pictures | agents | leaderboard) shift && "$part" "$@" ;;
-    *) echo "PART = '$part': must be physics, pictures, agents or leaderboard" >&2 && exit 2 ;;
+    physics | pictures | agents | weights | leaderboard) shift && "$part" "$@" ;;
+    *) echo "PART = '$part': must be physics, pictures, agents, weights or leaderboard" >&2 && exit 2 ;;
 esac

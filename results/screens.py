@@ -1,10 +1,7 @@
-"""How are the screenshots in docs made? ``python results/make_screens.py`` in a clone with the extra ``test``,
-and Chromium, makes them anew.
-
-The page of ``snooker_env.play`` with advice, and the replay of a frame, each as a browser shows it.
+"""The screenshots in the documentation: the page of ``snooker_env.play`` with advice, and the replay of a frame, each as a
+browser shows it.
 """
 
-import argparse
 import re
 import shutil
 import subprocess
@@ -15,8 +12,7 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent
+ROOT = Path(__file__).resolve().parents[1]
 QUIET = (
     "--no-sandbox",
     "--disable-gpu",
@@ -83,12 +79,8 @@ def replay(browser, out):
             shoot(page, out / name)
 
 
-if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description="Make the screenshots of the documentation anew.")
-    parser.add_argument(
-        "--out", type=Path, default=HERE / "pictures", metavar="FOLDER", help="[results/pictures]"
-    )
-    folder = parser.parse_args().out
+def make(folder):
+    """Take them all; needs Chromium."""
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(QUIET))
         page_to_play(chromium, folder)

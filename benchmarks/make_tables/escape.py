@@ -1,25 +1,16 @@
 """Where do the tables of the layout "escape" come from? From the layout "snookered": those on which constant choices fail.
-Writes ``game/escape.npz``.
-
-    python -m benchmarks.make_escape [--tables 1024] [--seed 0] [--json FILE] [--out FOLDER]
 
 A constant choice is one of ``action="discrete"``, whatever lies on the table. The best third of them, by the share of other
 snookers that each escapes from, is played on each table, with a professional's execution errors and a real cue. The later
 half of the tables is held out.
 """
 
-import io
-
 import numpy as np
 
 from snooker_env import SnookerVectorEnv
-from snooker_env.game.banks import FOLDER
 from snooker_env.players import decision_seeds
 from snooker_env.tasks import CHOICES
 
-from ._common.command import Command, at_least, run, save_bytes, save_json
-
-FILE = "escape.npz"
 RULES = {"layout": "snookered", "reward": "legal", "one_stroke": True, "noise": "professional", "cue": "real"}
 SIDE_BY_SIDE, SCREENED = 2000, 200
 """Tables at once, and those on which the constants are compared."""
@@ -60,23 +51,11 @@ def kept_of(first, constants):
     return dealt.astype(np.float32)
 
 
-def main():
-    """Command line."""
-    parser = Command("make_escape", __doc__, files=(FILE,), folder=FOLDER, seed=0)
-    parser.add_argument("--tables", type=at_least(2), default=1024, help="so many [1024]")
-    options = parser.options()
-    kept, first = np.empty((0, 22, 2), np.float32), 1_000_000 * options.seed
+def make(size, seed):
+    """Tables (size, 22, 2), and the snookers that were looked at."""
+    kept, first = np.empty((0, 22, 2), np.float32), 1_000_000 * seed
     constants = best_third(first + 500_000)
-    while len(kept) < options.tables:
+    while len(kept) < size:
         kept = np.concatenate([kept, kept_of(first, constants)])
         first += SIDE_BY_SIDE
-    packed = io.BytesIO()
-    np.savez_compressed(packed, positions=kept[: options.tables])
-    save_bytes(options.folder / FILE, packed.getvalue())
-    counts = {"seed": options.seed, "tables": options.tables, "snookers": first - 1_000_000 * options.seed}
-    save_json(options.json, counts)
-    print(f"{options.tables} tables of {counts['snookers']:,} snookers -> {options.folder / FILE}")
-
-
-if __name__ == "__main__":
-    run(main)
+    return kept[:size], first - 1_000_000 * seed

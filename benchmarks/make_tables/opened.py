@@ -1,10 +1,5 @@
-"""How were the opened tables made? Plays frames open with the project's own engine and referee and writes
-``game/opened.npz``.
+"""Where do the tables of the layout "opened" come from? From frames that hard strokes play open."""
 
-python -m benchmarks.make_opened [--tables 10240] [--seed 0] [--json FILE] [--out FOLDER]
-"""
-
-import io
 from math import atan2
 
 import numpy as np
@@ -12,7 +7,6 @@ import numpy as np
 from snooker_env.game import layouts
 from snooker_env.game.apply_ruling import settle_table
 from snooker_env.game.balls import CUE, N_BALLS, N_REDS, REDS_MASK, BallOn, mask_of
-from snooker_env.game.banks import FOLDER
 from snooker_env.game.in_hand import within_d
 from snooker_env.game.pots import pots
 from snooker_env.game.referee import Situation, Stroke
@@ -23,9 +17,6 @@ from snooker_env.physics.parameters import Physics
 from snooker_env.physics.table import Table
 from snooker_env.simulation import play
 
-from ._common.command import Command, at_least, run, save_bytes, save_json
-
-FILE = "opened.npz"
 PHYSICS, TABLE, FIDELITY = Physics.preset("match"), Table.preset("match"), parse_fidelity("standard")
 SPREAD = 6.0  # m: mean distance of the reds from their centre of mass, times 15, that counts as opened
 STROKES = 8
@@ -73,25 +64,13 @@ def opened_table(rng):
     return None
 
 
-def main():
-    """Command line."""
-    parser = Command("make_opened", __doc__, files=(FILE,), folder=FOLDER, seed=0)
-    parser.add_argument("--tables", type=at_least(1), default=10240, help="so many [10240]")
-    options = parser.options()
-    rng = np.random.default_rng(options.seed)
+def make(size, seed):
+    """Tables (size, 22, 2), to a tenth of a micrometre: within what the engine accepts as touching; and the frames played."""
+    rng = np.random.default_rng(seed)
     tables, frames = [], 0
-    while len(tables) < options.tables:
+    while len(tables) < size:
         frames += 1
         table = opened_table(rng)
         if table is not None:
-            # to a tenth of a micrometre: within what the engine accepts as touching
             tables.append(table.astype(np.float32))
-    packed = io.BytesIO()
-    np.savez_compressed(packed, positions=np.array(tables))
-    save_bytes(options.folder / FILE, packed.getvalue())
-    save_json(options.json, {"seed": options.seed, "tables": len(tables), "frames": frames})
-    print(f"{len(tables)} tables from {frames} frames -> {options.folder / FILE}")
-
-
-if __name__ == "__main__":
-    run(main)
+    return np.array(tables), frames

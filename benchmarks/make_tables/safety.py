@@ -1,27 +1,21 @@
 """Where do the tables of the layout "safety" come from? From frames of the tactician against itself: the positions in
-which no pot is on. Writes ``game/safety.npz``.
-
-    python -m benchmarks.make_safety [--tables 1024] [--player tactician_30] [--seed 0] [--json FILE] [--out FOLDER]
+which no pot is on.
 
 A position is kept if a red is on and can be struck, no direct pot is likelier than 40 %, three reds or more and the six
 colours are on the table, the cue ball is not in hand and no ball is free; of a frame at most three of them. The later
 half of the tables is held out; no frame has tables in both halves.
 """
 
-import io
-
 import numpy as np
 
 from snooker_env import MatchVectorEnv
 from snooker_env.game.balls import REDS_MASK, BallOn
-from snooker_env.game.banks import FOLDER
 from snooker_env.game.snookered import is_snookered
 from snooker_env.planning import Positions, prospects_of, spread_of
 from snooker_env.players import decided, decision_seeds, player
 
-from ._common.command import Command, at_least, run, save_bytes, save_json
-
-FILE = "safety.npz"
+PLAYER = "tactician_30"
+"""On both sides."""
 RULES = {"task": "frame", "noise": "professional", "cue": "real", "miss": "clear_path", "elevation": True}
 LIKELY = 0.4
 """Chance of a direct pot, by its width, above which a position is none for a safety."""
@@ -39,12 +33,12 @@ def calls_for_safety(at, spread, rails):
     return kept
 
 
-def played(name, first, many):
+def play_frames(first, many):
     """Of each of ``many`` frames with seeds from ``first`` on the positions to keep: (22, 2) each, with NaN for balls
     that are not on the table."""
     tables = MatchVectorEnv(many, **RULES)
     rules, seeds = tables.options.rules, np.arange(first, first + many)
-    spread, who = spread_of(rules.noise, rules.physics), player(name).at(tables)
+    spread, who = spread_of(rules.noise, rules.physics), player(PLAYER).at(tables)
     tables.reset(seed=first)
     found, going, number = [[] for _ in range(many)], np.ones(many, bool), 0
     while going.any():
@@ -77,25 +71,12 @@ def in_halves(frames, size):
     return made[:size]
 
 
-def main():
-    """Command line."""
-    parser = Command("make_safety", __doc__, files=(FILE,), folder=FOLDER, seed=0)
-    parser.add_argument("--tables", type=at_least(2), default=1024, help="so many [1024]")
-    parser.add_argument("--player", default="tactician_30", help="who plays both sides [tactician_30]")
-    options = parser.options()
-    rng = np.random.default_rng(options.seed)
+def make(size, seed):
+    """Tables (size, 22, 2), and the frames played."""
+    rng = np.random.default_rng(seed)
     frames, tables = [], []
-    while len(tables) < options.tables:
-        first = 1_000_000 * options.seed + len(frames)
-        frames += [some_of(found, rng) for found in played(options.player, first, SIDE_BY_SIDE)]
-        tables = in_halves(frames, options.tables)
-    packed = io.BytesIO()
-    np.savez_compressed(packed, positions=np.array(tables))
-    save_bytes(options.folder / FILE, packed.getvalue())
-    counts = {"seed": options.seed, "player": options.player, "tables": len(tables), "frames": len(frames)}
-    save_json(options.json, counts)
-    print(f"{len(tables)} tables of {len(frames)} frames -> {options.folder / FILE}")
-
-
-if __name__ == "__main__":
-    run(main)
+    while len(tables) < size:
+        first = 1_000_000 * seed + len(frames)
+        frames += [some_of(found, rng) for found in play_frames(first, SIDE_BY_SIDE)]
+        tables = in_halves(frames, size)
+    return np.array(tables), len(frames)

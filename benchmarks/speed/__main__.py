@@ -1,9 +1,8 @@
-"""How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; the
-start.
+"""How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; of whole
+steps; the start.
 
-    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots start]
-    [--seed 0]
-        [--json FILE] [--out FOLDER]
+    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots steps start]
+        [--seed 0] [--json FILE] [--out FOLDER]
     python -m benchmarks.speed --against COMMIT
 
 Times are kernel times on one core, each shot (or impact) timed by itself: one kernel plays the whole set in
@@ -14,7 +13,8 @@ there is no x86 counter, each shot is called from Python ``--repeats`` times, it
 call's own cost taken off. An event is one entry of the shot's log. Errors are against ``reference``, in units
 of the incoming speed.
 
-``start``: see ``first_shot.py``; ``--against COMMIT``: ``against_commit.py``. With ``--against`` and no ``--parts``, only this is done.
+Steps, the start and ``--against COMMIT`` are explained in ``steps.py``, ``first_shot.py`` and ``against_commit.py``. With
+``--against`` and no ``--parts``, only this is done.
 """
 
 import time
@@ -33,7 +33,7 @@ from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
 
 from .._common.command import Command, at_least, run, save_json
-from . import against_commit, clock, first_shot
+from . import against_commit, clock, first_shot, steps
 from .clock import time_shots
 
 R = 0.02625
@@ -47,7 +47,9 @@ GOALS = {
     "break-off": (450.0, 250.0),
 }
 """Microseconds at ``standard``: what must be reached and what is aimed at."""
-PARTS = ("impacts", "shots", "start")
+PARTS = ("impacts", "shots", "steps", "start")
+TABLES = 1024
+"""Of a vector environment."""
 
 
 @entry(what="the benchmark of an impact", uses=(contact.collide_balls,))
@@ -254,6 +256,8 @@ def main():
         figures["impacts"] = measure_impacts(options.shots, options.repeats, options.seed)
     if "shots" in parts:
         figures["shots"] = measure_shots(options.shots, options.repeats, options.seed)
+    if "steps" in parts:
+        figures["steps"] = steps.measure(TABLES, options.repeats, options.seed)
     if "start" in parts:
         figures["start"] = measure_start()
     if options.against:

@@ -39,7 +39,10 @@ for _ in range(repeats):
         sn.simulate(p[k], v[k], w[k])
         best[k] = min(best[k], time.perf_counter() - t)
 found[f"sn.simulate, {KINDS[0]} [us]"] = float(np.median(best)) * 1e6
-from benchmarks.vector import FRAME, native, rate, stepper
+try:
+    from benchmarks.speed.steps import FRAME, native, rate, stepper
+except ModuleNotFoundError:  # until November 2026
+    from benchmarks.vector import FRAME, native, rate, stepper
 for name, options in ("visits", {}), ("frames", FRAME):
     step = stepper(native(1024, 1, **options), seed)
     found[f"a step of 1,024 tables, {name} [us]"] = min(1e6 / rate(step, 1024, 1.0) for _ in range(repeats))

@@ -1,12 +1,10 @@
 """How fast are whole steps? The vector environment on one and two threads, and single tables.
 
-    python -m benchmarks.vector [--seconds 2] [--repeats 5] [--tables 1024] [--seed 0] [--json FILE] [--out FOLDER]
-
 Random actions on opened 22-ball tables; a step is one shot with everything around it (SAME_STEP: a visit that
 ends is followed by a new one within the step, so every step holds a shot). Frames: the agent plays alone,
-from the same tables. Steps a second are medians over ``--repeats`` rounds in which the kinds take turns, so
-that a busy machine slows all alike. Threads: what two threads give must be read against the control, plain
-arithmetic on two threads at the same time.
+from the same tables. Steps a second are medians over the repeats, in which the kinds take turns, so
+that a busy machine slows all alike. Read what two threads give against the control, plain arithmetic on two threads at
+the same time.
 """
 
 import threading
@@ -18,11 +16,8 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 import snooker_env
-from agents._lib import provenance
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
-
-from ._common.command import Command, at_least, run, save_json
 
 FRAMES, SINGLE_FRAME, GHOST = (
     "frames, one thread",
@@ -30,6 +25,8 @@ FRAMES, SINGLE_FRAME, GHOST = (
     "frames against ghost_ball, one thread",
 )
 SLOWER, SINGLE_SLOWER = "a frame's step over a visit's", "the same on a single table"
+SECONDS = 2.0
+"""Of each timing."""
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)
 
 
@@ -143,23 +140,13 @@ def show(found):
     print("steps/s: " + "".join(f"{x:>9,.0f}" for x in found["sizes"].values()))
 
 
-def main():
-    """Command line."""
-    parser = Command("vector", __doc__, seed=0)
-    parser.add_argument("--seconds", type=float, default=2.0, help="of each timing")
-    parser.add_argument("--repeats", type=at_least(1), default=5)
-    parser.add_argument("--tables", type=at_least(1), default=1024)
-    args = parser.options()
+def measure(tables, repeats, seed):
+    """The figures, printed, too; ``tables`` at once."""
     snooker_env.warmup()
     found = {
-        "machine": provenance.machine(),
-        "tables": args.tables,
-        "rates": rates(args.tables, args.seconds, args.repeats, args.seed),
-        "sizes": sizes(args.seconds, args.seed),
+        "tables": tables,
+        "rates": rates(tables, SECONDS, repeats, seed),
+        "sizes": sizes(SECONDS, seed),
     }
     show(found)
-    save_json(args.json, found)
-
-
-if __name__ == "__main__":
-    run(main)
+    return found

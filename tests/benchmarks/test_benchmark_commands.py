@@ -68,7 +68,7 @@ def test_help_is_printed_and_nothing_is_compiled(tmp_path):
     assert not list(tmp_path.rglob("*.nb?"))
 
 
-@pytest.mark.parametrize(("name", "wrong"), [("paper", "--what"), ("make_opened", "--tables=-1")])
+@pytest.mark.parametrize(("name", "wrong"), [("paper", "--what"), ("make_tables", "--tables=-1")])
 def test_a_wrong_argument_is_an_error_of_usage(name, wrong):
     code, out, err = ended(started(name, wrong))
     assert code == 2 and out == "" and err.startswith(f"usage: python -m benchmarks.{name}")
@@ -81,15 +81,17 @@ def interrupted(process, seconds):
     return ended(process, 60)
 
 
-STOPPED = "benchmarks.make_opened: interrupted"
+STOPPED = "benchmarks.make_tables: interrupted"
 
 
 def test_ctrl_c_is_one_line_and_leaves_no_file(tmp_path):
     (made := tmp_path / "made").mkdir()
     # compiled first: a signal inside LLVM can end the process by a fault of its own
-    assert ended(started("make_opened", "--tables", 1, "--out", made))[0] == 0
+    assert ended(started("make_tables", "opened", "--tables", 2, "--out", made))[0] == 0
     (stopped := tmp_path / "stopped").mkdir()
-    code, out, err = interrupted(started("make_opened", "--tables", 1_000_000, "--out", stopped), 4.0)
+    code, out, err = interrupted(
+        started("make_tables", "opened", "--tables", 1_000_000, "--out", stopped), 4.0
+    )
     assert (code, out, err.strip()) == (130, "", STOPPED)
     assert list(made.iterdir()) and not list(stopped.iterdir())
 
@@ -98,7 +100,7 @@ def test_ctrl_c_while_libraries_are_loaded_is_one_line_too(tmp_path):
     """A numpy that takes long to load and says that it does."""
     begins = f"open({str(tmp_path / 'loading')!r}, 'w').close()"
     (tmp_path / "numpy.py").write_text(f"import time\n{begins}\ntime.sleep(60)")
-    process = started("make_opened", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]))
+    process = started("make_tables", "opened", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]))
     give_up = time.monotonic() + 60
     while not (tmp_path / "loading").exists() and time.monotonic() < give_up:
         time.sleep(0.05)

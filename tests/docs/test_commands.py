@@ -17,34 +17,29 @@ SHORT = {
     "benchmarks.stability": "--fuzz 2000 --out {tmp}",
     "benchmarks.speed": "--shots 20 --repeats 1 --parts impacts shots --out {tmp}",
     "benchmarks.fit_cushion": "--steps 200",
-    "benchmarks.make_opened": "--tables 2 --out {tmp}",
-    "benchmarks.make_safety": "--tables 2 --player tactician_30 --out {tmp}",
-    "benchmarks.make_escape": "--tables 2 --out {tmp}",
+    "benchmarks.make_tables": "safety --tables 2 --out {tmp}",
     "benchmarks.execution": "--strokes 40 --visits 4 --levels professional robot",
     "benchmarks.coach": "--players 2 --strokes 10 --pool 10 --levels club",
     "benchmarks.fuzz": "--shots 300 --threads 1",
-    "benchmarks.vector": "--seconds 0.1 --repeats 1 --tables 64",
     "snooker_env.watch": "--agent ghost_ball --out {tmp}/visit.html",
     "tests.rules_cases": "tests/data/rules_cases.json",
     "tests/advice/coach.py": "stroke_value",
     "tests.oracles.frame_oracle": "--frames 2 --kind tables",
-    "results/make_screens.py": "--out {tmp}",
-    "results/make_films.py": "--only pot_easy --out {tmp}",
+    "results/make_pictures.py": "pot_easy --out {tmp}",
 }
 """Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
 
-SLOW = {"results/make_screens.py", "tests/advice/coach.py"} | {
+SLOW = {"tests/advice/coach.py"} | {
     f"benchmarks.{name}"
     for name in [
         "coach",
         "fit_cushion",
-        "make_safety",
+        "make_tables",
         "pockets",
         "scene",
         "speed",
         "stability",
         "tradeoff",
-        "vector",
     ]
 }
 """Those of ``SHORT`` that compile, train or draw much."""
@@ -131,7 +126,7 @@ def test_commands_run(name, tmp_path):
     assert printed.strip()
     if name == "tests.rules_cases":
         assert printed.splitlines()[-1].endswith(", 0 failed")
-    if name == "results/make_films.py":
+    if name == "results/make_pictures.py":
         assert (tmp_path / "pot_easy.mp4").stat().st_size > 5_000
 
 

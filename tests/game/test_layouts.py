@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmarks.make_safety import LIKELY
+from benchmarks.make_tables.safety import LIKELY
 from snooker_env import SnookerVectorEnv
 from snooker_env.game import layouts
 from snooker_env.game.balls import GREEN, SPOTS, YELLOW

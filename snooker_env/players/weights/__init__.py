@@ -1,6 +1,6 @@
 """Which weights does the package hold? Value and policy of the planner, one file for each noise level.
 
-``python -m agents.export`` writes them from the models that ``train.py`` made. A file holds the NumPy arrays
+``results/make.sh weights`` writes them from the models that ``train.py`` made. A file holds the NumPy arrays
 ``policy/LAYER/weight`` and ``policy/LAYER/bias`` of a ``StrokePolicy``, and ``value/LAYER/weight`` (members,
 out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading them runs no code."""
 

@@ -1,0 +1,1 @@
+"""The stored tables of three layouts: ``python -m benchmarks.make_tables``."""
