@@ -211,7 +211,7 @@ LEGEND = (
     "[low, high]: 95 % bootstrap interval over training seeds and visits; for what was never or always seen, the exact one-sided bound. "
     "IQM: mean of the middle half. times X: points over those of X on the same tables, paired. next pot: pots that left a ball and that "
     "another pot followed. easy left: of these, those that left a pot whose line may err by 4 mrad. high after red: potted reds that a "
-    "potted pink or black followed. ms: a decision's time, all tables played at once. Rows and columns without a figure are left out."
+    "potted pink or black followed. ms: a decision's time, all tables played at once."
 )
 
 

@@ -29,15 +29,14 @@ def tables_of(content):
         p, one = figures["players"][label], spent[label]
         elo = shown(p["elo"], form="{:.0f}") + (" *" if p["elo_by_prior"] else "")
         shares = [shown(p[name], 100.0) for name in ("win_rate", "frame_rate")[: 2 if best_of > 1 else 1]]
-        standing.append([label, elo, *shares, f"{p['drawn']:,}"])
+        standing.append([label, elo, *shares, f"{p['drawn']:,}" if p["drawn"] else ""])
         average, fouls = (shown(p[name], form="{:.2f}") for name in ("average_break", "fouls_a_frame"))
         asked = one["decisions"]
         took = [f"{1e3 * one['seconds'] / asked:.3g}", f"{one['shots'] / asked:.0f}"] if asked else ["", ""]
-        points, strokes = shown(p["points_a_frame"]), shown(p["strokes_a_frame"])
-        play.append([label, points, average, str(p["highest_break"]), fouls, strokes, *took])
+        play.append([label, shown(p["points_a_frame"]), average, str(p["highest_break"]), fouls, *took])
     more = ["frames won [%]"] if best_of > 1 else []
     wins = ["player", "Elo", f"{won} won [%]", *more, "draws"]
-    does = ["points a frame", "average break", "highest", "fouls a frame", "strokes a frame"]
+    does = ["points a frame", "average break", "highest", "fouls a frame"]
     does += ["ms a decision", "shots a decision"]
     won_of = {}
     for pair in figures["pairs"]:
@@ -46,7 +45,7 @@ def tables_of(content):
     cross = [[label, *(won_of.get((label, other), "") for other in order)] for label in order]
     of_each = f"Share of the {won} that a player (row) won against another (column) [%]"
     return [
-        TextTable("Who wins", wins, standing, 1, 1),
+        TextTable("Who wins", wins, standing, 1, 1).tidy(),
         TextTable("How they play", ["player", *does], play, 1, 1),
         TextTable(of_each, [_unit(content), *order], cross, 1, 1),
     ]
