@@ -13,7 +13,7 @@ from pathlib import Path
 import torch
 from sb3_contrib import MaskablePPO
 
-from snooker_env.benchmark import TASKS, simulated
+from snooker_env.benchmark import TASKS, count_shots
 from snooker_env.sb3 import SnookerVecEnv
 
 SHOTS, TABLES = 49_152, 256
@@ -29,11 +29,11 @@ def train(task, seed):
         options = options.but(opponent="ghost_ball")
     envs = SnookerVecEnv(TABLES, options=options, seed=10_000 * seed)
     agent = MaskablePPO("MlpPolicy", envs, seed=seed, device="cpu", **SETTINGS)
-    before, rollouts = simulated(), 0
-    while (simulated() - before) * (rollouts + 1) <= SHOTS * rollouts:  # room for one more
+    before, rollouts = count_shots(), 0
+    while (count_shots() - before) * (rollouts + 1) <= SHOTS * rollouts:  # room for one more
         agent.learn(TABLES * SETTINGS["n_steps"], reset_num_timesteps=False)
         rollouts += 1
-    assert simulated() - before <= SHOTS, "a rollout took more shots than those before it"
+    assert count_shots() - before <= SHOTS, "a rollout took more shots than those before it"
     envs.close()
     return agent
 

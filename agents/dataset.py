@@ -27,7 +27,7 @@ with needs("agents.dataset"):
     from snooker_env.benchmark.tasks import task_of
     from snooker_env.checks import choice, integer, refuse, refuse_what
     from snooker_env.planning import Planner, Positions
-    from snooker_env.players import FRAMES, VISITS, decided, decision_seeds
+    from snooker_env.players import FRAMES, VISITS, ask_player, decision_seeds
     from snooker_env.players.resolver import is_name
     from snooker_env.progress import Progress
     from snooker_env.tasks import POTS, SIDES, SPEEDS, TOPS, choice_of
@@ -82,14 +82,14 @@ def played(task, name, form, seeds, threads=None):
     going, number, log = np.ones(n, bool), 0, []
     last: list[Any] = [None] * n
     while going.any():
-        asked = going & ~envs.tables.ended()
+        asked = going & ~envs.tables.are_over()
         keys = decision_seeds(0, np.asarray(seeds), number)
         if choices:
             rows, actions = np.flatnonzero(asked), np.zeros(n, np.int64)
             at, masks = Positions.of(envs)[rows], observation["action_mask"][rows] != 0
             actions[rows] = nearest_choices(player.play(at, keys[rows]), at, masks, planner)
         else:
-            actions = decided(player, envs, asked, keys).astype(np.float32)
+            actions = ask_player(player, envs, asked, keys).astype(np.float32)
         before, (observation, rewards, *ended, info) = observation, envs.step(actions)
         rows = np.flatnonzero(going)
         seen = (
@@ -206,7 +206,7 @@ def card(name, task, player, form, figures):
     return f"""# {name}
 
 {figures["strokes"]:,} strokes of {figures["episodes"]:,} whole episodes: `{player}` plays `{task.id}` ({task.title}),
-with execution errors of the level "{task.frozen["noise"]}". An episode brings {figures["return"]:.2f} +- {figures["error"]:.2f}
+with execution errors of the level "{task.frozen_options["noise"]}". An episode brings {figures["return"]:.2f} +- {figures["error"]:.2f}
 (mean return, standard error).
 
 Made by `python -m agents.dataset --task {task.id} --player {player} --form {form} --out FOLDER`, snooker_env {origin["version"]},

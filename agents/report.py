@@ -15,7 +15,7 @@ from agents._lib.lifecycle import command, needs, parser_of
 
 with needs("agents.report"):
     from agents._lib.files import read_json, write_atomic
-    from agents._lib.tables import WIDTH, TextTable, page, show, shown
+    from agents._lib.tables import WIDTH, TextTable, format_figure, page, show
     from snooker_env.benchmark import CENTURY, FIGURES, MAXIMUM
     from snooker_env.benchmark.tasks import most_points
     from snooker_env.checks import refuse
@@ -46,7 +46,7 @@ SHARES = {name: below for name, (_, below) in FIGURES.items() if name not in _ME
 
 def _share(row, name, form="{:.1f}", scale=100.0):
     """A share with its interval; where it was never so, or always, with the exact bound of that."""
-    return shown(add_bound(row["figures"][name], _trials(row, SHARES[name])), scale, form)
+    return format_figure(add_bound(row["figures"][name], _trials(row, SHARES[name])), scale, form)
 
 
 def _between(values, form="{:,.0f}"):

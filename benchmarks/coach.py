@@ -145,7 +145,7 @@ def tell(one, *, cue=None, made=None, intended=True):
 def told_by_pots(chances, paces, made):
     """Estimate, interval and truth's speed of pots made or missed."""
     at = coaching.choose_speed(paces)
-    log_l = coaching.weigh_outcomes(coaching.Pots([], chances, made, paces), at)
+    log_l = coaching.weigh_outcomes(coaching.CalledPots([], chances, made, paces), at)
     weights = coaching.normalise(log_l + np.log(coaching.PRIOR)[:, None]).sum(axis=0)
     return coaching.estimate(weights, BASE.direction_deg(speed=at), len(made)), at
 

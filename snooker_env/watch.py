@@ -20,7 +20,7 @@ from .envs.snooker import SnookerEnv
 from .planning import Positions
 from .players import FRAMES, VISITS, Player, decision_seeds, player
 from .players.model_options import add_model_options, of_others, options_of_words
-from .players.resolver import named
+from .players.resolver import players_of
 from .replays import Replay, replay
 from .replays.chances import check_judge
 from .replays.film import encoder_file
@@ -124,7 +124,7 @@ def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
     other = args.opponent or name
     # a model of others opposite acts as it was trained to, not as the table's options say
     names: list[str] = [name, other] if args.frame and other != name and of_others(other) else [name]
-    players = dict(zip(names, named(names, args.trust, options_of_words(args.options)), strict=True))
+    players = dict(zip(names, players_of(names, args.trust, options_of_words(args.options)), strict=True))
     who, label = players[name], name.rpartition(":")[2]
     if args.frame:
         opposite = players[other] if of_others(other) else other

@@ -5,8 +5,8 @@ import numpy as np
 
 from snooker_env.game.pots import POT_COLUMNS
 from snooker_env.physics.parameters import Physics
-from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.box_actions import shot_of
+from snooker_env.tasks.kernel_arrays import CueLaw
 from snooker_env.tasks.lines import LINE_ROWS, line_of, new_work
 
 PAPER = Physics()

@@ -3,9 +3,9 @@
 from dataclasses import dataclass, replace
 from textwrap import fill
 
-from snooker_env._lib.tables import markdown_table, shown, text_table
+from snooker_env._lib.text_tables import format_figure, markdown_table, text_table
 
-__all__ = ["WIDTH", "TextTable", "markdown_table", "page", "show", "shown", "text_table"]
+__all__ = ["WIDTH", "TextTable", "format_figure", "markdown_table", "page", "show", "text_table"]
 
 WIDTH = 100
 """Columns of text that no table is wider than."""

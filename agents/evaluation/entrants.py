@@ -156,7 +156,7 @@ def _told(saved, options):
         steps, gamma = integer("num_timesteps", steps, 0, 10**18), number("gamma", gamma, 0, 1)
         seed = seed if seed is None else integer("seed", seed, 0, 2**64)
     except ValueError as error:
-        raise saved.refused(f"must be a model saved by Stable-Baselines3 ({error})") from None
+        raise saved.refuse_file(f"must be a model saved by Stable-Baselines3 ({error})") from None
     options = UNKNOWN | options
     return Trained(None, saved.algorithm[1], options, steps, gamma, seed, imitated=None, start=None)
 

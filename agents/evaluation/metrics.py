@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from snooker_env.benchmark import FIGURES, iqm
-from snooker_env.benchmark.statistics import Resamples, figure, unseen
+from snooker_env.benchmark.statistics import Resamples, bound_if_none, figure
 
 from .entrants import Entrant
 
@@ -42,7 +42,7 @@ def add_bound(share, trials):
     """A share with its interval; one never or always seen with the exact bound of so many trials."""
     if share["low"] is not None or share["value"] not in (0.0, 1.0) or not trials:
         return share
-    most = unseen(trials)
+    most = bound_if_none(trials)
     return share | ({"low": 0.0, "high": most} if share["value"] == 0.0 else {"low": 1.0 - most, "high": 1.0})
 
 

@@ -19,8 +19,8 @@ import numpy as np
 
 from agents._lib.physics_option import physics_option
 from snooker_env import Options, SnookerVectorEnv
-from snooker_env.benchmark import simulated
-from snooker_env.players import FRAMES, decided, decision_seeds
+from snooker_env.benchmark import count_shots
+from snooker_env.players import FRAMES, ask_player, decision_seeds
 
 from .tournament_figures import COUNTED
 from .travel import unpack
@@ -45,10 +45,10 @@ class TimedPlayer:
         return bound
 
     def play(self, positions, seeds):
-        began, before = time.perf_counter(), simulated()
+        began, before = time.perf_counter(), count_shots()
         strokes = self._player.play(positions, np.asarray(seeds) ^ (self.seed & 0xFFFFFFFF))
         self.count["seconds"] += time.perf_counter() - began
-        self.count["shots"] += simulated() - before
+        self.count["shots"] += count_shots() - before
         self.count["decisions"] += len(strokes)
         return strokes
 
@@ -203,7 +203,7 @@ def _play(meeting, agent, opponent, game, threads, tick):
     over = info["winner"] >= 0  # won by the opponent in its first visit: the next step plays nothing
     while (going := meeting.going).any():
         to_play = going & ~over
-        actions = decided(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], meeting.decision))
+        actions = ask_player(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], meeting.decision))
         meeting.decision += 1
         _, _, terminated, truncated, info = tables.step(actions.astype(np.float32))
         meeting.step_all(going, info)

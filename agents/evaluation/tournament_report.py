@@ -1,6 +1,6 @@
 """How is a tournament shown? Who won, the cross table and how they play, for a terminal and as Markdown."""
 
-from agents._lib.tables import TextTable, page, shown
+from agents._lib.tables import TextTable, format_figure, page
 
 from .tournament_figures import PRIOR
 
@@ -27,13 +27,19 @@ def tables_of(content):
     standing, play = [], []
     for label in order:
         p, one = figures["players"][label], spent[label]
-        elo = shown(p["elo"], form="{:.0f}") + (" *" if p["elo_by_prior"] else "")
-        shares = [shown(p[name], 100.0) for name in ("win_rate", "frame_rate")[: 2 if best_of > 1 else 1]]
+        elo = format_figure(p["elo"], form="{:.0f}") + (" *" if p["elo_by_prior"] else "")
+        shares = [
+            format_figure(p[name], 100.0) for name in ("win_rate", "frame_rate")[: 2 if best_of > 1 else 1]
+        ]
         standing.append([label, elo, *shares, f"{p['drawn']:,}" if p["drawn"] else ""])
-        average, fouls = (shown(p[name], form="{:.2f}") for name in ("average_break", "fouls_a_frame"))
+        average, fouls = (
+            format_figure(p[name], form="{:.2f}") for name in ("average_break", "fouls_a_frame")
+        )
         asked = one["decisions"]
         took = [f"{1e3 * one['seconds'] / asked:.3g}", f"{one['shots'] / asked:.0f}"] if asked else ["", ""]
-        play.append([label, shown(p["points_a_frame"]), average, str(p["highest_break"]), fouls, *took])
+        play.append(
+            [label, format_figure(p["points_a_frame"]), average, str(p["highest_break"]), fouls, *took]
+        )
     more = ["frames won [%]"] if best_of > 1 else []
     wins = ["player", "Elo", f"{won} won [%]", *more, "draws"]
     does = ["points a frame", "average break", "highest", "fouls a frame"]
@@ -59,7 +65,7 @@ def sentences(content):
     notes = [
         f"Each pair plays {p['matches']:,} {plural}: two on each seed, each player breaking first in one.",
         "Options: " + ", ".join(f"{name}={value}" for name, value in game.items()) + ".",
-        f"Who breaks first wins {shown(figures['opener'], 100.0)} %. Frames that were stopped, half for each: {figures['stopped']:,}.",
+        f"Who breaks first wins {format_figure(figures['opener'], 100.0)} %. Frames that were stopped, half for each: {figures['stopped']:,}.",
         "What the figures mean: docs/agents/tournament.md. "
         f"Elo: {p['anchor']} at {p['anchor_elo']:.0f}; to each pair {PRIOR:g} drawn {unit} is added.",
     ]

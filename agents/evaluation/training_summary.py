@@ -8,7 +8,7 @@ from agents._lib.tables import text_table
 from snooker_env import player
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.benchmark.tasks import tables_of
-from snooker_env.players.search import BUDGET, SearchPlayer
+from snooker_env.players.search_player import BUDGET, SearchPlayer
 
 from ..learning.hyperparameters import SHOT_OPTIONS
 from ..players.trained import player_of_model

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from snooker_env import SnookerVectorEnv
-from snooker_env.benchmark import simulated
+from snooker_env.benchmark import count_shots
 from snooker_env.planning import Positions, Search, VisitJudge, spread_of
 from snooker_env.planning.learned.policy_proposals import PolicyProposals
 from snooker_env.planning.learned.value_features import SIZE, value_features
@@ -155,7 +155,7 @@ class ExpertIteration(Part):
         """Choose a stroke for each position, keep what its samples lead to, and go on with one of them."""
         n, rng, at, every = self._n, self._rng, self._at, np.arange(self._n)
         seeds, explored = rng.integers(2**32, size=n), rng.random(n) < EXPLORED
-        before = simulated()
+        before = count_shots()
         tried = [one.strokes.values[:AMONG] for one in self._search.rank(at, seeds)]
         pick = rng.integers(min(map(len, tried)), size=n)
         errors = rng.standard_normal((n * (FRESH + 1), 5))
@@ -163,7 +163,7 @@ class ExpertIteration(Part):
         strokes.append(np.array([one[k] for one, k in zip(tried, pick.tolist(), strict=True)]))
         rows = np.concatenate([np.repeat(every, FRESH), every])
         out = self._judge.planner.play_strokes(at, rows, np.concatenate(strokes), errors=errors)
-        self._shots += simulated() - before
+        self._shots += count_shots() - before
         goes_on = out.goes_on[: n * FRESH]
         after = np.zeros((n * FRESH, SIZE), np.float16)
         after[goes_on] = self._features(out.afterstates[np.flatnonzero(goes_on)])

@@ -20,7 +20,7 @@ from snooker_env.players import player as snooker_player
 from snooker_env.players.tactician import Tactician
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.carry_out import carry_out
-from snooker_env.tasks.frame import Asked, Frames, Seat
+from snooker_env.tasks.frames import Asked, Frames, Seat
 from snooker_env.tasks.threads import Threads
 
 FRAME = {"cue": "real", "miss": "clear_path", "max_strokes": 200}
@@ -106,7 +106,7 @@ def play_frames(rules, seed, many, act, other, threads):
         tables.seed(k, np.random.default_rng(seed + k))
     tables.deal(np.arange(many), drawn=True, breakers=np.arange(many) % 2)
     out = tables.output()
-    while len(going := np.flatnonzero(~tables.ended())):
+    while len(going := np.flatnonzero(~tables.are_over())):
         theirs = (tables.game[going, columns.STRIKER] == 1) & (other is not None)
         keys, mine = decision_seeds(seed, going, step), going[~theirs]
         made = [(mine, act(tables, mine, _seen_by_strikers(tables, mine), keys[~theirs]))]
@@ -125,9 +125,9 @@ def play_frames(rules, seed, many, act, other, threads):
 def _judged(player, at, keys, rng):
     """What it does in n positions, in which of them it strikes (m,), and of these what is seen and what they are worth
     by search."""
-    decided, worth = player.decided(at, keys), player.judge.worth
+    decided, worth = player.decide_frames(at, keys), player.judge.worth
     here = np.flatnonzero([one is not None for one in decided.tried])
-    seen = [worth.seen(each[here]) for each in (decided.start, at)]
+    seen = [worth.features_of(each[here]) for each in (decided.start, at)]
     again, errors = np.repeat(here, FRESH), rng.standard_normal((FRESH * len(here), 5))
     strokes = np.repeat(decided.strokes.values[here], FRESH, 0)
     judged = player.judge.gains(decided.start, again, strokes, errors)[:, 1]
@@ -168,7 +168,7 @@ def _with(rows, beside):
 
 def _seen_by_strikers(tables, which):
     """The positions of the tables ``which`` as their strikers see them."""
-    saved = columns.Layouts(tables.saved.positions[which], tables.saved.on_table[which])
+    saved = columns.Layouts(tables.layouts_before.positions[which], tables.layouts_before.on_table[which])
     return Positions(tables.positions[which], tables.on_table[which], strikers_own(tables.game[which]), saved)
 
 

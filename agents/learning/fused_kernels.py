@@ -8,7 +8,7 @@ from math import exp, log
 import numpy as np
 
 from snooker_env.kernels import entry, kernel
-from snooker_env.planning.learned.table_kernels import mirrored
+from snooker_env.planning.learned.table_kernels import mirror_choice
 from snooker_env.tasks import POTS
 
 _LEAST = 1e-30  # smaller ones are too near to what float32 can hold
@@ -80,7 +80,7 @@ def draw(likely, uniform, sides, choices):
                 left -= row[c]
                 if left < 0.0:
                     break
-        choices[j] = pick if sides[j] > 0.0 else mirrored(pick)
+        choices[j] = pick if sides[j] > 0.0 else mirror_choice(pick)
 
 
 @kernel
@@ -97,7 +97,7 @@ def scale_of(scores, likely, pick):
 def log_probabilities(scores, likely, sides, choices, out):
     """Logarithm of the probability of each row's choice, from scores and probabilities (n, k)."""
     for j in range(scores.shape[0]):
-        pick = choices[j] if sides[j] > 0.0 else mirrored(choices[j])
+        pick = choices[j] if sides[j] > 0.0 else mirror_choice(choices[j])
         out[j] = scores[j, pick] - scale_of(scores[j], likely[j], pick)
 
 
@@ -116,7 +116,7 @@ def ppo_gradient(rows, passed, played, loss, batch, gradients, sums):
     for j in range(rows.shape[0]):
         at = rows[j]
         action, own, likelihood = actions[at], scores[j], likely[j]
-        pick = action if sides[j] > 0.0 else mirrored(action)
+        pick = action if sides[j] > 0.0 else mirror_choice(action)
         scale = scale_of(own, likelihood, pick)
         change = own[pick] - scale - before[at]
         ratio, advantage = exp(change), advantages[at]

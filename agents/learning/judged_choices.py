@@ -11,7 +11,7 @@ import numpy as np
 import torch
 
 from snooker_env import Options
-from snooker_env.benchmark import simulated
+from snooker_env.benchmark import count_shots
 from snooker_env.planning import Planner, action_masks
 from snooker_env.planning.learned.pot_view import with_pots
 
@@ -59,11 +59,11 @@ class JudgedChoices:
 
     def _gains(self, at, value, rows, picks, keys):
         """Points of choices (k,) and the value of what they leave, each simulated once."""
-        before = simulated()
+        before = count_shots()
         played = self._planner.play(at, rows, picks, keys)
         gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
         gains[on] += value(played.afterstates[on])
-        self.shots += simulated() - before
+        self.shots += count_shots() - before
         return gains
 
     def _batch(self, choices):

@@ -19,15 +19,15 @@ from torch import nn
 import snooker_env as sn
 from agents._lib.files import packed_arrays, write_atomic
 from agents._lib.noise_option import noise_option
-from snooker_env.benchmark import simulated
+from snooker_env.benchmark import count_shots
 from snooker_env.checks import choice, integer, refuse
 from snooker_env.planning import Planner, Positions, processors
 from snooker_env.planning.learned import frame_strokes
 from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SAMPLES, SIZE, StrokeValue
 from snooker_env.players import VISITS, Strokes
-from snooker_env.players.player import placed
-from snooker_env.players.search import SearchPlayer
-from snooker_env.players.stroke_value import StrokeValuePlayer
+from snooker_env.players.player import place_cue_balls
+from snooker_env.players.search_player import SearchPlayer
+from snooker_env.players.stroke_value_player import StrokeValuePlayer
 from snooker_env.players.weights import STROKES, StrokeLayers, layers_of
 
 from .hyperparameters import changes_of
@@ -114,7 +114,7 @@ def try_visits(layers, noise, cue, seeds, rng):
     for _ in range(STROKES_EACH):
         at, keys = Positions.of(env), rng.integers(2**32, size=n)
         live = np.flatnonzero(~at.over)
-        visits, places = placed(at[live], keys[live])
+        visits, places = place_cue_balls(at[live], keys[live])
         found = values.candidates(visits, LOOKS, keys[live])
         scores, every = values.scores(found.seen), np.arange(len(found.rows))[:, None]
         order = np.argsort(-scores, axis=1, kind="stable")
@@ -205,9 +205,9 @@ class StrokeRounds(Rounds):
         shares = shares_of_parts(rng, PARTS)
         split = np.array_split(np.arange(first, first + self.tables), PARTS)
         for part, (share, seeds) in enumerate(zip(shares, split, strict=True)):
-            scale, before = SCALES[0] * (SCALES[1] / SCALES[0]) ** share, simulated()
+            scale, before = SCALES[0] * (SCALES[1] / SCALES[0]) ** share, count_shots()
             played = self.tried_on(noise_option(f"professional*{scale}"), part, seeds, rng)
-            shots = np.array([simulated() - before])
+            shots = np.array([count_shots() - before])
             yield dict(zip(("seen", "worth", "table", "shots"), (*played, shots), strict=True))
 
     def seems(self, seen):

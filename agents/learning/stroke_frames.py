@@ -8,7 +8,7 @@ from snooker_env import Options
 from snooker_env.planning.learned.frame_strokes import FrameStrokes
 from snooker_env.players import FRAMES
 from snooker_env.players import player as snooker_player
-from snooker_env.players.stroke_value import StrokeValuePlayer
+from snooker_env.players.stroke_value_player import StrokeValuePlayer
 from snooker_env.players.tactician import Tactician
 
 from .frame_self_play import play_frames
@@ -31,7 +31,7 @@ def try_frames(learned, noise, cue, seeds, other, tried, rng, threads):
     rows = []
 
     def act(tables, mine, at, keys):
-        strokes, compared, start = player.decided(at, keys)
+        strokes, compared, start = player.decide_frames(at, keys)
         here = [k for k, one in enumerate(compared) if one is not None and len(one.strokes) >= best + others]
         if here:
             looked = search.look(start[here], keys[here])

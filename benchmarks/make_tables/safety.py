@@ -12,7 +12,7 @@ from snooker_env import MatchVectorEnv
 from snooker_env.game.balls import REDS_MASK, BallOn
 from snooker_env.game.snookered import is_snookered
 from snooker_env.planning import Positions, prospects_of, spread_of
-from snooker_env.players import decided, decision_seeds, player
+from snooker_env.players import ask_player, decision_seeds, player
 
 PLAYER = "tactician_30"
 """On both sides."""
@@ -45,7 +45,7 @@ def play_frames(first, many):
         at, rows = Positions.of(tables), np.flatnonzero(going)
         for k in rows[calls_for_safety(at[rows], spread, rules.rails)].tolist():
             found[k].append(np.where(at.on_table[k][:, None], at.positions[k], np.nan))
-        actions = decided(who, tables, going, decision_seeds(first, seeds, number))
+        actions = ask_player(who, tables, going, decision_seeds(first, seeds, number))
         _, _, terminated, truncated, _ = tables.step(actions)
         # with fewer reds no position to come is kept
         going &= ~(terminated | truncated) & (tables.tables.on_table[:, 1:16].sum(axis=1) >= REDS)

@@ -24,7 +24,7 @@ _BALL_BALL, _CUSHION = int(EventKind.BALL_BALL), int(EventKind.CUSHION)
 def _strikes(strikes, phys, ratio, velocities, spins):
     for k in range(len(strikes)):
         s = strikes[k]
-        v, w = cue.struck(s[0], s[1], s[2], s[3], s[4], phys[P_R], phys[P_MU_S], ratio, 0.0)
+        v, w = cue.strike_ball(s[0], s[1], s[2], s[3], s[4], phys[P_R], phys[P_MU_S], ratio, 0.0)
         velocities[k, 0, 0], velocities[k, 0, 1] = v[0], v[1]
         spins[k, 0, 0], spins[k, 0, 1], spins[k, 0, 2] = w
 

@@ -200,7 +200,7 @@ class _Files(IndexDataCacheFile):
             raise
 
 
-def may_be_kept(py_func: Any) -> bool:
+def lies_in_a_file(py_func: Any) -> bool:
     """Whether a function is in a file, whose folder's hash changes with it; code of a prompt is in none."""
     return Path(py_func.__code__.co_filename).is_file()
 

@@ -11,7 +11,7 @@ DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)  # of a
 
 
 @contextmanager
-def until_closed() -> Iterator[None]:
+def stop_with_reader() -> Iterator[None]:
     """Around all that a command prints, ``--help`` too: SystemExit(1) once the reader has left, as in ``... | head``."""
     try:
         try:
@@ -36,7 +36,7 @@ def exit_code(name: str, command: Callable[[], int], missing: Callable[[ImportEr
     cannot be read or written. Whatever it is, the command ``name`` says it in one line on stderr."""
     code = 1
     try:
-        with until_closed():
+        with stop_with_reader():
             return command()
     except KeyboardInterrupt:
         why, code = "interrupted", INTERRUPTED

@@ -13,7 +13,7 @@ from typing import Any
 import numba
 from numba.core.registry import CPUDispatcher
 
-from .cache import CACHE_FOLDER, Kept, may_be_kept
+from .cache import CACHE_FOLDER, Kept, lies_in_a_file
 from .inner import ENTRY_OPTIONS, OPTIONS, Inner
 from .notices import Cost
 
@@ -87,7 +87,7 @@ def kernel(
     return made
 
 
-def inlined(function: Callable[..., Any]) -> Any:
+def inline(function: Callable[..., Any]) -> Any:
     """Compile an inner kernel into its one caller, a large ``kernel``, so as to optimise its code once."""
     return _inner(function, _INLINED)
 
@@ -137,7 +137,7 @@ def entry(
     if made is not function:  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Entry
         made.cost = Cost(what, seconds, uses)
-        if CACHE_FOLDER is not None and may_be_kept(function):
+        if CACHE_FOLDER is not None and lies_in_a_file(function):
             made._cache = Kept(function)
         ENTRIES.append(made)
     return made

@@ -10,8 +10,8 @@ from .destinations import Destinations, destinations
 from .errors import PlayerErrors
 from .recorded import Recorded, read_strokes, strokes_of, write_strokes
 from .room import Room
+from .stroke_words import POCKET_WORDS
 from .suggestions import Advice, Suggestion
-from .words import POCKET_WORDS
 
 __all__ = [
     "POCKET_WORDS",

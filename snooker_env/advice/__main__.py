@@ -5,7 +5,7 @@ import json
 import sys
 from collections.abc import Sequence
 
-from .._lib.command import until_closed
+from .._lib.command import stop_with_reader
 from ..physics.parameters import PRESETS as PHYSICS
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
@@ -31,7 +31,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     args = parser.parse_args(argv)
     told = {name: value for name in PLAYED_ON if (value := getattr(args, name)) is not None}
     try:
-        with until_closed():
+        with stop_with_reader():
             strokes = read_strokes(args.file, player=args.player)
             found = coach(strokes, target=args.target, options=told, seed=args.seed)
             print(json.dumps(found.to_dict(), indent=1) if args.json else found)

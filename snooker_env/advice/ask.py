@@ -13,8 +13,8 @@ from ..tasks.noise import NoiseLike
 from .intentions import FOULS, Intention, drop_alike, intend
 from .outcomes import Trials, judge_strokes
 from .practice import Practice, one_position, practice_of
+from .stroke_words import against_words
 from .suggestions import Advice, Suggestion
-from .words import against_words
 
 AGENT, OF_FRAMES = "planner_500", "tactician"  # who is asked if nobody is named: in a visit, and in a frame
 INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices

@@ -14,7 +14,17 @@ from .._lib.types import Floats
 from ..planning import clear_paths, pots
 from ..tasks.noise import LEVELS, NoiseLike
 from .costs import PARTS, count_costs
-from .errors import BASE, SCALES, Estimate, Fit, PlayerErrors, Pots, fit_errors, list_chances, list_strokes
+from .errors import (
+    BASE,
+    SCALES,
+    CalledPots,
+    Estimate,
+    Fit,
+    PlayerErrors,
+    fit_errors,
+    list_chances,
+    list_strokes,
+)
 from .practice import Practice, practice_of
 from .recorded import Recorded, agree_options
 
@@ -213,7 +223,7 @@ def count_visits(strokes: Sequence[Recorded]) -> int:
     return sum(not one.goes_on for one in strokes) + strokes[-1].goes_on
 
 
-def _expect_of_target(pots: Pots, bench: Practice) -> Estimate | None:
+def _expect_of_target(pots: CalledPots, bench: Practice) -> Estimate | None:
     """How many called pots a player of the target level makes, whose errors are known; the normal interval."""
     physics, noise, base = bench.options.rules.physics, bench.noise, LEVELS[BASE]
     times = [

@@ -6,7 +6,7 @@ from .._lib.types import Floats, Ints
 from ..planning import Positions, Proposals, Search, pots
 from ..planning.proposals import Asking, strokes_at
 from ..planning.sobol import sobol_points
-from ..planning.worth import lead_of, passed
+from ..planning.worth import lead_of, pass_after_miss
 from .practice import JUDGING, Practice, join, keys, one_position
 from .recorded import Recorded
 
@@ -83,5 +83,5 @@ def play_best_pot(
         return None
     worth = judge.value_of(np.repeat(lead_of(at), many), stops.afterstates)[:, 1]
     # where it is never missed: a miss would leave the balls about as they lie
-    left = float(worth[~went].mean()) if not went.all() else -float(judge.worth(passed(at))[0])
+    left = float(worth[~went].mean()) if not went.all() else -float(judge.worth(pass_after_miss(at))[0])
     return float(went.mean()), float(worth[went].mean()), left

@@ -111,7 +111,7 @@ class PlayerErrors:
         return asdict(self)
 
 
-class Pots(NamedTuple):
+class CalledPots(NamedTuple):
     """The strokes with a called pot: their rows, and the chances of the pots for each of ``SCALES`` at their own speeds."""
 
     rows: list[int]
@@ -125,7 +125,7 @@ class Fit(NamedTuple):
 
     errors: PlayerErrors
     direction: Floats | None  # the posterior of its error over ``GROWTHS`` and ``SCALES``
-    pots: Pots  # those that were called
+    pots: CalledPots  # those that were called
     strokes: list[Recorded]  # without the guessed pots that were likelier to be safeties
 
 
@@ -162,7 +162,7 @@ def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
     unit, n = base.direction_deg(practice.options.rules.physics, speed=at), int(known.sum()) + len(told)
     if n:
         sure = known & ~guessed
-        rest = Pots([], pots.chances[told], pots.made[told], pots.paces[told])
+        rest = CalledPots([], pots.chances[told], pots.made[told], pots.paces[told])
         log_l = weigh_errors(directions[sure], more[:, sure]) + mixed + weigh_outcomes(rest, at)
         weights = normalise(log_l + np.log(PRIOR)[:, None])
         direction, likeliest = estimate(weights.sum(axis=0), unit, n), weights.sum(axis=1)
@@ -221,7 +221,7 @@ def weigh_guesses(e: Floats, widths: Floats, more: Floats) -> tuple[Floats, Any]
     return np.logaddexp.reduce(log_l, axis=1), meant
 
 
-def weigh_outcomes(pots: Pots, at: float) -> Floats:
+def weigh_outcomes(pots: CalledPots, at: float) -> Floats:
     """Log-likelihood (growths, scales) of pots made or missed; the scales are of errors at the cue speed ``at``."""
     out = []
     for chances in list_chances(pots, at):
@@ -230,7 +230,7 @@ def weigh_outcomes(pots: Pots, at: float) -> Floats:
     return np.array(out)
 
 
-def list_chances(pots: Pots, at: float) -> Iterator[Floats]:
+def list_chances(pots: CalledPots, at: float) -> Iterator[Floats]:
     """The chances (n, scales) of pots for each of ``GROWTHS``; the scales are of errors at the cue speed ``at``."""
     own = np.hypot(1.0, LEVELS[BASE].growth * pots.paces)
     for row in grow_with_speed(pots.paces, at):
@@ -387,11 +387,11 @@ def solve_strokes(strokes: list[Recorded], practice: Practice) -> Floats:
     return out
 
 
-def simulate_pots(strokes: list[Recorded], practice: Practice, seed: int) -> Pots:
+def simulate_pots(strokes: list[Recorded], practice: Practice, seed: int) -> CalledPots:
     """The called pots whose outcome is known, with their chances for each of ``SCALES``."""
     rows = [k for k, one in enumerate(strokes) if one.ball is not None and one.potted is not None]
     if not rows:
-        return Pots([], np.empty((0, len(SCALES))), np.empty(0, np.bool_), np.empty(0))
+        return CalledPots([], np.empty((0, len(SCALES))), np.empty(0, np.bool_), np.empty(0))
     called = [strokes[k] for k in rows]
     meant, many = solve_strokes(called, practice), len(RADII) * WAYS
     # each stroke has errors of its own, so that equal strokes tell more together
@@ -404,7 +404,7 @@ def simulate_pots(strokes: list[Recorded], practice: Practice, seed: int) -> Pot
     balls, pockets = np.array([(one.ball, one.pocket) for one in called]).T
     went = (stops.potted[np.arange(len(each)), balls[each]] == pockets[each]) & (stops.penalty == 0)
     shares = went.reshape(len(called), len(RADII), WAYS).mean(axis=2)
-    return Pots(rows, shares @ weigh_radii(), np.array([one.potted for one in called]), meant[:, 0])
+    return CalledPots(rows, shares @ weigh_radii(), np.array([one.potted for one in called]), meant[:, 0])
 
 
 def weigh_radii() -> Floats:

@@ -10,7 +10,7 @@ from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..planning import Outcomes, Positions, clear_paths, obstructions
 from ..players.cue_stroke import CueStroke
-from . import words as say
+from . import stroke_words as say
 from .practice import Practice, arrive, find_arrivals, join, start_from
 from .room import Room, room_for
 

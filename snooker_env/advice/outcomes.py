@@ -11,7 +11,7 @@ from .._lib.types import Bools, Floats, Ints
 from ..game.balls import CUE
 from ..planning import Outcomes, Positions, clear_paths
 from ..planning.worth import lead_of
-from . import words as say
+from . import stroke_words as say
 from .intentions import Intention
 from .practice import GOING_ON, JUDGING, Practice, arrive, find_arrivals, join, keys
 from .suggestions import Suggestion

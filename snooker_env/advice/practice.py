@@ -13,10 +13,10 @@ from ..game import frame_columns as columns
 from ..game.in_hand import place_cue
 from ..planning import FrameJudge, Outcomes, Planner, Positions, Search, VisitJudge
 from ..planning.positions import bare
-from ..planning.trials import turned
-from ..planning.worth import chosen
+from ..planning.trials import turn_to_striker
+from ..planning.worth import apply_decision
 from ..players.cue_stroke import CueStroke
-from ..players.player import placed
+from ..players.player import place_cue_balls
 from ..players.seen import begun
 from ..players.tactician import Tactician
 from ..tasks.noise import Noise, errors_of
@@ -108,7 +108,7 @@ def one_position(source: Any, scores: Any = None) -> Positions:
     if scores is not None:
         at = _with_scores(at, scores)
     if at.choice[0]:
-        at = chosen(at, columns.PLAY)
+        at = apply_decision(at, columns.PLAY)
     if at.of_frames:
         at.game[:, columns.PHASE] = columns.STROKE  # who has won the lot begins
     if at.anywhere[0]:  # the places that strokes know are those of the D
@@ -159,7 +159,9 @@ def find_arrivals(after: Positions) -> Bools:
 
 def arrive(after: Positions) -> Positions:
     """What the opponent meets: as it plays, after a foul as the balls lie, with a cue ball in hand where it is good."""
-    return placed(chosen(turned(after), columns.PLAY), np.zeros(len(after), np.int64))[0]
+    return place_cue_balls(
+        apply_decision(turn_to_striker(after), columns.PLAY), np.zeros(len(after), np.int64)
+    )[0]
 
 
 def keys(seed: int, purpose: int, n: int, *more: int) -> Any:

@@ -7,7 +7,7 @@ from typing import Any, overload
 from .._lib.types import Place
 from ..planning import Position
 from ..players.cue_stroke import CueStroke
-from ..replays.words import errors_words
+from ..replays.referee_words import errors_words
 from .room import Room
 
 

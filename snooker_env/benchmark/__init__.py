@@ -1,7 +1,7 @@
 """The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, how agents are judged."""
 
 from ..players.program import AgentError, ProgramPlayer
-from ..simulation.count import simulated
+from ..simulation.count import count_shots
 from .agents import Agent
 from .checking import faults
 from .leaderboard import page
@@ -24,6 +24,7 @@ __all__ = [
     "PlayedStrokes",
     "ProgramPlayer",
     "Task",
+    "count_shots",
     "faults",
     "interval",
     "iqm",
@@ -31,7 +32,6 @@ __all__ = [
     "page",
     "play_visits",
     "read_result",
-    "simulated",
     "summary",
     "write_result",
 ]

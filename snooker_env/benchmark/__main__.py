@@ -13,13 +13,13 @@ import numpy as np
 from .._lib.check import integer, refuse
 from .._lib.command import exit_code
 from .._lib.files import write_atomic
-from .._lib.tables import shown, text_table
+from .._lib.text_tables import format_figure, text_table
 from ..players.model_options import add_model_options, options_of_words
 from ..players.program import AgentError
 from ..progress import Progress
-from .agents import Agent, is_known, seat
+from .agents import Agent, is_player_name, seat
 from .checking import afresh, faults, faults_of_replay
-from .degenerate import ABOVE, results, winners
+from .degenerate_check import ABOVE, results, winners
 from .leaderboard import board, lines, page
 from .playing import COLUMNS
 from .results import missing, read_result
@@ -115,7 +115,7 @@ def _tasks(args: argparse.Namespace) -> int:
     """List the tasks."""
     head = ["task", "what", "judged on", "noise", "episodes"]
     rows = [
-        [task.id, task.title, task.judged_layout, task.frozen["noise"], f"{task.episodes:,}"]
+        [task.id, task.title, task.judged_layout, task.frozen_options["noise"], f"{task.episodes:,}"]
         for task in TASKS.values()
     ]
     print("\n".join(text_table(head, rows, 4)))
@@ -165,7 +165,7 @@ def _text(args: argparse.Namespace) -> int:
     with _ticking("text", "visits") as tick:
         result = judge_text(agent, visits=args.visits, out=out, resume=args.resume, tick=tick)
     figures = result["figures"]
-    said = f"{shown(figures['points'])} points a visit, {len(result['rows'])} visits"
+    said = f"{format_figure(figures['points'])} points a visit, {len(result['rows'])} visits"
     if agent.program:
         said += f", {100 * figures['forfeited']:.0f} % forfeited, {figures['refused']:.2f} answers refused a visit"
         said += f", {figures['read']:,.0f} characters read and {figures['written']:,.0f} written"
@@ -193,7 +193,7 @@ def _report(result: dict[str, Any], task: Task, file: Path) -> int:
     if why is not None:
         print(f"error: {why}", file=sys.stderr)
     if figures is not None:
-        score = shown(figures["score"], 1.0 if task.counts else 100.0)
+        score = format_figure(figures["score"], 1.0 if task.counts else 100.0)
         unit = task.measure if task.counts else f"% ({task.measure})"
         where = f"{len(result['rows']):,} episodes, class {agent['class']}, budget {agent['budget']}"
         print(f"{task.id}  {agent['label']}: {score} {unit}, {where}")
@@ -212,7 +212,7 @@ def _report(result: dict[str, Any], task: Task, file: Path) -> int:
 def suspicious(result: dict[str, Any], task: Task) -> bool:
     """Whether an agent whose actions could be read otherwise scores nothing where any other scores."""
     scores = [row[COLUMNS.index("score")] for row in result["rows"]]
-    models = not all(map(is_known, result["agent"]["sources"]))
+    models = not all(map(is_player_name, result["agent"]["sources"]))
     return (
         models
         and task.score in ("points", "legal")

@@ -11,7 +11,7 @@ from .._lib.check import integer, number, refuse
 from ..players import Player
 from ..players import player as player_named
 from ..players.degenerate import is_degenerate
-from ..players.model_options import LEFT_OUT, checked
+from ..players.model_options import LEFT_OUT, check_model_options
 from ..players.program import ProgramPlayer
 from ..players.resolver import PROGRAM, is_name
 from ..players.seen import SeenPlayer
@@ -82,15 +82,15 @@ class Agent:
         if not LABEL.fullmatch(label):
             raise refuse("label", label, "must be 1 to 20 letters, digits or . + - _: give --label")
         made = cls(label=label, sources=tuple(sources), training_shots=training_shots, **more)
-        if is_reserved(label, made.texts):
+        if claims_player_name(label, made.texts):
             raise refuse("label", label, "must not be the name of another player: give --label")
         for name, shots in (("training_shots", training_shots), ("simulated_shots", made.shots_declared)):
             if shots is not None:
                 integer(name, shots, 0, 2**53)
         number("timeout", made.timeout, 0.0, 1e6, open_low=True)
-        if checked(made.options) and any(is_name(text) for text in made.texts):
+        if check_model_options(made.options) and any(is_name(text) for text in made.texts):
             raise refuse("options", made.options, LEFT_OUT)
-        if training_shots is None and made.known:
+        if training_shots is None and made.names_players:
             shots = getattr(player_named(sources[0]), "training_shots", None)
             object.__setattr__(made, "training_shots", shots)
         return made
@@ -112,9 +112,9 @@ class Agent:
         return 1 if self.program else BATCH
 
     @property
-    def known(self) -> bool:
+    def names_players(self) -> bool:
         """Whether every source is a player of the package, or of one that is installed, by name."""
-        return all(map(is_known, self.texts))
+        return all(map(is_player_name, self.texts))
 
     def player(self, task: Task, run: int = 0) -> Player:
         """The player of training seed ``run``, not yet bound; its code runs. ValueError if it cannot play."""
@@ -124,7 +124,7 @@ class Agent:
         made = player_named(source, trust=self.trust, options=self.options)
         if isinstance(made, SeenPlayer) and made.frames and not task.frame:
             raise refuse("player", source, "must see visits to play them: it sees frames")
-        made.at(task.judged())
+        made.at(task.judged_options())
         return made
 
 
@@ -149,17 +149,17 @@ def text_of(source: Source) -> str:
     return f"{type(source).__module__}:{type(source).__qualname__}"
 
 
-def is_known(text: str) -> bool:
+def is_player_name(text: str) -> bool:
     """Whether that is a player of the package, or of one that is installed, with all that it has learned."""
     name, at, model = text.partition("@")
     named = ":" not in name and is_name(name) and (not at or model in levels())
     return named or is_degenerate(text)
 
 
-def is_reserved(label: str, sources: Sequence[str]) -> bool:
+def claims_player_name(label: str, sources: Sequence[str]) -> bool:
     """Whether the label is, or looks like, the name of a known player that these sources are not."""
     alike = re.sub("[.+_-]+", "_", label.lower()).strip("_")  # what a reader would take for it
-    return (is_known(label) or is_known(alike)) and list(sources) != [label]
+    return (is_player_name(label) or is_player_name(alike)) and list(sources) != [label]
 
 
 def _label(source: Source) -> str:
@@ -168,6 +168,6 @@ def _label(source: Source) -> str:
     if text.startswith(PROGRAM):
         path = Path((text.removeprefix(PROGRAM).split() or ["program"])[-1])
     else:
-        path = Path(text if is_known(text) else text.rpartition(":")[2])
+        path = Path(text if is_player_name(text) else text.rpartition(":")[2])
     stem = path.parent.stem if path.name == "model.zip" and path.parent.name else path.stem
     return re.sub(r"[^\w.+-]", "_", stem)[:20]

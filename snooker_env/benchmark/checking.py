@@ -11,7 +11,7 @@ from ..players import player as player_named
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
 from . import playing, schema
-from .agents import Agent, is_known, is_reserved, seat
+from .agents import Agent, claims_player_name, is_player_name, seat
 from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic
 from .results import complete, strokes_of
@@ -89,7 +89,7 @@ def _of_sources(agent: dict[str, Any]) -> list[str]:
         return ["agent.sources: must be texts, one for each training seed"]
     if len(set(map(_player_of, sources))) < len(sources):
         return ["agent.sources: must be different: the same one twice makes nothing surer"]
-    if is_reserved(agent["label"], sources):
+    if claims_player_name(agent["label"], sources):
         must = "must not be the name of another player than agent.sources"
         return [f"agent.label = {agent['label']!r}: {must}"]
     return []
@@ -97,7 +97,7 @@ def _of_sources(agent: dict[str, Any]) -> list[str]:
 
 def _player_of(source: str) -> tuple[str, int | None]:
     """A source, but of a known player without its budget, and that: search, search_120 and search_0120 are one."""
-    budget = getattr(player_named(source), "budget", None) if is_known(source) else None
+    budget = getattr(player_named(source), "budget", None) if is_player_name(source) else None
     return (source if budget is None else _BUDGET.sub("", source)), budget
 
 
@@ -183,7 +183,7 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
     They play whole episodes again, decisions after fouls included, on tables in an order that nobody knows beforehand: all
     of them, or as many as ``WORK`` allows."""
     agent, rows, rng, wrong = result["agent"], result["rows"], np.random.default_rng(), list[str]()
-    known = [(run, source) for run, source in enumerate(agent["sources"]) if is_known(source)]
+    known = [(run, source) for run, source in enumerate(agent["sources"]) if is_player_name(source)]
     asked = {run: rng.permutation([k for k, row in enumerate(rows) if row[0] == run]) for run, _ in known}
     rates, simulated, left = list[float](), 0, 0
     for run, source in known:

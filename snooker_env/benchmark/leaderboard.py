@@ -5,7 +5,7 @@ from html import escape
 from textwrap import wrap
 from typing import Any
 
-from .._lib.tables import markdown_table, shown, text_table
+from .._lib.text_tables import format_figure, markdown_table, text_table
 from .tasks import TASKS, Task
 
 WIDTH = 100
@@ -65,7 +65,7 @@ def _row(result: dict[str, Any], task: Task) -> list[str]:
     return [
         f"{CLASSES[agent['class']]}, {TRAINED[agent['budget']]}",
         agent["label"] + ("" if result["protocol"]["official"] else " *"),
-        shown(figures["score"], 1.0 if task.counts else 100.0),
+        format_figure(figures["score"], 1.0 if task.counts else 100.0),
         "" if middle is None else f"{middle['value']:.1f}",
         str(len(agent["sources"])),
         "?" if shots is None else f"{shots:,.0f}{' d' if agent['declared'] else ''}",

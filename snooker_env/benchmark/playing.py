@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from .._lib.types import Bools, Floats, Ints
 from ..envs.vector import SnookerVectorEnv
-from ..players import FRAMES, VISITS, Player, decided, decision_seeds
+from ..players import FRAMES, VISITS, Player, ask_player, decision_seeds
 from ..players import player as player_named
-from ..simulation.count import simulated
+from ..simulation.count import count_shots
 from .tasks import Task
 
 BATCH = 100  # episodes that are played side by side
@@ -53,11 +53,11 @@ class Decider:
 
     def __call__(self, asked: Bools, number: int) -> NDArray[np.float32]:
         """The actions on all tables: the player's on those ``asked`` for their stroke ``number``, else 0."""
-        began, before = time.perf_counter(), simulated()
+        began, before = time.perf_counter(), count_shots()
         seeds = decision_seeds(self._seed, self._seeds, number)
-        actions = decided(self.player, self._tables, asked, seeds).astype("<f4")
+        actions = ask_player(self.player, self._tables, asked, seeds).astype("<f4")
         self.seconds += time.perf_counter() - began
-        self.simulated += simulated() - before
+        self.simulated += count_shots() - before
         self.decisions += int(asked.sum())
         self._log.append((np.flatnonzero(asked), actions[asked]))
         return actions
@@ -98,7 +98,7 @@ def rounds(tables: SnookerVectorEnv, seeds: list[int], decide: Decide) -> Iterat
     going, number = np.ones(tables.num_envs, np.bool_), 0
     while going.any():
         # a frame that the opponent has won already only needs its last step
-        asked = going & ~tables.tables.ended()
+        asked = going & ~tables.tables.are_over()
         actions = decide(asked, number) if asked.any() else np.zeros(tables.action_space.shape, np.float32)
         _, _, terminated, truncated, info = tables.step(actions)
         done = going & (terminated | truncated)
@@ -109,7 +109,7 @@ def rounds(tables: SnookerVectorEnv, seeds: list[int], decide: Decide) -> Iterat
 
 def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorEnv:
     """The judged environment of n tables that reads all of a stroke."""
-    return SnookerVectorEnv(n, task.judged(**(FRAMES if task.frame else VISITS)), threads=threads)
+    return SnookerVectorEnv(n, task.judged_options(**(FRAMES if task.frame else VISITS)), threads=threads)
 
 
 def play_episodes(

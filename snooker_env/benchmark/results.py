@@ -22,7 +22,7 @@ from .agents import Agent
 from .playing import COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic, commit, machine, software
 from .schema import DATE, NAME, PROTOCOL, VERSION, line
-from .statistics import RESAMPLES, Resamples, figure, iqm, unseen
+from .statistics import RESAMPLES, Resamples, bound_if_none, figure, iqm
 from .tasks import TASKS, Task
 
 BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}  # training budgets [simulated shots]
@@ -58,7 +58,7 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
         """A figure; of a share never or always seen in so many ``trials`` with the exact one-sided bound."""
         made = figure(value, drawn) | {"exact": False}
         if made["low"] is None and trials and value in (0.0, 1.0):
-            most = unseen(trials)
+            most = bound_if_none(trials)
             low, high = (0.0, most) if value == 0.0 else (1.0 - most, 1.0)
             made |= {"low": low, "high": high, "exact": True}
         return made
@@ -222,5 +222,5 @@ def unpack_strokes(field: dict[str, str], lengths: list[int], size: int) -> Kept
 def strokes_of(result: dict[str, Any]) -> Kept:
     """The strokes of each row of a result whose rows have their form; ValueError if they are damaged."""
     task = TASKS[result["task"]]
-    actions = task.judged(**(FRAMES if task.frame else VISITS)).rules.actions
+    actions = task.judged_options(**(FRAMES if task.frame else VISITS)).rules.actions
     return unpack_strokes(result["strokes"], [row[STROKES] for row in result["rows"]], actions.size)

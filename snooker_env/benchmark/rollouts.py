@@ -78,14 +78,14 @@ class PlayedStrokes:
     simulated: int = 0
 
     @property
-    def made(self) -> Bools:
+    def has_scored(self) -> Bools:
         """Whether each stroke scored: bool (n,)."""
         return self.points > 0
 
     @property
     def goes_on(self) -> Bools:
         """Whether each stroke scored and left an object ball: bool (n,)."""
-        return self.made & ~self.cleared
+        return self.has_scored & ~self.cleared
 
     @property
     def following(self) -> Ints:
@@ -143,12 +143,12 @@ def play_visits(
     tables = SnookerVectorEnv(visits, threads=threads, **{**usual, **options})
     decide, log, ball_on = Decider(player, tables, seeds, seed), [], np.empty(0, np.int64)
 
-    def noted(asked: Bools, number: int) -> Singles:
+    def note_ball_on(asked: Bools, number: int) -> Singles:
         nonlocal ball_on
         ball_on = Positions.of(tables).ball_on[asked]
         return decide(asked, number)
 
-    for number, (asked, info, done, _) in enumerate(rounds(tables, seeds, noted)):
+    for number, (asked, info, done, _) in enumerate(rounds(tables, seeds, note_ball_on)):
         here = np.flatnonzero(asked)
         left = Positions.of(tables)[here]
         cue = np.where(left.on_table[:, :1], left.positions[:, 0], np.nan)
@@ -164,10 +164,10 @@ def play_visits(
 def counts(s: PlayedStrokes) -> dict[str, Floats]:
     """Points, pots, fouls and more of each visit (visits,): both terms of every ratio of ``FIGURES``."""
     next_points = np.append(s.points, 0.0)[s.following]  # of the stroke after; 0 after the last
-    red, colour = s.made & (s.ball_on == BallOn.RED), s.made & (s.ball_on == BallOn.ANY_COLOUR)
+    red, colour = s.has_scored & (s.ball_on == BallOn.RED), s.has_scored & (s.ball_on == BallOn.ANY_COLOUR)
     entries = {
         "points": s.points,
-        "pots": s.made,
+        "pots": s.has_scored,
         "strokes": np.ones(len(s.points)),
         "fouls": s.foul,
         "goes_on": s.goes_on,
@@ -178,7 +178,7 @@ def counts(s: PlayedStrokes) -> dict[str, Floats]:
         "high": colour & (s.points >= HIGH),
         "reds": red,
         "high_after_red": red & (next_points >= HIGH),
-        "clearances": s.made & s.cleared,  # a foul clears no table
+        "clearances": s.has_scored & s.cleared,  # a foul clears no table
     }
     sums = {name: s.a_visit(values) for name, values in entries.items()}
     for name, least in (("centuries", CENTURY), ("maximums", MAXIMUM)):

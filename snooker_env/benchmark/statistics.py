@@ -5,7 +5,7 @@ replacement, the visits the same for every run: the bootstrap of crossed factors
 2007]. Of R > 1 runs R - 1 are drawn, since R would make their variance (R - 1) / R of what it is [Rao & Wu 1988].
 With one run only the visits are drawn: that says nothing about other seeds. Percentile intervals are too wide
 where luck within a visit matters most (5 runs: up to 1.5 times), and the 95 % interval covers 85 % where only 5
-seeds differ (``test_statistics`` measures both). How rare the never seen is, a bootstrap cannot say: ``unseen``.
+seeds differ (``test_statistics`` measures both). How rare the never seen is, a bootstrap cannot say: ``bound_if_none``.
 """
 
 from collections.abc import Sequence
@@ -104,7 +104,7 @@ def interval(samples: Floats | Sequence[float], level: float = 0.95) -> tuple[fl
     return (float(low), float(high)) if np.ptp(samples) > 0 else (float("nan"), float("nan"))
 
 
-def unseen(n: float, level: float = 0.95) -> float:
+def bound_if_none(n: float, level: float = 0.95) -> float:
     """Upper bound of a share of which ``n`` independent trials showed no case [Clopper & Pearson 1934]: exact, one-sided, about
     3 / n at 95 %. Runs on the same tables count once: it holds for other tables and errors, not for other training seeds."""
     return 1.0 - (1.0 - level) ** (1.0 / n)

@@ -68,16 +68,16 @@ class Task:
             if name not in _USUAL:
                 what = f"got an unexpected keyword argument {name!r}"
                 raise TypeError(f"{what}; the free options of {self.id} are {frees}")
-            why = f"{self.id} freezes it at {self.frozen[name]!r}; only Snooker-v0 lets you choose it"
+            why = f"{self.id} freezes it at {self.frozen_options[name]!r}; only Snooker-v0 lets you choose it"
             raise refuse(name, free[name], f"must be left out: {why}")
         return Options(**{**self.changes, **free})
 
-    def judged(self, **free: Any) -> Options:
+    def judged_options(self, **free: Any) -> Options:
         """The options that the task is judged with: ``options(**free)`` on the judged layout."""
         return self.options(**free).but(layout=self.judged_layout)
 
     @property
-    def frozen(self) -> dict[str, Any]:
+    def frozen_options(self) -> dict[str, Any]:
         """Every option that the task freezes, with its value."""
         return {name: self.changes.get(name, value) for name, value in _USUAL.items() if name not in FREE}
 

@@ -12,7 +12,7 @@ import numpy as np
 from .._lib.check import integer, refuse
 from .._lib.files import read_json, with_checksum, write_atomic
 from ..planning import Positions
-from ..players import Player, Strokes, decided, decision_seeds
+from ..players import Player, Strokes, ask_player, decision_seeds
 from ..players.program import AnswerError, ProgramPlayer
 from ..players.resolver import PROGRAM
 from .agents import Agent
@@ -81,7 +81,7 @@ def _visit(player: Player, table: int) -> dict[str, int]:
         for number in range(STROKES):
             seeds = decision_seeds(0, np.array([table]), number)
             try:
-                action = decided(bound, tables, going, seeds).astype("<f4")
+                action = ask_player(bound, tables, going, seeds).astype("<f4")
             except AnswerError:
                 counts["forfeited"] = 1
                 break

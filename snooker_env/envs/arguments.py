@@ -11,7 +11,7 @@ from .._lib.types import Bools, Floats, Ints
 from ..game.balls import mask_of_present, points_available
 from ..game.frame import MOST_BREAK
 from ..game.frame_columns import BALL_ON, POINTS
-from ..tasks.frame import Frames
+from ..tasks.frames import Frames
 from ..tasks.tables import Tables
 
 STARTS = ("state", "states", "position", "positions")  # reset options that say where an episode starts

@@ -1,4 +1,4 @@
-"""How do two agents play a frame or match? PettingZoo's AEC interface around one table of ``tasks.frame``."""
+"""How do two agents play a frame or match? PettingZoo's AEC interface around one table of ``tasks.frames``."""
 
 import copy
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,7 @@ from ..game.frame_columns import STRIKER, STROKES
 from ..simulation.shot import Shot
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
-from ..tasks.frame import Frames
+from ..tasks.frames import Frames
 from ..tasks.options import Options, observation_space_of
 from ..tasks.tables import Crew
 from .arguments import ONE, breakers_of, known_options, starts_of
@@ -146,7 +146,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
 
     def _mask(self, side, turn):
         available = self.tables.action_masks(side=side)[0]
-        return (available & (turn and not self.tables.ended()[0])).astype(np.int8)
+        return (available & (turn and not self.tables.are_over()[0])).astype(np.int8)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame; without a seed the random stream goes on.
@@ -179,7 +179,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         frame = self.frame
         over = frame.phase == "over"
         self.terminations = dict.fromkeys(PLAYERS, over)
-        self.truncations = dict.fromkeys(PLAYERS, bool(self.tables.stopped()[0]) and not over)
+        self.truncations = dict.fromkeys(PLAYERS, bool(self.tables.are_stopped_short()[0]) and not over)
         self.agent_selection = PLAYERS[frame.striker]
         self.infos = {name: self._info(striker, k) for k, name in enumerate(PLAYERS)}
 

@@ -12,7 +12,7 @@ from .._lib.check import refuse, refuse_what
 from .._lib.types import Bools, Floats, Ints, Observation
 from ..game.frame_columns import STRIKER
 from ..tasks.discrete_actions import Choices
-from ..tasks.frame import Frames
+from ..tasks.frames import Frames
 from ..tasks.options import Options, observation_space_of
 from ..tasks.tables import Tables
 from .seats import match_options, match_tables
@@ -114,7 +114,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         written.observations[:] = self.tables.observe(np.arange(self.num_envs), player)
         if len(written.masks):
             written.masks[:] = self.action_masks()
-            written.masks[(self.strikers != player) | self.tables.ended()] = False
+            written.masks[(self.strikers != player) | self.tables.are_over()] = False
         return super()._arrange(written)
 
     def action_masks(self) -> Bools:
@@ -129,5 +129,5 @@ class MatchVectorEnv(SnookerVectorEnv):
         theirs = np.flatnonzero(self.tables.game[:, STRIKER])
         written.observations[theirs] = self.tables.observe(theirs, 1)
         if len(written.masks):
-            written.masks[self.tables.ended()] = False
+            written.masks[self.tables.are_over()] = False
         return super()._arrange(written)

@@ -12,7 +12,7 @@ from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..simulation.shot import Shot
-from ..tasks.frame import Frames
+from ..tasks.frames import Frames
 from ..tasks.noise import Noise
 from ..tasks.options import Options
 from ..tasks.played import Played
@@ -102,7 +102,7 @@ class OneTable:
     @property
     def over(self) -> bool:
         """Whether there is no stroke to play: the episode has ended, was stopped, or has not begun."""
-        return bool(self.tables.ended()[0])
+        return bool(self.tables.are_over()[0])
 
     @property
     def frame(self) -> Frame | None:

@@ -130,7 +130,7 @@ class Pictures:
     def _films(self, history: list[Played], recent: int) -> Iterator[Any]:
         """The last strokes: each as a film, and the table after it."""
         from ..replays.film import film_stroke
-        from ..replays.words import bars
+        from ..replays.referee_words import bars
 
         shown = bars(history, self.players)
         for k in range(len(history) - recent, len(history)):
@@ -151,7 +151,7 @@ class Pictures:
 
     def _scene(self, tables, k, history):
         from ..render.scene import UNTURNED, Film, scene
-        from ..replays.words import bars, standing_bar
+        from ..replays.referee_words import bars, standing_bar
 
         over: dict[str, Any] = {"turn": UNTURNED}  # spots as in films
         last = None

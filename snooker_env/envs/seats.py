@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from .._lib.check import choice, refuse, refuse_what
-from ..tasks.frame import TABLES, Frames, Seat
+from ..tasks.frames import TABLES, Frames, Seat
 from ..tasks.options import NEVER, OBJECT, Options, options_of
 from ..tasks.tables import Tables
 

@@ -107,7 +107,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         computed: the balls lie as before, but for a cue ball that was placed."""
         a = self.options.rules.actions.check(action)
         tables = self.tables
-        if tables.finished()[0]:
+        if tables.are_told_over()[0]:
             what = f"the {self.options.task} {tables.unplayable}"
             raise gymnasium.error.ResetNeeded(f"{what}: call reset() before step()")
         self._pictures.require_display()
@@ -116,7 +116,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         try:
             tables.step(np.array([a]), np.zeros(1, np.bool_), out, self._crew())
         except BaseException:
-            tables.interrupted()
+            tables.interrupt()
             raise
         ended = bool(out.terminated[0]), bool(out.truncated[0])
         return self._arrange(out), float(out.rewards[0]), *ended, tables.info(out, 0)

@@ -10,7 +10,7 @@ from ..geometry import BALL_RADIUS
 from .balls import N_BALLS, balls_on_kernel, bits, check_table, mask_of
 from .referee import Situation, Stroke, Verdict, check, numbers_of, verdict_of
 from .ruling import AUTO, FLAG, OUTCOME, Before, Facts, ruling
-from .snookered import NO_JAWS, snookered
+from .snookered import NO_JAWS, find_snooker
 from .spotting import spot
 
 
@@ -53,7 +53,7 @@ def settle(positions, on_table, situation, facts, flags, jaws, radius):
     )
     if result.outcome == OUTCOME.PLAYING and matters:
         on = balls_on_kernel(result.ball_on, result.on_table)
-        hidden, effective = snookered(positions, on_table, on, jaws, radius)
+        hidden, effective = find_snooker(positions, on_table, on, jaws, radius)
         if hidden:
             flags |= FLAG.SNOOKERED
             if (effective >> result.nominated) & 1 and not result.fouls:

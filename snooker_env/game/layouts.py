@@ -147,14 +147,14 @@ def _deal(code, tables, stream, positions, on_table, pot):
 
 @entry(what="the dealing of tables", seconds=4)
 def deal_tables(which, code, tables, streams, positions, on_table):
-    """New layouts for the tables ``which``; ``code``, ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64."""
+    """New layouts for the tables ``which``; ``code``, ``tables``: of a ``LayoutPlan``; ``streams`` (n, 2) uint64."""
     pot = np.empty((1, POT_COLUMNS))
     for k in which:
         _deal(code, tables, streams[k], positions[k], on_table[k], pot)
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class LayoutPlan:
     """A layout by name, in the form that the kernels read. Pickling and copying make it again: no bank is copied."""
 
     name: str
@@ -189,8 +189,8 @@ LAYOUTS = (*STORED_IN, *_NAMES)
 "colours", "snookered"."""
 
 
-def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
-    """The ``Plan`` of a layout, see ``layout``, without the tables ``unfit`` of its bank; ValueError for others."""
+def plan_of(name: str, unfit: tuple[int, ...] = ()) -> LayoutPlan:
+    """The ``LayoutPlan`` of a layout, see ``layout``, without the tables ``unfit`` of its bank; ValueError for others."""
     name, asked = name if isinstance(name, str) else "", name
     head, _, which = name.partition(":")
     tables, code = NO_BANK, None
@@ -208,17 +208,17 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
         known = ", ".join(map(repr, LAYOUTS))
         allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard", "random:N" or "break_off:N" with N from 0 to {N_REDS}'
         raise refuse("layout", asked, allowed)
-    return Plan(name, np.array(code, np.float64), tables, unfit if len(tables) else ())
+    return LayoutPlan(name, np.array(code, np.float64), tables, unfit if len(tables) else ())
 
 
-def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
+def layout(plan: LayoutPlan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
     """Deal one table of a layout.
 
     Parameters
     ----------
     plan : str
         The layout: one of ``LAYOUTS``, ``"random:N"`` or ``"break_off:N"`` with N reds from 0 to 15, or ``"pots:D"``
-        with D one of ``POT_WINDOWS``; ValueError for others. Or a ``Plan`` of one, for repeated use.
+        with D one of ``POT_WINDOWS``; ValueError for others. Or a ``LayoutPlan`` of one, for repeated use.
     rng : numpy.random.Generator
         One number is drawn from it, the key of the layout's stream.
 
@@ -235,7 +235,7 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
     >>> int(on_table[1:16].sum())
     3
     """
-    plan = plan if isinstance(plan, Plan) else plan_of(plan)
+    plan = plan if isinstance(plan, LayoutPlan) else plan_of(plan)
     positions, on_table = np.empty((1, N_BALLS, 2)), np.empty((1, N_BALLS), np.bool_)
     deal_tables(np.zeros(1, np.int64), plan.code, plan.tables, stream_of(rng)[None], positions, on_table)
     return positions[0], on_table[0]

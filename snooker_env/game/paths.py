@@ -14,8 +14,8 @@ import numpy as np
 
 from .._lib.jit import entry, kernel
 from .balls import N_BALLS, REDS_MASK, REFEREE_TOUCH
+from .first_contact import meets
 from .in_hand import PLACES_IN_D, PLACES_ON_BED
-from .lines import meets
 from .snookered import SLACK, segment_distance
 from .spotting import touches
 

@@ -122,7 +122,7 @@ def snookered_in_hand(positions, on_table, on, jaws, radius):
 
 
 @kernel
-def snookered(positions, on_table, on, jaws, radius):
+def find_snooker(positions, on_table, on, jaws, radius):
     """Whether the next striker is snookered, and by which balls: (bool, int); in hand if not on_table[0]."""
     if on_table[0]:
         return snookered_from(positions, on_table, on, positions[0, 0], positions[0, 1], jaws, radius)
@@ -130,16 +130,16 @@ def snookered(positions, on_table, on, jaws, radius):
 
 
 @entry(what="the test for a snooker", seconds=1)
-def _snookered(positions, on_table, on, jaws, radius):
-    return snookered(positions, on_table, on, jaws, radius)
+def _find_snooker(positions, on_table, on, jaws, radius):
+    return find_snooker(positions, on_table, on, jaws, radius)
 
 
 def is_snookered(
     positions: Vectors, on_table: Flags, on: int, *, jaws: Vectors = NO_JAWS, radius: float = BALL_RADIUS
 ) -> tuple[bool, int]:
-    """``snookered`` for Python: (bool, mask of effective snookering balls); ValueError for wrong input."""
+    """``find_snooker`` for Python: (bool, mask of effective snookering balls); ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")
-    hidden_all, effective = _snookered(placed, present, on, array("jaws", jaws, (-1, 3)), float(radius))
+    hidden_all, effective = _find_snooker(placed, present, on, array("jaws", jaws, (-1, 3)), float(radius))
     return bool(hidden_all), int(effective)

@@ -5,11 +5,11 @@ du/dt = -(7/2) mu_s g u/|u|: the direction of u is constant and the path a parab
 T = 2 |u| / (7 mu_s g). Rolling decelerates by mu_r g, spin about the vertical, always, by ``spin_decel``.
 
 Nap. The fibres lean towards +y. Of the force on a rolling ball, resistance is the part odd in v/|v|; the
-lowest even part is a constant: dv/dt = -mu_r g v/|v| + nap y, as on a small slope. ``_bent`` is the closed
+lowest even part is a constant: dv/dt = -mu_r g v/|v| + nap y, as on a small slope. ``_bend`` is the closed
 form; the engine follows it in pieces of constant acceleration with exact ends. A sliding ball's friction is a
 thousand times as strong: the nap is neglected there.
 
-Drag. The resistance may grow with speed: dv/dt = -(mu_r g + drag v^2) along v. ``_dragged`` is the closed
+Drag. The resistance may grow with speed: dv/dt = -(mu_r g + drag v^2) along v. ``_drag`` is the closed
 form; the engine follows the straight path in pieces of constant deceleration, exact in both ends and in the
 last speed. This leaves the first speed no choice: it is below the speed at the end before, by at most
 (d2v/dt2)^(1/3) (81 _STRAY / 2)^(2/3) / 6, 1.3e-4 m/s at 5 m/s and 0.015/m. A ball so never gains energy. One
@@ -50,13 +50,13 @@ def extent(x, v, a, T):
 
 
 @kernel
-def _faded(rate, s):
+def _fade(rate, s):
     """Integral of exp(-rate s) from 0 to s."""
     return -expm1(-rate * s) / rate
 
 
 @kernel
-def _bent(vx, vy, s, decel, nap):
+def _bend(vx, vy, s, decel, nap):
     """Motion of a ball that rolls at (vx, vy) [m/s] until the integral of dt/|v| is s [s^2/m]; inf: to rest.
 
     Returns t [s], the displacement x, y [m] and the velocity there. ``decel`` = mu_r g, ``nap`` [m/s^2]. In s
@@ -65,15 +65,15 @@ def _bent(vx, vy, s, decel, nap):
     """
     v = sqrt(vx * vx + vy * vy)
     p, m = 0.5 * (v + vy), 0.5 * (v - vy)
-    t = p * _faded(decel - nap, s) + m * _faded(decel + nap, s)
-    x = vx * (p * _faded(2.0 * decel - nap, s) + m * _faded(2.0 * decel + nap, s))
-    y = p * p * _faded(2.0 * (decel - nap), s) - m * m * _faded(2.0 * (decel + nap), s)
+    t = p * _fade(decel - nap, s) + m * _fade(decel + nap, s)
+    x = vx * (p * _fade(2.0 * decel - nap, s) + m * _fade(2.0 * decel + nap, s))
+    y = p * p * _fade(2.0 * (decel - nap), s) - m * m * _fade(2.0 * (decel + nap), s)
     return t, x, y, vx * exp(-decel * s), p * exp(-(decel - nap) * s) - m * exp(-(decel + nap) * s)
 
 
 @kernel
 def _piece(vx, vy, decel, nap):
-    """The length, as s of ``_bent``, of a piece that starts at (vx, vy) [m/s]; inf: straight, to rest.
+    """The length, as s of ``_bend``, of a piece that starts at (vx, vy) [m/s]; inf: straight, to rest.
 
     With the share b c of the speed, b = decel - |nap|, it strays from the true path by decel |nap v_x| |v|
     c^3 / 40 if short, and by at most c^3 / 10 of the same (tests/physics/test_nap.py).
@@ -88,7 +88,7 @@ def _piece(vx, vy, decel, nap):
 def _roll_on_nap(motion, state, i, vx, vy, decel, nap):
     """Ball i rolls at (vx, vy) [m/s]: write its next piece; returns its duration [s]."""
     s = _piece(vx, vy, decel, nap)
-    T, x, y, _, _ = _bent(vx, vy, s, decel, nap)
+    T, x, y, _, _ = _bend(vx, vy, s, decel, nap)
     state[i] = BEND
     if s == inf:  # straight, or nearly so: one piece to the place where it stops
         state[i] = ROLL
@@ -99,7 +99,7 @@ def _roll_on_nap(motion, state, i, vx, vy, decel, nap):
 
 
 @kernel
-def _dragged(v, s, decel, drag):
+def _drag(v, s, decel, drag):
     """Motion of a ball at v [m/s] that rolls against decel + drag v^2 [m/s^2]; ``drag`` [1/m].
 
     Returns the time t [s], the way [m] and the speed then. With c = sqrt(decel drag), atan(v drag / c) falls
@@ -124,7 +124,7 @@ def _roll_with_drag(motion, state, i, vx, vy, decel, drag):
     rest = v / decel
     s = (20.25 * _STRAY / (drag * v * (decel + drag * v * v))) ** (1.0 / 3.0)
     state[i], s = (ROLL, rest) if s >= rest else (BEND, min(s, 0.5 * rest))  # so no piece is a splinter
-    T, way, last = _dragged(v, s, decel, drag)
+    T, way, last = _drag(v, s, decel, drag)
     if state[i] == ROLL:
         last = 0.0
     first = 2.0 * way / T - last
@@ -220,7 +220,7 @@ def next_phase(motion, state, i, phys):
         R, decel, nap = phys[P_R], phys[P_MU_R] * phys[P_G], phys[P_NAP]
         if nap != 0.0:  # with drag a piece ends at the ball's speed
             vx, vy = motion[i, VX], motion[i, VY]
-            _, _, _, vx, vy = _bent(vx, vy, _piece(vx, vy, decel, nap), decel, nap)
+            _, _, _, vx, vy = _bend(vx, vy, _piece(vx, vy, decel, nap), decel, nap)
         begin(motion, state, i, t, r, (vx, vy), (-vy / R, vx / R, wz), phys)
     else:
         begin(motion, state, i, t, r, (0.0, 0.0), (0.0, 0.0, wz), phys)

@@ -30,11 +30,11 @@ LOW, HIGH = np.array(list(RANGES.values())).T.copy()
 (MU_S, MU_R, SPIN_DECEL, E_B, MU_BB_SCALE, MU_C, E_C, END_MASS_RATIO) = range(COLUMNS)
 
 
-def drawn(shares: Floats) -> Floats:
+def draw_constants(shares: Floats) -> Floats:
     """The constants (..., 8), in the order of ``NAMES``, at these shares of their ranges, in [0, 1)."""
     return LOW + (HIGH - LOW) * shares
 
 
-def normalised(values: Floats) -> Floats:
+def scale_to_unit(values: Floats) -> Floats:
     """Constants (..., 8) on a scale from -1 to 1, the ends of their ranges; beyond them the ends."""
     return np.clip(2.0 * (values - LOW) / (HIGH - LOW) - 1.0, -1.0, 1.0)

@@ -1,6 +1,6 @@
 """How does the cue move the ball? Speed, aim, offset, elevation -> velocity and spin; squirt, miscue.
 
-A raised cue presses the ball into the bed while it pushes, and the cloth rubs: ``flight.rubbed``. Where balls fly, the
+A raised cue presses the ball into the bed while it pushes, and the cloth rubs: ``flight.rub_bed``. Where balls fly, the
 bed throws it up.
 """
 
@@ -9,7 +9,7 @@ from math import atan, cos, hypot, pi, sin, sqrt
 from .._lib.check import number, refuse
 from .._lib.jit import entry, kernel
 from .._lib.types import Real
-from .flight import SETTLE, rubbed
+from .flight import SETTLE, rub_bed
 from .parameters import FASTEST, Physics
 
 MAX_ELEVATION = 1.5
@@ -27,12 +27,12 @@ def squirt(side, end_mass_ratio):
 
 
 @kernel
-def struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
+def strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
     """The cue ball's (vx, vy, vz) [m/s] and (wx, wy, wz) [rad/s] after a strike that is no miscue.
 
     Spin [TP A.30]: w = (5/2) (speed / R) b x d; b: tip offset over R, d: unit vector along the cue; (5/2) v
     |b| / R if level. The bed takes the downward part of the speed, and the cloth rubs by as much; it gives back e_t of it,
-    as in any landing (``flight.thrown``); 0: no ball flies.
+    as in any landing (``flight.bounce_off_bed``); 0: no ball flies.
     """
     aim += squirt(side, end_mass_ratio)
     c, s, ce, se = cos(aim), sin(aim), cos(elevation), sin(elevation)
@@ -43,19 +43,19 @@ def struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
     up = 0.0
     if elevation > 0.0:
         up = e_t * speed * se if e_t * speed * se >= SETTLE else 0.0
-        (vx, vy), (wx, wy) = rubbed((vx, vy), (wx, wy), speed * se + up, mu_s, R)
+        (vx, vy), (wx, wy) = rub_bed((vx, vy), (wx, wy), speed * se + up, mu_s, R)
     return (vx, vy, up), (wx, wy, wz)
 
 
 @entry
-def _struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
-    return struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t)
+def _strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
+    return strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t)
 
 
 def strike(
     speed: Real, aim: Real, side: Real, top: Real, elevation: Real, physics: Physics
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """``struck`` for Python, with its input checked; see ``snooker_env.strike``."""
+    """``strike_ball`` for Python, with its input checked; see ``snooker_env.strike``."""
     speed = number("speed", speed, 0, FASTEST)
     aim = number("aim", aim)
     if abs(aim) > 2.0 * pi:
@@ -65,5 +65,5 @@ def strike(
     if hypot(side, top) > physics.max_offset * (1 + 1e-12):
         allowed = f"tip offset {hypot(side, top):.4g} R is a miscue, must be within {physics.max_offset} R of the ball's centre"
         raise refuse("(side, top)", (side, top), allowed)
-    constants = physics.R, physics.mu_s, physics.end_mass_ratio, physics.thrown
-    return _struck(speed, aim, side, top, elevation, *constants)
+    constants = physics.R, physics.mu_s, physics.end_mass_ratio, physics.bed_restitution
+    return _strike_ball(speed, aim, side, top, elevation, *constants)

@@ -283,7 +283,7 @@ def in_room_over(stroke, positions, on_table, rails, R, max_offset, end_mass_rat
 
 
 @kernel
-def raised(stroke, positions, on_table, rails, R):
+def raise_cue(stroke, positions, on_table, rails, R):
     """The elevation [rad] of a stroke (side, top, aim, elevation), raised to the least one; a free cue's is its own."""
     if rails.shape[0] == 0:
         return stroke[3]

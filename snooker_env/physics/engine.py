@@ -8,7 +8,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from .._lib.jit import entry, inlined, kernel
+from .._lib.jit import entry, inline, kernel
 from .._lib.lanes import LANES, lane, lanes, lanes_at, lesser, no_more
 from . import cloth, events, flight, pocket
 from .arrays import Balls, Boundaries, Forecast, Law, Log, Motions, Setup
@@ -36,9 +36,9 @@ from .detection import HELD, TOUCH, boundary_event, clear_box, pair_time
 from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
 from .impact import free
-from .impact.contact import collide_balls, collide_cushion, collide_tilted
+from .impact.contact import collide_balls, collide_cushion, collide_from_above
 from .impact.polynomial import WORK
-from .meetings import lost, meet, meet_in_air, rebound, rebound_in_air
+from .meetings import energy_loss, meet, meet_in_air, rebound, rebound_in_air
 from .parameters import FARTHEST, FASTEST, MOST_SPIN
 from .placement import SOUND, layout_fault, place_fault
 
@@ -75,7 +75,7 @@ def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
     impulse = max(ball_i[1][2], ball_j[1][2])
     if impulse > 0.0:
         after = ball_i[1], ball_i[2], ball_j[1], ball_j[2]
-        impulse = min(impulse, sqrt(2.0 * lost(before, after, phys[P_R])))
+        impulse = min(impulse, sqrt(2.0 * energy_loss(before, after, phys[P_R])))
     (xi, yi), (xj, yj) = ball_i[0], ball_j[0]
     nx, ny = (xj - xi) / (2.0 * phys[P_R]), (yj - yi) / (2.0 * phys[P_R])
     for k, (r, v, w), way, other in (
@@ -87,7 +87,7 @@ def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
         elif v[2] > 0.0:
             flight.leave(motion, state, k, t, r, v, w, v[2], phys)
         else:
-            u, spin, up = flight.pressed(v, w, impulse, phys)
+            u, spin, up = flight.press_into_bed(v, w, impulse, phys)
             flight.leave(motion, state, k, t, r, u, spin, up, phys)
 
 
@@ -121,7 +121,7 @@ def _meet_in_air(paths, i, j, t, law, boundaries, series):
     elif b[2] > 0.0:
         flight.leave(motion, state, j, t, (x2, y2), b, wb, b[2], phys)
     else:
-        u, spin, up = flight.pressed(b, wb, press, phys)
+        u, spin, up = flight.press_into_bed(b, wb, press, phys)
         flight.leave(motion, state, j, t, (x2, y2), u, spin, up, phys)
     return events.OK if solved else events.IMPACT_UNSOLVED
 
@@ -137,10 +137,10 @@ def _in_air(paths, i, kind, j, t, boundaries, phys):
         v, w = rebound_in_air((vx, vy, u), w, normal, kind == events.JAW, phys)
         flight.take_off(motion, state, i, t, (x, y, z), v, w, phys)
     elif kind == events.LAND:
-        v, w, up = flight.thrown((vx, vy), w, -u, phys)
+        v, w, up = flight.bounce_off_bed((vx, vy), w, -u, phys)
         flight.leave(motion, state, i, t, (x, y), v, w, up, phys)
     elif kind == events.RAIL:
-        v, w, up = flight.thrown((vx, vy), w, -u, phys)
+        v, w, up = flight.bounce_off_bed((vx, vy), w, -u, phys)
         flight.take_off(motion, state, i, t, (x, y, z), (v[0], v[1], up), w, phys)
     else:
         # it came over the pocket where its path enters the circle
@@ -345,7 +345,7 @@ def _record(segments, n_segments, motion, state, i):
     return n_segments + 1
 
 
-@inlined
+@inline
 def _begin(balls, aloft, segments, paths, boundaries, clear, forecast, phys):
     """Write the first phase of each ball and predict its events -> the number of segments."""
     positions, velocities, spins, on_table, potted = balls
@@ -377,7 +377,7 @@ def _begin(balls, aloft, segments, paths, boundaries, clear, forecast, phys):
     return n_segments
 
 
-@inlined
+@inline
 def _next_event(forecast):
     """The earliest event: time [s], kind, ball, partner; ties: the lowest kind, then the lowest ball."""
     _bounds, _pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
@@ -394,7 +394,7 @@ def _next_event(forecast):
     return t, kind, i, j
 
 
-@inlined
+@inline
 def _kind_now(paths, aloft, t, kind, i, j, setup):
     """The kind of an event, now that it comes: a ball at a fall may fly on; one may come down where no bed is."""
     motion, state, _ = paths
@@ -412,7 +412,7 @@ def _kind_now(paths, aloft, t, kind, i, j, setup):
     return kind
 
 
-@inlined
+@inline
 def _note(log, n_events, n_segments, max_events, t, kind, i, j):
     """Write an event to the log -> OK, or why there may be no more."""
     time, what, segments = log
@@ -427,7 +427,7 @@ def _note(log, n_events, n_segments, max_events, t, kind, i, j):
     return events.OK
 
 
-@inlined
+@inline
 def _meet_on_bed(paths, aloft, lift, i, j, t, met, setup, series):
     """Balls i and j meet, neither in the air: write their next phases -> a status."""
     motion, state, over = paths
@@ -480,7 +480,7 @@ def _over_pocket(paths, i, kind, j, t, boundaries, phys):
         motion[i, Z] = motion[i, UZ] = 0.0
 
 
-@inlined
+@inline
 def _rebound_on_bed(paths, aloft, lift, i, kind, j, t, law, boundaries, series):
     """Ball i on the bed meets a nose or a jaw: write its next phase -> a status."""
     motion, state, _ = paths
@@ -527,7 +527,7 @@ def _leave(paths, i, kind, j, t, potted, reach, boundaries, forecast, phys):
     return events.OK
 
 
-@inlined
+@inline
 def _end(balls, paths, status, last, phys):
     """Write where the balls are after the last event -> the shot's duration [s]."""
     positions, velocities, spins, on_table, _potted = balls
@@ -666,7 +666,7 @@ def _kick(phys, friction, to):
     to[P_MU_BB_LEAST], to[P_MU_BB_EXTRA], to[P_BALLS] = friction, 0.0, 0.0
 
 
-@entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion, collide_tilted))
+@entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion, collide_from_above))
 def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
     """Simulate shots ``start`` to ``stop`` of a batch; arrays of balls, log and ends have a batch axis.
 

@@ -4,7 +4,7 @@ Only with ``Physics.flight``. z is the height of a ball's centre above its heigh
 
 * **In the air** (``AIR``) du/dt = -g; the velocity in the plane and the spin are constant.
 * **The bed** throws a ball that comes down at the speed d up again at e_t d. The cloth rubs as in any impact with the bed: by
-  at most mu_s times the normal impulse (1 + e_t) d, and at most 2/7 of the slip (``rubbed``). A ball that would leave the
+  at most mu_s times the normal impulse (1 + e_t) d, and at most 2/7 of the slip (``rub_bed``). A ball that would leave the
   bed with less than ``SETTLE`` stays there; so bounces end.
 * **Two balls on the bed** meet as in the paper. Friction lifts one and presses the other with an equal impulse J: the
   one leaves with J, the other with e_t J.
@@ -93,7 +93,7 @@ OVER = 1e-3
 
 
 @kernel
-def rubbed(v, w, press, mu_s, R):
+def rub_bed(v, w, press, mu_s, R):
     """(vx, vy) [m/s] and (wx, wy) [rad/s] of a ball after the bed has given it ``press`` [m/s], the upward
     impulse over the mass: friction mu_s ``press`` against the slip, or 2/7 of the slip, and the ball rolls."""
     (vx, vy), (wx, wy) = v, w
@@ -107,22 +107,22 @@ def rubbed(v, w, press, mu_s, R):
 
 
 @kernel
-def thrown(v, w, down, phys):
+def bounce_off_bed(v, w, down, phys):
     """What the bed, or the top of a rail, makes of a ball that comes down at the speed ``down``: v, w, and its speed up; 0: it stays."""
     up = phys[P_E_T] * down
     if up < SETTLE:
         up = 0.0
-    (vx, vy), (wx, wy) = rubbed((v[0], v[1]), (w[0], w[1]), down + up, phys[P_MU_S], phys[P_R])
+    (vx, vy), (wx, wy) = rub_bed((v[0], v[1]), (w[0], w[1]), down + up, phys[P_MU_S], phys[P_R])
     return (vx, vy), (wx, wy, w[2]), up
 
 
 @kernel
-def pressed(v, w, impulse, phys):
+def press_into_bed(v, w, impulse, phys):
     """The same of a ball on the bed that another has pressed into it with this impulse, which has rubbed already."""
     up = phys[P_E_T] * impulse
     if up < SETTLE:
         return (v[0], v[1]), w, 0.0
-    (vx, vy), (wx, wy) = rubbed((v[0], v[1]), (w[0], w[1]), up, phys[P_MU_S], phys[P_R])
+    (vx, vy), (wx, wy) = rub_bed((v[0], v[1]), (w[0], w[1]), up, phys[P_MU_S], phys[P_R])
     return (vx, vy), (wx, wy, w[2]), up
 
 

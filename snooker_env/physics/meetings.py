@@ -8,10 +8,10 @@ then a series of hops of about a micrometre and a millisecond. Energy never rise
 
 from math import sqrt
 
-from .._lib.jit import inlined, kernel
+from .._lib.jit import inline, kernel
 from .columns import P_E_B, P_E_J, P_MU_BB_EXTRA, P_MU_BB_FADE, P_MU_BB_LEAST, P_MU_C, P_R
 from .impact import free
-from .impact.contact import collide_balls, collide_cushion, collide_tilted, cushion_restitution
+from .impact.contact import collide_balls, collide_cushion, collide_from_above, cushion_restitution
 from .impact.coulomb import Friction
 
 PART = 2e-3  # m/s; too slow to matter in a shot: a ball at this speed rolls 16 micrometres
@@ -38,11 +38,11 @@ def _spin_energy(w, R):
 
 
 @kernel
-def _scaled(w, k):
+def _scale(w, k):
     return w[0] * k, w[1] * k, w[2] * k
 
 
-@inlined
+@inline
 def meet(v1, w1, v2, w2, normal, law, series):
     """Two balls on the bed meet: as ``collide_balls`` or, below ``PART``, a hop. The vertical velocities are what they would
     have off the bed; the paper drops them."""
@@ -54,9 +54,9 @@ def meet(v1, w1, v2, w2, normal, law, series):
         dv = 0.5 * (closing + parting)
         return (
             (v1[0] - dv * nx, v1[1] - dv * ny, 0.0),
-            _scaled(w1, k),
+            _scale(w1, k),
             (v2[0] + dv * nx, v2[1] + dv * ny, 0.0),
-            _scaled(w2, k),
+            _scale(w2, k),
             True,
         )
     e = max(phys[P_E_B], PART / closing)
@@ -65,7 +65,7 @@ def meet(v1, w1, v2, w2, normal, law, series):
 
 
 @kernel
-def lost(before, after, R):
+def energy_loss(before, after, R):
     """The energy per unit mass that two balls lose in an impact [m^2/s^2]; before and after: v1, w1, v2, w2."""
     energy = 0.0
     for k in (0, 2):
@@ -89,12 +89,12 @@ def meet_in_air(vc, wc, vo, wo, normal, lies, law, series):
         dv = (closing + parting) / (1.0 + give)
         vc = (vc[0] - dv * x, vc[1] - dv * y, vc[2] - dv * z)
         vo = (vo[0] + dv * x, vo[1] + dv * y, 0.0 if lies else vo[2] + dv * z)
-        return vc, _scaled(wc, k), vo, _scaled(wo, k), 0.0, True
+        return vc, _scale(wc, k), vo, _scale(wo, k), 0.0, True
     e = max(phys[P_E_B], PART / closing)
     if lies:
         flat = vo[0], vo[1], 0.0
-        a, wa, b, wb, press, solved = collide_tilted(vc, wc, flat, wo, normal, law, e, series)
-        press = min(press, sqrt(2.0 * lost((vc, wc, flat, wo), (a, wa, b, wb), phys[P_R])))
+        a, wa, b, wb, press, solved = collide_from_above(vc, wc, flat, wo, normal, law, e, series)
+        press = min(press, sqrt(2.0 * energy_loss((vc, wc, flat, wo), (a, wa, b, wb), phys[P_R])))
         return a, wa, b, wb, press, solved
     friction = Friction(phys[P_MU_BB_LEAST], phys[P_MU_BB_EXTRA], phys[P_MU_BB_FADE])
     vc, wc, vo, wo = free.between(vc, wc, vo, wo, normal, friction, e, phys[P_R])
@@ -109,12 +109,12 @@ def rebound_in_air(v, w, normal, jaw, phys):
     if closing <= PART:
         parting, k = _hop(closing, _spin_energy(w, phys[P_R]))
         dv = closing + parting
-        return (v[0] - dv * x, v[1] - dv * y, v[2] - dv * z), _scaled(w, k)
+        return (v[0] - dv * x, v[1] - dv * y, v[2] - dv * z), _scale(w, k)
     e = max(phys[P_E_J] if jaw else cushion_restitution(closing, phys), PART / closing)
     return free.against(v, w, normal, phys[P_MU_C], e, phys[P_R])
 
 
-@inlined
+@inline
 def rebound(v, w, normal, jaw, law, series):
     """Impact with a nose or a jaw inside a shot, by the same rules; ``normal`` points into the cushion."""
     (nx, ny), phys = normal, law.phys
@@ -122,6 +122,6 @@ def rebound(v, w, normal, jaw, law, series):
     if closing <= PART:
         parting, k = _hop(closing, _spin_energy(w, phys[P_R]))
         dv = closing + parting
-        return (v[0] - dv * nx, v[1] - dv * ny, 0.0), _scaled(w, k), True
+        return (v[0] - dv * nx, v[1] - dv * ny, 0.0), _scale(w, k), True
     e = max(phys[P_E_J] if jaw else cushion_restitution(closing, phys), PART / closing)
     return collide_cushion((v[0], v[1], 0.0), w, normal, law, e, series)

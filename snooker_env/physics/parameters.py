@@ -218,12 +218,12 @@ class Physics:
         to the paths of 61 tracked shots of one match, the cue ball up to 6 m/s (``python -m benchmarks.real_shots``).
         """
         choice("physics", name, PRESETS)
-        return cls._replaced(PRESETS[name], fields) if fields else cls._whole(name)
+        return cls._replace_fields(PRESETS[name], fields) if fields else cls._whole(name)
 
     @classmethod
     @cache  # a frozen object, and made in every call of ``simulate`` that names it
     def _whole(cls, name):
-        return cls._replaced(PRESETS[name], {})
+        return cls._replace_fields(PRESETS[name], {})
 
     @classmethod
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
@@ -236,18 +236,18 @@ class Physics:
             return cls.preset("paper" if physics is None else physics)
         if isinstance(physics, dict):
             rest = dict(physics)
-            return cls._replaced(PRESETS[choice("physics", rest.pop("preset", "paper"), PRESETS)], rest)
+            return cls._replace_fields(PRESETS[choice("physics", rest.pop("preset", "paper"), PRESETS)], rest)
         raise refuse("physics", physics, "must be None, a preset's name, a dict of overrides, or a Physics")
 
     @classmethod
-    def _replaced(cls, base: dict[str, Any], fields: dict[str, Any]) -> "Physics":
+    def _replace_fields(cls, base: dict[str, Any], fields: dict[str, Any]) -> "Physics":
         known = [f.name for f in dataclasses.fields(cls)]
         for field in fields:
             choice("physics field", field, known)
         return cls(**{**base, **fields})
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator, physics: "PhysicsLike" = None) -> "Physics":
+    def sample(cls, rng: np.random.Generator, physics: "PhysicsLike" = None) -> "Physics":
         """Draw the constants of a table that was not measured, one of those that a player may meet.
 
         Each is uniform within its range and independent of the others: how they go together on real tables is
@@ -284,13 +284,13 @@ class Physics:
         Examples
         --------
         >>> import numpy as np
-        >>> table = Physics.drawn(np.random.default_rng(1), "match")
+        >>> table = Physics.sample(np.random.default_rng(1), "match")
         >>> 0.178 <= table.mu_s < 0.245, table.e_c_knee
         (True, 2.02)
         """
         if not isinstance(rng, np.random.Generator):
             raise refuse("rng", rng, "must be a numpy.random.Generator")
-        return physics_with(cls.of(physics), conditions.drawn(rng.random(conditions.COLUMNS)))
+        return physics_with(cls.of(physics), conditions.draw_constants(rng.random(conditions.COLUMNS)))
 
     def check_stopping(self) -> None:
         """ValueError unless friction brings balls to rest in a finite time that is not zero."""
@@ -314,7 +314,7 @@ class Physics:
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
     @property
-    def thrown(self) -> float:
+    def bed_restitution(self) -> float:
         """The restitution of the bed where balls fly, else 0."""
         return max(self.e_t, _FLIES) if self.flight else 0.0
 
@@ -350,7 +350,7 @@ class Physics:
                 self.e_c if self.e_j is None else self.e_j,
                 self.nap,
                 self.roll_drag,
-                self.thrown,
+                self.bed_restitution,
                 *(0.0, 0.0, 0.0),
             ]
         )

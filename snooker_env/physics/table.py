@@ -167,7 +167,7 @@ class Table:
         raise refuse(
             "table",
             table,
-            f"must be {', '.join(map(_quoted, PRESETS))}, a Table, or None for unbounded cloth",
+            f"must be {', '.join(map(_quote, PRESETS))}, a Table, or None for unbounded cloth",
         )
 
     @property
@@ -287,7 +287,7 @@ def _again(name, noses, jaws, falls, ball_radius, pockets):
     return Table(name, noses, jaws, falls, ball_radius=ball_radius, pockets=pockets)
 
 
-def _quoted(name):
+def _quote(name):
     return f'"{name}"'
 
 

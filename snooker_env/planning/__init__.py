@@ -15,10 +15,10 @@ returns the best strokes as a judge sees them, of visits (``VisitJudge``) or of 
 from ..tasks.threads import processors
 from .aims import pot_aim
 from .frame_judge import FrameJudge
-from .geometry import Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
+from .pot_geometry import Pots, clear_paths, obstructions, pots
 from .proposals import Proposals, at_pots
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .search import Ranked, Search

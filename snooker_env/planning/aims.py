@@ -15,7 +15,7 @@ from ..physics.cue import MAX_ELEVATION as STEEPEST_CUE
 from ..physics.cue_room import NO_RAILS
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike, pack_into
-from ..tasks.arrays import CueLaw
+from ..tasks.kernel_arrays import CueLaw
 from ..tasks.lines import new_work
 from ..tasks.options import Options, Rules
 from ..tasks.pot_aim import solved_aim

@@ -24,7 +24,7 @@ from .prospects import spread_of
 from .search import BUDGET, Plan, Proposed, Search
 from .sobol import DIMENSIONS
 from .trials import FrameTrials
-from .worth import LAST, Chance, Worth, follows, in_one_stroke, last_of, lead_of, left_of, passed
+from .worth import LAST, Chance, Worth, follows, in_one_stroke, last_of, lead_of, left_of, pass_after_miss
 
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
 TIE = 2e-4
@@ -103,7 +103,7 @@ class FrameJudge:
         (propose,) = search.propose
         pots = propose(search, at.as_visits(), hard.looks[0], seeds)
         # a striker who would need snookers at the next visit must see more than pots
-        likely = (pots.chances.max(axis=1) >= EASY) & (lead_of(at) + left_of(passed(at)) >= 0.0)
+        likely = (pots.chances.max(axis=1) >= EASY) & (lead_of(at) + left_of(pass_after_miss(at)) >= 0.0)
         return [(easy, np.flatnonzero(likely)), (hard, np.flatnonzero(~likely))]
 
     def propose(self, search: Search, at: Positions, seeds: Ints, plan: Plan) -> Proposed:
@@ -132,7 +132,7 @@ class FrameJudge:
         rows, picks = rows[keep], picks[keep]
         parts = self._parts(at, rows, after[np.flatnonzero(keep)])
         if not self.noise.silent:  # a pot that is missed leaves the balls about as they lie
-            left = passed(at)
+            left = pass_after_miss(at)
             points = -self.worth(left).astype(np.float64)
             missed = np.column_stack([1.0 - self.chances(-before, -points, left), points])[rows]
             made = proposed.chances[rows, picks, None]

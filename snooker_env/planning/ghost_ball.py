@@ -200,7 +200,7 @@ def stroke_at(positions, on_table, on, in_hand, failed, drive, rows, stream):
 
 
 @kernel
-def named(positions, on_table, row, aim):
+def nominate_on_line(positions, on_table, row, aim):
     """What the geometric player nominates: the colour on its line; else the cheapest, or no free ball."""
     dx, dy, near, ball = cos(aim), sin(aim), np.inf, 0
     for i in range(1, N_BALLS):
@@ -229,7 +229,7 @@ def geometric_turn(positions, on_table, row, rules, rows, stream):
     placed = row[columns.IN_HAND]
     speed, side, top, aim = stroke_at(positions, on_table, mask, placed, failed, drive, rows, stream)
     speed *= 1.0 + (0.04 if placed and end_red_of_rack(positions, on_table) else 0.2) * (jitter - 0.5)
-    return speed, side, top, aim, named(positions, on_table, row, aim) if frame else AUTO, decision
+    return speed, side, top, aim, nominate_on_line(positions, on_table, row, aim) if frame else AUTO, decision
 
 
 @entry(what="the strokes of ghost_ball", seconds=3)

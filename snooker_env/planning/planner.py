@@ -20,7 +20,7 @@ from ..tasks.rewards import REWARDS
 from ..tasks.tables import I_FIRST, I_PENALTY, I_POINTS
 from ..tasks.threads import Threads, processors
 from .aims import Dynamics, solved_aims
-from .positions import Positions, PositionsLike, bare, check_played, rows_of
+from .positions import Positions, PositionsLike, bare, check_has_stroke, rows_of
 from .stroke_columns import COLUMNS
 from .strokes import check_strokes, decode
 from .trials import TrialVisits
@@ -193,7 +193,7 @@ class Planner:
         """The positions as visits, and the checked rows."""
         at = Positions.of(positions).as_visits().known_to(self._rules)
         which = rows_of(at, rows)
-        check_played(at, which, self.table, self.physics.R)
+        check_has_stroke(at, which, self.table, self.physics.R)
         return at, which
 
     def _play(

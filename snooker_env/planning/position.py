@@ -164,7 +164,7 @@ def _with_names(init: Any) -> Any:
     names = (*_NAMES, "table")
 
     @wraps(init)
-    def checked(self: Position, *args: Any, **fields_: Any) -> None:
+    def check_first(self: Position, *args: Any, **fields_: Any) -> None:
         for name in fields_:
             if name not in names:
                 reds, known = "the reds are one list, reds=[(x, y), ...]", ", ".join(names)
@@ -172,7 +172,7 @@ def _with_names(init: Any) -> Any:
                 raise TypeError(f"Position got an unexpected keyword argument {name!r}; {hint}")
         init(self, *args, **fields_)
 
-    return checked
+    return check_first
 
 
 Position.__init__ = _with_names(Position.__init__)

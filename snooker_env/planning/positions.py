@@ -319,7 +319,7 @@ def seeds_of(seeds: Integers, n: int) -> Ints:
     return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
 
 
-def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: float) -> None:
+def check_has_stroke(at: Positions, rows: NDArray[np.int64], table: Table, radius: float) -> None:
     """Raise ValueError unless each position in ``rows`` (n,) is valid and has a stroke to play."""
     used = np.unique(rows)
     some = at if len(used) == len(at) else at[used]

@@ -24,9 +24,9 @@ from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
-from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
+from ..tasks.kernel_arrays import CueLaw
 from ..tasks.lines import EASY, aim_at_ball, break_off, end_red_of_rack, new_work
 from ..tasks.noise import POT_SPEED
 from ..tasks.pot_aim import solved_aim
@@ -288,7 +288,7 @@ def at_pots(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals
     >>> at_pots(VisitJudge({}), at, 5, [7]).strokes.shape
     (1, 5, 5)
     """
-    return _proposed(at, np.zeros((len(at), m, COLUMNS)), seeds, _SPREAD, search.spread, search.dynamics)
+    return _propose_each(at, np.zeros((len(at), m, COLUMNS)), seeds, _SPREAD, search.spread, search.dynamics)
 
 
 def strokes_at(
@@ -298,10 +298,10 @@ def strokes_at(
     n, m = which.shape
     strokes = np.zeros((n, m, COLUMNS))
     strokes[..., :AIM] = speeds_and_tips
-    return _proposed(at, strokes, np.zeros(n), np.ascontiguousarray(which, np.int64), spread, dynamics)
+    return _propose_each(at, strokes, np.zeros(n), np.ascontiguousarray(which, np.int64), spread, dynamics)
 
 
-def _proposed(at, strokes, seeds, which, spread, dynamics):
+def _propose_each(at, strokes, seeds, which, spread, dynamics):
     chances = np.empty(strokes.shape[:2])
     law, scrambles = law_of(dynamics, at), np.asarray(seeds, np.int64)
     _propose(_balls(at), scrambles, which, spread, dynamics.growth, law, strokes, chances)

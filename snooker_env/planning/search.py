@@ -16,7 +16,7 @@ from .._lib.check import integer, refuse_what
 from .._lib.types import Bools, Floats, Integers, Ints
 from ..tasks.options import Rules
 from .aims import Dynamics
-from .positions import Positions, PositionsLike, check_played, seeds_of
+from .positions import Positions, PositionsLike, check_has_stroke, seeds_of
 from .proposals import Propose, at_pots
 from .sobol import DIMENSIONS, normal_points
 from .strokes import Strokes
@@ -151,14 +151,14 @@ class Search:
         no stroke to play."""
         rules, at = self.judge.rules, Positions.of(positions)
         at, keys = at.known_to(rules), seeds_of(seeds, len(at))
-        check_played(at.as_visits(), np.arange(len(at)), rules.table, rules.physics.R)
+        check_has_stroke(at.as_visits(), np.arange(len(at)), rules.table, rules.physics.R)
         ranked: dict[int, Ranked] = {}
         for plan, rows in self.judge.plans(self, at, keys):
             if len(rows):
-                ranked |= zip(rows.tolist(), self._ranked(at[rows], keys[rows], plan), strict=True)
+                ranked |= zip(rows.tolist(), self._rank(at[rows], keys[rows], plan), strict=True)
         return [ranked[k] for k in range(len(at))]
 
-    def _ranked(self, at: Positions, seeds: Ints, plan: Plan) -> list[Ranked]:
+    def _rank(self, at: Positions, seeds: Ints, plan: Plan) -> list[Ranked]:
         """The rankings of positions in which the budget is spent alike."""
         judge, every = self.judge, np.arange(len(at))[:, None]
         proposed = judge.propose(self, at, seeds, plan)
@@ -175,10 +175,10 @@ class Search:
             there = np.isfinite(looks[every, order, 0])
             order = np.take_along_axis(order, np.argsort(~there, axis=1, kind="stable"), 1)
 
-        def met(rows: Ints, picks: Ints, errors: Floats) -> Floats:
+        def sample_errors(rows: Ints, picks: Ints, errors: Floats) -> Floats:
             return judge.sample(at, proposed, rows, picks, errors)
 
-        order, means, samples = halve(looks, order, plan.rounds, seeds, met, judge.score)
+        order, means, samples = halve(looks, order, plan.rounds, seeds, sample_errors, judge.score)
         scores, points = judge.figures(means)
         counts = np.bincount(rows, minlength=len(at))
         tried = np.arange(chances.shape[1]) < counts[:, None]  # what was not tried is last
@@ -203,7 +203,7 @@ def halve(
     """Sequential halving: of the strokes of n positions the best meet noise samples, the better ones more of them.
     ``looks`` (n, m, v): the values of each stroke without error, -inf where there is none; they count as ``PRIOR``
     samples. ``order`` (n, m): the strokes, best first. ``rounds``: how many go on, and their further samples.
-    ``met(rows, picks, errors)``: values (k, v) of the strokes ``picks`` of the positions ``rows`` under errors (k, 5).
+    ``sample_errors(rows, picks, errors)``: values (k, v) of the strokes ``picks`` of the positions ``rows`` under errors (k, 5).
     ``score``: what values (..., v) are compared by. Returns the order then, means (n, m, v) and samples (n, m)."""
     n, m = looks.shape[:2]
     every, sums = np.arange(n)[:, None], PRIOR * looks

@@ -48,7 +48,7 @@ def _reversed_bits(x):
 
 
 @kernel
-def _mixed(x):
+def _mix(x):
     """A 32-bit hash with good avalanche [Wellons 2018, "lowbias32"]."""
     x = ((x ^ (x >> 16)) * 0x7FEB352D) & _ALL
     x = ((x ^ (x >> 15)) * 0x846CA68B) & _ALL
@@ -56,7 +56,7 @@ def _mixed(x):
 
 
 @kernel
-def _scrambled(x, seed):
+def _scramble(x, seed):
     """Owen's nested scrambling of the bits of x by the hash of Vegdahl (2021)."""
     x = _reversed_bits(x)
     x ^= (x * 0x3D20ADEA) & _ALL
@@ -75,7 +75,7 @@ def sobol(index, dimension, seed):
             bits ^= _DIRECTIONS[dimension, k]
         left >>= 1
         k += 1
-    return (_scrambled(bits, _mixed(seed ^ _mixed(dimension + 1))) + 0.5) * 2.0**-32
+    return (_scramble(bits, _mix(seed ^ _mix(dimension + 1))) + 0.5) * 2.0**-32
 
 
 @entry

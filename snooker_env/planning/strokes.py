@@ -19,11 +19,11 @@ from ..physics.cue import squirt
 from ..physics.cue_room import NO_RAILS
 from ..physics.parameters import Physics
 from ..tasks import stroke
-from ..tasks.arrays import C_END_MASS, pack_cue
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions
 from ..tasks.carry_out import sayings
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.discrete_actions import SIZE, masks
+from ..tasks.kernel_arrays import C_END_MASS, pack_cue
 from ..tasks.options import Options, Rules
 from ..tasks.stroke import ShotBuffers, row_of
 from ..tasks.tables import STROKES_ONLY
@@ -259,10 +259,10 @@ def decode(
         visits.nominated = nominated
     buffers = ShotBuffers(n, 0)
     visits.address(np.arange(n), actions, buffers)
-    return meant(buffers, visits.cues), after
+    return intentions_of(buffers, visits.cues), after
 
 
-def meant(buffers: ShotBuffers, cues: Floats) -> Floats:
+def intentions_of(buffers: ShotBuffers, cues: Floats) -> Floats:
     """Strokes (n, 5) that were struck without errors; ``cues``: packed, one row for all or each."""
     strokes = buffers.shots[:, stroke.CUE_SPEED : stroke.ROOM].copy()
     changed = buffers.shots[:, stroke.ROOM] != 0  # what is meant does not say how the cue finds room

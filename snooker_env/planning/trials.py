@@ -1,5 +1,5 @@
 """What do strokes lead to? Tables of one stroke each, filled with positions: ``TrialVisits`` by the rules of visits,
-``FrameTrials`` by those of frames; ``turned`` shows what is left as the next striker sees it."""
+``FrameTrials`` by those of frames; ``turn_to_striker`` shows what is left as the next striker sees it."""
 
 from copy import copy
 from dataclasses import replace
@@ -15,9 +15,9 @@ from ..game.sides import strikers_own
 from ..physics.conditions import END_MASS_RATIO
 from ..physics.cue import squirt
 from ..tasks import stroke
-from ..tasks.arrays import C_END_MASS, C_MAX_OFFSET, Packed, StruckArrays, TableArrays
 from ..tasks.box_actions import tip_on_disc
-from ..tasks.frame import Frames
+from ..tasks.frames import Frames
+from ..tasks.kernel_arrays import C_END_MASS, C_MAX_OFFSET, Packed, StruckArrays, TableArrays
 from ..tasks.noise import N_KICK, Noise, drawn_errors, kick_of, with_errors
 from ..tasks.options import Rules
 from ..tasks.rewards import FRAME_REWARDS
@@ -130,7 +130,7 @@ class FrameTrials(Struck, Frames):
         self.nominated = np.full(self.n, AUTO, np.int64)
 
 
-def turned(after: Positions) -> Positions:
+def turn_to_striker(after: Positions) -> Positions:
     """The same positions as their next strikers see them: a copy of the game, the balls are shared."""
     return Positions(after.positions, after.on_table, strikers_own(after.game), after.saved, after.conditions)
 

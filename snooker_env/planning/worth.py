@@ -21,7 +21,7 @@ from ..game.sides import swap_sides
 from ..geometry import BAULK_Y, D_RADIUS
 from ..tasks.stroke import place
 from .positions import Positions
-from .trials import turned
+from .trials import turn_to_striker
 
 SPREAD, NARROWEST, WIDEST = 1.2e-3, 3.3e-4, 5e-3
 """An error of direction in the middle of those that are learned from [rad]; those beyond the others count as these."""
@@ -49,7 +49,7 @@ def _choose(game, positions, on_table, saved_positions, saved_on_table, what):
 
 
 @entry
-def _allowed(game, rules, out):
+def _list_choices(game, rules, out):
     for k in range(len(game)):
         out[k, columns.PLAY] = out[k, columns.PLAY_AGAIN] = True
         out[k, columns.REPLACE] = columns.may_replace(game[k], rules) and game[k, columns.SAVED_LAYOUT]
@@ -57,7 +57,7 @@ def _allowed(game, rules, out):
 
 
 @entry
-def _left(game, out):
+def _count_points(game, out):
     for k in range(len(game)):
         row = game[k]
         out[k] = available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
@@ -75,12 +75,12 @@ def breaks_off(at: Positions) -> Bools:
     return begins & (at.game[:, columns.RACK] == at.game[:, columns.ON_TABLE])
 
 
-def chosen(at: Positions, what: int) -> Positions:
+def apply_decision(at: Positions, what: int) -> Positions:
     """Positions after the strikers' decision ``what`` after a foul, as who then plays sees them: a copy."""
     after = at.copy()
     saved = after.saved if after.saved is not None else columns.Layouts(after.positions, after.on_table)
     _choose(after.game, after.positions, after.on_table, *saved, what)
-    return turned(after)
+    return turn_to_striker(after)
 
 
 def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
@@ -88,7 +88,7 @@ def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
 
     A striker who leads by more than is left plays on: further fouls of the other would bring points without use."""
     allowed, values = np.zeros((len(at), 4), np.bool_), np.full((len(at), 4), -np.inf)
-    _allowed(at.game, rules, allowed)
+    _list_choices(at.game, rules, allowed)
     if at.saved is None:
         allowed[:, columns.REPLACE] = False
     for what in (columns.PLAY_AGAIN, columns.REPLACE):
@@ -96,7 +96,7 @@ def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
     for what in range(4):
         rows = np.flatnonzero(allowed[:, what])
         if len(rows):
-            after = chosen(at[rows], what)
+            after = apply_decision(at[rows], what)
             mine = what in (columns.PLAY, columns.PLACE_ANYWHERE)
             values[rows, what] = worth(after) if mine else -worth(after)
     best = values.argmax(axis=1)
@@ -116,10 +116,10 @@ def follows(worth: Worth, after: Positions, before: Floats, rules: int = 0) -> F
     choosing = game[:, columns.PHASE] == columns.CHOICE
     rows = np.flatnonzero(playing)
     if len(rows):
-        gains[rows] += np.where(mine[rows], 1.0, -1.0) * worth(turned(after[rows]))
+        gains[rows] += np.where(mine[rows], 1.0, -1.0) * worth(turn_to_striker(after[rows]))
     rows = np.flatnonzero(choosing)
     if len(rows):
-        gains[rows] += np.where(mine[rows], 1.0, -1.0) * decide(worth, turned(after[rows]), rules)[1]
+        gains[rows] += np.where(mine[rows], 1.0, -1.0) * decide(worth, turn_to_striker(after[rows]), rules)[1]
     return gains
 
 
@@ -154,7 +154,7 @@ class Chance(NamedTuple):
         fouls = _logistic(sign * (self.needs + self.snookers * beyond) + gain / wide)
         chance = np.where(beyond > 0.0, fouls, chance)
         black = _scores(worth)
-        ends = black * _ended(now + LAST) + (1.0 - black) * _ended(now - LAST)
+        ends = black * _chance_at_end(now + LAST) + (1.0 - black) * _chance_at_end(now - LAST)
         return np.where(last, ends, chance)
 
 
@@ -167,7 +167,7 @@ def _scores(worth: Floats) -> Floats:
     return np.clip(0.5 + worth / (2.0 * LAST), 1.0 - SURE, SURE)
 
 
-def _ended(lead: Floats) -> Floats:
+def _chance_at_end(lead: Floats) -> Floats:
     """The chance of who leads by ``lead`` (n,) when the black has gone: level, a lot and a re-spotted black decide."""
     return 0.5 + 0.5 * np.sign(lead)
 
@@ -177,7 +177,7 @@ def in_one_stroke(now: Floats, worth: Floats, most: Floats, mine: Bools) -> Floa
     other's, of at most ``most`` points: who is ahead wins, unless they change it."""
     sign = np.where(mine, 1.0, -1.0)
     scores = _scores(sign * worth)
-    striker = scores * _ended(sign * now + LAST) + (1.0 - scores) * _ended(sign * now)
+    striker = scores * _chance_at_end(sign * now + LAST) + (1.0 - scores) * _chance_at_end(sign * now)
     chance = np.clip(np.where(mine, striker, 1.0 - striker), 1.0 - SURE, SURE)
     return np.where(np.abs(now) > most, now > 0.0, chance)
 
@@ -190,7 +190,7 @@ def last_of(at: Positions) -> Bools:
 def left_of(at: Positions) -> Floats:
     """Points that are still on the table: float64 (n,); none after the last black."""
     left = np.empty(len(at))
-    _left(at.game, left)
+    _count_points(at.game, left)
     return left
 
 
@@ -199,7 +199,7 @@ def lead_of(at: Positions) -> Floats:
     return (at.game[:, columns.SCORE_0] - at.game[:, columns.SCORE_1]).astype(np.float64)
 
 
-def passed(at: Positions) -> Positions:
+def pass_after_miss(at: Positions) -> Positions:
     """The same balls as the other player would meet them after a miss: a copy."""
     left = at.copy()
     game = left.game

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._lib.check import integer, refuse_what
-from .._lib.command import until_closed
+from .._lib.command import stop_with_reader
 from .._lib.files import read_json
 from ..players.model_options import add_model_options, options_of_words
 from ..tasks.noise import LEVELS
@@ -48,7 +48,7 @@ def service_of(args: argparse.Namespace) -> "Service":
     """The game for the command line's arguments; ValueError or OSError if something is invalid."""
     import numpy as np
 
-    from ..players.resolver import named
+    from ..players.resolver import players_of
     from .game_record import open_game
     from .routes import position_of
     from .service import OPPONENT, PERSON, Seats, Service
@@ -57,7 +57,7 @@ def service_of(args: argparse.Namespace) -> "Service":
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
     session = Session(layout=args.layout, seed=seed, cue=args.cue, flight=args.flight)
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
-    players = named(args.agent, args.trust, options_of_words(args.options))
+    players = players_of(args.agent, args.trust, options_of_words(args.options))
     agents = dict(zip(shown, players, strict=True))
     seats = Seats(agents)
     seats.sit([PERSON, next(iter(agents), OPPONENT)])
@@ -109,7 +109,7 @@ def _read(path: Path) -> dict[str, Any]:
     return read
 
 
-@until_closed()
+@stop_with_reader()
 def main(argv: list[str] | None = None) -> int:
     """Serve until Ctrl-C."""
     args = _arguments(argv)

@@ -28,7 +28,7 @@ def record_game(session: Session) -> dict[str, Any]:
     first = max(k for k, act in enumerate(acts) if not act.asked)
     states = [act.state for act in acts[first:]]
     asked = zip(acts[first + 1 :], states, states[1:], strict=False)
-    told = [act.asked | {"left": _left(before, after)} for act, before, after in asked]
+    told = [act.asked | {"left": _list_changes(before, after)} for act, before, after in asked]
     return session.save() | {"state": acts[first].state, "acts": told}
 
 
@@ -84,7 +84,7 @@ def _play(session: Session, act: dict[str, Any]) -> None:
     session.play(stroke, nominated=nominated)
 
 
-def _left(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
+def _list_changes(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
     """What an act leaves: the scores, and the place of each ball that it moved, to 0.1 mm."""
     was = _places(before)
     return {name: place for name, place in _places(after).items() if place != was[name] or name == "scores"}

@@ -12,7 +12,7 @@ from ..planning.stroke_columns import FARTHEST
 from ..players.table_report import report_game, report_turn, say_score, say_table
 from ..render.scene import scene_data
 from ..replays.encode import encode_stroke
-from ..replays.words import ERRORS, errors_words, sentence
+from ..replays.referee_words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS

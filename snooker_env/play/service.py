@@ -20,7 +20,7 @@ from ..game.ruling import AUTO
 from ..players import Player, Strokes, player
 from ..players.cue_stroke import cue_strokes
 from ..players.table_report import nominations_of
-from ..replays.chances import Judge, Standing, win_chances
+from ..replays.chances import ChanceJudge, Standing, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS
@@ -168,7 +168,7 @@ class Service:
         finally:
             self._asking.release()
 
-    def judge(self, noise: NoiseName | None = None) -> Judge | None:
+    def judge(self, noise: NoiseName | None = None) -> ChanceJudge | None:
         """Who says how likely each seat wins, with these errors, by default those of ``Seats.level``.
 
         None in practice, where nobody wins."""

@@ -25,7 +25,7 @@ from ..planning.position import Position
 from ..planning.positions import Positions, of_tables
 from ..players import Strokes
 from ..players.table_report import nominations_of, visit_of
-from ..tasks.frame import Frames, Seat
+from ..tasks.frames import Frames, Seat
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES, Options
 from ..tasks.played import Played
@@ -255,7 +255,7 @@ class Session:
             raise refuse("choice", what, "must be left out: the other player has not just fouled")
         self._write(frame.choose(cast(Choice, what)), int(self.tables.game[0, STROKES]))
         if what == "replace":
-            kept = self.tables.saved
+            kept = self.tables.layouts_before
             self.tables.positions[:], self.tables.on_table[:] = kept.positions, kept.on_table
         return self._did(Act("choice", self.state, frame.striker, detail=what, asked={"choice": what}))
 
@@ -375,4 +375,4 @@ class Session:
             raise ValueError(re.sub(r"state\.(frame\.)?", "", str(error))) from None
 
     def _write(self, frame: Frame, strokes: int) -> None:
-        write_frame(frame, strokes, self.tables.game[0], self.tables.saved, 0)
+        write_frame(frame, strokes, self.tables.game[0], self.tables.layouts_before, 0)

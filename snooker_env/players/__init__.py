@@ -11,7 +11,7 @@ from types import ModuleType as _ModuleType
 
 from .choices import ChoicePlayer
 from .opponent_pool import OpponentPool
-from .player import FRAMES, VISITS, BoundPlayer, Player, Ranked, Strokes, decided, decision_seeds
+from .player import FRAMES, VISITS, BoundPlayer, Player, Ranked, Strokes, ask_player, decision_seeds
 from .resolver import player, players
 from .seen import Seen, SeenPlayer
 
@@ -26,7 +26,7 @@ __all__ = [
     "Seen",
     "SeenPlayer",
     "Strokes",
-    "decided",
+    "ask_player",
     "decision_seeds",
     "player",
     "players",

@@ -11,12 +11,12 @@ from ..game.ruling import AUTO
 from ..planning import Positions, pots
 from ..planning.ghost_ball import geometric_strokes
 from ..planning.positions import PositionsLike, seeds_of
-from ..planning.strokes import available, meant
+from ..planning.strokes import available, intentions_of
 from ..planning.trials import packed_under
-from ..tasks.arrays import Packed
 from ..tasks.declarations import SAYS_NOTHING
 from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
-from ..tasks.frame import Asked
+from ..tasks.frames import Asked
+from ..tasks.kernel_arrays import Packed
 from ..tasks.options import Options, Rules
 from ..tasks.stroke import ShotBuffers, address
 from .player import BoundPlayer, Ranked, Strokes, streams_of
@@ -85,13 +85,13 @@ class ChoicePlayer(BoundPlayer):
         address(
             np.arange(n), choices[:, None].astype(np.float64), tables, buffers.struck, packed, rules.fidelity
         )
-        return meant(buffers, packed[1])
+        return intentions_of(buffers, packed[1])
 
     def _score(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints, Floats]:
         """The visits with placed cue balls, their places, the decisions after fouls, and the scores."""
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))
-        visits, places, decisions = self.started(at, keys)
+        visits, places, decisions = self.start_playing(at, keys)
         scores = self.scores(visits, keys)
         if np.shape(scores) != (len(at), SIZE):
             allowed = f"must have shape ({len(at)}, {SIZE}): a score for each choice of each position"

@@ -11,11 +11,11 @@ from ..planning import Positions, Search
 from ..planning.frame_judge import FrameJudge
 from ..planning.learned.frame_strokes import FrameStrokes
 from ..planning.positions import seeds_of
-from ..planning.worth import best_places, breaks_off, chosen, decide, lead_of, left_of
+from ..planning.worth import apply_decision, best_places, breaks_off, decide, lead_of, left_of
 from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from .choices import GhostBall
-from .player import BoundPlayer, Ranked, Strokes, placed
-from .search import shown
+from .player import BoundPlayer, Ranked, Strokes, place_cue_balls
+from .search_player import show_strokes
 
 LOST = 0.01  # the chance to win below which it concedes a frame in which it needs snookers, where it may
 _IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
@@ -36,7 +36,7 @@ class FramePlayer(BoundPlayer):
     judge: FrameJudge | FrameStrokes
     _plain: GhostBall
 
-    def decided(self, at: Positions, seeds: Integers) -> Decided:
+    def decide_frames(self, at: Positions, seeds: Integers) -> Decided:
         """What it does in n positions of frames, what it tried in those in which it strikes, and from where."""
         options, judge, seeds = self.options, self.judge, seeds_of(seeds, len(at))
         worth = judge.worth
@@ -54,12 +54,14 @@ class FramePlayer(BoundPlayer):
             decisions[rows] = decide(worth, at[rows], code)[0]
             for what in (columns.PLAY, columns.PLACE_ANYWHERE):
                 some = rows[decisions[rows] == what]
-                at.game[some] = chosen(at[some], what).game
+                at.game[some] = apply_decision(at[some], what).game
             plays[rows] = np.isin(decisions[rows], (columns.PLAY, columns.PLACE_ANYWHERE))
         hand, usual = plays & at.in_hand, breaks_off(at) | at.anywhere
         for rows in np.flatnonzero(hand & usual), np.flatnonzero(hand & ~usual):
             if len(rows):  # at the break-off, and where it may stand anywhere, as other players do
-                some = placed(at[rows], seeds[rows]) if usual[rows[0]] else best_places(worth, at[rows])
+                some = (
+                    place_cue_balls(at[rows], seeds[rows]) if usual[rows[0]] else best_places(worth, at[rows])
+                )
                 at.positions[rows] = some[0].positions
                 places[rows] = at.positions[rows, 0]
         tried: list[Ranked | None] = [None] * n
@@ -80,9 +82,9 @@ class FramePlayer(BoundPlayer):
 
     def _consider(self, at: Positions, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, else all, at most ``RANKED``, best first, with chances or points."""
-        strokes, tried, _ = self.decided(at, seeds)
+        strokes, tried, _ = self.decide_frames(at, seeds)
         own = [strokes[k : k + 1] for k in range(len(tried))]
         return [
-            Ranked(mine, None) if one is None else shown(one, mine)
+            Ranked(mine, None) if one is None else show_strokes(one, mine)
             for mine, one in zip(own, tried, strict=True)
         ]

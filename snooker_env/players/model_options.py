@@ -15,7 +15,7 @@ KEYS = tuple(Options.group("action"))  # what a model's file does not say
 LEFT_OUT = "must be left out: it is for models of Stable-Baselines3"
 
 
-def checked(options: Mapping[str, Any] | None) -> dict[str, Any]:
+def check_model_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
     """These options as a dict, {} for None; ValueError for others than ``KEYS`` or for values that they cannot have."""
     if not isinstance(options, Mapping | None):
         raise refuse("options", options, 'must be a dict such as {"aim": "target"}')
@@ -34,7 +34,7 @@ def options_of_words(words: Sequence[str]) -> dict[str, Any]:
         if not equals or name not in KEYS or name in options:
             raise refuse("options", word, f"must be KEY=VALUE, KEY once each of {', '.join(KEYS)}")
         options[name] = tuple(value.split(",")) if name == "says" else _value(value)
-    return checked(options)
+    return check_model_options(options)
 
 
 def _value(text: str) -> Any:

@@ -9,7 +9,7 @@ from .._lib.types import Floats, Ints
 from ..game.frame_columns import OPPONENT, Layouts
 from ..game.sides import strikers_own
 from ..planning import Positions
-from ..tasks.frame import Asked, Frames, Opponent
+from ..tasks.frames import Asked, Frames, Opponent
 from ..tasks.options import OPPONENTS, Options
 from ..tasks.tables import Crew, uniform
 from .choices import GhostBall
@@ -23,7 +23,7 @@ from .seen import SeenPlayer
 _KINDS = (ValueError, TypeError, ImportError)
 
 
-def drawn(frames: Frames, which: Ints) -> Floats:
+def draw_uniform(frames: Frames, which: Ints) -> Floats:
     """Uniform numbers in [0, 1), from the streams of the tables ``which``."""
     numbers = np.empty((len(which), 2))  # they come in pairs
     uniform(which, frames.streams, numbers)
@@ -39,7 +39,7 @@ class PlayerOpponent:
     def strokes(self, frames: Frames, which: Ints, crew: Crew) -> Asked:
         """See ``Opponent.strokes``; errors name the player."""
         seeds, asked = np.zeros(frames.n, np.int64), _room(frames.n)
-        seeds[which] = drawn(frames, which) * 2**32
+        seeds[which] = draw_uniform(frames, which) * 2**32
         player = self.player
         if isinstance(player, GhostBall):  # kernels alone, on several threads: its answer needs no check
 
@@ -55,7 +55,7 @@ class PlayerOpponent:
 
     def _answer(self, frames: Frames, which: Ints, seeds: Ints) -> Strokes:
         """What the player answers, checked."""
-        saved = Layouts(frames.saved.positions[which], frames.saved.on_table[which])
+        saved = Layouts(frames.layouts_before.positions[which], frames.layouts_before.on_table[which])
         game = strikers_own(frames.game[which])
         own = frames.conditions[which] if frames.rules.drawn else None
         at = Positions(frames.positions[which], frames.on_table[which], game, saved, own)
@@ -111,7 +111,7 @@ class PoolOpponent:
         shares = np.cumsum(self.pool.weights)
         if not len(shares) or shares[-1] <= 0.0:
             raise refuse("opponent", self.name, "must have a member with a weight above 0")
-        numbers = drawn(frames, new)
+        numbers = draw_uniform(frames, new)
         frames.game[new, OPPONENT] = 1 + np.searchsorted(shares, numbers * shares[-1], side="right")
 
 

@@ -18,10 +18,10 @@ from ..planning.positions import Positions, PositionsLike, seeds_of
 from ..planning.prospects import prospects_of, spread_of
 from ..planning.search import Ranked
 from ..planning.strokes import Strokes
-from ..planning.worth import chosen, decide
+from ..planning.worth import apply_decision, decide
 from ..tasks.options import Options
 
-__all__ = ["FRAMES", "VISITS", "BoundPlayer", "Player", "Ranked", "Strokes", "decided", "decision_seeds"]
+__all__ = ["FRAMES", "VISITS", "BoundPlayer", "Player", "Ranked", "Strokes", "ask_player", "decision_seeds"]
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]  # a dict: fields of ``Options``
 
 
@@ -83,11 +83,11 @@ class BoundPlayer:
         """What positions of frames are worth to their strikers, for decisions after fouls: float64 (n,).
 
         Here by the likeliest pot: who pots more often than not gains by having the next stroke."""
-        rules, (visits, _) = self.options.rules, placed(at, np.zeros(len(at), np.int64))
+        rules, (visits, _) = self.options.rules, place_cue_balls(at, np.zeros(len(at), np.int64))
         spread = spread_of(rules.noise, rules.physics)
         return 2.0 * prospects_of(visits, spread, most=_POTS, rails=rules.rails)[1].max(axis=1) - 1.0
 
-    def started(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints]:
+    def start_playing(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints]:
         """From where it plays in n positions: visits after its decisions, with placed cue balls; their places (n, 2), else
         NaN; and the decisions (n,), the best by ``worth``."""
         at, code = Positions.of(positions), self.options.rules.rule_set.code
@@ -96,8 +96,8 @@ class BoundPlayer:
             decisions[rows] = decide(self.worth, at[rows].known_to(self.options.rules), code)[0]
             anywhere = rows[decisions[rows] == PLACE_ANYWHERE]
             at = at.copy()
-            at.game[anywhere] = chosen(at[anywhere], PLACE_ANYWHERE).game
-        return *placed(at, seeds), decisions
+            at.game[anywhere] = apply_decision(at[anywhere], PLACE_ANYWHERE).game
+        return *place_cue_balls(at, seeds), decisions
 
     @property
     def options(self) -> Options:
@@ -117,7 +117,7 @@ def streams_of(seeds: Integers) -> np.ndarray:
     return streams
 
 
-def placed(at: Positions, seeds: Integers) -> tuple[Positions, np.ndarray]:
+def place_cue_balls(at: Positions, seeds: Integers) -> tuple[Positions, np.ndarray]:
     """Visits with cue balls in hand put where ``ghost_ball`` does, and these places (n, 2), else NaN."""
     places, keys = np.full((len(at), 2), np.nan), seeds_of(seeds, len(at))
     if not at.in_hand.any():
@@ -165,7 +165,7 @@ def decision_seeds(seed: int, tables: Ints, decision: int | Ints) -> Ints:
     return (state >> np.uint64(32)).astype(np.int64)
 
 
-def decided(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats:
+def ask_player(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats:
     """Ask a bound player on tables.
 
     Parameters
@@ -187,7 +187,7 @@ def decided(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats:
     >>> from snooker_env.players import VISITS, decided
     >>> tables = sn.SnookerVectorEnv(2, **VISITS)
     >>> _ = tables.reset(seed=0)
-    >>> decided(sn.player("ghost_ball").at(tables), tables, np.array([True, False]), np.array([1, 2])).shape
+    >>> ask_player(sn.player("ghost_ball").at(tables), tables, np.array([True, False]), np.array([1, 2])).shape
     (2, 7)
     """
     rows = np.flatnonzero(going)

@@ -25,7 +25,7 @@ from ..game.frame_columns import PLAY, Layouts
 from ..game.in_hand import place_cue
 from ..planning import Positions
 from ..planning.positions import seeds_of
-from ..planning.worth import chosen
+from ..planning.worth import apply_decision
 from ..tasks.box_actions import MIN_SPEED
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options
@@ -100,7 +100,7 @@ class ProgramPlayer(BoundPlayer):
             choices = self._frame(at).choices
             if answer["choice"] in choices:
                 decided = answer["choice"]
-                at = chosen(at, CHOICES.index(decided))
+                at = apply_decision(at, CHOICES.index(decided))
                 answer = self._ask(at, seed)  # its stroke
         try:
             return self._read(answer, at, decided)
@@ -117,7 +117,7 @@ class ProgramPlayer(BoundPlayer):
             choice("choice", what, frame.choices)
             if what in ("play_again", "replace"):
                 return _one_stroke(decision=CHOICES.index(what))
-            at = chosen(at, CHOICES.index(what))
+            at = apply_decision(at, CHOICES.index(what))
         elif "choice" in answer:
             raise refuse("choice", what, "must be left out: the other player has not just fouled")
         if "place" in answer:

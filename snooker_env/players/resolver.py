@@ -12,11 +12,11 @@ from .._lib.check import refuse, refuse_what, truth
 from ..planning import VisitJudge
 from ..planning.search import BUDGET, MOST
 from .choices import GhostBall, Random
-from .model_options import LEFT_OUT, checked, of_others
+from .model_options import LEFT_OUT, check_model_options, of_others
 from .player import Player
 from .program import ProgramPlayer
-from .search import SearchPlayer
-from .stroke_value import StrokeValuePlayer
+from .search_player import SearchPlayer
+from .stroke_value_player import StrokeValuePlayer
 from .tactician import Tactician
 
 GROUP = "snooker_env.players"  # entry points for players: NAME = MODULE:MAKER, called without arguments
@@ -42,7 +42,7 @@ def players() -> list[str]:
     >>> sn.players()[:3]
     ['random', 'ghost_ball', 'best_pot']
     """
-    return [*BUILT_IN, *(name for name in _installed() if name not in BUILT_IN)]
+    return [*BUILT_IN, *(name for name in _find_entry_points() if name not in BUILT_IN)]
 
 
 def player(name: Any, *, trust: bool = False, options: Mapping[str, Any] | None = None) -> Player:
@@ -85,7 +85,7 @@ def player(name: Any, *, trust: bool = False, options: Mapping[str, Any] | None 
     >>> sn.player("ppo.zip", trust=True, options={"aim": "target"})  # doctest: +SKIP
     """
     truth("trust", trust)
-    read, text = checked(options), str(name)
+    read, text = check_model_options(options), str(name)
     if read and (not isinstance(name, str | Path) or is_name(text)):
         raise refuse("options", read, LEFT_OUT)
     if not isinstance(name, str | Path):
@@ -94,13 +94,13 @@ def player(name: Any, *, trust: bool = False, options: Mapping[str, Any] | None 
         return built_in
     if text.startswith(PROGRAM):
         return ProgramPlayer(text.removeprefix(PROGRAM))
-    if (entry := _installed().get(text)) is not None:
-        return _of_object(_made(text, entry.load))
+    if (entry := _find_entry_points().get(text)) is not None:
+        return _of_object(_make(text, entry.load))
     if text and Path(text).exists():
         return _of_file(Path(text), trust, read)
     if OWN.fullmatch(text):
         module, _, maker = text.partition(":")
-        return _of_object(_made(text, lambda: getattr(importlib.import_module(module), maker)))
+        return _of_object(_make(text, lambda: getattr(importlib.import_module(module), maker)))
     if Path(text).suffix in (".zip", ".npz") or "/" in text or "\\" in text:
         raise refuse("player", text, "must be a file or folder that is there: it is missing")
     known = ", ".join(map(repr, players()))
@@ -108,7 +108,7 @@ def player(name: Any, *, trust: bool = False, options: Mapping[str, Any] | None 
     raise refuse("player", text, f"must be one of {known}, {others}")
 
 
-def named(names: Sequence[str], trust: bool, options: Mapping[str, Any]) -> list[Player]:
+def players_of(names: Sequence[str], trust: bool, options: Mapping[str, Any]) -> list[Player]:
     """The players that a command line names; ``options`` are those of the models of Stable-Baselines3 among them."""
     models = [of_others(name) for name in names]
     its = [options if model else None for model in models]
@@ -145,11 +145,11 @@ def _built_in(name: str) -> Player | None:
         )
     if kind == Tactician.kind:
         return Tactician(int(budget) if budget else BUDGET)
-    learned = None if model is None else _learned(model)
+    learned = None if model is None else _load_networks(model)
     return SearchPlayer(kind, int(budget) if budget else BUDGET, learned)
 
 
-def _installed() -> dict[str, EntryPoint]:
+def _find_entry_points() -> dict[str, EntryPoint]:
     """The players of installed packages by name, as far as their modules are there."""
     return {one.name: one for one in entry_points(group=GROUP) if _importable(one.module)}
 
@@ -162,7 +162,7 @@ def _importable(module: str) -> bool:
         return False
 
 
-def _made(name: str, maker: Callable[[], Any]) -> Any:
+def _make(name: str, maker: Callable[[], Any]) -> Any:
     """An instance of what a name means; ValueError if the user's code raises."""
     try:
         return maker()()
@@ -216,7 +216,7 @@ def _strokes(name: str, path: Path) -> Any:
         raise refuse("player", name, allowed) from None
 
 
-def _learned(model: str) -> Any:
+def _load_networks(model: str) -> Any:
     """Policy and value of a planner's model: a level of the package's weights, a file or a run's folder."""
     from .weights import learned_at, levels
 

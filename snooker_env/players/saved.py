@@ -36,10 +36,10 @@ class FittingModel:
                 if outline(space(kind, frame=frame, replaced=replaced, choices=choices)) == saved.observation:
                     if outline(model.actions) != saved.action:
                         told = "give the options of its training, for example placement=True"
-                        raise saved.refused(f"must be a model whose actions are {model.actions}: {told}")
+                        raise saved.refuse_file(f"must be a model whose actions are {model.actions}: {told}")
                     return model
         view = "must be a model trained on the observation of a visit or a frame, and nothing else"
-        raise saved.refused(view)
+        raise saved.refuse_file(view)
 
     @property
     def actions(self) -> Any:
@@ -52,7 +52,7 @@ class FittingModel:
         network = self.saved.network(trust, "trust=True, or --trust on the command line")
         same_view = outline(network.observation_space) == self.saved.observation
         if not same_view or network.action_space != self.actions:
-            raise self.saved.refused("must be a model whose spaces are those that its file describes")
+            raise self.saved.refuse_file("must be a model whose spaces are those that its file describes")
         return network
 
 

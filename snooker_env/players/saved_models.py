@@ -114,7 +114,7 @@ class SavedModel:
             raise refuse(field, str(path), allowed)
         return cls(Path(path), field, data, *outlines)
 
-    def refused(self, allowed: str) -> ValueError:
+    def refuse_file(self, allowed: str) -> ValueError:
         """Return, not raise, the ValueError that refuses this file; ``allowed``: what it must be."""
         return refuse(self.field, str(self.path), allowed)
 
@@ -127,7 +127,9 @@ class SavedModel:
                 buffers = self.data.get("rollout_buffer_class")
                 masked = isinstance(buffers, dict) and "maskable" in str(buffers.get("__module__"))
                 return ("sb3_contrib", "MaskablePPO") if masked else (library, name)
-        raise self.refused("must be a model of MaskablePPO, " + ", ".join(name for _, name, _ in _ALGORITHMS))
+        raise self.refuse_file(
+            "must be a model of MaskablePPO, " + ", ".join(name for _, name, _ in _ALGORITHMS)
+        )
 
     def network(self, trust: bool, consent: str) -> Any:
         """Load the model's policy on the CPU, which runs the code in its pickles: ValueError without
@@ -136,7 +138,7 @@ class SavedModel:
         library, name = self.algorithm
         if not trust:
             why = f"holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with {consent}"
-            raise self.refused(why)
+            raise self.refuse_file(why)
         try:
             if library == "sb3_contrib":
                 import sb3_contrib as module
@@ -155,4 +157,4 @@ class SavedModel:
         except Exception as error:  # the file's own code may raise anything
             why = str(error).partition("\n")[0]
             allowed = f"must be a model that {name} can load ({type(error).__name__}: {why})"
-            raise self.refused(allowed) from error
+            raise self.refuse_file(allowed) from error

@@ -15,11 +15,11 @@ from ..planning.positions import PositionsLike, seeds_of
 from ..planning.strokes import decode
 from ..tasks.carry_out import sayings
 from ..tasks.discrete_actions import Choices
-from ..tasks.frame import Frames
+from ..tasks.frames import Frames
 from ..tasks.observations import arrange
 from ..tasks.options import Options, Rules
 from ..tasks.visit import Visits
-from .player import BoundPlayer, Strokes, placed
+from .player import BoundPlayer, Strokes, place_cue_balls
 
 OPTIONS = (*Options.group("action"), *Options.group("view"), "miss")  # with "miss" it sees more
 
@@ -120,10 +120,10 @@ class SeenPlayer(BoundPlayer):
         if self.frames:
             return (at if at.of_frames else begun(at)), none
         if not self._rules.actions.placement:
-            return placed(at, keys)
+            return place_cue_balls(at, keys)
         anywhere, visits = at.anywhere & at.in_hand, at.as_visits()
         if anywhere.any():  # the places that it knows are those of the D
-            put, places = placed(at[anywhere], keys[anywhere])
+            put, places = place_cue_balls(at[anywhere], keys[anywhere])
             visits.positions[anywhere], none[anywhere] = put.positions, places
         return visits, none
 

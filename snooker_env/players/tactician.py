@@ -17,7 +17,7 @@ from ..tasks.options import Options
 from .choices import GhostBall
 from .frame_decisions import FramePlayer
 from .player import Ranked, Strokes
-from .search import SearchPlayer
+from .search_player import SearchPlayer
 from .weights import learned_at, learned_worth, level_for
 
 
@@ -47,7 +47,7 @@ class Tactician(FramePlayer):
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """See ``Player.play``."""
         at = Positions.of(positions)
-        return self.decided(at, seeds).strokes if at.of_frames else self._visits.play(at, seeds)
+        return self.decide_frames(at, seeds).strokes if at.of_frames else self._visits.play(at, seeds)
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their chances to win; in visits their points."""

@@ -19,7 +19,7 @@ DIGITS = 4  # decimals of a chance in data
 
 
 @runtime_checkable
-class Judge(Protocol):
+class ChanceJudge(Protocol):
     """Who says how likely the striker of each position of a frame wins: ``snooker_env.player("tactician").at(env)``."""
 
     def chance_to_win(self, positions: Positions) -> Floats:
@@ -35,15 +35,15 @@ class Standing(NamedTuple):
     on_table: Bools
 
 
-def check_judge(judge: object) -> Judge | None:
+def check_judge(judge: object) -> ChanceJudge | None:
     """A judge, or None for none."""
-    if judge is not None and not isinstance(judge, Judge):
+    if judge is not None and not isinstance(judge, ChanceJudge):
         allowed = 'must have chance_to_win(positions), as snooker_env.player("tactician").at(env) has'
         raise refuse_what("judge", f"a {type(judge).__name__}", allowed)
     return judge
 
 
-def win_chances(judge: Judge, standings: Sequence[Standing]) -> list[float]:
+def win_chances(judge: ChanceJudge, standings: Sequence[Standing]) -> list[float]:
     """How likely player 0 wins each of n frames as they stand: 0 and 1 only where the judge is certain."""
     n = len(standings)
     game = np.zeros((n, columns.COLUMNS), np.int64)

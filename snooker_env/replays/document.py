@@ -18,7 +18,7 @@ from ..planning import Position
 from ..render.scene import scene_data
 from ..simulation import Shot, simulate
 from ..tasks.played import Played
-from .chances import Judge, check_judge, standings_of, win_chances
+from .chances import ChanceJudge, check_judge, standings_of, win_chances
 from .encode import encode_stroke, physics_data, table_data
 from .web import WEB, table_js
 
@@ -68,7 +68,7 @@ class Replay:
         title: str = "",
         players: Iterable[str] | None = None,
         table: TableLike = None,
-        judge: Judge | None = None,
+        judge: ChanceJudge | None = None,
     ):
         if not isinstance(strokes, Iterable):
             raise refuse("strokes", strokes, "must be strokes, one after the other")
@@ -227,7 +227,7 @@ def replay(
     title: str = "",
     players: Iterable[str] | None = None,
     table: TableLike = None,
-    judge: Judge | None = None,
+    judge: ChanceJudge | None = None,
 ) -> Replay:
     """Make a replay of what was played, and write it to a file if ``path`` is given.
 

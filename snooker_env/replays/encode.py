@@ -19,7 +19,7 @@ from ..physics.table import Table
 from ..simulation import Shot
 from ..tasks.noise import LEVELS, Noise
 from ..tasks.played import Played
-from .words import foul_words, on_words, pots_of, sentence
+from .referee_words import foul_words, on_words, pots_of, sentence
 
 _PLACES = [cloth.T0, cloth.X, cloth.Y, cloth.VX, cloth.VY, cloth.AX, cloth.AY]
 _HEIGHTS = [cloth.Z, cloth.UZ]

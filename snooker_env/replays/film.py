@@ -19,7 +19,7 @@ from ..render.scene import UNTURNED, Film, Scene, ScoreBar, scene
 from ..render.table_picture import SIZE, Size
 from ..simulation import Shot
 from ..tasks.played import Played
-from .words import bars
+from .referee_words import bars
 
 if TYPE_CHECKING:
     from .document import Replay

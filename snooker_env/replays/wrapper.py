@@ -8,7 +8,7 @@ import gymnasium
 
 from .._lib.check import choice, refuse, refuse_what
 from .._lib.types import Action
-from .chances import Judge, check_judge
+from .chances import ChanceJudge, check_judge
 from .document import SUFFIXES, Replay, check_players, read_path
 
 
@@ -64,7 +64,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         name_prefix: str = "snooker",
         suffix: str = ".html",
         players: Iterable[str] | None = None,
-        judge: Judge | None = None,
+        judge: ChanceJudge | None = None,
     ):
         arguments = {"episode_trigger": episode_trigger, "name_prefix": name_prefix, "suffix": suffix}
         arguments |= {"players": players, "judge": judge}

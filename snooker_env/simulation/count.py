@@ -15,7 +15,7 @@ def count(shots: int) -> None:
         _SHOTS += shots
 
 
-def simulated() -> int:
+def count_shots() -> int:
     """Count the shots that this process has simulated so far.
 
     Returns
@@ -28,9 +28,9 @@ def simulated() -> int:
     >>> import numpy as np
     >>> import snooker_env as sn
     >>> from snooker_env.benchmark import simulated
-    >>> before = simulated()
+    >>> before = count_shots()
     >>> _ = sn.simulate(np.zeros((1, 2)), np.array([[1.0, 0.0]]), np.zeros((1, 3)))
-    >>> simulated() - before
+    >>> count_shots() - before
     1
     """
     return _SHOTS

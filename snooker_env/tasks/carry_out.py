@@ -11,16 +11,16 @@ from ..game.balls import YELLOW
 from ..game.ruling import AUTO
 from ..physics.cue import squirt
 from . import declarations
-from .arrays import C_END_MASS, C_MAX_OFFSET, StruckArrays, TableArrays
 from .box_actions import tip_on_disc
 from .declarations import decision_of, declaration_of, nomination_of
 from .frame_kernels import say
+from .kernel_arrays import C_END_MASS, C_MAX_OFFSET, StruckArrays, TableArrays
 from .options import Rules
 from .rewards import MATCH_REWARDS
 from .stroke import ShotBuffers, place, row_of, strike
 
 if TYPE_CHECKING:
-    from .frame import Asked, Frames
+    from .frames import Asked, Frames
 
 
 @entry(what="the strokes of players in frames", seconds=3)

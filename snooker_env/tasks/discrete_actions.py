@@ -19,8 +19,8 @@ from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from ..physics.cue_room import EDGE, EDGE_AXIS, EDGE_LEVEL, EDGE_SIDE, RAIL, STEEPEST, TIP, least_elevation
 from . import declarations
-from .arrays import C_END_MASS, C_RAILS
 from .escapes import LINE_AIM
+from .kernel_arrays import C_END_MASS, C_RAILS
 from .lines import LINE_ROWS, POTS, aim_along, count_lines, find_lines
 from .pot_aim import solved_aim
 

@@ -20,7 +20,7 @@ from ..game.shut_in import shut_in
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import EventKind, Status
 from . import declarations, stroke
-from .arrays import OutputArrays, PlayedArrays, TableArrays
+from .kernel_arrays import OutputArrays, PlayedArrays, TableArrays
 from .observations import FRAME_SIZE, REPLACED_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earnings, frame_reward_of
 from .tables import COUNTS, I_BREAK, I_FOULS, REALS, Tables, keep_last, write_empty_info, write_stroke_info

@@ -11,13 +11,13 @@ import numpy as np
 
 from .._lib.jit import entry, kernel
 from ..game.balls import N_BALLS, N_REDS, SPOTS, touching_balls
-from ..game.lines import find_first_ball
+from ..game.first_contact import find_first_ball
 from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, count_pots, find_pots
 from ..geometry import BALL_RADIUS
 from ..physics.cloth import COLUMNS
 from ..physics.impact.polynomial import WORK
-from .arrays import Work
 from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, escape_aim, find_escapes
+from .kernel_arrays import Work
 from .pot_aim import swerved_aim
 from .windows import HIGH, LOW, MOST_EDGES, half_width, open_windows, room, towards, wrap_angle
 

@@ -32,7 +32,7 @@ TWICE = radians(15.0)
 
 @kernel
 def with_errors(speed, side, top, aim, elevation, errors, noise):
-    """The shot under the standard normal ``errors`` (5,): the only law of errors; see ``executed``."""
+    """The shot under the standard normal ``errors`` (5,): the only law of errors; see ``execute_stroke``."""
     more = (1.0 + elevation * noise[N_STEEPER]) * sqrt(1.0 + (noise[N_FASTER] * speed) ** 2)
     return (
         max(0.0, speed + errors[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
@@ -53,7 +53,7 @@ def drawn_errors(stream):
 
 
 @kernel
-def executed(speed, side, top, aim, elevation, noise, stream):
+def execute_stroke(speed, side, top, aim, elevation, noise, stream):
     """A shot with its execution errors. An inner kernel.
 
     Parameters

@@ -11,7 +11,7 @@ from gymnasium import spaces
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
 from .._lib.types import CueKind, Fidelity, Floats, MissRule, ObservationKind, Solver
 from ..game.frame import MISS_RULES
-from ..game.layouts import Plan
+from ..game.layouts import LayoutPlan
 from ..game.rule_sets import RULES, RuleSet, RulesName, rule_set
 from ..geometry import BALL_RADIUS
 from ..physics import conditions
@@ -20,10 +20,10 @@ from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike, physics_with
 from ..physics.table import Table, TableLike
 from . import observations
-from .arrays import Packed, pack_cue
 from .box_actions import AIMS, Actions
 from .declarations import SAYS
 from .discrete_actions import Choices
+from .kernel_arrays import Packed, pack_cue
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
 from .table_fit import fit_plan, table_of
@@ -58,7 +58,7 @@ class Rules:
     physics: Physics
     table: Table
     fidelity: Solver  # as ``parse_fidelity`` returns it
-    plan: Plan  # how tables are dealt
+    plan: LayoutPlan  # how tables are dealt
     reward: str
     observation: ObservationKind
     miss: MissRule = "off"  # of a frame, as all below but one: the rule for a foul and a miss

@@ -36,9 +36,9 @@ def stroke_in_room(aim, stroke, positions, on_table, law):
 
 @kernel
 def struck_by(played, law):
-    """Velocity and spin of a stroke of ``stroke_in_room``; see ``cue.struck``."""
+    """Velocity and spin of a stroke of ``stroke_in_room``; see ``cue.strike_ball``."""
     speed, side, top, aim, elevation = played
-    return cue.struck(
+    return cue.strike_ball(
         speed, aim, side, top, elevation, law.phys[P_R], law.phys[P_MU_S], law.end_mass_ratio, 0.0
     )
 

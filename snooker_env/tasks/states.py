@@ -193,7 +193,7 @@ def check_frame_state(
         in_d = frame.in_hand and not frame.anywhere
         check_in_hand("state.frame.in_hand", in_d, "state.positions", positions)
     if frame.saved is not None:
-        frame = replace(frame, saved=_check_saved(frame, table, R))
+        frame = replace(frame, saved=_check_return(frame, table, R))
     stream = check_stream(state["stream"])
     check_rng(state["rng"], generator)
     opponent = integer("state.opponent", state["opponent"], 0, MOST)
@@ -221,7 +221,7 @@ def _check_match(state, frame, best_of):
     return won, integer("state.first_break", state["first_break"], 0, 1)
 
 
-def _check_saved(frame, table, R):
+def _check_return(frame, table, R):
     """The position to which a frame may return, with its layout checked like that of the state itself."""
     saved, field = frame.saved, "state.frame.saved.layout"
     if saved.layout is None and not frame.miss_called:

@@ -15,7 +15,7 @@ from ..game.in_hand import nearest_anywhere, nearest_place
 from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
-from ..physics.cue_room import in_room, raised
+from ..physics.cue_room import in_room, raise_cue
 from ..physics.engine import EventKind, Status
 from ..physics.events import OFF_TABLE
 from ..physics.parameters import Physics
@@ -23,11 +23,11 @@ from ..physics.table import Table
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from ..simulation.count import count
 from . import discrete_actions
-from .arrays import C_E_T, C_END_MASS, C_MAX_OFFSET, C_MU_S, C_RAILS, CueLaw, StruckArrays
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_PLACEMENT, playable
+from .kernel_arrays import C_E_T, C_END_MASS, C_MAX_OFFSET, C_MU_S, C_RAILS, CueLaw, StruckArrays
 from .lines import new_work
-from .noise import executed, kick_of
+from .noise import execute_stroke, kick_of
 from .options import Rules
 
 AT_ONCE = 1e-9  # contacts within this time [s] are simultaneous
@@ -120,10 +120,12 @@ def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
     speed, side, top, aim, elevation = struck
     side, top = tip_on_disc(side, top, cue_row[C_MAX_OFFSET])
     if side != intended[1] or top != intended[2] or aim != intended[3] or elevation != intended[4]:
-        elevation = raised((side, top, aim, elevation), positions, on_table, cue_row[C_RAILS:], BALL_RADIUS)
+        elevation = raise_cue(
+            (side, top, aim, elevation), positions, on_table, cue_row[C_RAILS:], BALL_RADIUS
+        )
     shot, r, v, w, aloft, here = shots.shots[j], shots.r, shots.v, shots.w, shots.aloft, shots.here
     mu_s, m = cue_row[C_MU_S], cue_row[C_END_MASS]
-    after = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m, cue_row[C_E_T])
+    after = cue.strike_ball(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m, cue_row[C_E_T])
     (shot[VX], shot[VY], shot[UZ]), (shot[WX], shot[WY], shot[WZ]) = after
     shot[SPEED] = intended[0]
     shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
@@ -136,10 +138,10 @@ def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
 
 @kernel
 def strike(intended, positions, on_table, stream, cue_row, noise, j, shots):
-    """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``executed``), as far as there is room
+    """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``execute_stroke``), as far as there is room
     for the cue, with errors."""
     meant = played_in(intended, positions, on_table, cue_row, shots.shots[j])
-    strike_with(meant, executed(*meant, noise, stream), positions, on_table, cue_row, j, shots)
+    strike_with(meant, execute_stroke(*meant, noise, stream), positions, on_table, cue_row, j, shots)
     shots.kicks[j] = kick_of(noise, stream)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from .._lib.check import refuse
 from ..game.banks import bank
-from ..game.layouts import STORED_IN, Plan, plan_of
+from ..game.layouts import STORED_IN, LayoutPlan, plan_of
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.bounds import deepest
 from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
@@ -62,8 +62,8 @@ def _check_pockets(cloth: Table) -> None:
             raise refuse("table", cloth.name, allowed)
 
 
-def fit_plan(layout: str, cloth: Table) -> Plan:
-    """The ``Plan`` of a layout on a table, without the stored tables that do not fit its pockets."""
+def fit_plan(layout: str, cloth: Table) -> LayoutPlan:
+    """The ``LayoutPlan`` of a layout on a table, without the stored tables that do not fit its pockets."""
     plan = plan_of(layout)
     return plan_of(layout, _unfit(cloth, STORED_IN[layout][0])) if len(plan.tables) else plan
 

@@ -13,14 +13,14 @@ from ..game.balls import N_BALLS, BallOn, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import pair, stream_of
 from ..physics.conditions import COLUMNS as CONDITIONS
-from ..physics.conditions import END_MASS_RATIO, drawn, normalised
+from ..physics.conditions import END_MASS_RATIO, draw_constants, scale_to_unit
 from ..physics.conditions import NAMES as CONDITION_NAMES
 from ..physics.parameters import Physics, nominal, pack_into, physics_with
 from ..simulation.shot import Shot
 from . import discrete_actions, stroke
-from .arrays import C_END_MASS, Packed
 from .box_actions import Actions
 from .discrete_actions import Choices
+from .kernel_arrays import C_END_MASS, Packed
 from .noise import Noise
 from .options import NEVER, Rules
 from .played import Played, judgement_of, room_of, strike_of
@@ -266,13 +266,13 @@ class Tables(ABC):
         if len(masks) and len(which):
             masks[which] = self.action_masks(which)
 
-    def ended(self) -> Bools:
+    def are_over(self) -> Bools:
         """Which tables have no stroke left to play: bool (n,)."""
         return ~self.begun | (self.game[:, OVER] != 0)
 
-    def finished(self) -> Bools:
+    def are_told_over(self) -> Bools:
         """Which episodes have ended, and a step has said so: bool (n,)."""
-        return self.ended()
+        return self.are_over()
 
     @property
     def unplayable(self) -> str:
@@ -295,7 +295,7 @@ class Tables(ABC):
         if self.rules.drawn and len(which):
             shares = np.empty((len(which), CONDITIONS))
             uniform(which, self.streams, shares)
-            self.set_conditions(which, drawn(shares))
+            self.set_conditions(which, draw_constants(shares))
 
     def set_conditions(self, which: Ints, values: Floats) -> None:
         """Give the tables ``which`` these constants (len(which), 8)."""
@@ -308,7 +308,7 @@ class Tables(ABC):
         if self.rules.drawn:
             out.reals[which, -CONDITIONS:] = self.conditions[which]
         if self.rules.observed:
-            out.observations[which, -CONDITIONS:] = normalised(self.conditions[which])
+            out.observations[which, -CONDITIONS:] = scale_to_unit(self.conditions[which])
 
     def physics_of(self, k: int) -> Physics:
         """The constants of table k."""
@@ -324,7 +324,7 @@ class Tables(ABC):
         own = ("conditions", "cues", "phys") if self.rules.drawn else ()
         return ("positions", "on_table", "game", "streams", "begun", *own)
 
-    def interrupted(self) -> None:
+    def interrupt(self) -> None:
         """A step or reset was cut short: tables at which it is not the agent's turn need a reset."""
         return
 

@@ -14,9 +14,9 @@ from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_CO
 from ..game.layouts import deal_tables
 from ..game.ruling import FLAG, VISIT
 from ..geometry import BALL_RADIUS
-from ..physics.conditions import normalised
+from ..physics.conditions import scale_to_unit
 from ..physics.engine import Status
-from .arrays import OutputArrays, PlayedArrays
+from .kernel_arrays import OutputArrays, PlayedArrays
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
 from .states import State, check_visit
@@ -145,7 +145,7 @@ class Visits(Tables):
         rows = np.empty((len(which), self.SIZE), np.float32)
         observe(which, self.positions, self.on_table, self.game, rows)
         if self.rules.observed:
-            rows[:, SIZE:] = normalised(self.conditions[which])
+            rows[:, SIZE:] = scale_to_unit(self.conditions[which])
         return rows
 
     def get_state(self, k: int) -> dict[str, Any]:

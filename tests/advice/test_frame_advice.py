@@ -8,7 +8,7 @@ import pytest
 from cases import ENDGAME, HIDDEN, OPEN, SNOOKERED, Given, played, stroke_of
 
 import snooker_env as sn
-from snooker_env.advice import CueStroke, words
+from snooker_env.advice import CueStroke, stroke_words
 from snooker_env.advice.practice import one_position
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position, Positions, clear_paths
@@ -89,7 +89,7 @@ def test_a_missed_pot_says_what_it_leaves():
     (one,) = sn.advise(far, agent=pot, noise="club", **QUICK | {"samples": 200, "visits": 60})
     assert one.kind == "pot" and one.chance < 0.8
     assert (
-        f"leaves the opponent {words.points_words(one.leaves)} if missed" in one.words
+        f"leaves the opponent {stroke_words.points_words(one.leaves)} if missed" in one.words
         and 0.0 < one.leaves < 13.0
     )
 
@@ -110,7 +110,7 @@ def test_how_often_he_is_snookered_is_as_in_the_environment():
         assert (
             least <= one.snookers <= most
             and f"snookered in {100 * one.snookers:.0f} %"
-            in words.reply_words(one.kind, 0.0, 0.0, one.snookers)
+            in stroke_words.reply_words(one.kind, 0.0, 0.0, one.snookers)
         )
 
 
@@ -138,13 +138,16 @@ def test_the_decision_after_a_foul_and_the_lot_are_behind_the_stroke():
 
 
 def test_where_the_cue_ball_goes_in_words():
-    assert words.lie_words(0.0, -1.2, -1, 0.0) == "to baulk" and words.lie_words(0.0, 0.0, -1, 0.0) == ""
-    assert words.lie_words(0.3, -1.7, -1, 0.0) == "to the baulk cushion"
-    assert words.lie_words(0.3, 1.7, -1, 0.0) == "to the top cushion"
-    assert words.lie_words(0.0, -1.2, 18, 0.09) == "tight behind the brown"
     assert (
-        words.lie_words(0.0, -1.7, 18, 0.4) == "behind the brown"
-        and words.lie_words(0.0, 0.0, 3, 0.3) == "behind the red"
+        stroke_words.lie_words(0.0, -1.2, -1, 0.0) == "to baulk"
+        and stroke_words.lie_words(0.0, 0.0, -1, 0.0) == ""
+    )
+    assert stroke_words.lie_words(0.3, -1.7, -1, 0.0) == "to the baulk cushion"
+    assert stroke_words.lie_words(0.3, 1.7, -1, 0.0) == "to the top cushion"
+    assert stroke_words.lie_words(0.0, -1.2, 18, 0.09) == "tight behind the brown"
+    assert (
+        stroke_words.lie_words(0.0, -1.7, 18, 0.4) == "behind the brown"
+        and stroke_words.lie_words(0.0, 0.0, 3, 0.3) == "behind the red"
     )
     roll = Position(cue=(0.0, -1.3), reds=[(0.02, 1.2)], brown=(0.0, -1.0475), on="any_colour")
     (one,) = sn.advise(roll, agent=Given(CueStroke(speed=0.36, aim=np.pi / 2)), noise="none", scores=(1, 0))
@@ -231,7 +234,7 @@ def test_scores_decide_what_the_chance_is():
 
 
 def test_figures_in_words():
-    say = words.reply_words
+    say = stroke_words.reply_words
     assert (
         say("safety", 0.12, 3.04, 0.34)
         == "the opponent pots next in 12 %, leaves the opponent 3 points, snookered in 34 %"
@@ -241,6 +244,9 @@ def test_figures_in_words():
         say("pot", 0.5, 18.2, 0.0) == "leaves the opponent 18 points if missed"
         and say("pot", None, None, None) == ""
     )
-    assert words.against_words(0.55, "pot") == " against 55 % for the best pot"
-    assert words.against_words(0.55, "") == " against 55 % for the next best"
-    assert words.what_words("safety", 3, -1, 3, "thin on the left") == "safety off the red, thin on the left"
+    assert stroke_words.against_words(0.55, "pot") == " against 55 % for the best pot"
+    assert stroke_words.against_words(0.55, "") == " against 55 % for the next best"
+    assert (
+        stroke_words.what_words("safety", 3, -1, 3, "thin on the left")
+        == "safety off the red, thin on the left"
+    )

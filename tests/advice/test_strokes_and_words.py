@@ -8,7 +8,7 @@ from cases import OPEN, Given, played
 from scipy.stats import binomtest
 
 import snooker_env as sn
-from snooker_env.advice import POCKET_WORDS, CueStroke, words
+from snooker_env.advice import POCKET_WORDS, CueStroke, stroke_words
 from snooker_env.advice.outcomes import expect_points, wilson
 from snooker_env.physics.events import EventKind
 from snooker_env.tasks import box_actions
@@ -66,11 +66,11 @@ def test_what_is_left_of_the_spin_is_what_the_simulator_says(speed, top, distanc
     if r[k, 0, 1] + 1.7 < distance:
         pytest.skip("it does not run so far")
     expected = -w[k, 0, 0] * physics.R / v[k, 0, 1]
-    assert words.rolling(speed, top, distance, physics) == pytest.approx(expected, abs=2e-2)
+    assert stroke_words.rolling(speed, top, distance, physics) == pytest.approx(expected, abs=2e-2)
 
 
 def test_spin_in_words():
-    say = lambda top, side=0.0, distance=0.3, speed=2.5: words.spin_words(  # noqa: E731
+    say = lambda top, side=0.0, distance=0.3, speed=2.5: stroke_words.spin_words(  # noqa: E731
         CueStroke(speed=speed, aim=0.0, top=top, side=side), distance, sn.Physics()
     )
     tops = {0.4: "top", 0.2: "follow", 0.0: "plain", -0.2: "screw", -0.45: "deep screw"}
@@ -95,7 +95,7 @@ def test_the_cushion_of_an_escape_is_the_one_that_the_ball_meets():
         (px, py), *_ = shot.at(hits["time"][0])[0]
         side = abs(abs(px) - 0.889) < abs(abs(py) - 1.7845)
         name = ("right" if px > 0 else "left") if side else ("top" if py > 0 else "baulk")
-        assert words.cushion_words(x, y, aim) == f"{name} cushion"
+        assert stroke_words.cushion_words(x, y, aim) == f"{name} cushion"
         seen.add(name)
     assert len(seen) == 4
 
@@ -107,11 +107,13 @@ def test_contacts_in_words():
         for aside, said in zip((0.0, 0.25, 0.5, 0.75, 0.95), names, strict=True):
             for sign, side in ((1, "right"), (-1, "left")):
                 x, y = cos(aim) - sign * aside * reach * sin(aim), sin(aim) + sign * aside * reach * cos(aim)
-                assert words.contact_words(x, y, aim) == (said if said == "full" else f"{said} on the {side}")
+                assert stroke_words.contact_words(x, y, aim) == (
+                    said if said == "full" else f"{said} on the {side}"
+                )
 
 
 def test_what_a_stroke_does_in_words():
-    say = words.what_words
+    say = stroke_words.what_words
     assert say("pot", 19, 2, 19) == "blue, right middle" and say("pot", 5, 5, 5) == "red, left middle"
     assert say("pot", 5, 0, 8) == "red by a plant, green pocket"
     assert say("pot", 21, 4, 1) == "black off the red, top left"
@@ -121,14 +123,14 @@ def test_what_a_stroke_does_in_words():
     assert say("escape", 1, -1, 1) == "escape to the red"
     assert say("foul", -1, -1, -1) == "foul, nothing struck"
     assert say("foul", 16, -1, 16) == "foul, yellow first"
-    assert words.figures_words("pot", 0.874, 23.4) == "pot 87 %, 23 points expected"
+    assert stroke_words.figures_words("pot", 0.874, 23.4) == "pot 87 %, 23 points expected"
     safety = "fair 50 %; no pot intended, its worth as a safety is not judged"
-    assert [words.figures_words(kind, 0.5, 1.04) for kind in ("contact", "escape")] == [safety] * 2
-    assert words.figures_words("foul", 0.03, 0.0) == "fair 3 %"
-    assert words.figures_words("pot", 1.0, 1.04) == "pot 100 %, 1 point expected"
-    assert words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")
-    assert words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
-    assert words.place_words(0, -1.0475) == "from the brown spot"
+    assert [stroke_words.figures_words(kind, 0.5, 1.04) for kind in ("contact", "escape")] == [safety] * 2
+    assert stroke_words.figures_words("foul", 0.03, 0.0) == "fair 3 %"
+    assert stroke_words.figures_words("pot", 1.0, 1.04) == "pot 100 %, 1 point expected"
+    assert stroke_words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")
+    assert stroke_words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
+    assert stroke_words.place_words(0, -1.0475) == "from the brown spot"
 
 
 def test_the_words_of_a_suggestion_are_its_data():
@@ -162,7 +164,7 @@ def test_a_hit_of_a_ball_that_nearly_touches_is_called_a_push():
         given = Given(CueStroke(speed=1.5, aim=np.pi / 2 + on))
         (one,) = sn.advise(ahead, agent=given, noise="none", visits=0)
         assert ", at a real table a push stroke, a foul: the red is 0.5 mm away, " in one.words
-    say = words.push_words
+    say = stroke_words.push_words
     assert say(0.0, 0.0525 + 0.0005, np.pi / 2, 1) == (
         "at a real table a push stroke, a foul: the red is 0.5 mm away"
     )

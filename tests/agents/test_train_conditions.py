@@ -122,7 +122,7 @@ def test_it_sees_those_of_the_table_that_it_plays_on(observed, monkeypatch):
     still = np.zeros((3, *venv.action_space.shape), venv.action_space.dtype)
     for show in (venv.reset, lambda: venv.step(still)[0]):
         shown, at = show(), Positions.of(venv.unwrapped.tables)
-        assert np.allclose(shown[:, SHOWN:], conditions.normalised(at.conditions), atol=1e-6)
+        assert np.allclose(shown[:, SHOWN:], conditions.scale_to_unit(at.conditions), atol=1e-6)
     player, seen = load_player(observed), []
     policy = player.model.policy
     take = policy.obs_to_tensor
@@ -133,7 +133,7 @@ def test_it_sees_those_of_the_table_that_it_plays_on(observed, monkeypatch):
     ):
         del seen[:]
         player.at(options).play(at, np.arange(3))
-        assert np.allclose(np.stack(seen)[:, SHOWN:], conditions.normalised(wanted), atol=1e-6)
+        assert np.allclose(np.stack(seen)[:, SHOWN:], conditions.scale_to_unit(wanted), atol=1e-6)
 
 
 def test_such_a_model_is_stored_and_read(observed, tmp_path):

@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 import train
 from agents.learning import agent_training, loop
-from snooker_env.benchmark import play_visits, simulated, summary
+from snooker_env.benchmark import count_shots, play_visits, summary
 from tests.agents import training
 from tests.agents.training import results, weights
 
@@ -23,9 +23,9 @@ def finished(tmp_path_factory):
     out, original, counted = tmp_path_factory.mktemp("expert") / "run", loop.Loop.run, []
 
     def run_and_count(self):
-        before = simulated()
+        before = count_shots()
         original(self)
-        counted.append(simulated() - before)
+        counted.append(count_shots() - before)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(loop.Loop, "run", run_and_count)

@@ -13,7 +13,7 @@ from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, writ
 from snooker_env.benchmark.__main__ import main, suspicious
 from snooker_env.benchmark.playing import BATCH, COLUMNS
 from snooker_env.benchmark.results import strokes_of
-from snooker_env.players import VISITS, Strokes, decided
+from snooker_env.players import VISITS, Strokes, ask_player
 from snooker_env.players.program import AgentError, ProgramPlayer
 from tests.processes import ROOT
 
@@ -130,7 +130,7 @@ def test_a_program_sees_the_state_of_the_protocol(tmp_path):
 
 
 def test_a_program_sees_the_points_as_its_own(tmp_path):
-    tables = sn.SnookerVectorEnv(1, TASKS["SnookerBreakClub-v0"].judged(**VISITS), threads=1)
+    tables = sn.SnookerVectorEnv(1, TASKS["SnookerBreakClub-v0"].judged_options(**VISITS), threads=1)
     tables.reset(seed=1)
     at = sn.Positions.of(tables)
     at.points[0] = 5
@@ -320,13 +320,13 @@ def test_what_is_kept_is_what_was_played():
     player = Softly()
     result = judge(HARD, Agent.of(player, label="softly"), episodes=24)
     kept = strokes_of(result)
-    env = sn.SnookerEnv(HARD.judged(**VISITS))
+    env = sn.SnookerEnv(HARD.judged_options(**VISITS))
     for row, strokes in zip(result["rows"], kept, strict=True):
         env.reset(seed=row[1])
         assert env.step(strokes[0])[1] == row[2]
-    tables, seed = sn.SnookerVectorEnv(1, HARD.judged(**VISITS)), result["rows"][0][1]
+    tables, seed = sn.SnookerVectorEnv(1, HARD.judged_options(**VISITS)), result["rows"][0][1]
     tables.reset(seed=[seed])
-    exact = decided(player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([seed]), 0))
+    exact = ask_player(player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([seed]), 0))
     assert np.array_equal(kept[0], exact.astype(np.float32)) and not np.array_equal(kept[0], exact)
 
 

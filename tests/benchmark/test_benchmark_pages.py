@@ -22,7 +22,13 @@ KINDS = {str: "text", int: "integer", bool: "boolean", list: "list", dict: "obje
 def test_the_table_of_tasks(name):
     task = TASKS[name]
     more = [f"{key}={value}" for key, value in task.changes.items() if key not in ("noise", "layout")]
-    row = [f"`{name}`", task.frozen["noise"], ", ".join(more), task.changes["layout"], task.judged_layout]
+    row = [
+        f"`{name}`",
+        task.frozen_options["noise"],
+        ", ".join(more),
+        task.changes["layout"],
+        task.judged_layout,
+    ]
     assert f"| {' | '.join([*row, task.measure, f'{task.episodes:,}'])} |" in TEXT
 
 
@@ -30,7 +36,7 @@ def test_every_option_is_called_free_or_frozen():
     section = TEXT.split("### What is free and what is frozen")[1].split("### Tables")[0]
     free, frozen = section.split("Everything else is frozen:")
     assert all(f"`{name}`" in free for name in FREE)
-    assert all(f"`{name}`" in frozen.split("Passing")[0] for name in TASKS["SnookerBreak-v0"].frozen)
+    assert all(f"`{name}`" in frozen.split("Passing")[0] for name in TASKS["SnookerBreak-v0"].frozen_options)
 
 
 @pytest.mark.parametrize("name", FIELDS)

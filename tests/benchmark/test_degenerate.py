@@ -7,7 +7,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, __main__, faults, judge
-from snooker_env.benchmark.degenerate import ABOVE, best_constant, winners
+from snooker_env.benchmark.degenerate_check import ABOVE, best_constant, winners
 from snooker_env.benchmark.playing import play_episodes
 from snooker_env.players.degenerate import MODULE, SILLY, is_degenerate
 from snooker_env.tasks.discrete_actions import SIZE
@@ -77,6 +77,6 @@ def test_the_best_constant_is_found_on_tables_of_training(monkeypatch):
         rows = [[0, seed, int(player.choice == 123), *[0] * (len(COLUMNS) - 3)] for seed in seeds]
         return type("Played", (), {"rows": rows})
 
-    monkeypatch.setattr("snooker_env.benchmark.degenerate.play_episodes", played)
+    monkeypatch.setattr("snooker_env.benchmark.degenerate_check.play_episodes", played)
     assert best_constant(ESCAPE) == 123
     assert {layout for layout, _ in seen} == {"escape"} and max(seed for _, seed in seen) < 1_000_000

@@ -436,7 +436,10 @@ def test_fresh_seeds_find_an_agent_that_knew_the_tables():
                 strokes.values[k] = known.get(place.tobytes(), strokes.values[k])
             return strokes
 
-    peeking, player = sn.SnookerVectorEnv(100, HARD.judged(**VISITS)), Aims().at(HARD.judged())
+    peeking, player = (
+        sn.SnookerVectorEnv(100, HARD.judged_options(**VISITS)),
+        Aims().at(HARD.judged_options()),
+    )
     for seed in range(150):
         peeking.reset(seed=HARD.seeds(100))
         at = sn.Positions.of(peeking)

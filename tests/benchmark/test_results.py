@@ -14,7 +14,7 @@ from snooker_env.benchmark.leaderboard import LEGEND, board, lines
 from snooker_env.benchmark.playing import play_episodes
 from snooker_env.benchmark.results import budget_of, figures_of, read_result
 from snooker_env.benchmark.schema import FIELDS
-from snooker_env.benchmark.statistics import unseen
+from snooker_env.benchmark.statistics import bound_if_none
 from snooker_env.benchmark.tasks import HELD_OUT_SEED
 from snooker_env.planning import Planner
 from snooker_env.players import VISITS, BoundPlayer, Strokes, decision_seeds
@@ -85,7 +85,7 @@ def test_figures_are_those_of_the_rows(made):
         assert entry["value"] == pytest.approx(np.mean(scores >= entry["at_least"]))
     never = f["profile"][-1]
     assert (never["at_least"], never["value"], never["low"], never["exact"]) == (147, 0.0, 0.0, True)
-    assert never["high"] == pytest.approx(1 - 0.05 ** (1 / EPISODES)) == unseen(EPISODES)
+    assert never["high"] == pytest.approx(1 - 0.05 ** (1 / EPISODES)) == bound_if_none(EPISODES)
 
 
 def test_several_training_seeds_are_drawn_too():
@@ -168,19 +168,19 @@ def test_simulated_shots_are_counted():
 @pytest.mark.parametrize("log", [2, 512])
 def test_a_shot_that_is_played_twice_counts_once(monkeypatch, log):
     from snooker_env import simulation
-    from snooker_env.simulation.count import simulated
+    from snooker_env.simulation.count import count_shots
     from snooker_env.tasks import stroke
 
     monkeypatch.setattr(simulation, "_FIRST_LOG", log)
     monkeypatch.setattr(stroke.ShotBuffers.__init__, "__defaults__", (log,))
-    before = simulated()
+    before = count_shots()
     shot = sn.simulate([(0.0, -1.0), (0.0, 0.5)], [(0.0, 3.0), (0.0, 0.0)], [(0.0, 0.0, 0.0)] * 2)
-    assert simulated() - before == 1 and len(shot.events) > 2
+    assert count_shots() - before == 1 and len(shot.events) > 2
     env = sn.SnookerEnv()
     env.reset(seed=1)
-    before = simulated()
+    before = count_shots()
     env.step([0.3, 0.0, 0.0, 0.5])
-    assert simulated() - before == 1
+    assert count_shots() - before == 1
 
 
 def test_budgets_are_limits_with_room_for_a_rollout():
@@ -197,7 +197,7 @@ def test_randomness_is_repeated():
 
 def test_bounds_of_what_was_always_or_never_seen():
     """Several runs on the same tables are no more trials than one."""
-    task, bound = TASKS["SnookerBreakClub-v0"], unseen(30)
+    task, bound = TASKS["SnookerBreakClub-v0"], bound_if_none(30)
     always = [[run, table, 27, 6, 27, 6, 0, 1, 0, 1] for run in range(3) for table in range(30)]
     never = [[run, table, 0, 1, 0, 0, 0, 0, 0, 1] for run in range(3) for table in range(30)]
     assert bound == pytest.approx(1 - 0.05 ** (1 / 30))

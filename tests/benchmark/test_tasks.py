@@ -83,8 +83,8 @@ def test_its_spec_goes_through_json(name):
 @pytest.mark.parametrize("name", IDS)
 def test_what_is_frozen_is_refused(name):
     task = TASKS[name]
-    assert set(task.frozen) | set(FREE) == set(sn.Options.__dataclass_fields__) - {"rules"}
-    for option, value in task.frozen.items():
+    assert set(task.frozen_options) | set(FREE) == set(sn.Options.__dataclass_fields__) - {"rules"}
+    for option, value in task.frozen_options.items():
         with pytest.raises(ValueError, match=f"^{option} = .*: must be left out: {name} freezes it at"):
             gymnasium.make(name, **{option: value})
     with pytest.raises(ValueError, match=r"^noise = 'none': must be left out: "):
@@ -174,7 +174,7 @@ def test_judged_tables_are_not_those_of_training(name):
     task = TASKS[name]
     seeds = task.seeds(30)
     assert len(set(seeds)) == 30 and min(seeds) >= HELD_OUT_SEED == 1_000_000
-    trained, judged = task.options().layout, task.judged().layout
+    trained, judged = task.options().layout, task.judged_options().layout
     assert judged == task.judged_layout
     if trained in STORED_IN:
         assert STORED_IN[judged] == (STORED_IN[trained][0], True) and not STORED_IN[trained][1]

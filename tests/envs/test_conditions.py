@@ -34,7 +34,7 @@ def of_state(env):
 
 def test_a_draw_is_uniform_within_the_ranges_and_by_the_seed():
     rng = np.random.default_rng(3)
-    many = [sn.Physics.drawn(rng, "match") for _ in range(400)]
+    many = [sn.Physics.sample(rng, "match") for _ in range(400)]
     for name, (low, high) in RANGES.items():
         if name == "mu_bb_scale":
             values = np.array([one.friction_law[0] for one in many]) / sn.physics.parameters.MARLOW[0]
@@ -48,10 +48,10 @@ def test_a_draw_is_uniform_within_the_ranges_and_by_the_seed():
         assert np.histogram(shares, 10, (0.0, 1.0))[0].min() > 15, name
     values = np.array([[one.mu_s, one.mu_r, one.e_b, one.mu_c, one.e_c] for one in many])
     assert np.abs(np.corrcoef(values.T) - np.eye(5)).max() < 0.2  # independent
-    again = sn.Physics.drawn(np.random.default_rng(3), "match")
+    again = sn.Physics.sample(np.random.default_rng(3), "match")
     assert again == many[0] != many[1] and again.e_c_knee == 2.02 and not again.tables
     with pytest.raises(ValueError, match=r"^rng = 3: must be"):
-        sn.Physics.drawn(3)
+        sn.Physics.sample(3)
 
 
 def test_the_ranges_and_their_order_are_those_of_the_page():
@@ -68,7 +68,7 @@ def test_rows_are_the_packed_constants_of_the_physics():
         sn.Physics.preset("match"),
         sn.Physics(e_j=0.5, nap=0.001, mu_bb=(0.01, 0.1, 2.0)),
     ):
-        rows, values = np.tile(base.pack(), (5, 1)), conditions.drawn(rng.random((3, 8)))
+        rows, values = np.tile(base.pack(), (5, 1)), conditions.draw_constants(rng.random((3, 8)))
         pack_into(rows, np.array([0, 2, 4]), values, base)
         for k, one in zip((0, 2, 4), values, strict=True):
             assert (rows[k] == physics_with(base, one).pack()).all()
@@ -307,7 +307,7 @@ def test_a_network_sees_the_constants_that_it_was_trained_with():
     player = sn.player(Looks())
     env = begun(sn.SnookerEnv(**DRAWN), 1)
     player.at(env).play(env, [0])
-    assert np.allclose(seen[-1][0, -8:], conditions.normalised(of_state(env)), atol=1e-6)
+    assert np.allclose(seen[-1][0, -8:], conditions.scale_to_unit(of_state(env)), atol=1e-6)
     player.at({"physics": "match"}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0])
-    middle = conditions.normalised(nominal(sn.Physics.preset("match")))
+    middle = conditions.scale_to_unit(nominal(sn.Physics.preset("match")))
     assert np.allclose(seen[-1][0, -8:], middle, atol=1e-6)

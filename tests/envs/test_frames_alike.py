@@ -8,7 +8,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import SnookerVectorEnv
 from snooker_env.envs.match import PLAYERS
-from snooker_env.tasks.frame import Frames, Seat
+from snooker_env.tasks.frames import Frames, Seat
 from tests.tables import begun, plain
 
 pytest.importorskip("pettingzoo")
@@ -100,7 +100,7 @@ def against(played, env):
 @pytest.fixture(autouse=True)
 def as_actions(monkeypatch):
     """What the opponent is asked for are actions."""
-    monkeypatch.setattr("snooker_env.tasks.frame.carry_out", Frames.prepare)
+    monkeypatch.setattr("snooker_env.tasks.frames.carry_out", Frames.prepare)
 
 
 def check_alike(options, seeds):

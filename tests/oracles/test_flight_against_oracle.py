@@ -99,7 +99,7 @@ def test_shots_that_fly_are_those_of_tiny_steps(preset):
 
 def test_an_impact_from_above_is_the_oracles():
     """Also with frictions that hold the cloth's slip and the slip between the balls at once."""
-    rng, collide = np.random.default_rng(3), from_python(contact.collide_tilted)
+    rng, collide = np.random.default_rng(3), from_python(contact.collide_from_above)
     for k in range(24):
         frictions = {} if k % 2 else {"mu_bb": rng.uniform(0.05, 0.3), "mu_s": rng.uniform(0.2, 0.6)}
         physics = sn.Physics.preset("match", e_b=rng.uniform(0.3, 0.95), **frictions)

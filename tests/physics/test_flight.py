@@ -70,7 +70,7 @@ def test_in_the_air_the_velocity_in_the_plane_and_the_spin_stay():
 
 def test_the_bed_rubs_by_its_impulse_or_until_the_ball_rolls():
     for w_y, grips in ((400.0, False), (10.0, True)):
-        v, w, up = from_python(flight.thrown)((0.0, 0.0), (0.0, w_y, 7.0), 1.0, FLYING.pack())
+        v, w, up = from_python(flight.bounce_off_bed)((0.0, 0.0), (0.0, w_y, 7.0), 1.0, FLYING.pack())
         slip = -R * w_y
         push = min(FLYING.mu_s * (1.0 + E_T), abs(slip) * 2 / 7)
         assert (v[0], up, w[2]) == (pytest.approx(push), E_T, 7.0)
@@ -192,7 +192,7 @@ def test_the_slip_of_free_spheres_ends_as_in_small_steps(law):
 
 
 def test_an_impact_from_hardly_above_is_that_on_the_bed():
-    tilted, flat = from_python(contact.collide_tilted), from_python(contact.collide_balls)
+    tilted, flat = from_python(contact.collide_from_above), from_python(contact.collide_balls)
     law = sn.physics.arrays.Law(FLYING.pack(), contact.REFERENCE, 0)
     c, o = ((1.2, 2.0, 0.0), (-60.0, 30.0, 40.0)), ((0.1, 0.0, 0.0), (0.0, 4.0, 0.0))
     normal = (0.6, 0.8)
@@ -208,7 +208,7 @@ def test_an_impact_from_hardly_above_is_that_on_the_bed():
 
 
 def test_a_ball_that_falls_straight_on_another_rebounds_at_e():
-    tilted = from_python(contact.collide_tilted)
+    tilted = from_python(contact.collide_from_above)
     law = sn.physics.arrays.Law(FLYING.pack(), contact.STANDARD, 0)
     v, w, u, _, press, solved = tilted(
         (0.0, 0.0, -1.0), STILL, STILL, STILL, (0.0, 0.0, -1.0), law, 0.9, np.zeros(WORK)

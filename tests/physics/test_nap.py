@@ -9,7 +9,7 @@ import snooker_env as sn
 from snooker_env import EventKind, Table
 from snooker_env.physics import cloth
 from snooker_env.physics.impact import contact
-from snooker_env.tasks.arrays import CueLaw
+from snooker_env.tasks.kernel_arrays import CueLaw
 from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.pot_aim import solved_aim
 from tests.kernels import from_python

@@ -11,7 +11,7 @@ from benchmarks.fuzz import allowed
 from snooker_env import EventKind, Table
 from snooker_env.physics.cloth import AX, AY, ROLL, SEGMENT_BALL, SEGMENT_STATE, T0, VX, VY, X, Y
 from snooker_env.physics.impact import contact
-from snooker_env.tasks.arrays import CueLaw
+from snooker_env.tasks.kernel_arrays import CueLaw
 from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.pot_aim import solved_aim
 from tests.kernels import from_python

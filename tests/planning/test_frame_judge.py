@@ -9,18 +9,18 @@ from snooker_env.planning import FrameJudge, Position, Positions, Search, at_pot
 from snooker_env.planning.frame_judge import PLANS
 from snooker_env.planning.proposals import EDGE, safeties
 from snooker_env.planning.search import BUDGET
-from snooker_env.planning.trials import turned
+from snooker_env.planning.trials import turn_to_striker
 from snooker_env.planning.worth import (
     NARROWEST,
     WIDEST,
     Chance,
+    apply_decision,
     best_places,
-    chosen,
     decide,
     follows,
     lead_of,
     left_of,
-    passed,
+    pass_after_miss,
 )
 from snooker_env.planning.worth import SPREAD as MIDDLE
 from snooker_env.players.weights import learned_worth
@@ -96,7 +96,7 @@ def test_the_score_is_what_the_stroke_brings_and_leaves():
             points = float(lead_of(after[[j]])[0] - lead_of(at[[k]])[0])
             if not row[columns.OVER]:
                 mine = row[columns.STRIKER] == 0
-                left = turned(after[[j]])
+                left = turn_to_striker(after[[j]])
                 worth = (
                     decide(by_rule, left)[1][0] if row[columns.PHASE] == columns.CHOICE else by_rule(left)[0]
                 )
@@ -216,15 +216,15 @@ def test_after_a_foul_all_choices_are_compared():
     for k in range(len(at)):
         one = at[[k]]
         options = {
-            columns.PLAY: either_way(chosen(one, columns.PLAY))[0],
-            columns.PLAY_AGAIN: -either_way(chosen(one, columns.PLAY_AGAIN))[0],
-            columns.REPLACE: -either_way(chosen(one, columns.REPLACE))[0],
+            columns.PLAY: either_way(apply_decision(one, columns.PLAY))[0],
+            columns.PLAY_AGAIN: -either_way(apply_decision(one, columns.PLAY_AGAIN))[0],
+            columns.REPLACE: -either_way(apply_decision(one, columns.REPLACE))[0],
         }
         assert values[k] == pytest.approx(max(options.values())) and options[int(best[k])] == pytest.approx(
             values[k]
         )
     assert len(set(best.tolist())) > 1, "one choice is always the best here"
-    replaced = chosen(at, columns.REPLACE)
+    replaced = apply_decision(at, columns.REPLACE)
     assert np.array_equal(replaced.positions, at.saved.positions)
     assert np.array_equal(lead_of(replaced), -lead_of(at))
 
@@ -245,7 +245,7 @@ def test_a_miss_leaves_the_other_the_same_balls():
         Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], blue=(0.3, -0.3), black=(0.0, 1.4605), on="any_colour"),
         (20, 5),
     )
-    left = passed(at)
+    left = pass_after_miss(at)
     assert left.ball_on.tolist() == [1] and left.scores.tolist() == [[5, 20]]
     assert np.array_equal(left.positions, at.positions) and at.ball_on.tolist() != [1]
     assert left_of(at).tolist() == [7 + 8 + 5 + 7]

@@ -153,7 +153,7 @@ def test_arrays_of_the_wrong_shape_or_type_are_refused(change, complaint):
 def test_positions_of_frames_hold_what_the_striker_may_know():
     env = sn.SnookerVectorEnv(3, task="match", frames=5, miss="clear_path")
     env.reset(seed=0)
-    game, saved = env.tables.game, env.tables.saved
+    game, saved = env.tables.game, env.tables.layouts_before
     game[:, [STRIKER, SCORE_0, SCORE_1, FRAMES_0, FRAMES_1]] = (0, 20, 7, 1, 2)
     game[1, [STRIKER, FREE_BALL, PHASE, MISS_CALLED]] = (1, 1, CHOICE, 1)
     game[2, [PHASE, RESPOTTED_BLACK]] = LOT, 1

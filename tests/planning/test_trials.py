@@ -6,10 +6,10 @@ import pytest
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.sides import swap_sides
 from snooker_env.planning import Planner, Positions
-from snooker_env.planning.trials import FrameTrials, turned
+from snooker_env.planning.trials import FrameTrials, turn_to_striker
 from snooker_env.players import Strokes
 from snooker_env.tasks.carry_out import carry_out
-from snooker_env.tasks.frame import Frames, Seat
+from snooker_env.tasks.frames import Frames, Seat
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.threads import Threads
 from tests.kernels import from_python
@@ -50,8 +50,8 @@ def positions_of(tables):
     return Positions(
         tables.positions.copy(),
         tables.on_table.copy(),
-        np.ascontiguousarray(turned(Positions(tables.positions, tables.on_table, tables.game)).game),
-        columns.Layouts(tables.saved.positions.copy(), tables.saved.on_table.copy()),
+        np.ascontiguousarray(turn_to_striker(Positions(tables.positions, tables.on_table, tables.game)).game),
+        columns.Layouts(tables.layouts_before.positions.copy(), tables.layouts_before.on_table.copy()),
     )
 
 

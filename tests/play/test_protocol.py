@@ -22,7 +22,7 @@ from snooker_env.players.table_report import find_lines, where
 from snooker_env.simulation import SimulationError
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
-from snooker_env.tasks.frame import Frames
+from snooker_env.tasks.frames import Frames
 from snooker_env.tasks.options import Options
 from tests.playing import COVERED, EASY, FROZEN, STRAIGHT
 from tests.processes import ROOT

@@ -12,7 +12,7 @@ from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.planning import Planner, Positions
 from snooker_env.play.__main__ import _arguments, service_of
 from snooker_env.players import model_options
-from snooker_env.players.resolver import named
+from snooker_env.players.resolver import players_of
 from tests.bombs import bombed
 
 TARGET = {"aim": "target"}
@@ -126,11 +126,11 @@ def test_words_of_a_command_line_become_options():
 
 
 def test_the_options_of_a_command_line_are_those_of_the_models_on_it(model):
-    one, other = named(["ghost_ball", model], True, TARGET)
+    one, other = players_of(["ghost_ball", model], True, TARGET)
     assert one.name == "ghost_ball" and other.sees["aim"] == "target"
     for names in (["ghost_ball"], []):
         with pytest.raises(ValueError, match="must be left out"):
-            named(names, True, TARGET)
+            players_of(names, True, TARGET)
 
 
 def test_a_visit_of_a_model_is_watched(model, tmp_path, capsys):

@@ -8,7 +8,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.planning import Position, Positions
-from snooker_env.players import FRAMES, VISITS, ChoicePlayer, SeenPlayer, Strokes, decided, decision_seeds
+from snooker_env.players import FRAMES, VISITS, ChoicePlayer, SeenPlayer, Strokes, ask_player, decision_seeds
 from snooker_env.players.resolver import BUILT_IN
 from tests.positions import tables
 from tests.processes import copy_of_package, python
@@ -110,9 +110,9 @@ def test_what_sees_observations_plays_as_in_the_environment(seen):
 def test_a_player_plays_on_tables_with_a_seed_for_each_decision():
     tables = begun(sn.SnookerVectorEnv(5, task="frame", noise="professional", opponent="none", **FRAMES))
     player, going = sn.player("ghost_ball").at(tables), np.array([True, False, True, True, False])
-    actions = decided(player, tables, going, decision_seeds(0, np.arange(5), 0))
+    actions = ask_player(player, tables, going, decision_seeds(0, np.arange(5), 0))
     assert not actions[~going].any() and actions[going].any(axis=1).all()
-    alone = decided(player, tables, np.arange(5) == 3, decision_seeds(0, np.arange(5), 0))
+    alone = ask_player(player, tables, np.arange(5) == 3, decision_seeds(0, np.arange(5), 0))
     assert np.array_equal(alone[3], actions[3])
 
 

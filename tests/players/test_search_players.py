@@ -12,7 +12,7 @@ from snooker_env.planning.learned.policy_proposals import PolicyProposals
 from snooker_env.planning.visit_judge import schedule
 from snooker_env.players import FRAMES, weights
 from snooker_env.players.degenerate import SILLY
-from snooker_env.players.search import BUDGET, KINDS
+from snooker_env.players.search_player import BUDGET, KINDS
 from snooker_env.tasks import LEVELS, Noise
 from tests.positions import tables
 

@@ -12,12 +12,12 @@ from agents import tournament
 from agents.learning import learn_strokes
 from agents.learning.run_folder import keep_settings
 from agents.learning.settings import Settings
-from snooker_env.benchmark import play_visits, simulated, summary
+from snooker_env.benchmark import count_shots, play_visits, summary
 from snooker_env.planning import Position, Positions
 from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
 from snooker_env.planning.learned.stroke_value import LOOKS, SIZE
 from snooker_env.players import VISITS
-from snooker_env.players.stroke_value import StrokeValuePlayer
+from snooker_env.players.stroke_value_player import StrokeValuePlayer
 from snooker_env.players.weights import FOLDER, STROKES, StrokeLayers, learned_strokes
 
 
@@ -29,7 +29,7 @@ def opened(n, **options):
 
 def test_it_decides_without_a_shot_and_each_position_by_itself():
     tables = opened(20)
-    at, player, before = Positions.of(tables), sn.player("stroke_value").at(tables), simulated()
+    at, player, before = Positions.of(tables), sn.player("stroke_value").at(tables), count_shots()
     together = player.play(at, np.arange(20))
     for k in range(20):
         assert np.array_equal(player.play(at[[k]], [k]).values, together.values[[k]])
@@ -37,7 +37,7 @@ def test_it_decides_without_a_shot_and_each_position_by_itself():
     for k, one in enumerate(ranked):
         assert np.array_equal(one.strokes.values[0], together.values[k]) and len(one.strokes) == LOOKS
         assert (np.diff(one.scores) <= 0.0).all()
-    assert simulated() == before
+    assert count_shots() == before
 
 
 def test_without_a_pot_it_plays_as_ghost_ball():
@@ -157,9 +157,9 @@ def test_it_plays_frames_without_a_shot_and_each_position_by_itself():
     frame = frames(40, miss="clear_path")
     player, plain, hands, safe = sn.player("stroke_value").at(frame), sn.player("ghost_ball").at(frame), 0, 0
     for k in range(12):
-        at, keys, before = Positions.of(frame), np.arange(40) + 100 * k, simulated()
+        at, keys, before = Positions.of(frame), np.arange(40) + 100 * k, count_shots()
         strokes, other, ranked = player.play(at, keys), plain.play(at, keys), player.rank(at, keys)
-        assert simulated() == before
+        assert count_shots() == before
         same = (strokes.values == other.values).all(axis=1).sum()
         assert same == 40 if k == 0 else same <= 8
         for j, one in enumerate(ranked):
@@ -170,7 +170,7 @@ def test_it_plays_frames_without_a_shot_and_each_position_by_itself():
             alone = player.play(at[[j]], keys[[j]])
             for part, whole in zip(alone.parts, strokes.parts, strict=True):
                 assert np.array_equal(part[0], whole[j], equal_nan=True)
-        safe += sum(one is not None and one.kinds[0] == 1 for one in player.decided(at, keys).tried)
+        safe += sum(one is not None and one.kinds[0] == 1 for one in player.decide_frames(at, keys).tried)
         hands += int((at.in_hand & np.isfinite(strokes.place[:, 0])).sum())
         frame.step(strokes.actions(frame.options, at))
     assert hands > 40 and safe > 40

@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position, Positions
-from snooker_env.planning.worth import chosen, last_of, lead_of, left_of
+from snooker_env.planning.worth import apply_decision, last_of, lead_of, left_of
 from snooker_env.players.tactician import Tactician
 from snooker_env.players.weights import learned_worth
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
@@ -233,12 +233,14 @@ def test_the_chance_after_a_foul_is_that_of_the_best_decision():
     easy = Position(cue=(0.3, 1.0), reds=[(0.6, 1.4)], black=(0.0, 1.4605), on="red")
     at = frame_of(easy, scores=(4, 0))
     at.game[:, columns.PHASE] = columns.CHOICE
-    play, again = (player.chance_to_win(chosen(at, what))[0] for what in (columns.PLAY, columns.PLAY_AGAIN))
+    play, again = (
+        player.chance_to_win(apply_decision(at, what))[0] for what in (columns.PLAY, columns.PLAY_AGAIN)
+    )
     assert player.chance_to_win(at)[0] == play > 0.6 > 1.0 - again
     hard = Position(cue=(0.0, 1.70), reds=[(0.0, -1.70)], black=(0.0, 1.4605), blue=(0.0, 1.63), on="red")
     snookered = frame_of(hard, scores=(4, 0))
     snookered.game[:, columns.PHASE] = columns.CHOICE
-    play, again = (player.chance_to_win(chosen(snookered, what))[0] for what in (0, 1))
+    play, again = (player.chance_to_win(apply_decision(snookered, what))[0] for what in (0, 1))
     assert (
         player.chance_to_win(snookered)[0] == pytest.approx(1.0 - again, abs=1e-12)
         and 1.0 - again > 0.6 > play

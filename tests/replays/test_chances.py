@@ -12,7 +12,7 @@ from snooker_env.game.frame import frame_of
 from snooker_env.planning import Positions
 from snooker_env.render import PALETTE
 from snooker_env.replays.chances import standings_of
-from snooker_env.replays.words import bars
+from snooker_env.replays.referee_words import bars
 from tests.refusals import refused
 from tests.replays.test_replays import keeping, visit
 

@@ -15,7 +15,7 @@ from snooker_env.game.balls import BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.play.session import Session
 from snooker_env.render.table_picture import View
-from snooker_env.replays.words import FOUL_WORDS, bars, foul_words, standing_bar
+from snooker_env.replays.referee_words import FOUL_WORDS, bars, foul_words, standing_bar
 from tests.refusals import refuse_each, refused
 from tests.tables import begun
 

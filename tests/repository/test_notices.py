@@ -129,11 +129,11 @@ LONG = {
     "snooker_env.game.layouts": ["deal_tables"],
     "snooker_env.game.apply_ruling": ["settle_one"],
     "snooker_env.game.paths": ["best_paths"],
-    "snooker_env.game.snookered": ["_snookered"],
+    "snooker_env.game.snookered": ["_find_snooker"],
     "snooker_env.planning.learned.pot_view": ["_add_pots"],
     "snooker_env.planning.aims": ["_pot_aim"],
     "snooker_env.planning.trials": ["_strike"],
-    "snooker_env.planning.geometry": ["_pots", "_clear_paths"],
+    "snooker_env.planning.pot_geometry": ["_pots", "_clear_paths"],
 }
 """The kernels that were seen to take over a second, each compiled first in a fresh process."""
 

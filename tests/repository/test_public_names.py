@@ -68,7 +68,7 @@ TRAINED_FOR = (
     "snooker_env.game.sides: strikers_own",
     "snooker_env.game: frame_columns",
     "snooker_env.tasks.carry_out",
-    "snooker_env.tasks.frame",
+    "snooker_env.tasks.frames",
     "snooker_env.players.saved_models",
     "snooker_env.tasks.threads",
 )
@@ -84,7 +84,7 @@ def test_agents_and_examples_use_public_names_only(path):
             "snooker_env._lib: files",
         ),
         "agents/_lib/lifecycle.py": ("snooker_env._lib.command",),
-        "agents/_lib/tables.py": ("snooker_env._lib.tables",),
+        "agents/_lib/tables.py": ("snooker_env._lib.text_tables",),
     }
     known = (*TRAINED_FOR, *passed_on.get(path.relative_to(ROOT).as_posix(), ()))
     assert [name for name in private(path.read_text(encoding="utf-8")) if not name.startswith(known)] == []

@@ -7,7 +7,7 @@ from snooker_env.game.pots import pots
 from snooker_env.players.opponents import opponent_of
 from snooker_env.tasks import CHOICES, MAX_SPEED, MIN_SPEED, SPEEDS
 from snooker_env.tasks.carry_out import carry_out
-from snooker_env.tasks.frame import AGENT, Frames, Seat
+from snooker_env.tasks.frames import AGENT, Frames, Seat
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, Crew
@@ -58,7 +58,7 @@ def positions_of_frames(n, seed):
             asked = player.strokes(tables, which, crew)
             struck = carry_out(tables, which, asked, buffers, AGENT)
             tables.complete(struck, out, buffers, crew, reported=True)
-            which = which[~tables.ended()[which]]
+            which = which[~tables.are_over()[which]]
         seed += 1
     return [found[k] for k in np.random.default_rng(seed).permutation(len(found))[:n]]
 

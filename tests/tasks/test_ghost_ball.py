@@ -11,7 +11,7 @@ from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_WIDTH
 from snooker_env.players.opponents import opponent_of
 from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.escapes import _REBOUND
-from snooker_env.tasks.frame import AGENT, Frames, Seat
+from snooker_env.tasks.frames import AGENT, Frames, Seat
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import AIM, CUE_SPEED, ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, I_POINTS, Crew
@@ -64,7 +64,7 @@ def test_it_rarely_fouls_where_no_pot_is_on():
         without = (tables.game[which, columns.IN_HAND] == 0) & [len(pots(*each)) == 0 for each in lies]
         found, *_ = turn(tables, which)
         fouls, many = fouls + np.sum(found[without] != 0), many + without.sum()
-        which = which[~tables.ended()[which]]
+        which = which[~tables.are_over()[which]]
     assert many > 400 and fouls / many < 0.1
 
 
@@ -146,7 +146,7 @@ def test_other_games_are_played_to_the_end_with_few_fouls(options, most):
         found, *_ = turn(tables, which)
         fouls, placed = [*fouls, *found.tolist()], placed + anywhere.sum()
         bad += np.sum(found[anywhere] != 0)
-        which = which[~tables.ended()[which]]
+        which = which[~tables.are_over()[which]]
         if not len(which):
             break
     assert not len(which) and np.mean(np.array(fouls) != 0) < most

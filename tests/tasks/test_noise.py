@@ -9,11 +9,11 @@ from snooker_env import Physics, SnookerEnv
 from snooker_env.game.balls import CUE, BallOn
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue import strike
-from snooker_env.tasks.noise import LEVELS, Noise, executed
+from snooker_env.tasks.noise import LEVELS, Noise, execute_stroke
 from tests.kernels import from_python
 from tests.tables import after_strike, begun, speed_of, table_state
 
-_executed = from_python(executed)
+_executed = from_python(execute_stroke)
 
 
 def drawn(noise, n, speed, side, top, aim, elevation):

@@ -25,7 +25,6 @@ from snooker_env.planning import (
 from snooker_env.planning import pots as direct_pots
 from snooker_env.planning.proposals import at_balls
 from snooker_env.tasks import choice_of
-from snooker_env.tasks.arrays import C_RAILS, CueLaw
 from snooker_env.tasks.discrete_actions import (
     _NEAR_BALL,
     _NEAR_RAIL,
@@ -35,6 +34,7 @@ from snooker_env.tasks.discrete_actions import (
     TOPS,
     _lacks_room,
 )
+from snooker_env.tasks.kernel_arrays import C_RAILS, CueLaw
 from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
 from snooker_env.tasks.pot_aim import _passes, stroke_in_room

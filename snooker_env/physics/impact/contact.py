@@ -6,7 +6,7 @@ Tuples v = (vx, vy, vz) [m/s] and w = (wx, wy, wz) [rad/s], z up. Bodies that do
 from math import hypot, sqrt
 
 from ..._lib.check import refuse
-from ..._lib.jit import inlined, kernel
+from ..._lib.jit import inline, kernel
 from ..._lib.types import Fidelity, Solver
 from ..columns import (
     P_BALLS,
@@ -119,7 +119,7 @@ def _friction_impulse_free(xa, za, ya, friction, e):
     return -pt * xa / s, -pt * za / s, pn
 
 
-@inlined
+@inline
 def _balls_in_frame(vc, wc, vo, wo, law, e, series):
     """Two balls in the contact frame (X tangent, Y from C to O, Z up) that approach each other."""
     phys, fidelity, n_steps = law.phys, law.fidelity, law.n_steps
@@ -196,7 +196,7 @@ def collide_balls(v1, w1, v2, w2, normal, law, e, series):
 
 
 @kernel(seconds=1, uses=(solve,))
-def collide_tilted(vc, wc, vo, wo, normal, law, e, series):
+def collide_from_above(vc, wc, vo, wo, normal, law, e, series):
     """Impact of a ball C in the air with a ball O on the bed -> v and w of C, of O, the impulse of friction between them that
     presses O into the bed [m/s], and whether it was solved.
 
@@ -225,7 +225,7 @@ def collide_tilted(vc, wc, vo, wo, normal, law, e, series):
     )
     friction = Friction(phys[P_MU_BB_LEAST], phys[P_MU_BB_EXTRA], phys[P_MU_BB_FADE] * closing)
     accuracy = impulse.REFERENCE if fidelity == REFERENCE else _LOOSE if fidelity == FAST else _STANDARD
-    problem = Problem(inertia.tilted(sin_t, cos_t), start, friction, phys[P_MU_S], e)
+    problem = Problem(inertia.tilt_pair(sin_t, cos_t), start, friction, phys[P_MU_S], e)
     x, status = solve(problem, accuracy, series)
     if status != OK:  # rare (one shot in 160,000 of a fuzz)
         x, status = solve(problem, _LOOSE, series)

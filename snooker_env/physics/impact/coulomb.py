@@ -198,7 +198,7 @@ def _slip_rate(per, contact):
 
 
 @kernel
-def settled(x, slip, s, near, cloth, problem):
+def settles(x, slip, s, near, cloth, problem):
     """Whether friction at A nearly balances the drive and slip s lies along it: steps in t would stall."""
     per = _creep_rates(x, near, cloth, problem)
     slow = (
@@ -212,7 +212,7 @@ def settled(x, slip, s, near, cloth, problem):
 
 
 @kernel
-def held(x, near, cloth, problem):
+def can_hold(x, near, cloth, problem):
     """Whether friction can hold the slip at A at zero."""
     slip = slips_after(x, problem.start, problem.contact)
     f = _stick_forces(slip.b1, slip.b2, x.Z, near, cloth, problem)
@@ -220,7 +220,7 @@ def held(x, near, cloth, problem):
 
 
 @kernel
-def wedged(problem):
+def is_wedge(problem):
     """Whether both contacts hold a ball between nose and cloth whose slips are zero: no impulse frees it."""
     _f1, f2, _g1, g2, _lift = _stick_forces(0.0, 0.0, 0.0, 0.0, GRIPS, problem)
     load = problem.contact.n_p + problem.contact.n_f * f2
@@ -228,7 +228,7 @@ def wedged(problem):
 
 
 @kernel
-def stopped(x, slip, contact):
+def stop_wedge(x, slip, contact):
     """The impulses x and what stops a wedged ball: both slips end, and with them the closing speed."""
     k1, k2, c1, c2 = contact.k1, contact.k2, contact.c1, contact.c2
     det1, det2 = k1 * K_CLOTH - c1 * c1, k2 * K_CLOTH - c2 * c2

@@ -7,12 +7,12 @@ with work W_c, the impact at W = (1 - e^2) W_c: energetic restitution [Stronge 1
 from math import sqrt
 from typing import NamedTuple
 
-from ..._lib.jit import inlined, kernel
+from ..._lib.jit import inline, kernel
 from . import dormand_prince
-from .coulomb import held
+from .coulomb import can_hold
 from .inertia import slips_after
 from .polynomial import CLOSING, ROW, WORK_DONE, state_at, time_of, value_at
-from .taylor import turned
+from .taylor import turns_back
 
 _CLOSE = 0.01
 """Exactness of the ends over tol and the step. Doubled or halved: no change above rounding, as Halley's next
@@ -65,7 +65,7 @@ def ends_inside(end, closing, target):
     return closing <= 0.0 if target.compressing else target.work >= end.W
 
 
-@inlined
+@inline
 def may_dip(before, rate, span, after):
     """Whether the closing speed, from ``before`` at this rate to ``after``, may have a minimum inside the step:
     a parabola's, or one as flat."""
@@ -123,7 +123,7 @@ def turns_at(series, degree, span, o1, o2, problem):
     for _ in range(_TURN_HALVINGS):
         t = 0.5 * (low + high)
         slip = slips_after(state_at(series, degree, t), problem.start, problem.contact)
-        low, high = (low, t) if turned(series, slip.b1 - o1, slip.b2 - o2) else (t, high)
+        low, high = (low, t) if turns_back(series, slip.b1 - o1, slip.b2 - o2) else (t, high)
     return high
 
 
@@ -133,7 +133,7 @@ def breaks_loose_at(series, near, cloth, problem):
     low, high = 0.0, 1.0
     for _ in range(_LOOSE_HALVINGS):
         t = 0.5 * (low + high)
-        if held(state_at(series, dormand_prince.DEGREE, t), near, cloth, problem):
+        if can_hold(state_at(series, dormand_prince.DEGREE, t), near, cloth, problem):
             low = t
         else:
             high = t

@@ -32,7 +32,7 @@ def _cross(a, b):
 
 
 @kernel
-def _spun(w, n, f, R):
+def _spin_up(w, n, f, R):
     """The spin after the impulse f at R n from the centre: R dw = 5/2 n x f."""
     x, y, z = _cross(n, f)
     q = 2.5 / R
@@ -54,9 +54,9 @@ def between(v1, w1, v2, w2, n, friction, e, R):
     j = f[0] - p * n[0], f[1] - p * n[1], f[2] - p * n[2]
     return (
         (v1[0] + j[0], v1[1] + j[1], v1[2] + j[2]),
-        _spun(w1, n, f, R),
+        _spin_up(w1, n, f, R),
         (v2[0] - j[0], v2[1] - j[1], v2[2] - j[2]),
-        _spun(w2, n, f, R),  # -f at -R n
+        _spin_up(w2, n, f, R),  # -f at -R n
     )
 
 

@@ -26,7 +26,7 @@ contacts' next states. Speeds are over the closing speed before.
 from math import hypot, sqrt
 from typing import NamedTuple
 
-from ..._lib.jit import inlined, kernel
+from ..._lib.jit import inline, kernel
 from . import dormand_prince, taylor
 from .coulomb import (
     CREEP,
@@ -35,12 +35,12 @@ from .coulomb import (
     SLIP,
     STARTS,
     STICK,
+    can_hold,
     friction_coefficient,
     grip_holds,
-    held,
+    is_wedge,
     rates,
-    stopped,
-    wedged,
+    stop_wedge,
 )
 from .ends import NEVER, WHOLE, Target, dips_at, ends_inside, locate_end, may_dip, split_at, turns_at
 from .inertia import K_CLOTH, Impulses, slips_after
@@ -148,7 +148,7 @@ class Outlook(NamedTuple):
     """Whether the Taylor series is valid while A slips: the cloth never holds, its load is positive."""
 
 
-@inlined
+@inline
 def outlook_of(problem):
     """The ``Outlook`` of an impact, from its constants."""
     contact = problem.contact
@@ -171,10 +171,10 @@ def outlook_of(problem):
 @kernel
 def _stick_or_creep(x, near, cloth, problem):
     """The state of contact A where its slip is zero."""
-    return STICK if held(x, near, cloth, problem) else CREEP
+    return STICK if can_hold(x, near, cloth, problem) else CREEP
 
 
-@inlined
+@inline
 def _first_state(s, outlook, limits, problem):
     """At first, slip s at A: states of A and cloth, the rates if needed, and the step's length."""
     start, near = problem.start, limits.near
@@ -195,16 +195,18 @@ def _first_state(s, outlook, limits, problem):
     return mode, cloth, per, h
 
 
-@inlined
-def _left(x, outlook):
+@inline
+def _estimate_rest(x, outlook):
     """Estimate of the remaining normal impulse."""
     return max(outlook.p_full - x.p, _LEAST_LEFT * max(outlook.p_full, x.p - outlook.p_full))
 
 
-@inlined
+@inline
 def _series_step(series, x, slip, starts, outlook, problem, tol, order):
     """A Taylor step, up to its accuracy or a reversal of the cloth's slip: end, slips, degree and length."""
-    degree, span = taylor.expand(series, x, slip, starts, _left(x, outlook), problem, _SERIES * tol, order)
+    degree, span = taylor.expand(
+        series, x, slip, starts, _estimate_rest(x, outlook), problem, _SERIES * tol, order
+    )
     # a slip that counts as zero has no definite direction
     o1, o2 = (slip.b1, slip.b2) if starts else (0.0, 0.0)
     end = state_at(series, degree, span)
@@ -215,20 +217,20 @@ def _series_step(series, x, slip, starts, outlook, problem, tol, order):
             span = t
             end = state_at(series, degree, span)
             slip_end = slips_after(end, problem.start, problem.contact)
-    if taylor.turned(series, slip_end.b1 - o1, slip_end.b2 - o2):
+    if taylor.turns_back(series, slip_end.b1 - o1, slip_end.b2 - o2):
         span = turns_at(series, degree, span, o1, o2, problem)
         end = state_at(series, degree, span)
         slip_end = slips_after(end, problem.start, problem.contact)
     return end, slip_end, degree, span
 
 
-@inlined
+@inline
 def _closing_rate(per, contact):
     """The rate of the closing speed while the impulses grow at the rates ``per``."""
     return contact.d_n * per.p - contact.d_a * per.F2 - contact.d_b * per.G2 + contact.l_n * per.Z
 
 
-@inlined
+@inline
 def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
     """A Runge-Kutta step: its end, a ``Moment``, its error, the factor to shorten it or ``STANDS``."""
     x, slip, per = start
@@ -236,7 +238,7 @@ def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
     end, per_end, error = dormand_prince.step(series, x, h, per, mode, limits.near, cloth, problem)
     if error > limits.tol and h > _SHORTEST:
         shrink = max(_LEAST_FACTOR, _SAFETY * (limits.tol / error) ** _ERROR_POWER)
-    elif mode == SLIP and end.p - x.p > _LEAPT * _left(x, outlook):
+    elif mode == SLIP and end.p - x.p > _LEAPT * _estimate_rest(x, outlook):
         # the slip grew; the step's polynomial is inaccurate over the impulse of several impacts
         shrink = _LEAPT_FACTOR
     else:
@@ -257,12 +259,12 @@ def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
     return Moment(end, slip_end, per_end), error, shrink
 
 
-@inlined
-def _bounded(h, start, s, mode, cloth, outlook, limits, contact):
+@inline
+def _bound_step(h, start, s, mode, cloth, outlook, limits, contact):
     """The next Runge-Kutta step, with slip s at A, within stability and the rest of the impact."""
     x, slip, per = start
     if mode == SLIP:
-        h = min(h, outlook.h_slip, _left(x, outlook) / s)
+        h = min(h, outlook.h_slip, _estimate_rest(x, outlook) / s)
     elif x.p < outlook.p_full:
         h = min(h, _PAST_END * (outlook.p_full - x.p))
     if outlook.may_grip and cloth == SLIDES:
@@ -355,8 +357,8 @@ def solve(problem, accuracy, series):
         if next_mode != mode or (next_cloth != cloth and (next_cloth == GRIPS or cloth == GRIPS)):
             mode, cloth = next_mode, next_cloth
             if mode == STICK and cloth == GRIPS and problem.contact.k1 == K_CLOTH:  # one ball, at a nose
-                if wedged(problem):
-                    return stopped(x, slip, problem.contact), OK
+                if is_wedge(problem):
+                    return stop_wedge(x, slip, problem.contact), OK
                 cloth = STARTS
                 mode = _stick_or_creep(x, limits.near, cloth, problem)
             now = Moment(x, slip, rates(x, mode, limits.near, cloth, problem))
@@ -369,5 +371,5 @@ def solve(problem, accuracy, series):
             )
         else:
             cloth = next_cloth
-        h = _bounded(h, now, s, mode, cloth, outlook, limits, problem.contact)
+        h = _bound_step(h, now, s, mode, cloth, outlook, limits, problem.contact)
     return now.x, TOO_MANY_STEPS

@@ -134,7 +134,7 @@ BALLS = Contact(
 
 
 @kernel
-def tilted(sin_t, cos_t):
+def tilt_pair(sin_t, cos_t):
     """The constants of an impact of a ball in the air with one that lies, lower by 2R sin(t)."""
     return Contact(
         7.0,

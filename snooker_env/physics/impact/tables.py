@@ -119,7 +119,7 @@ def _solutions(x, rolling, out):
     return True
 
 
-def _solved(x, rolling):
+def _solve(x, rolling):
     """``_solutions`` of an array of any shape: (..., 5)."""
     out = np.empty((x.size, IMPULSES))
     _solutions(x.ravel(), rolling, out)
@@ -138,18 +138,18 @@ def _lagrange(nodes):
     return np.array(columns).T
 
 
-def _combined(weights, values):
+def _combine(weights, values):
     """``weights @ values`` in this order of sums: a matrix product has another on each kind of processor."""
     return sum(weights[:, j, None] * values[..., j, None, :] for j in range(weights.shape[1]))
 
 
 def _values(u, coefficients):
     """The polynomials at the places u (m,): (..., m, 5)."""
-    return _combined(np.vander(u, DEGREE + 1, increasing=True), coefficients)
+    return _combine(np.vander(u, DEGREE + 1, increasing=True), coefficients)
 
 
 @cache
-def _kept() -> dict[Rolling, Floats]:
+def _load_presets() -> dict[Rolling, Floats]:
     """The tables that come with the package: of the presets."""
     return dict(zip(PRESETS, np.load(KEPT), strict=True))
 
@@ -157,7 +157,7 @@ def _kept() -> dict[Rolling, Floats]:
 @lru_cache(maxsize=64)
 def table_of(rolling: Rolling) -> Floats | None:
     """The table of these constants (SIZE,), kept with the package or made now; None where the cloth may hold the ball."""
-    return _kept()[rolling] if rolling in PRESETS else make(rolling)
+    return _load_presets()[rolling] if rolling in PRESETS else make(rolling)
 
 
 def make(rolling: Rolling) -> Floats | None:
@@ -173,16 +173,16 @@ def make(rolling: Rolling) -> Floats | None:
     octaves = np.ldexp(1.0, np.arange(LEAST_OCTAVE, LEAST_OCTAVE + OCTAVES))
     low, width = np.outer(octaves, 1.0 + np.arange(CELLS) / CELLS).ravel(), np.repeat(octaves / CELLS, CELLS)
     at_nodes, at_tests = (
-        _solved(low[:, None] + width[:, None] * (u + 1) / 2, rolling) for u in (nodes, tests)
+        _solve(low[:, None] + width[:, None] * (u + 1) / 2, rolling) for u in (nodes, tests)
     )
     table = np.empty((NEAR + 1, DEGREE + 1, IMPULSES))
-    table[:NEAR] = _combined(_lagrange(nodes.tolist()), at_nodes)
+    table[:NEAR] = _combine(_lagrange(nodes.tolist()), at_nodes)
     # below all cells: F1 and G1 in proportion to |x|, F2, G2 and p as for none
     table[NEAR] = 0.0
     table[NEAR, 0, [1, 3, 4]] = at_least[0, [1, 3, 4]]
     table[NEAR, 1, [0, 2]] = at_least[0, [0, 2]] / least
     small = least * np.array([0.0, 1e-6, 1e-3, 0.1, 0.5, 0.9])
     errors = np.abs(_values(tests, table[:NEAR]) - at_tests).max((1, 2))
-    error_near = np.abs(_values(small, table[NEAR]) - _solved(small, rolling)).max()
+    error_near = np.abs(_values(small, table[NEAR]) - _solve(small, rolling)).max()
     table[~(np.append(errors, error_near) <= WORST)] = np.nan
     return table.ravel()

@@ -211,6 +211,6 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
 
 
 @kernel
-def turned(series, b1, b2):
+def turns_back(series, b1, b2):
     """Whether the cloth slip b is opposite to its direction at the start of the step."""
     return b1 * series[E1] + b2 * series[E2] < 0.0

@@ -3,9 +3,9 @@ which it is shortened and taken again (else ``STANDS``)."""
 
 from typing import NamedTuple
 
-from ..._lib.jit import inlined
+from ..._lib.jit import inline
 from . import dormand_prince
-from .coulomb import CREEP, GRIPS, SLIDES, SLIP, STARTS, STICK, grip_holds, held, rates, settled
+from .coulomb import CREEP, GRIPS, SLIDES, SLIP, STARTS, STICK, can_hold, grip_holds, rates, settles
 from .ends import breaks_loose_at
 from .inertia import Impulses, Slips
 
@@ -48,7 +48,7 @@ class Step(NamedTuple):
     end: Moment
 
 
-@inlined
+@inline
 def cloth_after(step, mode, cloth, may_grip, limits, problem):
     """The next state of the cloth contact, and the factor on the step."""
     end, slip, per = step.end
@@ -69,18 +69,18 @@ def cloth_after(step, mode, cloth, may_grip, limits, problem):
     return after, shrink
 
 
-@inlined
+@inline
 def mode_after(series, step, s, mode, cloth, located, limits, problem):
     """A's next state, with slip s; the step's factor; and whether it leads to where A begins to slip."""
     after, shrink = mode, STANDS
     start, (end, slip, per_end) = step.start, step.end
     if mode == SLIP:
         if s <= limits.delta:
-            after = STICK if held(end, limits.near, cloth, problem) else CREEP
-        elif s < _INTO_CREEP * limits.creep and settled(end, slip, s, limits.near, cloth, problem):
+            after = STICK if can_hold(end, limits.near, cloth, problem) else CREEP
+        elif s < _INTO_CREEP * limits.creep and settles(end, slip, s, limits.near, cloth, problem):
             after = CREEP
     elif mode == STICK:
-        if not held(end, limits.near, cloth, problem):
+        if not can_hold(end, limits.near, cloth, problem):
             after = CREEP
             # it began to slip inside the step: take the step up to that place
             if step.h > limits.delta and not located:
@@ -96,7 +96,7 @@ def mode_after(series, step, s, mode, cloth, located, limits, problem):
         if step.h > limits.delta and start.per.F1 * start.slip.a1 + start.per.F2 * start.slip.a2 <= 0.0:
             shrink = _HALF  # it did before: the slip ended inside the step
         else:
-            after = STICK if held(end, limits.near, cloth, problem) else CREEP
-    elif s <= limits.delta and held(end, limits.near, cloth, problem):
+            after = STICK if can_hold(end, limits.near, cloth, problem) else CREEP
+    elif s <= limits.delta and can_hold(end, limits.near, cloth, problem):
         after = STICK
     return after, shrink, located

@@ -18,8 +18,8 @@ from ...physics import cloth
 from ...physics.arrays import Law
 from ...physics.columns import P_E_B, P_G, P_MU_R, P_R
 from ...physics.impact.contact import collide_balls, collide_cushion, cushion_restitution
-from ...tasks.arrays import CueLaw
 from ...tasks.box_actions import tip_on_disc
+from ...tasks.kernel_arrays import CueLaw
 from ...tasks.lines import new_work
 from ...tasks.noise import with_errors
 from ...tasks.pot_aim import meets, stroke_in_room
@@ -141,7 +141,7 @@ def _run(positions, on_table, skip, law, work, out):
 
 
 @kernel(seconds=1)
-def _met(stroke, ball, positions, on_table, cue_law, work, out):
+def _meet(stroke, ball, positions, on_table, cue_law, work, out):
     """The cue ball of a stroke (5,) meets ``ball``, past all others: whether it does, and the velocity and the spin that
     the ball leaves with. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
     phys, motion, state = cue_law.phys, work.motion, work.state
@@ -167,11 +167,11 @@ def _met(stroke, ball, positions, on_table, cue_law, work, out):
     return True, other, spin
 
 
-@kernel(seconds=1, uses=(_met, _run))
-def _predicted(stroke, pot, positions, on_table, cue_law, work, out):
+@kernel(seconds=1, uses=(_meet, _run))
+def _foresee(stroke, pot, positions, on_table, cue_law, work, out):
     """What is predicted of a stroke (5,) at a pot, of ball and pocket; fills ``out`` (SEEN,)."""
     phys, (ball, pocket) = cue_law.phys, pot
-    met, other, _spin = _met(stroke, ball, positions, on_table, cue_law, work, out)
+    met, other, _spin = _meet(stroke, ball, positions, on_table, cue_law, work, out)
     if not met:
         return
     px = POCKET_AIMS[pocket, AIM_X] - positions[ball, 0]
@@ -199,7 +199,7 @@ def _first_in_way(stroke, positions, on_table, d):
     return ball
 
 
-@kernel(seconds=1, uses=(_met, _run))
+@kernel(seconds=1, uses=(_meet, _run))
 def _contact(stroke, positions, on_table, cue_law, work, out, its):
     """What is predicted of a stroke (5,) and of the ball that lies in its way; fills ``out`` and ``its`` (SEEN,), and
     returns that ball, 0 if there is none."""
@@ -211,7 +211,7 @@ def _contact(stroke, positions, on_table, cue_law, work, out, its):
     out[MISSED], its[NEAR] = 2.0, 9.0
     if ball == 0:
         return 0
-    met, other, spin = _met(stroke, ball, positions, on_table, cue_law, work, out)
+    met, other, spin = _meet(stroke, ball, positions, on_table, cue_law, work, out)
     if not met:
         return 0
     _run(positions, on_table, ball, law, work, out)
@@ -229,7 +229,7 @@ def _with_error(meant, error, noise, most, tried):
     tried[1], tried[2] = tip_on_disc(played[1], played[2], most)
 
 
-@entry(what="the paths of cue balls", seconds=2, uses=(_predicted,))
+@entry(what="the paths of cue balls", seconds=2, uses=(_foresee,))
 def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
     """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,), each under standard normal
     ``errors`` (k, 5): fills ``out`` (n k, SEEN), and with what they leave if the ball is potted ``left``: positions,
@@ -243,7 +243,7 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
         own, ball, p, here = row_of(k, phys), pots[i, 0], positions[k], on_table[k]
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
-        _predicted(tried, (ball, pots[i, 1]), p, here, its, work, out[j])
+        _foresee(tried, (ball, pots[i, 1]), p, here, its, work, out[j])
         reds = False
         for i in range(N_BALLS):
             after[j, i, 0], after[j, i, 1], there[j, i] = p[i, 0], p[i, 1], here[i]

@@ -15,14 +15,14 @@ from ...game.balls import BLACK, N_BALLS, PINK, VALUES
 from ...tasks.options import Rules
 from ..aims import Dynamics, law_of
 from ..frame_judge import EASY
-from ..positions import Positions, PositionsLike, check_played, seeds_of
+from ..positions import Positions, PositionsLike, check_has_stroke, seeds_of
 from ..proposals import safeties
 from ..prospects import in_parts
 from ..search import Ranked
 from ..sobol import normal_points
 from ..stroke_columns import COLUMNS, SIDE, SPEED, TOP
 from ..strokes import Strokes
-from ..worth import SPREAD, Chance, breaks_off, lead_of, left_of, passed
+from ..worth import SPREAD, Chance, breaks_off, lead_of, left_of, pass_after_miss
 from . import cue_ball_path as path
 from .dense_layers import Layers
 from .learned_worth import LearnedWorth
@@ -84,7 +84,7 @@ class FrameStrokes:
         before a break-off, and where neither a pot nor a ball on is seen."""
         at = Positions.of(positions).known_to(self.rules)
         keys, rows = seeds_of(seeds, len(at)), np.flatnonzero(~breaks_off(at))
-        check_played(at.as_visits(), np.arange(len(at)), self.rules.table, self.rules.physics.R)
+        check_has_stroke(at.as_visits(), np.arange(len(at)), self.rules.table, self.rules.physics.R)
         strokes, there, seen = self.look(at[rows], keys[rows])
         there &= self._sensible(at[rows], there, seen)
         scores = np.where(there, self.scores(seen), -np.inf)
@@ -116,7 +116,10 @@ class FrameStrokes:
         strokes, there = np.zeros((n, STROKES, COLUMNS)), np.zeros((n, STROKES), np.bool_)
         seen = np.zeros((n, STROKES, SIZE), np.float32)
         # what the other and the striker make of the balls as they lie
-        missed, goes_on = self.worth(passed(at)).astype(np.float64), self.worth(at).astype(np.float64)
+        missed, goes_on = (
+            self.worth(pass_after_miss(at)).astype(np.float64),
+            self.worth(at).astype(np.float64),
+        )
         found, hard = self.values.candidates(visits, LOOKS, seeds), np.ones(n, np.bool_)
         rows, pots, kinds = found.rows, seen[:, :LOOKS], seen[:, LOOKS:]
         strokes[rows, :LOOKS], there[rows, :LOOKS] = found.strokes, True
@@ -124,7 +127,7 @@ class FrameStrokes:
         pots[rows, :, 0] = (self.values.scores(found.seen) - (1.0 - chances) * missed[rows, None]) / POINTS
         pots[:, :, 4] = 1.0
         pots[rows, :, SHARED : SHARED + POT_SIZE] = found.seen
-        short = lead_of(at) + left_of(passed(at)) < 0.0  # it would need snookers at the next visit
+        short = lead_of(at) + left_of(pass_after_miss(at)) < 0.0  # it would need snookers at the next visit
         hard[rows] = (chances.max(axis=1) < EASY) | short[rows]
         others = np.flatnonzero(hard)
         made = safeties(self, visits[others], SAFETIES, seeds[others])
@@ -160,7 +163,7 @@ class FrameStrokes:
         gains[potted] += POTTED * (VALUES[met] + goes_on[of] + missed[of])[potted]
         gains[foul] = np.minimum(gains[foul], 0.0) - FOUL
         rest = np.flatnonzero(~foul & ~potted)
-        left = passed(at[of[rest]])
+        left = pass_after_miss(at[of[rest]])
         left.positions[:] = places[rest]
         gains[rest] = -self.worth(left)
         gains, seen = gains.reshape(m, k) / 20.0, out.reshape(m, k, 2, path.SEEN)

@@ -31,7 +31,7 @@ class LearnedWorth:
         self._layers = None if layers is None else Layers(layers, "relu")
 
     def __call__(self, at: Positions) -> NDArray[np.float32]:
-        seen = self.seen(at)
+        seen = self.features_of(at)
         worths = np.empty(len(at), np.float32)
 
         def fill(rows: slice) -> None:
@@ -40,7 +40,7 @@ class LearnedWorth:
         in_parts(len(at), self.value.threads, fill)
         return worths
 
-    def seen(self, at: Positions) -> NDArray[np.float32]:
+    def features_of(self, at: Positions) -> NDArray[np.float32]:
         """What the network sees of n positions: float32 (n, SIZE)."""
         seen = np.empty((len(at), SIZE), np.float32)
         seen[:, :FEATURES] = frame_features(at, self.value.spread, self.value.threads)

@@ -41,11 +41,11 @@ class PolicyProposals:
     def __call__(self, search: Asking, at: Positions, m: int, seeds: Ints) -> Proposals:
         """m strokes for each position, see ``Propose``."""
         scores, masks = self.scores(at, search.dynamics.rails)
-        picks, tips = drawn(scores, masks, m, seeds)
+        picks, tips = draw_choices(scores, masks, m, seeds)
         return strokes_at(at, picks // STROKES, tips, search.spread, search.dynamics)
 
 
-def drawn(scores: Floats | Singles, masks: Bools, m: int, seeds: Ints) -> tuple[Ints, Floats]:
+def draw_choices(scores: Floats | Singles, masks: Bools, m: int, seeds: Ints) -> tuple[Ints, Floats]:
     """m choices of each position, drawn by their scores (n, CHOICES), and speeds and tips near them: (n, m), (n, m, 3)."""
     likely = np.where(masks, np.exp((scores - scores.max(axis=1, keepdims=True)) / TEMPERATURE), 0.0)
     sums = np.cumsum(likely, axis=1)

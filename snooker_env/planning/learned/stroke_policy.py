@@ -60,7 +60,7 @@ class StrokePolicy:
         joint = self._linear("joint", pot_codes)
         table_kernels.join(joint, self._linear("shared", read), pots)
         table_kernels.mask_scores(rows, masks, sides, self._linear("scores", joint), out)
-        table_kernels.as_seen(out, sides)
+        table_kernels.exchange_sides(out, sides)
 
     def _codes(self, name: str, rows: Singles) -> Singles:
         """The results of two layers with a ReLU between them."""

@@ -17,8 +17,8 @@ from ...geometry import AIM_X, AIM_Y, IS_MIDDLE, POCKET_AIMS
 from ...tasks.discrete_actions import STROKES
 from ...tasks.noise import Noise
 from ..aims import Dynamics, law_of
-from ..geometry import Pots, pots
 from ..positions import Positions
+from ..pot_geometry import Pots, pots
 from ..proposals import strokes_at
 from ..prospects import in_parts
 from ..sobol import normal_points
@@ -27,7 +27,7 @@ from ..worth import SPREAD
 from . import cue_ball_path as path
 from .dense_layers import Layers
 from .learned_value import LearnedValue
-from .policy_proposals import PolicyProposals, drawn
+from .policy_proposals import PolicyProposals, draw_choices
 from .stroke_policy import StrokePolicy
 
 SIZE = 33
@@ -87,7 +87,7 @@ class StrokeValue:
         some: Any = [part[rows] for part in direct]
         at, direct = at[rows], Pots(*some)
         scores, masks = self.proposals.scores(at, self.dynamics.rails)
-        picks, tips = drawn(scores, masks, m, seeds[rows])
+        picks, tips = draw_choices(scores, masks, m, seeds[rows])
         strokes, chances = strokes_at(at, picks // STROKES, tips, self.value.spread, self.dynamics)
         every = np.arange(len(at))[:, None]
         which = np.minimum(picks // STROKES, (direct.ball >= 0).sum(axis=1)[:, None] - 1)

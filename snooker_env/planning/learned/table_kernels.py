@@ -108,7 +108,7 @@ def join(joint, shared, pots):
 
 
 @kernel
-def mirrored(choice):
+def mirror_choice(choice):
     """The choice with the other side spin."""
     return choice + _TURN - 2 * _TOPS * (choice // _TOPS % (_TURN // _TOPS + 1))
 
@@ -125,18 +125,18 @@ def mask_scores(rows, masks, sides, scores, out):
                     row[at + c] = of_pot[c] if mask[at + c] else NEVER
             else:
                 for c in range(0, STROKES, _TOPS):
-                    other = mirrored(at + c)
+                    other = mirror_choice(at + c)
                     for t in range(_TOPS):
                         row[at + c + t] = of_pot[c + t] if mask[other + t] else NEVER
 
 
 @entry
-def as_seen(scores, sides):
+def exchange_sides(scores, sides):
     """Exchange the sides of strokes in scores (n, choices), in place, where the table was read mirrored."""
     for j in range(scores.shape[0]):
         if sides[j] < 0.0:
             row = scores[j]
             for c in range(row.shape[0]):
-                other = mirrored(c)
+                other = mirror_choice(c)
                 if other > c:
                     row[c], row[other] = row[other], row[c]

@@ -9,7 +9,7 @@ from scipy import stats
 from agents import report
 from agents._lib.tables import WIDTH, TextTable
 from agents.evaluation.training_summary import conclusion
-from snooker_env.benchmark.statistics import unseen
+from snooker_env.benchmark.statistics import bound_if_none
 from snooker_env.benchmark.tasks import most_points
 from tests.processes import ROOT
 
@@ -133,8 +133,10 @@ def result(layout="held_out", runs=1, counted=None, **figures):
 def test_the_bound_of_what_was_never_seen_is_clopper_and_pearsons():
     for n in (1, 30, 2000):
         exact = stats.binomtest(0, n, alternative="less").proportion_ci(0.95, "exact")
-        assert unseen(n) == pytest.approx(exact.high)
-    assert unseen(30) == pytest.approx(0.0950, abs=1e-4) and unseen(2000) == pytest.approx(3 / 2000, rel=5e-3)
+        assert bound_if_none(n) == pytest.approx(exact.high)
+    assert bound_if_none(30) == pytest.approx(0.0950, abs=1e-4) and bound_if_none(2000) == pytest.approx(
+        3 / 2000, rel=5e-3
+    )
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from agents.evaluation.tournament_figures import (
     schedule,
     strengths,
 )
-from snooker_env.benchmark.statistics import unseen
+from snooker_env.benchmark.statistics import bound_if_none
 
 SOUND = {"points": (60, 30), "scored": (50, 30), "visits": (10, 10), "strokes": (30, 20)}
 SOUND |= {"fouls": (0, 2), "best": (20, 12)}
@@ -110,7 +110,10 @@ def test_who_never_wins_has_bounds_and_no_interval():
     a, b, c = figures_of(["a", "b", "c"], rows, "a")["players"].values()
     assert c["elo_by_prior"] and not b["elo_by_prior"] and c["elo"]["low"] is None
     assert c["elo"]["value"] < c["elo"]["high"] < b["elo"]["value"]
-    assert c["win_rate"] == {"value": 0.0, "low": 0.0, "high": unseen(60)} and a["elo"]["value"] == ANCHOR_ELO
+    assert (
+        c["win_rate"] == {"value": 0.0, "low": 0.0, "high": bound_if_none(60)}
+        and a["elo"]["value"] == ANCHOR_ELO
+    )
     turned = [[*one[:5], 1 - one[5], *one[6:]] for one in rows]
     other = figures_of(["a", "b", "c"], turned, "a")["players"]["c"]["elo"]
     assert other["high"] is None and other["low"] == pytest.approx(2 * ANCHOR_ELO - c["elo"]["high"])

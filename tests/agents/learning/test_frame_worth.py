@@ -13,7 +13,7 @@ from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Positions
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
-from snooker_env.planning.trials import turned
+from snooker_env.planning.trials import turn_to_striker
 from snooker_env.planning.worth import SPREAD, Chance
 from snooker_env.players import FRAMES
 from snooker_env.players.tactician import Tactician
@@ -71,7 +71,7 @@ def decided_at_the_break(noise):
     env = sn.SnookerEnv(task="frame", noise=noise, **FRAMES)
     env.reset(seed=4)
     player = Tactician(30, (None, None)).at(env)
-    return player, player.decided(Positions.of(env), np.array([5]))
+    return player, player.decide_frames(Positions.of(env), np.array([5]))
 
 
 def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees(monkeypatch):
@@ -84,7 +84,7 @@ def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees(monkeypatch
     )
     k = np.flatnonzero(left.game[:, columns.STRIKER] == 1)[:1]  # a stroke after which the other comes
     decided.tried[0] = tried._replace(strokes=tried.strokes[k])
-    left = turned(left[k])
+    left = turn_to_striker(left[k])
     judged, seen = frame_self_play._judged, []
     monkeypatch.setattr(frame_self_play, "_judged", lambda *args: seen.append(args[1]) or judged(*args))
     replies, first = frame_self_play._replies(player, decided, np.array([0]), np.random.default_rng(0))
@@ -92,7 +92,7 @@ def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees(monkeypatch
     assert hard and first.tolist() == [0] * frame_self_play.REPLIES[hard] and len(seen) == 1
     assert np.array_equal(seen[0].game, np.repeat(left.game, len(first), 0))
     assert np.array_equal(seen[0].positions, np.repeat(left.positions, len(first), 0))
-    again = player.judge.worth.seen(player.decided(left, np.array([6])).start)
+    again = player.judge.worth.features_of(player.decide_frames(left, np.array([6])).start)
     assert np.array_equal(replies["seen"], np.repeat(again, len(first), 0))
 
 

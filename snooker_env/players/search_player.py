@@ -59,17 +59,17 @@ class SearchPlayer(BoundPlayer):
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """The strokes that met noise samples, most first, best first, with their scores [points]."""
         strokes, ranked = self._play(positions, seeds)
-        return [shown(one, strokes[k : k + 1]) for k, one in enumerate(ranked)]
+        return [show_strokes(one, strokes[k : k + 1]) for k, one in enumerate(ranked)]
 
     def _play(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, list[Ranked]]:
         """What it plays, and the rankings of its search."""
-        visits, places, decisions = self.started(positions, seeds)
+        visits, places, decisions = self.start_playing(positions, seeds)
         ranked = self.search.rank(visits, seeds)
         best = np.array([one.strokes.values[0] for one in ranked]).reshape(-1, COLUMNS)
         return Strokes(best, places, decision=decisions), ranked
 
 
-def shown(one: Ranked, said: Strokes) -> Ranked:
+def show_strokes(one: Ranked, said: Strokes) -> Ranked:
     """What a player shows of a ranking: the strokes that met noise samples, else all, at most ``RANKED``, each with what it
     says with the one that it plays (one row)."""
     m = min(RANKED, int((one.samples > 0).sum()) or len(one.samples))

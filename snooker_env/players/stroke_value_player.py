@@ -18,7 +18,7 @@ from ..planning.stroke_columns import COLUMNS
 from ..tasks.options import Options
 from .choices import GhostBall
 from .frame_decisions import FramePlayer
-from .player import Ranked, Strokes, placed
+from .player import Ranked, Strokes, place_cue_balls
 from .seen import begun
 from .weights import StrokeLayers, learned_at, learned_strokes, learned_worth, level_for
 
@@ -50,7 +50,7 @@ class StrokeValuePlayer(FramePlayer):
         """See ``Player.play``."""
         at = Positions.of(positions)
         if at.of_frames:
-            return self.decided(at, seeds).strokes
+            return self.decide_frames(at, seeds).strokes
         if self.options.rules.reward == "legal":
             return self._fairest(at, seeds)
         at, places, found, scores = self._score(at, seeds)
@@ -82,7 +82,7 @@ class StrokeValuePlayer(FramePlayer):
         """Strokes that need only be fair: at a ball that is seen, if it is likely to be struck, else over cushions; where
         there is neither those of ``ghost_ball``."""
         at, keys = positions.known_to(self.options.rules), seeds_of(seeds, len(positions))
-        plain, (visits, places) = self._plain.play(at, keys).values, placed(at, keys)
+        plain, (visits, places) = self._plain.play(at, keys).values, place_cue_balls(at, keys)
         every, (strokes, there, seen) = np.arange(len(at)), self.search.look(begun(visits), keys)
         fair = np.where(there, 1.0 - seen[..., FOULS], 0.0)[:, LOOKS:]
         worth = self.search.scores(seen)[:, LOOKS:]
@@ -98,6 +98,6 @@ class StrokeValuePlayer(FramePlayer):
         assert values is not None, options
         at = at.known_to(options.rules)
         keys = seeds_of(seeds, len(at))
-        visits, places = placed(at, keys)
+        visits, places = place_cue_balls(at, keys)
         found = values.candidates(visits, LOOKS, keys)
         return at, places, found, values.scores(found.seen)

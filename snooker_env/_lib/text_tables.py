@@ -21,7 +21,7 @@ def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int
     return [f"| {' | '.join(row)} |" for row in safe]
 
 
-def shown(figure: Mapping[str, float | None], scale: float = 1.0, form: str = "{:.1f}") -> str:
+def format_figure(figure: Mapping[str, float | None], scale: float = 1.0, form: str = "{:.1f}") -> str:
     """A figure with its interval: "65.8 [61.2, 70.1]", with one bound "65.8 [61.2, ..]"; "" without."""
     numbers = (figure["value"], figure["low"], figure["high"])
     value, low, high = (None if x is None else form.format(scale * x) for x in numbers)

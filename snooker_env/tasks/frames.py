@@ -30,7 +30,7 @@ from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
 from ..physics.conditions import COLUMNS as CONDITIONS
-from ..physics.conditions import normalised
+from ..physics.conditions import scale_to_unit
 from . import frame_kernels
 from .box_actions import Actions
 from .carry_out import carry_out
@@ -111,7 +111,9 @@ class Frames(Tables):
         self._numbers = game.code, self._miss, rules.time_to_play, self._reward, *limits
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
-            write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
+            write_frame(
+                Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.layouts_before, 0
+            )
             self.game[:] = self.game[0]
             self.on_table[:, 1:] = [rules.rule_set.on_table >> i & 1 for i in range(1, N_BALLS)]
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
@@ -128,7 +130,7 @@ class Frames(Tables):
         return self.seats[min(player, len(self.seats) - 1)].noise
 
     @property
-    def saved(self) -> columns.Layouts:
+    def layouts_before(self) -> columns.Layouts:
         """Where the balls lay before the last strokes: ``frame_columns.Layouts``."""
         return columns.Layouts(self._saved_positions, self._saved_on_table)
 
@@ -148,7 +150,7 @@ class Frames(Tables):
 
     def frame(self, k: int) -> Frame:
         """The ``game.frame.Frame`` on table k."""
-        return frame_of(self.game[k], self.rules.miss, self.saved, k, self.rules.game)
+        return frame_of(self.game[k], self.rules.miss, self.layouts_before, k, self.rules.game)
 
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k; with a free ball every colour."""
@@ -159,18 +161,18 @@ class Frames(Tables):
         """The agent's scores minus the opponent's: (n,)."""
         return self.game[:, columns.SCORE_0 + AGENT] - self.game[:, columns.SCORE_1 - AGENT]
 
-    def stopped(self) -> Bools:
+    def are_stopped_short(self) -> Bools:
         """Which frames the referee stops after ``max_strokes``: bool (n,)."""
         return self.game[:, columns.STROKES] >= self.rules.max_strokes
 
-    def ended(self) -> Bools:
-        return super().ended() | self.stopped() | self.through
+    def are_over(self) -> Bools:
+        return super().are_over() | self.are_stopped_short() | self.through
 
-    def finished(self) -> Bools:
-        return self.ended() & ~self.due
+    def are_told_over(self) -> Bools:
+        return self.are_over() & ~self.due
 
-    def interrupted(self) -> None:
-        """See ``Tables.interrupted``: tables at which it is the opponent's turn."""
+    def interrupt(self) -> None:
+        """See ``Tables.interrupt``: tables at which it is the opponent's turn."""
         self.begun[self.game[:, columns.STRIKER] != AGENT] = False
 
     # a turn
@@ -234,7 +236,7 @@ class Frames(Tables):
         which: Ints | None = None,
     ) -> Bools:
         """One turn of the strikers on ``which`` (or all); returns where there was a stroke, (n,)."""
-        playing = np.flatnonzero(~self.ended()) if which is None else which
+        playing = np.flatnonzero(~self.are_over()) if which is None else which
         self._played[playing] = 0
         crew(playing, lambda which, b: self.complete(prepare(which, b), out, b, crew, reported=True))
         self.go_on(playing)
@@ -243,7 +245,7 @@ class Frames(Tables):
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> Bools:
         """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k). Returns
         where there was a stroke, (n,)."""
-        going, striker = ~self.ended(), self.game[:, columns.STRIKER].copy()
+        going, striker = ~self.are_over(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
             prepare: Any = lambda which, b, its=its, side=side: self.prepare(which, its, b, side)  # noqa: E731
@@ -302,7 +304,7 @@ class Frames(Tables):
         """All strokes of the opponent until it is the agent's turn or the frame has ended."""
         opponent = self.seats[OPPONENT].player
         assert opponent is not None  # ``turn`` plays for two without
-        while len(which := which[(self.game[which, columns.STRIKER] != AGENT) & ~self.ended()[which]]):
+        while len(which := which[(self.game[which, columns.STRIKER] != AGENT) & ~self.are_over()[which]]):
             asked = opponent.strokes(self, which, crew)
 
             def play(part, buffers, asked=asked):
@@ -331,7 +333,7 @@ class Frames(Tables):
             except BaseException:
                 self.begun[which] = False
                 raise
-        self.due[which] = self.ended()[which]
+        self.due[which] = self.are_over()[which]
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
@@ -370,7 +372,7 @@ class Frames(Tables):
         rows = np.empty((len(which), self.SIZE), np.float32)
         frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
         if self.rules.observed:
-            rows[:, -CONDITIONS:] = normalised(self.conditions[which])
+            rows[:, -CONDITIONS:] = scale_to_unit(self.conditions[which])
         return rows
 
     # states
@@ -413,7 +415,7 @@ class Frames(Tables):
 
     def set_state(self, k: int, state: FrameState) -> None:
         self.positions[k], self.on_table[k] = state.positions, state.on_table
-        write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
+        write_frame(state.frame, state.strokes, self.game[k], self.layouts_before, k)
         self.game[k, columns.OPPONENT] = state.opponent
         self.game[k, columns.FIRST_BREAK] = state.frame.breaker
         self.game[k, columns.PAID] = self._worth(k) - state.unpaid
@@ -434,7 +436,7 @@ class Frames(Tables):
         on: Any = {"ball_on": BallOn(ball_on), "in_hand": bool(in_hand), "break_points": points}
         frame = Frame(on_table=balls, rack=balls, miss=rules.miss, rules=rules.game, **on)
         self.positions[k], self.on_table[k] = positions, on_table
-        write_frame(frame, 0, self.game[k], self.saved, k)
+        write_frame(frame, 0, self.game[k], self.layouts_before, k)
         self._replies[k], self.begun[k], self.nominated[k] = 0, True, AUTO
         self.due[k] = self.through[k] = False
 

@@ -7,7 +7,7 @@ from ..game.balls import REFEREE_TOUCH
 from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from ..physics.parameters import Physics
 from ..players.cue_stroke import CueStroke
-from ..replays.words import ball_name
+from ..replays.referee_words import ball_name
 from .room import Room
 
 POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")

@@ -14,13 +14,15 @@ from ..physics.parameters import Physics
 C_END_MASS = 0  # ``Physics.end_mass_ratio``
 C_MAX_OFFSET = 1  # ``Physics.max_offset``
 C_MU_S = 2  # ``Physics.mu_s``: what a ball that a raised cue strikes rubs against
-C_E_T = 3  # ``Physics.thrown``
+C_E_T = 3  # ``Physics.bed_restitution``
 C_RAILS = 4  # from here on the rails that it passes over (``cue_room.rails_of``); none: it is free
 
 
 def pack_cue(physics: Physics, rails: Floats) -> Floats:
     """A cue's row for the kernels: float64 (4 + len(rails),), in the columns ``C_*``."""
-    return np.array([physics.end_mass_ratio, physics.max_offset, physics.mu_s, physics.thrown, *rails])
+    return np.array(
+        [physics.end_mass_ratio, physics.max_offset, physics.mu_s, physics.bed_restitution, *rails]
+    )
 
 
 Packed: TypeAlias = tuple[Floats, Floats, Floats, Floats]
