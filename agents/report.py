@@ -27,7 +27,7 @@ SEEDS = 5
 """Fewer training seeds than that are pointed out."""
 SAME = 0.1
 """Times that differ by less than this share are called equal."""
-_pm = partial(shown, form="{:.2f}")
+_pm = partial(format_figure, form="{:.2f}")
 
 
 def _trials(row, below):

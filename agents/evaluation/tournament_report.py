@@ -65,7 +65,8 @@ def sentences(content):
     notes = [
         f"Each pair plays {p['matches']:,} {plural}: two on each seed, each player breaking first in one.",
         "Options: " + ", ".join(f"{name}={value}" for name, value in game.items()) + ".",
-        f"Who breaks first wins {format_figure(figures['opener'], 100.0)} %. Frames that were stopped, half for each: {figures['stopped']:,}.",
+        f"Who breaks first wins {format_figure(figures['opener'], 100.0)} %. "
+        f"Frames that were stopped, half for each: {figures['stopped']:,}.",
         "What the figures mean: docs/agents/tournament.md. "
         f"Elo: {p['anchor']} at {p['anchor_elo']:.0f}; to each pair {PRIOR:g} drawn {unit} is added.",
     ]
