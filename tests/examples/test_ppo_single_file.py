@@ -89,14 +89,14 @@ def played(monkeypatch):
     torch.random.set_rng_state(before[0]), torch.set_num_threads(before[1])
 
 
-def returns_of(played, since=0):
-    """What each visit brought that ended from step ``since`` on, counted table by table."""
+def returns_of(played):
+    """What each visit that ended brought, counted table by table."""
     returns = []
     for k in range(len(played[0][0])):
         begun = 0
         for t, (_, ends) in enumerate(played):
             if ends[k]:
-                returns += [sum(rewards[k] for rewards, _ in played[begun : t + 1])] * (t >= since)
+                returns.append(sum(rewards[k] for rewards, _ in played[begun : t + 1]))
                 begun = t + 1
     return returns
 
