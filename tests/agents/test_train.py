@@ -18,7 +18,6 @@ import train
 from agents.evaluation import training_summary
 from agents.learning import agent_training, expert_iteration, hyperparameters
 from agents.learning.agent_training import recipe_of
-from agents.learning.hyperparameters import names
 from agents.learning.loop import Loop
 from agents.learning.settings import Settings
 from agents.players.trained import load_player
@@ -128,15 +127,6 @@ def test_kill_9_leaves_a_run_that_resume_finishes(finished, tmp_path):
     assert results(out)["curve"] == results(finished)["curve"]
 
 
-@pytest.mark.slow
-def test_ctrl_c_ends_it_in_order(tmp_path):
-    process = launch(tmp_path / "run", "--steps", "100000")
-    os.killpg(process.pid, signal.SIGINT)  # what a terminal does
-    output, _ = process.communicate(timeout=120)
-    assert process.returncode == 130, output
-    assert "--resume" in output and "Traceback" not in output
-
-
 def test_resume_refuses_other_settings(finished, refused):
     again = [train.main, "--resume", "--out", finished]
     error = refused(*again, "--noise", "club")
@@ -153,51 +143,6 @@ def test_existing_run_is_not_overwritten(finished, tmp_path, refused):
     assert "must be the folder of a run" in refused(train.main, "--resume", "--out", tmp_path)
     # wrong options are reported first
     assert "noise = 'pro'" in refused(train.main, "--noise", "pro", "--out", tmp_path)
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    str.split(
-        "layout=moon layout=held_out noise=drunk fidelity=rough agent=dqn set=gamma set=charm=2 envs=-1 steps=-1 "
-        "eval-visits=1 eval-visits=2049 seed=-1 seed=x seed=4294967296 start=nowhere start=pyproject.toml"
-    ),
-)
-def test_bad_option_gives_one_clear_error(tmp_path, refused, monkeypatch, wrong):
-    monkeypatch.setattr(sn, "warmup", None)  # nothing is compiled before
-    option, _, value = wrong.partition("=")
-    error = refused(train.main, "--out", tmp_path / "run", f"--{option}", value)
-    assert option in error and value in error and not (tmp_path / "run").exists()
-
-
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ("gamma=abc", "gamma = 'abc': must be a finite number in [0, 1]"),
-        ("gamma=2", "gamma = 2: must be a finite number in [0, 1]"),
-        ("gamma=-1", "gamma = -1"),
-        ("gae_lambda=5", "gae_lambda = 5"),
-        ("gamma=0 gamma=0.5", "must give gamma only once"),
-        ("n_epochs=abc", "n_epochs = 'abc': must be an integer"),
-        ("n_epochs=0", "n_epochs = 0"),
-        ("ent_coef=x", "ent_coef = 'x'"),
-        ("batch_size=0", "batch_size = 0"),
-        ("n_steps=0", "n_steps = 0"),
-        ("learning_rate=abc", "learning_rate = 'abc'"),
-        ("learning_rate=lin_abc", "learning_rate = 'lin_abc': must be a number in [0, 1], or lin_X"),
-        ("algo=foo", "'algo=foo': must be KEY=VALUE with KEY one of env_kwargs, n_steps"),
-        ("policy=Foo", "'policy=Foo'"),
-        ("n_envs=0", "(n_timesteps, n_envs, imitation have options of their own)"),
-        ("env_kwargs=3", "env_kwargs = 3: must be a dict"),
-        ("env_kwargs={'fun':1}", "env_kwargs = 'fun': must be one of 'action'"),
-        ("env_kwargs={'aim':'target'}", "action = 'box': must be 'discrete'"),
-        ("env_kwargs={'action':'discrete','layout':'held_out'}", "layout = 'held_out'"),
-        ("env_kwargs={'action':'discrete','fidelity':[]}", "fidelity = []"),
-    ],
-)
-def test_bad_hyperparameter_gives_one_clear_error(tmp_path, refused, monkeypatch, changes, said):
-    monkeypatch.setattr(sn, "warmup", None)
-    assert said in refused(train.main, "--out", tmp_path / "run", "--set", *changes.split())
-    assert not (tmp_path / "run").exists()
 
 
 def test_a_folder_that_cannot_be_written_is_refused(tmp_path, refused, monkeypatch):
@@ -255,17 +200,6 @@ def test_evaluation_plays_under_the_options_of_training(judged):
         assert judged(set=changes) == [{"first_seed": tables_of("held_out", 2)} | wanted] * 3
 
 
-@pytest.mark.parametrize("agent", names())
-def test_agents_are_judged_at_the_usual_fidelity(judged, agent):
-    """Those whose recipe learns at another too, unless one is asked for."""
-    cases = [({}, None), ({"fidelity": "fast"}, "fast")]
-    if agent == "ppo_value":
-        changes = ("env_kwargs={'action': 'discrete', 'fidelity': 'reference'}",)
-        cases.append(({"set": changes}, "reference"))
-    for settings, wanted in cases:
-        assert [one.get("fidelity") for one in judged(agent, **settings)] == [wanted] * 3
-
-
 def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
     start = str(finished)
     assert run(tmp_path / "run", "--start", start, "--set", "learning_rate=0.0") == 0
@@ -278,19 +212,6 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
     )
     error = refused(train.main, *TINY, "--out", tmp_path / "other", "--agent", "ppo_value", "--start", start)
     assert "must be a model of ppo_value" in error
-
-
-def test_an_interruption_before_the_first_save_is_reported_in_one_line(tmp_path):
-    code = f"""
-import runpy, sys, snooker_env
-def stop(): raise KeyboardInterrupt
-snooker_env.warmup, sys.argv = stop, {["train.py", *TINY, "--out", str(tmp_path / "run")]!r}
-runpy.run_path("train.py", run_name="__main__")
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
-    assert done.returncode == 130
-    again, said = done.stderr.splitlines()
-    assert again.startswith("Continue with: ") and said == "train.py: interrupted"
 
 
 def test_a_finished_run_has_nothing_left_to_train(tmp_path, capsys):
@@ -357,15 +278,6 @@ def test_agents_with_longer_actions_are_judged_and_not_taken_for_shorter(tmp_pat
     start = ["--agent", "ppo_target", "--start", out, "--out", tmp_path / "new", "--set"]
     error = refused(train.main, *start, f"env_kwargs={usual}")
     assert "start = " in error and "must be a model with actions" in error
-
-
-def test_only_what_has_expert_iteration_takes_its_positions(tmp_path, refused):
-    assert recipe_of(Settings(start="x")).imitation == 0 < recipe_of(Settings()).imitation
-    for options, says in (
-        ("--start x --imitate 5", "imitate = 5: must be 0 or left out with --start"),
-        ("--agent ppo_target --imitate 100", "imitate = 100: must be 0 for ppo_target"),
-    ):
-        assert says in refused(train.main, *options.split(), "--out", tmp_path / "run")
 
 
 def test_hyperparameters_can_be_changed(tmp_path):

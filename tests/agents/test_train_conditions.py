@@ -10,7 +10,6 @@ from agents.features.observed import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import ExpertIteration
 from agents.learning.hyperparameters import SHOT_OPTIONS, Recipe
-from agents.learning.model_files import packed, read
 from agents.learning.models import load_trained
 from agents.players.trained import load_player
 from snooker_env.benchmark import play_visits, summary
@@ -134,39 +133,6 @@ def test_it_sees_those_of_the_table_that_it_plays_on(observed, monkeypatch):
         del seen[:]
         player.at(options).play(at, np.arange(3))
         assert np.allclose(np.stack(seen)[:, SHOWN:], conditions.normalised(wanted), atol=1e-6)
-
-
-def test_such_a_model_is_stored_and_read(observed, tmp_path):
-    trained = load_trained(observed, "agent")
-    (tmp_path / "plain.zip").write_bytes(packed(trained))
-    again = read(tmp_path / "plain.zip", "agent")
-    assert packed(again) == packed(trained) and again.env_options == trained.env_options
-
-
-def test_a_run_that_does_not_observe_them_cannot_begin_to(tmp_path, refused):
-    assert run(tmp_path / "plain", "--conditions", "drawn", "--steps", "128") == 0
-    error = refused(train.main, "--resume", "--out", tmp_path / "plain", "--observe-conditions")
-    assert "--observe-conditions is True but the run" in error and "has False" in error
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (
-            "--agent ppo_target --observe-conditions",
-            'observe_conditions = True: must be False with conditions="fixed"',
-        ),
-        (
-            "--agent ppo_value --imitate 8",
-            "observe_conditions = True: must be left out for ppo_value: its networks",
-        ),
-    ],
-)
-def test_what_cannot_observe_them_is_refused(tmp_path, refused, monkeypatch, options, said):
-    monkeypatch.setattr(sn, "warmup", None)  # nothing is compiled before
-    more = [] if "--observe" in options else OBSERVED
-    assert said in refused(train.main, *options.split(), *more, "--out", tmp_path / "run")
-    assert not (tmp_path / "run").exists()
 
 
 def test_weights_of_an_agent_that_observes_something_else_are_refused(observed, tmp_path, refused):

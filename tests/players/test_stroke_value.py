@@ -97,25 +97,6 @@ def test_a_network_is_learned(tmp_path, capsys, frame_rounds):
     assert len(StrokeValuePlayer(learned).at(tables).play(tables, np.arange(8))) == 8
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["--envs", "64"], "envs = 64: must be left out for stroke_value"),
-        (["--set", "tables=3"], "tables = 3"),
-        (["--set", "frames=9"], "frames = 9"),
-        (
-            ["--set", "widths=3"],
-            "must be KEY=VALUE with KEY one of rounds, tables, frame_rounds, frames, cue",
-        ),
-        (["--seed", "81"], "seed = 81"),
-    ],
-)
-def test_wrong_options_of_a_training_are_refused(tmp_path, words, said, capsys):
-    with pytest.raises(SystemExit):
-        train.main(["--agent", "stroke_value", "--out", str(tmp_path / "run"), *words])
-    assert said in capsys.readouterr().err and not (tmp_path / "run").exists()
-
-
 def test_a_folder_of_a_training_is_resumed_as_it_was_or_refused(tmp_path, capsys):
     out = tmp_path / "run"
     out.mkdir()

@@ -68,24 +68,6 @@ def test_strokes_that_are_choices_become_those_choices():
     assert np.mean(dataset.nearest_choices(Strokes(values), at, masks, planner) == choices) > 0.9
 
 
-def test_what_cannot_be_made_is_refused(tmp_path, capsys):
-    pytest.importorskip("minari")
-    for words, why in (
-        (["--task", "Snooker-v0"], "task = 'Snooker-v0': must be one of"),
-        (["--form", "targets"], "form = 'targets': must be one of 'strokes', 'choices'"),
-        (["--strokes", "0"], "strokes = 0: must be an integer"),
-        (["--player", "nobody"], "player = 'nobody': must be the name of a player"),
-        (
-            ["--task", "SnookerFrame-v0", "--form", "choices"],
-            "form = 'choices': must be \"strokes\" in frames",
-        ),
-    ):
-        with pytest.raises(SystemExit):
-            dataset.main(["--out", str(tmp_path), *words])
-        assert why in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
 def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path, capsys):
     minari = pytest.importorskip("minari")
     command = ["--out", str(tmp_path), "--player", "ghost_ball", "--form", "choices", "--strokes"]

@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import shutil
 import zipfile
 from pathlib import Path
@@ -109,36 +108,6 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
         same = [row for row in read(file)["results"] if row["agent"] in ("m", "ghost_ball")]
         rows.append([{key: row[key] for key in row if key != "ms_a_decision"} for row in same])
     assert rows[0] == rows[1] and len(rows[0]) == 2
-
-
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
-        ("nobody", "agent = 'nobody': must be random, "),
-        (__file__, "agent = .*test_evaluate.py': must be a model saved by Stable-Baselines3"),
-        ("x=nowhere-*", "agent = 'nowhere-\\*': must be"),
-        ("random random", "agent = 'random': must be another"),
-        ("random --against me", "against = 'me': must be one of random, ghost_ball"),
-        ("random --layouts moon=3", "layout = 'moon': must be one of"),
-        ("random --layouts colours=x", "layouts = 'colours=x': must be LAYOUT or"),
-        ("random --visits 1", "visits = 1: must be an integer in \\[2"),
-        ("random --noise loud", "noise = 'loud': must be one of"),
-        ("random --fidelity true", "fidelity = 'true': must be"),
-        ("random --physics mars", "physics = 'mars': must be one of"),
-        ("random --physics paper,mu_bb", "physics = 'paper,mu_bb': must be PRESET"),
-        ("random --physics paper,mu_bb=-1", "mu_bb"),
-        ("random --physics paper,R=0.03", "physics = 'paper,R=0.03': must leave R"),
-        ("random --physics paper,mu_s=0", "physics.mu_s = 0.0: must be > 0"),
-        ("random --physics paper,mu_r=0", "physics.mu_r = 0.0: must be > 0"),
-        ("search_1", "player = 'search_1': must end in a number of simulated shots from 8"),
-        ("random --json tests", "json = 'tests': must be a file"),
-        ("random --json pyproject.toml/r.json", "json = 'pyproject.toml/r.json': must be a file"),
-        ("random --markdown /proc/none/r.md", "markdown = '/proc/none/r.md': must be a file"),
-        ("random --resamples 5", "resamples = 5: must be an integer in"),
-    ],
-)
-def test_bad_input_ends_with_one_clear_line(options, says, refused):
-    assert re.search(says, refused(evaluate.main, "--agent", *options.split()))
 
 
 def test_a_player_of_ones_own_is_compared(tmp_path):

@@ -117,36 +117,6 @@ def test_frames_do_not_depend_on_the_company(tmp_path):
     assert rows[0] == rows[1] and len(rows[0]) == 6
 
 
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
-        ("ghost_ball", "players = 'ghost_ball': must be two or more"),
-        ("ghost_ball nobody", "agent = 'nobody': must be random, "),
-        ("ghost_ball ghost_ball", "player = 'ghost_ball': must be another"),
-        ("ghost_ball x=ghost_ball,random", "player = 'x=ghost_ball,random': must be one player"),
-        (f"ghost_ball {USERS}:Mute", "player = a Mute: must be a player: at.rules. and play"),
-        (f"ghost_ball {USERS}:Loud", "key of the options of player Loud = 'noise'"),
-        ("ghost_ball random --frames 7", "frames = 7: must be even"),
-        ("ghost_ball random --frames 0", "frames = 0: must be an integer in \\[2"),
-        ("ghost_ball random --match 4", "match = 4: must be odd"),
-        ("ghost_ball random --noise loud", "noise = 'loud': must be one of"),
-        ("ghost_ball random --physics mars", "physics = 'mars': must be one of"),
-        ("ghost_ball random --miss always", "miss = 'always': must be one of"),
-        ("ghost_ball random --rules pool", "game = 'pool': must be one of"),
-        ("ghost_ball random --max-strokes 0", "max_strokes = 0: must be an integer"),
-        ("ghost_ball random --threads 0", "threads = 0: must be an integer"),
-        ("ghost_ball random --options aim=target", "options = 'aim=target': must be left out"),
-        ("ghost_ball random --resume", "resume = True: must be given together with --out"),
-        ("ghost_ball random --out pyproject.toml", "out = 'pyproject.toml': must be a new file"),
-        ("ghost_ball random --out pyproject.toml --resume", "pyproject.toml': must be JSON"),
-        ("ghost_ball random --out tests --force", "out = 'tests': must be a file"),
-    ],
-)
-def test_bad_input_ends_with_one_clear_line(options, says, refused, monkeypatch):
-    monkeypatch.chdir(ROOT)
-    assert re.search(says, refused(tournament.main, *options.split()))
-
-
 def test_another_tournament_is_not_gone_on_with(tmp_path, refused, parts, monkeypatch):
     with monkeypatch.context() as patch:
         interrupted_at(patch, tournament_play, "play_pair", 2)

@@ -1,7 +1,5 @@
 """Do value, policy and planner learn from each other, and does a stopped run end as an uninterrupted one?"""
 
-import pickle
-
 import numpy as np
 import pytest
 import torch
@@ -11,10 +9,7 @@ from agents.features.observed import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import FRESH, STARTS, ExpertIteration, Starts, judge_rewards
 from agents.learning.hyperparameters import Recipe
-from agents.learning.model_files import packed, read
-from agents.learning.models import zip_model
 from agents.learning.value_network import value_of
-from snooker_env import player
 from snooker_env.planning import Positions, spread_of
 from snooker_env.planning.learned.learned_value import LearnedValue
 from snooker_env.planning.learned.policy_proposals import PolicyProposals
@@ -46,22 +41,6 @@ def alike(some, others):
     return len(some) == len(others) and all(map(np.array_equal, some, others))
 
 
-def timeless(state):
-    """A state without its clock."""
-    return plain({**state, "seconds": 0, "curve": [{**one, "seconds": 0} for one in state["curve"]]})
-
-
-def plain(x):
-    """Arrays and tensors as bytes, so that equality is equality of bits."""
-    if isinstance(x, torch.Tensor):
-        x = x.numpy()
-    if isinstance(x, np.ndarray):
-        return x.dtype.str, x.shape, x.tobytes()
-    if isinstance(x, dict):
-        return [(plain(key), plain(value)) for key, value in x.items()]
-    return [plain(one) for one in x] if isinstance(x, list | tuple) else x
-
-
 def begun(model, venv, states, seed, threads, before=None):
     run = ExpertIteration(model, venv, states, seed, threads, before)
     run.begin()
@@ -79,26 +58,6 @@ def a_run(seed=5, threads=1):
     return model, run_to(begun(model, venv, STATES, seed, threads), STATES)
 
 
-def test_a_stopped_run_ends_where_an_uninterrupted_one_does():
-    """Bit for bit, stopped before anything has learned, after the value's first steps, and amid the rest."""
-    model, whole = a_run()
-    expected, ended = timeless(whole.get_state()), weights(model)
-    assert whole.done == STATES and whole.curve[-1]["states"] == STATES
-    for k in (1, 2, 5):
-        model, venv = model_and_tables()
-        first = run_to(begun(model, venv, STATES, 5, 1), k * N)
-        saved = pickle.dumps((first.get_state(), weights(model), torch.get_rng_state()))
-        state, kept, generator = pickle.loads(saved)
-        torch.rand(3)
-        again, venv = model_and_tables(seed=6)
-        again.policy.load_state_dict(kept)
-        torch.set_rng_state(generator)
-        # also on another number of threads
-        second = run_to(begun(again, venv, STATES, 5, 2, state), STATES)
-        assert timeless(second.get_state()) == expected, k
-        assert all(torch.equal(tensor, ended[name]) for name, tensor in weights(again).items()), k
-
-
 def test_both_networks_learn_and_the_seed_matters():
     model, venv = model_and_tables()
     before = weights(model)
@@ -113,7 +72,7 @@ def test_both_networks_learn_and_the_seed_matters():
     assert set(last) == {"states", "simulated_shots", "seconds", "loss", "value_loss", "value"}
     assert last["value"] > 0.0
     assert last["seconds"] >= 0.0
-    assert timeless(a_run(seed=7)[1].get_state()) != timeless(run.get_state())
+    assert a_run(seed=7)[1].curve[-1]["loss"] != last["loss"]
 
 
 def test_the_rule_and_even_proposals_come_first():
@@ -187,20 +146,6 @@ def test_visits_begin_in_all_layouts_by_their_shares(monkeypatch):
     assert alike(again, kept) and not any(map(np.array_equal, other, kept))
 
 
-@pytest.mark.parametrize(
-    ("changes", "complaint"),
-    [
-        ({"layout": "held_out"}, "layout = 'held_out': must be another for training"),
-        ({"layout": "nowhere"}, "layout = 'nowhere'"),
-        ({"action": "box"}, "action = 'box': must be 'discrete'"),
-        ({"noise": "loud"}, "noise = 'loud'"),
-    ],
-)
-def test_wrong_options_are_refused_before_anything_is_played(changes, complaint):
-    with pytest.raises(ValueError, match=f"^{complaint}"):
-        training_tables(2, threads=1, **Recipe.of("ppo_value", env_kwargs=changes).env_kwargs)
-
-
 def test_a_judge_adds_its_value_only_where_the_visit_goes_on():
     """Against the same tables without a judge: rewards and its word on what was left, none after the end."""
     judged, usual = (training_tables(24, threads=1, **{**OPTIONS, "layout": "random:6"}) for _ in range(2))
@@ -237,35 +182,3 @@ def test_ppo_is_judged_by_the_models_own_value():
     at = Positions.of(tables(10, layout="random:5"))
     expected = value_of(model.policy.position_value, spread_of(LEVELS["professional"]))(at)
     assert np.array_equal(venv.judge(at), expected) and venv.judge.threads == 2
-
-
-def test_ppo_leaves_the_value_of_positions_alone():
-    model, _ = model_and_tables()
-    own = {id(p) for p in model.policy.position_value.parameters()}
-    learned = {id(p) for group in model.policy.optimizer.param_groups for p in group["params"]}
-    assert own and not own & learned and len(own) + len(learned) == len(list(model.policy.parameters()))
-
-
-def test_policy_and_value_are_saved_and_read_together(tmp_path):
-    """From the zip of train.py and from that of agents/pretrained; what is read plays as what was written."""
-    model, _ = model_and_tables(seed=9)
-    with torch.no_grad():
-        for p in model.policy.position_value.parameters():
-            p.add_(0.05)
-    model.imitated = STATES
-    at = Positions.of(tables(30, layout="random:5"))
-    expected = value_of(model.policy.position_value, 1e-3)(at)
-    scores = PolicyProposals(model.policy.fused).scores(at)[0]
-    (tmp_path / "model.zip").write_bytes(zip_model(model))
-    trained = read(tmp_path / "model.zip", "agent")
-    (tmp_path / "plain.zip").write_bytes(packed(trained))
-    again = read(tmp_path / "plain.zip", "agent")
-    for one in (trained, again):
-        assert one.recipe == "ppo_value" and one.imitated == STATES and one.gamma == 0.0
-        assert np.array_equal(value_of(one.policy.position_value, 1e-3)(at), expected)
-        assert np.array_equal(PolicyProposals(one.policy.fused).scores(at)[0], scores)
-    assert packed(again) == packed(trained)
-    env = tables(3, noise="professional", aim="absolute")
-    planners = [player(f"planner_30@{tmp_path / name}") for name in ("model.zip", "plain.zip", "")]
-    one, *others = (made.at(env).play(Positions.of(env), np.arange(3)).values for made in planners)
-    assert alike([one, one], others) and one.any(axis=1).all()

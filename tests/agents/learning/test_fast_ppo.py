@@ -128,11 +128,6 @@ def test_the_next_rollout_has_its_masks_by_steps_and_tables():
     assert buffer.action_masks.shape == shape
 
 
-def test_same_seed_same_weights():
-    found = [weights(made(seed=seed).learn(256)) for seed in (3, 3, 4)]
-    assert torch.equal(found[0], found[1]) and not torch.equal(found[0], found[2])
-
-
 def test_its_files_are_read_by_sb3_and_learning_goes_on():
     model = made(n_steps=2, batch_size=16).learn(16)
     file = io.BytesIO()

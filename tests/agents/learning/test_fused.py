@@ -186,22 +186,6 @@ def test_choices_of_nearly_no_probability_keep_their_logarithm(policy, met):
     assert np.isclose(found[2], entropy.mean().item(), rtol=1e-4)
 
 
-def test_gradients_of_parts_add_up(policy, met):
-    """And a block of another size leaves nothing behind."""
-    seen, masks = met
-    choices, _, logs = policy.fused.act(seen, masks, np.random.default_rng(3).random(N))
-    rollout = Rollout(seen, masks, choices, logs, np.ones(N, np.float32), np.zeros(N, np.float32))
-    found = []
-    for parts in ([np.arange(40)], [np.arange(40), np.arange(40, 40 + 20)], [np.arange(40, 60)]):
-        policy.fused.zero_grad()
-        for rows in parts:
-            policy.fused.ppo_gradient(rows, rollout, LOSS)
-        found.append(policy.fused.gradient.clone())
-    scale = found[1].abs().max()
-    assert (found[0] + found[2] - found[1]).abs().max() < 1e-5 * scale
-    assert (found[0] - found[1]).abs().max() > 1e-2 * scale
-
-
 def test_copies_and_new_weights_have_passes_of_their_own(policy, met):
     """After passes were made: a copy, a pickle, and weights that were put in place of others."""
     seen, masks = met

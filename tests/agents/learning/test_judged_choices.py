@@ -1,7 +1,5 @@
 """Does a policy come to prefer what its judge likes, simulated under errors and counted from the points?"""
 
-import pickle
-
 import numpy as np
 import pytest
 import torch
@@ -128,31 +126,6 @@ def test_the_oldest_rounds_are_forgotten(monkeypatch):
         learning.round(some(8, seed=k), lambda left: np.zeros(len(left)), 1.0)
     assert len(learning._rounds) == 3
     assert np.array_equal(learning._rounds[-1][0], with_pots(some(8, seed=4).observations()))
-
-
-@pytest.mark.parametrize("stop", [1, 3])
-def test_it_goes_on_from_a_saved_state_bit_for_bit_on_any_number_of_threads(stop):
-    def judge(left):
-        return 5.0 + left.positions[:, 0, 1]
-
-    def go_on(learning, rounds):
-        for k in rounds:
-            learning.round(some(16, seed=k), judge, 0.6)
-
-    first_policy = policy(3)
-    first = learner(first_policy, 16, seed=8)
-    go_on(first, range(stop))
-    saved = pickle.dumps((first.get_state(), first_policy.state_dict(), first._rng.bit_generator.state))
-    go_on(first, range(stop, 4))
-    state, weights, generator = pickle.loads(saved)
-    second_policy = policy(4)
-    second_policy.load_state_dict(weights)
-    second = learner(second_policy, 16, threads=2)
-    second._rng.bit_generator.state = generator
-    second.set_state(state)
-    go_on(second, range(stop, 4))
-    assert torch.equal(flat(first_policy), flat(second_policy))
-    assert list(first.losses) == list(second.losses)
 
 
 def opened(n, noise="professional"):

@@ -186,22 +186,6 @@ def test_a_full_disk_ends_it_in_one_line(tmp_path, monkeypatch, capsys, full):
     assert resume(out) == 0
 
 
-@pytest.mark.slow
-def test_the_systems_own_limit_is_reported_in_one_line(tmp_path):
-    """A process that may write 50 kB a file: no traceback, nothing left."""
-    code = f"""
-import resource, runpy, sys
-import train
-resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
-sys.exit(train.main({[*TINY, "--out", str(tmp_path / "run")]!r}))
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, timeout=300)
-    file = tmp_path / "run" / "checkpoint.pkl"
-    why = f"train.py: {file} cannot be written: File too large"
-    assert done.stderr.splitlines() == [f"{CONTINUE} {file.parent}", why] and done.returncode == 1
-    assert {p.name for p in file.parent.iterdir()} <= {"tb", "settings.json"}
-
-
 def test_a_folder_that_was_moved_leaves_the_lock_of_another_run_alone(tmp_path):
     folder = tmp_path / "run"
     folder.mkdir()

@@ -1,6 +1,5 @@
 """Are the value's targets those of the docstring, recomputed by hand, and does the network come to them?"""
 
-import pickle
 from itertools import combinations
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 import torch
 from positions import chances_by_width, tables
 
-from agents.learning import value_learning
 from agents.learning.value_learning import FIRST_GUESS, LAMBDA, RATE, ValueLearning
 from agents.learning.value_network import MEMBERS, POINTS, WIDTHS, ValueNetwork, value_of
 from snooker_env.planning import Positions, Search, VisitJudge, spread_of
@@ -99,26 +97,6 @@ def test_the_first_targets_are_returns():
     assert learning._returns().reshape(3, 6) == pytest.approx(expected, rel=1e-5) and FIRST_GUESS == 25.0
 
 
-def test_the_oldest_rounds_are_forgotten(monkeypatch):
-    monkeypatch.setattr(value_learning, "KEPT", 20)
-    rng, learning = np.random.default_rng(0), learner(5)
-    rounds = [a_round(5, rng) for _ in range(7)]
-    for one in rounds:
-        learning.add(*one)
-    assert len(learning._rounds) == 4
-    expected = by_hand(learning._network, rounds[3:])
-    assert learning._targets().reshape(4, 5) == pytest.approx(expected, rel=1e-3, abs=2e-3)
-
-
-def test_nothing_given_is_changed():
-    given = a_round(5, np.random.default_rng(4))
-    kept = [one.copy() for one in given]
-    learning = learner(5)
-    learning.add(*given)
-    learning.fit(1.0)
-    assert all(np.array_equal(a, b) for a, b in zip(given, kept, strict=True))
-
-
 def test_the_network_learns_a_known_value():
     """Strokes that end the visit: one feature says if they bring 7 points or 1, a second how many score.
 
@@ -176,65 +154,12 @@ def test_each_member_learns_from_batches_of_its_own():
     assert moved(learning) == pytest.approx(moved(alone) * 4, rel=0.15)
 
 
-def test_values_spread_backwards_along_a_visit():
-    """A leads to B without points, B to 10 points and the end: by backups alone A comes to B's value."""
-    n, learning = 32, learner(32)
-    a, b = np.zeros((n, SIZE), np.float32), np.zeros((n, SIZE), np.float32)
-    a[:, 0], b[:, 1] = 1.0, 1.0
-    to_b = np.tile(b[:, None], (1, 2, 1)).astype(np.float16)
-    nothing = np.zeros((n, 2, SIZE), np.float16)
-    for _ in range(6):
-        learning.add(a, to_b, np.zeros((n, 2)), np.ones((n, 2), bool), np.zeros(n, bool))
-        learning.add(b, nothing, np.full((n, 2), 10.0), np.zeros((n, 2), bool), np.zeros(n, bool))
-    for step in range(300):
-        learning.fit(1.0 - step / 320)
-    found = learning.value().of(np.stack([a[0], b[0]]))
-    assert found == pytest.approx([10.0, 10.0], abs=1.5)
-
-
-def test_no_gradient_is_left_behind():
-    """Whoever learns next clips the gradients of the whole policy: these must not count there."""
-    learning = learner(5)
-    learning.add(*a_round(5, np.random.default_rng(0)))
-    learning.fit(1.0)
-    assert torch.nn.utils.clip_grad_norm_(learning._network.parameters(), 1.0) == 0.0
-
-
 def test_the_rate_falls_with_what_is_left():
     learning = learner(5)
     learning.add(*a_round(5, np.random.default_rng(0)))
     for left, rate in ((1.0, RATE), (0.25, 0.25 * RATE), (0.0, 0.02 * RATE)):
         learning.fit(left)
         assert [group["lr"] for group in learning._optimizer.param_groups] == [pytest.approx(rate)]
-
-
-def test_learning_goes_on_from_a_saved_state_bit_for_bit():
-    """Saved at every step of a cycle of refreshes; the state is a copy as soon as it is a file."""
-    rng = np.random.default_rng(5)
-    rounds = [a_round(8, rng) for _ in range(12)]
-
-    def go_on(learning, some):
-        for one in some:
-            learning.add(*one)
-            learning.fit(0.7)
-
-    whole = learner(8, seed=9)
-    go_on(whole, rounds)
-    assert learner(8).mean_target is None
-    for stop in (0, 1, 5, 8, 11):
-        first = learner(8, seed=9)
-        go_on(first, rounds[:stop])
-        saved = pickle.dumps((first.get_state(), first._network.state_dict(), first._rng.bit_generator.state))
-        go_on(first, rounds[stop:])  # what comes later does not reach the file
-        state, weights, generator = pickle.loads(saved)
-        second = learner(8, seed=10)
-        second._network.load_state_dict(weights)
-        second._rng.bit_generator.state = generator
-        second.set_state(state)
-        go_on(second, rounds[stop:])
-        for one in (first, second):
-            assert all(map(torch.equal, whole._network.parameters(), one._network.parameters()))
-            assert list(one.losses) == list(whole.losses) and one.mean_target == whole.mean_target
 
 
 ERRORS = spread_of(LEVELS["professional"])
