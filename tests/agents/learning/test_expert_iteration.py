@@ -27,9 +27,25 @@ def few(monkeypatch):
     monkeypatch.setattr(expert_iteration, "POOL", 64)
 
 
-def model_and_tables(seed=5, n=N):
-    venv = training_tables(n, threads=1, **OPTIONS)
-    return Recipe.of("ppo_value", n_envs=n).new_model(venv, seed), venv
+def model_and_tables(seed=5):
+    venv = training_tables(N, threads=1, **OPTIONS)
+    return Recipe.of("ppo_value", n_envs=N).new_model(venv, seed), venv
+
+
+def begun(states=STATES, seed=5):
+    """A model and its expert iteration before the first round."""
+    model, venv = model_and_tables(seed)
+    run = ExpertIteration(model, venv, states, seed, 1)
+    run.begin()
+    return model, run
+
+
+def a_run(seed=5):
+    model, run = begun(seed=seed)
+    before = weights(model)
+    while run.done < STATES:
+        run.round()
+    return before, weights(model), run
 
 
 def weights(model):
@@ -41,28 +57,8 @@ def alike(some, others):
     return len(some) == len(others) and all(map(np.array_equal, some, others))
 
 
-def begun(model, venv, states, seed, threads, before=None):
-    run = ExpertIteration(model, venv, states, seed, threads, before)
-    run.begin()
-    return run
-
-
-def run_to(run, done):
-    while run.done < done:
-        run.round()
-    return run
-
-
-def a_run(seed=5, threads=1):
-    model, venv = model_and_tables(seed)
-    return model, run_to(begun(model, venv, STATES, seed, threads), STATES)
-
-
 def test_both_networks_learn_and_the_seed_matters():
-    model, venv = model_and_tables()
-    before = weights(model)
-    run = run_to(begun(model, venv, STATES, 5, 1), STATES)
-    after = weights(model)
+    before, after, run = a_run()
     moved = {name for name in after if not torch.equal(before[name], after[name])}
     assert any(name.startswith("position_value.") for name in moved)
     assert any(name.startswith("features_extractor.") for name in moved)
@@ -72,13 +68,12 @@ def test_both_networks_learn_and_the_seed_matters():
     assert set(last) == {"states", "simulated_shots", "seconds", "loss", "value_loss", "value"}
     assert last["value"] > 0.0
     assert last["seconds"] >= 0.0
-    assert a_run(seed=7)[1].curve[-1]["loss"] != last["loss"]
+    assert a_run(seed=7)[2].curve[-1]["loss"] != last["loss"]
 
 
 def test_the_rule_and_even_proposals_come_first():
     """To the round: an eighth of all positions by the rule of thumb, a fifth with even proposals."""
-    model, venv = model_and_tables()
-    run = begun(model, venv, 320, 5, 1)
+    _, run = begun(320)
     for done in range(0, 80, N):
         assert run.done == done
         run.round()
@@ -89,8 +84,7 @@ def test_the_rule_and_even_proposals_come_first():
 
 def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
     """Features before and after, points, ends; the next position is what the played stroke left."""
-    model, venv = model_and_tables()
-    run, added, played = begun(model, venv, STATES, 5, 1), [], []
+    (_, run), added, played = begun(), [], []
     planner, spread = run._judge.planner, run._judge.spread
     play_strokes = planner.play_strokes
     monkeypatch.setattr(run._value, "add", lambda *one: added.append(one))
