@@ -79,12 +79,6 @@ def test_the_choice_is_the_agents_own():
     assert first.stroke == stroke_of("search", OPEN, seed=3)
 
 
-def test_strokes_that_read_the_same_are_given_once():
-    advice = sn.advise(ENDGAME, n=8, **QUICK)
-    words = [one.words.split(" m/s, ")[1].split(", pot ")[0] for one in advice]
-    assert len({(w, one.ball, one.pocket) for w, one in zip(words, advice, strict=True)}) == len(advice) > 2
-
-
 def test_without_noise_everything_is_certain():
     one = sn.advise(ENDGAME, noise="none", n=1)[0]
     assert one.chance == 1.0 and one.chance_interval == (1.0, 1.0) and one.spread == 0.0
@@ -146,15 +140,6 @@ def test_advice_is_json_and_a_sequence():
     assert advice[0].words == str(advice[0])
 
 
-def test_physics_table_and_fidelity_may_be_chosen():
-    options = {"physics": {"mu_r": 0.02}, "table": "tight"}
-    usual, slow = (sn.advise(ENDGAME, n=1, options=o, **QUICK)[0] for o in (None, options))
-    assert usual.to_dict() != slow.to_dict()
-    env = sn.SnookerEnv(**options)
-    env.reset(seed=1, options={"state": state_of(ENDGAME)})
-    assert sn.advise(env, n=1, **QUICK)[0].to_dict() == slow.to_dict()
-
-
 WRONG = [
     ({"n": 0}, "n", "0", "must be an integer in [1, 100]"),
     ({"samples": 0}, "samples", "0", "must be an integer"),
@@ -187,17 +172,3 @@ def test_wrong_positions_and_environments_before_reset_are_refused():
             sn.advise(env, **QUICK)
         env.reset(seed=1)
         assert len(sn.advise(env, **QUICK)) >= 1
-
-
-def test_points_expected_of_the_last_ball_are_its_chance_times_its_value():
-    last = sn.Position(cue=(0.3, 1.0), black=(0.0, 1.4605))
-    (one,) = sn.advise(last, noise="club", n=1, samples=300, visits=20)
-    assert one.points == pytest.approx(7 * one.chance) and 0.0 < one.chance < 1.0
-    assert one.points_interval[0] < one.points < one.points_interval[1]
-
-
-def test_the_first_advice_is_good():
-    """The blue goes in nine times of ten; the best stroke scores more than the widest pot alone."""
-    agents = "planner_500", "ghost_ball"
-    best, plain = (sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0] for agent in agents)
-    assert best.points > plain.points

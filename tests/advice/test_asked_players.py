@@ -120,12 +120,3 @@ def test_a_choice_in_a_frame_is_asked_as_the_stroke_to_come():
     assert session.frame.phase == "choice"
     assert stroke_of(OfFrames(), session.position).aim == pytest.approx(np.pi / 2)
     assert sn.advise(session.position, **QUICK)[0].win < 0.05  # of the one who plays on, far behind
-
-
-@pytest.mark.parametrize("name", ["planner", "ppo_value_club", "test_asked_players:Soft"])
-@pytest.mark.parametrize("position", ["open", "respotted", "snookered"])
-def test_players_are_asked_by_their_names(name, position):
-    position = ALL[position]
-    advice = sn.advise(position, agent=name, n=2, **QUICK)
-    assert len(advice) >= 1 and advice.agent == name
-    assert (advice[0].place is not None) == position.in_hand

@@ -96,17 +96,6 @@ def test_the_law_of_the_radius():
     assert estimating.weigh_radii().sum(axis=0) == pytest.approx(1.0)
 
 
-def test_a_bias_is_told_apart():
-    meant = CueStroke(speed=2.0, aim=1.0)
-    errors = np.random.default_rng(0).normal(0.004, 0.002, 60)
-    cues = [{"speed": 2.1, "aim": 1.0 + e} for e in errors.tolist()]
-    found = errors_of([Recorded(position=ALONE, intended=meant, played=cue) for cue in cues])
-    assert found.aside.value == pytest.approx(np.degrees(errors.mean())) and found.aside.low > 0
-    assert found.faster.value == pytest.approx(0.05)
-    text = str(coached([Recorded(position=ALONE, intended=meant, played=cue) for cue in cues]))
-    assert "on average aims" in text and "left" in text and "too hard" in text
-
-
 @pytest.mark.parametrize("noise", ["club", "amateur"])
 def test_pots_and_misses_alone_tell_the_direction(noise):
     ball, pocket, meant, cues, made = played_by(noise, 1500, 2)
@@ -214,18 +203,6 @@ def test_a_replay_says_where_it_was_played(tmp_path):
     assert agree_options(ours, WHERE) == WHERE
 
 
-def test_a_table_of_ones_own_is_read_back(tmp_path):
-    table = sn.Table(
-        "mine", *(getattr(sn.Table.preset("match"), name) for name in ("noses", "jaws", "falls"))
-    )
-    write_strokes(
-        tmp_path / "mine.json", [Recorded(position=ALONE, table=table, physics="match", cue="real")]
-    )
-    (one,) = read_strokes(tmp_path / "mine.json")
-    assert one.table.name == "mine" and np.array_equal(one.table.jaws, table.jaws)
-    assert one.physics == sn.Physics.preset("match") and one.cue == "real"
-
-
 def strokes_that_grow(g, n, rng, whole=0.2):
     """Strokes meant with side, and played with errors of direction of 0.2 degrees at 1.5 m/s that grow with the speed."""
     base, R = LEVELS["professional"], sn.Physics().R
@@ -277,32 +254,6 @@ def test_side_takes_nothing_from_the_errors_of_direction():
     z = seen.directions / np.hypot(1.0, seen.paces)
     truth = 0.2 / LEVELS["professional"].direction_deg()
     assert z.std() == pytest.approx(truth, rel=3.0 / np.sqrt(2 * 4000))
-
-
-def test_strokes_of_one_speed_say_at_which():
-    meant = CueStroke(speed=3.0, aim=1.0)
-    cues = [{"speed": 3.0, "aim": 1.0 + e} for e in np.random.default_rng(0).normal(0.0, 0.004, 100).tolist()]
-    strokes = [Recorded(position=ALONE, intended=meant, played=cue) for cue in cues]
-    found = errors_of(strokes)
-    assert (found.at, found.growth) == (3.0, None)
-    assert found.direction.low < np.degrees(0.004) < found.direction.high
-    said = str(coached(strokes))
-    assert (
-        "error of direction, at 3 m/s" in said and "strokes of about 3 m/s do not tell how it grows" in said
-    )
-
-
-def test_a_cue_that_errors_raised_once_more_was_meant_lower():
-    """Errors of a real cue grow with the elevation that was meant, not with the one at which they left room."""
-    at = sn.Position(cue=(0.0, -1.70), black=(0.0, 1.0))
-    real = practice_of("professional", WHERE | {"cue": "real"})
-    meant = CueStroke(speed=2.0, aim=np.pi / 2)
-    needed, _ = estimating.fit_to_room(Recorded(position=at), meant.numbers(), real)
-    assert np.radians(2.0) < needed < np.radians(15.0)
-    cue = {"speed": 2.0, "aim": np.pi / 2 + 0.003, "elevation": needed + np.radians(0.8)}
-    unit = np.radians(LEVELS["professional"].direction_deg(speed=0.0)) * (1.0 + needed / np.radians(15.0))
-    played = Recorded(position=at, intended=meant, played=cue)
-    assert estimating.measure_errors([played], real).directions[0] == pytest.approx(0.003 / unit)
 
 
 def missed_and_made():

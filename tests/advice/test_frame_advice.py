@@ -83,17 +83,6 @@ def test_what_the_other_finds_is_said_and_is_so():
     assert (made.kind, made.win, made.replies, made.leaves) == ("pot", 1.0, None, None) and made.chance == 1.0
 
 
-def test_a_missed_pot_says_what_it_leaves():
-    far = Position(cue=(0.3, -1.5), pink=(-0.5, 1.2), black=(0.0, 1.4605))
-    pot = Given(stroke_of("search", far, noise="club"))
-    (one,) = sn.advise(far, agent=pot, noise="club", **QUICK | {"samples": 200, "visits": 60})
-    assert one.kind == "pot" and one.chance < 0.8
-    assert (
-        f"leaves the opponent {words.points_words(one.leaves)} if missed" in one.words
-        and 0.0 < one.leaves < 13.0
-    )
-
-
 def test_how_often_he_is_snookered_is_as_in_the_environment():
     """By independent strokes in visits, whose balls stop where those of frames do: the red beside the brown is hidden if
     the cue ball comes near enough to it."""
@@ -223,24 +212,3 @@ def test_the_order_says_with_whose_errors(noise, words):
     few: dict = {"noise": noise, "n": 1, "samples": 20, "visits": 0}
     assert sn.advise(ENDGAME, agent="search", **few).order == f"Pots by points expected, {words}:"
     assert sn.advise(ENDGAME, scores=(0, 0), **few).order == f"By chance to win, {words}:"
-
-
-def test_scores_decide_what_the_chance_is():
-    ahead, behind = (sn.advise(HIDDEN, n=1, **QUICK | {"scores": pair})[0] for pair in ((60, 0), (0, 60)))
-    assert behind.win < 0.2 < 0.8 < ahead.win
-
-
-def test_figures_in_words():
-    say = words.reply_words
-    assert (
-        say("safety", 0.12, 3.04, 0.34)
-        == "the opponent pots next in 12 %, leaves the opponent 3 points, snookered in 34 %"
-    )
-    assert say("escape", 0.5, 12.6, 0.004) == "the opponent pots next in 50 %, leaves the opponent 13 points"
-    assert (
-        say("pot", 0.5, 18.2, 0.0) == "leaves the opponent 18 points if missed"
-        and say("pot", None, None, None) == ""
-    )
-    assert words.against_words(0.55, "pot") == " against 55 % for the best pot"
-    assert words.against_words(0.55, "") == " against 55 % for the next best"
-    assert words.what_words("safety", 3, -1, 3, "thin on the left") == "safety off the red, thin on the left"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.advice import CueStroke, Room, advise
+from snooker_env.advice import CueStroke, advise
 from snooker_env.advice.intentions import drop_alike, intend
 from snooker_env.advice.practice import practice_of
 from snooker_env.advice.room import room_for
@@ -102,13 +102,3 @@ def test_strokes_that_differ_in_their_room_alone_are_one():
     assert len(drop_alike(screws)) == 1  # both are played with the one tip that the cue reaches
     raised = intend(practice, at, [replace(ACROSS, aim=0.5 * pi, elevation=e) for e in (0.0, 0.4)])
     assert len(drop_alike(raised)) == 2  # a cue raised on purpose is another stroke
-
-
-def test_words_of_a_room():
-    nothing = {"raised": False, "moved": False, "unplayable": False, "over": None, "behind": 0.0}
-    assert Room(elevation=0.3, side=0.0, top=0.0, **nothing).words == ""
-    hardly = nothing | {"raised": True, "over": "rail"}
-    assert Room(elevation=0.008, side=0.0, top=0.0, **hardly).words == ""
-    moved = nothing | {"moved": True, "over": "red 3"}
-    said = Room(elevation=0.5, side=-0.1, top=0.2, **moved).words
-    assert said == "tip moved up to 0.20 above the middle, 0.10 left over a red"

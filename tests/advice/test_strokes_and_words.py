@@ -4,7 +4,7 @@ from math import atan2, cos, pi, sin
 
 import numpy as np
 import pytest
-from cases import OPEN, Given, played
+from cases import OPEN, Given
 from scipy.stats import binomtest
 
 import snooker_env as sn
@@ -129,16 +129,6 @@ def test_what_a_stroke_does_in_words():
     assert words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")
     assert words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
     assert words.place_words(0, -1.0475) == "from the brown spot"
-
-
-def test_the_words_of_a_suggestion_are_its_data():
-    for one in sn.advise(OPEN, n=4, samples=50, visits=5):
-        parts = one.words.split(", ")
-        assert parts[0] == "red" and parts[1] == POCKET_WORDS[one.pocket]
-        assert parts[2] == f"{one.speed:.1f} m/s"
-        assert f"pot {100 * one.chance:.0f} %" in parts and one.words.endswith(" expected")
-        points, _, (state,) = played(OPEN, one.stroke, 1, noise="none")
-        assert points[0] >= 1 and not state["on_table"][one.ball]
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say():

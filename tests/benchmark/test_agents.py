@@ -10,8 +10,8 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, write_result
-from snooker_env.benchmark.__main__ import main, suspicious
-from snooker_env.benchmark.playing import BATCH, COLUMNS
+from snooker_env.benchmark.__main__ import main
+from snooker_env.benchmark.playing import BATCH
 from snooker_env.benchmark.results import strokes_of
 from snooker_env.players import VISITS, Strokes, decided
 from snooker_env.players.program import AgentError, ProgramPlayer
@@ -99,14 +99,6 @@ def test_a_program_that_does_not_read_is_ended_in_time(tmp_path):
     with closing(silent), pytest.raises(AgentError, match="did not read its state within 1 s"):
         for seed in range(20):
             silent.play(at, [seed])
-
-
-def test_a_program_that_is_not_there(capsys):
-    name = "program:no-such-program-here"
-    assert main(["run", "SnookerEscape-v0", "--agent", name, "--episodes", "6"]) == 1
-    assert "cannot be started" in capsys.readouterr().err
-    with pytest.raises(AgentError, match="cannot be started"):
-        sn.player(name).at({}).play(sn.Position(cue=(0, 0), black=(0, 1)), [0])
 
 
 def watching(tmp_path):
@@ -204,13 +196,6 @@ def test_ctrl_c_keeps_what_was_played_and_it_can_be_resumed(tmp_path, capsys):
     assert "must be a result of other on SnookerEscape-v0" in capsys.readouterr().err
 
 
-def test_an_existing_file_is_refused_before_any_player_is_made(tmp_path, capsys):
-    out = tmp_path / "one.json"
-    out.write_text("{}")
-    assert main(["run", "SnookerEscape-v0", "--agent", "nobody.there:Player", "--out", str(out)]) == 2
-    assert "must be a new file" in capsys.readouterr().err and out.read_text() == "{}"
-
-
 @pytest.mark.parametrize("maker", [Careless, Quitter])
 def test_what_was_played_before_a_failure_is_kept(maker, tmp_path):
     maker.asked, out = 0, tmp_path / "one.json"
@@ -219,20 +204,6 @@ def test_what_was_played_before_a_failure_is_kept(maker, tmp_path):
     result = read_result(out)
     assert len(result["rows"]) == 2 * BATCH and faults(result) == []
     assert type(maker.error).__name__ in result["incomplete"]
-
-
-def test_decisions_do_not_depend_on_batches(monkeypatch):
-    """And each training seed draws its own."""
-    from snooker_env.benchmark import agents
-
-    agent = Agent(label="two", sources=(Softly(), Softly()), training_shots=0)
-    whole = judge(HARD, agent, episodes=10)
-    monkeypatch.setattr(agents, "BATCH", 4)
-    parts = judge(HARD, agent, episodes=10)
-    assert whole["rows"] == parts["rows"] and whole["strokes"] == parts["strokes"]
-    strokes = strokes_of(whole)
-    assert faults(whole) == []
-    assert len({one.tobytes() for one in strokes}) == 20
 
 
 def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
@@ -328,20 +299,3 @@ def test_what_is_kept_is_what_was_played():
     tables.reset(seed=[seed])
     exact = decided(player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([seed]), 0))
     assert np.array_equal(kept[0], exact.astype(np.float32)) and not np.array_equal(kept[0], exact)
-
-
-@pytest.mark.parametrize(
-    ("source", "task", "scored", "said"),
-    [
-        ("mine.zip", "SnookerBreak-v0", 0, True),
-        ("mine.zip", "SnookerBreak-v0", 2, True),
-        ("mine.zip", "SnookerBreak-v0", 3, False),
-        ("random", "SnookerBreak-v0", 0, False),
-        ("mine.zip", "SnookerFrame-v0", 0, False),
-    ],
-)
-def test_a_model_that_scores_nothing_may_be_read_wrongly(source, task, scored, said):
-    """--options aim=target forgotten: nearly no points in 100 visits. No frame won is nothing odd."""
-    score = COLUMNS.index("score")
-    rows = [[4 * (k < scored) if c == score else 0 for c in range(len(COLUMNS))] for k in range(100)]
-    assert suspicious({"rows": rows, "agent": {"sources": [source]}}, TASKS[task]) == said

@@ -74,10 +74,6 @@ def test_coverage_is_what_the_docstring_says(runs, spreads, least, most):
     assert least <= coverage(runs, spreads) <= most
 
 
-def test_coverage_of_the_inter_quartile_mean():
-    assert 0.9 <= coverage(1, (0, 0.3, 1), of_iqm=True, trials=200, tables=100) <= 0.99
-
-
 def played(label, points):
     """A ``EntrantMetrics`` with these points (runs, visits) and nothing else."""
     return EntrantMetrics(Entrant(label, ("x",) * len(points)), {"points": points, "pots": points}, [], 1000)

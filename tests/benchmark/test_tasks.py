@@ -1,7 +1,6 @@
 """Are the tasks of the benchmark what they promise: frozen options, and tables that nobody trains on?"""
 
 import dataclasses
-import json
 import multiprocessing
 
 import gymnasium
@@ -16,7 +15,7 @@ from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS
 from snooker_env.benchmark import tasks as benchmark_tasks
 from snooker_env.benchmark.playing import Repeater, play_episodes, rows_of, tables_for
 from snooker_env.benchmark.results import figures_of
-from snooker_env.benchmark.tasks import FREE, tables_of, task_of
+from snooker_env.benchmark.tasks import FREE
 from snooker_env.game import layout
 from snooker_env.game.layouts import STORED_IN
 from snooker_env.players import BoundPlayer, Strokes
@@ -71,16 +70,6 @@ def test_stable_baselines_accepts_it(name):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_its_spec_goes_through_json(name):
-    env = gymnasium.make(name, **({"action": "discrete"} if name == IDS[0] else {"aim": "target"}))
-    again = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
-    assert again.unwrapped.options == env.unwrapped.options
-    assert json.loads(env.spec.to_json())["kwargs"] == env.spec.kwargs
-    first, second = env.reset(seed=3)[0], again.reset(seed=3)[0]
-    assert np.array_equal(first, second)
-
-
-@pytest.mark.parametrize("name", IDS)
 def test_what_is_frozen_is_refused(name):
     task = TASKS[name]
     assert set(task.frozen) | set(FREE) == set(sn.Options.__dataclass_fields__) - {"rules"}
@@ -122,16 +111,6 @@ def test_an_escape_is_one_stroke_whose_reward_is_1_if_it_is_legal():
     assert state["over"] is True
 
 
-def test_one_stroke_is_an_option_that_no_planner_minds():
-    env = sn.SnookerEnv(layout="pots:easy", one_stroke=True)
-    env.reset(seed=1)
-    assert env.step([0.0, 0.0, 0.0, 0.1])[2]
-    colours = sn.SnookerEnv(layout="colours", action="discrete", one_stroke=True)
-    colours.reset(seed=1)
-    outcome = sn.Planner(colours, noise="none").play(colours, np.zeros(60, int), np.arange(60))
-    assert (outcome.goes_on == (outcome.points > 0)).all() and outcome.goes_on.any()
-
-
 def test_a_safety_is_judged_by_what_the_other_makes_of_it():
     task = TASKS["SnookerSafety-v0"]
     rows = [
@@ -155,19 +134,6 @@ def test_who_searches_escapes_and_the_plain_stroke_does_not():
     assert best > 0.9 and share["ghost_ball"] < best - 0.15
 
 
-def test_a_search_for_legal_strokes_cares_for_nothing_else():
-    """Of a pot and a touch, both sure to be legal, it may play either; a foul it never ranks first."""
-    at = sn.Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red")
-    for reward in ("legal", "points"):
-        judge = sn.planning.VisitJudge({"reward": reward, "noise": "professional"})
-        (ranked,) = sn.planning.Search(judge, budget=60).rank(at, [7])
-        if reward == "legal":
-            assert set(np.unique(ranked.scores[ranked.samples == 0])) <= {0.0, 1.0}
-            assert ranked.scores.min() >= 0.0 and ranked.scores[0] > 0.8
-        else:
-            assert ranked.scores.min() < -10.0
-
-
 @pytest.mark.parametrize("name", IDS)
 def test_judged_tables_are_not_those_of_training(name):
     """No seed is used twice; on generated layouts they are those that the rules keep for judging."""
@@ -185,13 +151,6 @@ def test_judged_tables_are_not_those_of_training(name):
         assert len(held_out) == 30 and not dealt & held_out
     else:
         assert judged == trained and len(task.seeds(task.episodes)) == task.episodes
-
-
-def test_tables_are_different_and_always_the_same():
-    assert tables_of("colours", 40) == tables_of("colours", 60)[:40]
-    assert len(set(tables_of("colours", 60))) == 60
-    with pytest.raises(ValueError, match=r"^task = 'SnookerBreak-v9': must be one of 'SnookerBreak-v0', "):
-        task_of("SnookerBreak-v9")
 
 
 def _worker(name, queue):

@@ -8,7 +8,7 @@ import pytest
 import snooker_env as sn
 from benchmarks.real_shots import __main__ as command
 from benchmarks.real_shots import cma, constants, strikes, tracks, verdict
-from benchmarks.real_shots.paths import AIM, SPEED, Judge
+from benchmarks.real_shots.paths import Judge
 
 PHYSICS = sn.Physics.preset("carom", tables=False)
 STRIKES = ((2.2, 0.9, 0.25, 0.2, 0.03), (1.6, 2.4, -0.2, 0.1, 0.05))
@@ -118,14 +118,6 @@ def test_constants_move_towards_those_of_the_shots(file):
     assert constants.loss([constants.rms(j, s) for j, s in zip(judges, after, strict=True)]) < 0.7 * before
 
 
-def test_bounds_hold_the_strike(file):
-    for number, shot in enumerate(tracks.read(file)):
-        low, high = strikes.bounds(shot, PHYSICS)
-        strike = np.array([*STRIKES[number], LATE])
-        assert (low[[SPEED, AIM]] < strike[[SPEED, AIM]]).all()
-        assert (strike[[SPEED, AIM]] < high[[SPEED, AIM]]).all()
-
-
 def test_cma_finds_the_foot_of_a_narrow_valley():
     search = cma.Cma(np.random.default_rng(0), np.array([3.0, -2.0]), np.ones(2), 1.0, 10)
     for _ in range(80):
@@ -163,9 +155,3 @@ def test_a_bad_file_is_refused_in_one_line(tmp_path, data, capsys, change, says)
         command.main([str(path)])
     assert stopped.value.code == 2
     assert says in capsys.readouterr().err
-
-
-def test_a_missing_file_is_said(tmp_path, capsys):
-    with pytest.raises(SystemExit):
-        command.main([str(tmp_path / "none.json")])
-    assert "none.json" in capsys.readouterr().err

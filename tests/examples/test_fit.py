@@ -65,14 +65,6 @@ def test_marlow_s_law_comes_back():
     assert fitted.physics.mu_bb == pytest.approx(tuple(fitted.values.values()))
 
 
-def test_bootstrap_and_covariance_agree():
-    data = measured("cloth", TRUE["cloth"])
-    one, other = fitting.fit("cloth", data), fitting.fit("cloth", data, bootstrap=300)
-    for name in TRUE["cloth"]:
-        assert np.diff(other.intervals[name]) == pytest.approx(np.diff(one.intervals[name]), rel=0.4)
-    assert other.intervals == fitting.fit("cloth", data, bootstrap=300).intervals
-
-
 def test_domenech_s_throw_gives_a_tenth():
     """A constant friction of 0.10 agrees with these 52 shots, 0.05 does not, as in ``benchmarks.paper``."""
     columns = fitting.read(DATA / "throw_domenech2023.csv", "throw", {"speed_m_s": 0.8})

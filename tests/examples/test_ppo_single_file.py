@@ -139,10 +139,3 @@ def test_its_file_is_played_by_our_protocol(tmp_path):
             part.copy_(torch.from_numpy(next(weights)))
         scores = agent(torch.from_numpy(rows)).numpy()
     assert np.allclose(player.model.policy(rows), scores, atol=1e-5)
-
-
-def test_a_wrong_name_of_noise_is_one_line(tmp_path, capsys):
-    with pytest.raises(SystemExit) as stop:
-        example.main(["--noise", "pro", "--out", str(tmp_path / "p.npz")])
-    line = capsys.readouterr().err.splitlines()[-1]
-    assert stop.value.code == 2 and "--noise: invalid choice: 'pro'" in line and "professional" in line

@@ -250,23 +250,6 @@ def test_advice_is_shown_drawn_and_taken(shown):
     assert shown("document.querySelectorAll('#advice button').length") == 0  # it was about another table
 
 
-def test_an_agent_plays_and_its_strokes_are_shown(shown):
-    shown.set_up(EASY)
-    shown.page.click("#options summary")
-    shown.page.select_option("#who-1", "ghost_ball")
-    shown.until("page.state.players[1] === 'ghost_ball' && page.state.noise[1] === 'professional'")
-    assert shown.words == "Your stroke: red is on."
-    shown("page.aim.set({aim: argument, speed: 0.5})", AWAY)
-    shown.page.click("#play")
-    shown.played(1)
-    shown.until("page.state.strokes >= 2 && !page.state.thinking")
-    shown.played(shown("page.state.strokes"))
-    assert shown.page.inner_text("#last").startswith("ghost ball")
-    shown.page.click("#undo")
-    shown.until("page.state.strokes === 0 && page.settled === page.state.revision")
-    assert shown.words == "Your stroke: red is on." and shown("page.balls.x[0]") == EASY["cue"][0]
-
-
 WATCHED = """(window.drawn = [], page.view.draw = (draw => frame => {
     const text = id => document.getElementById(id).innerText.replace(/\\s+/g, " ");
     window.drawn.push({ k: page.played, moving: Boolean(page.moving), on: [...frame.on].flatMap((on, ball) => (on ? [ball] : [])),
@@ -391,39 +374,6 @@ def test_the_end_of_a_frame_is_seen(shown):
     assert shown.page.get_attribute("#last", "class") != "trouble"
 
 
-def test_the_end_of_a_frame_is_seen_when_its_last_ball_is_down(shown):
-    shown.set_up({"cue": [0.6, 1.5], "black": [0.76, 1.66]}, scores=[5, 13])
-    shown("page.aim.set({aim: Math.PI / 4, speed: 1})")
-    shown.page.keyboard.press("Enter")
-    shown.until("page.moving")
-    assert not shown.page.is_visible("#over")
-    shown.played(1)
-    assert shown.page.inner_text("#over-who") == "Player 2 won the frame"
-    assert shown.page.inner_text("#over-score") == "Player 1 12 : 13 Player 2"
-
-
-def test_the_odds_are_those_of_the_errors_of_the_persons_seat(shown):
-    noise = "club"
-    shown.set_up(EASY)
-    state = shown.line("api/players", {"noise": [noise, "professional"]})[1]
-    shown.until("page.settled === argument", state["revision"])
-    shown("page.aim.set({aim: argument, speed: 2})", STRAIGHT + 0.01)
-    found = shown.line("api/destinations", {"speed": 2.0, "aim": STRAIGHT + 0.01, "noise": noise})[1]
-    assert found["samples"] == 500
-    shown.until("page.advisor.found && !page.advisor.wait.busy")
-    odds = shown("[page.advisor.found.samples, page.advisor.found.potted]")
-    assert odds == [found["samples"], found["potted"]]
-    assert f"red: potted {100 * found['potted']:.0f} %" in shown.page.inner_text("#odds")
-    shown.page.click("#options summary")
-    shown.page.select_option("#guide", "line")
-    assert shown("page.advisor.found") is None and shown.page.inner_text("#odds") == ""
-    shown.page.click("#advise")
-    shown.until("page.advisor.list.length")
-    asked = {"agent": shown.page.input_value("#agent"), "noise": noise}
-    words = [one["words"] for one in shown.line("api/advise", asked)[1]["suggestions"]]
-    assert shown("page.advisor.list.map(one => one.words)") == words
-
-
 def test_two_agents_play_on_by_themselves_until_paused(shown):
     """Each stroke is seen before the other agent plays; Pause stops them, Continue lets them play on."""
     shown.set_up(EASY)
@@ -506,23 +456,6 @@ def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
     shown.until("page.advisor.found")
 
 
-def test_reds_off_leaves_it_to_the_balls_what_is_on(shown):
-    shown.set_up(EASY)
-    shown.page.click("#files summary")
-    shown.page.click("#set")
-    shown.until("page.setup.open")
-    shown.page.click("#set-clear")
-    shown.until("!document.getElementById('set-done').disabled")
-    shown.page.select_option("#set-on", "red")
-    shown.until("document.getElementById('set-done').disabled")
-    assert shown.page.inner_text("#set-wrong") == "There is no red left to be on."
-    assert not shown.page.is_visible("#bubble")
-    shown.page.select_option("#set-on", "automatic")
-    shown.until("!document.getElementById('set-done').disabled")
-    shown.page.click("#set-done")
-    shown.until("page.state.ball_on === 'pink'")
-
-
 @pytest.mark.parametrize(
     "size",
     [
@@ -603,23 +536,6 @@ def test_the_page_says_and_draws_how_the_cue_finds_room_before_the_stroke(shown)
     shown.page.click("#play")
     shown.played(1)
     assert "Cue raised to 45 degrees over the rail, tip moved up" in shown.page.inner_text("#last")
-
-
-def test_a_ball_behind_is_drawn_and_a_free_cue_passes_through_it(shown):
-    shown.set_up({"cue": [0.0, 0.0], "reds": [[-0.5, 0.0]], "blue": [0.06, 0.0], "black": [0.0, 1.4605]})
-    shown("page.aim.set({aim: Math.PI, speed: 2, side: 0, top: 0, elevation: 0})")
-    shown.until(f"{ROOM} && page.room.found.over === 'blue'")
-    assert "over the blue" in shown.page.inner_text("#room")
-    assert shown.page.locator("#side .ball").count() == 1 and shown.page.locator("#side .wood").count() == 0
-    shown.page.click("#options summary")
-    shown.page.select_option("#cue", "free")
-    shown.until("page.state.cue === 'free' && page.room.found && !page.room.found.raised")
-    assert shown.page.inner_text("#room") == "" and shown.page.locator("#side .ball").count() == 0
-    assert shown("page.aim.overlay().cue.elevation") == 0 and shown("page.aim.wish.aim") == pytest.approx(
-        3.14159265
-    )
-    shown.page.select_option("#cue", "real")
-    shown.until("page.state.cue === 'real' && page.room.found && page.room.found.raised")
 
 
 def test_the_latest_answer_about_the_room_wins(shown):
@@ -725,24 +641,6 @@ def test_the_controls_stay_where_they_are(shown):
     assert {name: first[name] for name in foul if name != "act"} == {
         k: v for k, v in foul.items() if k != "act"
     }
-
-
-def test_advice_after_a_foul_says_what_to_choose(shown):
-    """The choice that the agent would take is marked."""
-    shown.set_up(COVERED)
-    shown("page.aim.set({aim: 1.5708, speed: 1})")
-    shown.page.click("#play")
-    shown.played(1)
-    asked = shown.line("api/advise", {"noise": "amateur"})[1]
-    assert [one["choice"] for one in asked["choices"]] == ["play", "play_again", "replace"]
-    assert all(0 < one["win"] < 1 for one in asked["choices"]) and len(asked["suggestions"]) >= 1
-    shown.page.click("#advise")
-    shown.until("document.querySelectorAll('#advice button').length")
-    marked = shown("[...document.querySelectorAll('#choices .best')].map(one => one.dataset.choice)")
-    assert marked == [asked["choice"]]
-    shown.page.click("#choices button[data-choice=play]")
-    shown.until("page.aiming")
-    assert shown("document.querySelectorAll('#advice button').length")  # of the same balls
 
 
 def test_one_menu_seats_an_opponent_of_a_strength(shown):
@@ -859,17 +757,6 @@ def test_a_drill_counts_and_keeps_its_best(shown):
     assert not shown.page.is_visible("#drill")
 
 
-def test_a_stroke_that_a_drill_cuts_short_is_neither_called_nor_scored(shown):
-    shown.set_up(EASY)
-    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})  # it pots a red
-    shown.until("page.moving")
-    shown("page.drills.begin('escapes')")
-    shown.until(f"page.drills.now === 'escapes' && page.state.snookered && {SETTLED} && page.aiming")
-    assert shown("page.drills.tries") == 0 and not shown.page.is_visible("#call")
-    shown("page.drills.end()")
-    shown.until(f"!page.state.practice && {SETTLED}")
-
-
 def link_of(shown, kind):
     """What the button for this kind of link makes."""
     shown.page.click(f"#share-{kind}")
@@ -908,17 +795,6 @@ def test_a_position_and_a_stroke_are_passed_on_as_links(shown):
     shown.page.keyboard.press("Enter")
     shown.until("document.getElementById('last').className === 'trouble'")
     assert "copied whole" in shown.page.inner_text("#last")
-
-
-def test_a_link_says_whether_it_was_copied(shown):
-    shown.set_up(EASY)
-    shown.page.click("#files summary")
-    for answer, says in (("resolve", "copied"), ("reject", "in the field Link")):
-        shown(f"(navigator.clipboard.writeText = () => Promise.{answer}(), 0)")
-        link_of(shown, "game")
-        shown.until(
-            "document.getElementById('last').textContent.startsWith(argument)", f"The link is {says}: ", 20
-        )
 
 
 def test_a_whole_replay_is_passed_on_as_a_link(shown):

@@ -1,6 +1,5 @@
 """Is the game in memory the game by the rules, and that of MatchEnv?"""
 
-import json
 from dataclasses import replace
 from math import pi
 
@@ -157,43 +156,6 @@ def test_practice_gives_the_table_back():
     assert (session.frame.phase, session.frame.striker, session.frame.scores) == ("stroke", 0, (0, 7))
 
 
-def test_a_saved_game_plays_on_identically():
-    session = standing(EASY, scores=(12, 30), striker=1)
-    session.noise[:] = ["club", "amateur"]
-    saved = json.loads(json.dumps(session.save()))
-    assert len(json.dumps(saved)) < 5000
-    other = Session(seed=9)
-    other.load(saved)
-    assert other.state == session.state and other.noise == session.noise
-    stroke = CueStroke(speed=3.0, aim=0.7, top=0.2)
-    session.play(stroke), other.play(stroke)
-    assert other.state == session.state
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (lambda s: s.pop("noise"), "saved = version 1"),
-        (lambda s: s.update(format="x"), "must be a saved game"),
-        (lambda s: s.update(noise=["none", "perfect"]), r"saved.noise\[1\]"),
-        (lambda s: s.update(more=1), "must be version 1"),
-        (lambda s: s["state"].update(rng={}), "must be a dict with"),
-        (lambda s: s["state"]["positions"][1].__setitem__(0, 5.0), r"positions\[1\]"),
-        (lambda s: s["state"]["positions"][1].__setitem__(0, float("nan")), r"positions\[1"),
-        (lambda s: s["state"]["frame"].update(scores=[-1, 0]), r"scores\[0\]"),
-        (lambda s: s["state"]["frame"].update(striker=2), "striker"),
-        (lambda s: s["state"].update(stream=[1]), "stream"),
-    ],
-)
-def test_a_file_that_is_not_sound_is_refused_and_changes_nothing(change, words):
-    session = standing(EASY)
-    before, saved = session.save(), json.loads(json.dumps(session.save()))
-    change(saved)
-    with pytest.raises(ValueError, match=words):
-        session.load(saved)
-    assert session.save() == before
-
-
 def test_a_position_that_cannot_be_is_refused_by_its_field():
     session = standing(EASY)
     before = session.state
@@ -218,14 +180,3 @@ def test_the_cue_is_real_and_what_it_did_is_said():
     act = free.play(CueStroke(speed=1.0, aim=pi, top=-0.4))
     assert act.played is not None and act.played.cue["elevation"] == 0.0
     assert last_words(act, ("You", "A")).endswith(("potted.", "potted, 1.", "first.", "struck."))
-
-
-def test_a_saved_game_keeps_its_cue():
-    session = standing(FROZEN)
-    saved = session.save()
-    assert saved["cue"] == "real"
-    session.cue = "free"
-    session.load(saved)
-    assert session.cue == "real" and session.options_with("club").cue == "real"
-    with pytest.raises(ValueError, match=r"saved\.cue"):
-        session.load(saved | {"cue": "long"})

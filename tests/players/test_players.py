@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.planning import Position, Positions
+from snooker_env.planning import Positions
 from snooker_env.players import FRAMES, VISITS, ChoicePlayer, SeenPlayer, Strokes, decided, decision_seeds
-from snooker_env.players.resolver import BUILT_IN
 from tests.positions import tables
 from tests.processes import copy_of_package, python
 from tests.tables import begun
@@ -34,10 +33,6 @@ def of_frames(n, steps=6):
 def same(one, other):
     names = ("values", "place", "nominate", "decision", "declare")
     return all(np.array_equal(getattr(one, n), getattr(other, n), equal_nan=True) for n in names)
-
-
-def test_the_package_alone_has_its_players():
-    assert sn.players()[: len(BUILT_IN)] == list(BUILT_IN) and "planner" in BUILT_IN
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -142,12 +137,6 @@ def test_what_is_no_player_is_refused(name, why):
         sn.player(name)
 
 
-def test_positions_of_one_kind_are_enough():
-    position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    player = sn.player("search_30").at({"noise": "none"})
-    assert same(player.play(position, [1]), player.play([position.to_dict()], [1]))
-
-
 # What is said with a stroke is one of its codes
 
 
@@ -165,20 +154,6 @@ def test_positions_of_one_kind_are_enough():
 def test_what_is_said_is_one_of_its_codes(wrong, says):
     with pytest.raises(ValueError, match=says):
         Strokes(np.array([[2.0, 0.0, 0.0, 1.5, 0.0]]), **wrong)
-
-
-@pytest.mark.parametrize("name", ["planner_0", "search_3", "search_20000000"])
-def test_a_budget_that_is_none_names_who_it_is(name):
-    says = f" = '{name}': must end in a number of simulated shots from 8"
-    with pytest.raises(ValueError, match=f"^player{says}"):
-        sn.player(name)
-    with pytest.raises(ValueError, match=f"^opponent{says}"):
-        sn.SnookerEnv(task="frame", opponent=name)
-
-
-def test_a_seed_that_is_no_number_is_refused():
-    with pytest.raises(ValueError, match=r"^seed = 1\.5: must be an int, None, or 2 of them"):
-        sn.SnookerVectorEnv(2).reset(seed=1.5)
 
 
 # Without agents, PyTorch and Stable-Baselines3, as in a wheel

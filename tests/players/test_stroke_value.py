@@ -8,10 +8,7 @@ import pytest
 
 import snooker_env as sn
 import train
-from agents import tournament
 from agents.learning import learn_strokes
-from agents.learning.run_folder import keep_settings
-from agents.learning.settings import Settings
 from snooker_env.benchmark import play_visits, simulated, summary
 from snooker_env.planning import Position, Positions
 from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
@@ -97,19 +94,6 @@ def test_a_network_is_learned(tmp_path, capsys, frame_rounds):
     assert len(StrokeValuePlayer(learned).at(tables).play(tables, np.arange(8))) == 8
 
 
-def test_a_folder_of_a_training_is_resumed_as_it_was_or_refused(tmp_path, capsys):
-    out = tmp_path / "run"
-    out.mkdir()
-    keep_settings(out, Settings("stroke_value", seed=1))
-    for words, said in (
-        (["--agent", "stroke_value"], "--resume continues it"),
-        (["--resume", "--seed", "2"], "--seed is 2 but the run in"),
-    ):
-        with pytest.raises(SystemExit):
-            train.main([*words, "--out", str(out)])
-        assert said in capsys.readouterr().err
-
-
 def test_the_network_is_fitted_to_what_strokes_are_worth():
     rng = np.random.default_rng(1)
     seen = rng.normal(2.0, 3.0, (600, 6, SIZE)).astype(np.float32)
@@ -155,21 +139,6 @@ def test_it_plays_frames_without_a_shot_and_each_position_by_itself():
         hands += int((at.in_hand & np.isfinite(strokes.place[:, 0])).sum())
         frame.step(strokes.actions(frame.options, at))
     assert hands > 40 and safe > 40
-
-
-@pytest.mark.slow
-def test_it_wins_frames_against_players_that_see_no_position(tmp_path):
-    out = tmp_path / "frames.json"
-    tournament.main(
-        [
-            *["stroke_value", "best_pot", "--cue", "real", "--miss", "clear_path", "--frames", "24"],
-            "--out",
-            str(out),
-        ]
-    )
-    rows = json.loads(out.read_text())["rows"]
-    won = [row[5] for row in rows]
-    assert won.count(0) > 16 and len(won) == 24
 
 
 @pytest.mark.parametrize(
@@ -249,11 +218,6 @@ def test_a_network_of_frames_changes_what_is_played_in_frames_alone():
 def test_it_pots_under_all_options(options):
     visits = summary(play_visits("stroke_value", 60, layout="opened", **{"noise": "professional"} | options))
     assert visits["pots_a_visit"] > (8.0 if options.get("noise") == "none" else 2.5)
-
-
-def test_nothing_is_asked_of_no_position():
-    player = sn.player("stroke_value").at({})
-    assert len(player.play(Positions.of(opened(2))[[]], [])) == 0
 
 
 @pytest.mark.parametrize("name", ["stroke_value@missing.npz", "stroke_value@README.md", "stroke_value_500"])

@@ -5,10 +5,9 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game import frame_columns as columns
-from snooker_env.planning import Position, Positions
+from snooker_env.planning import Position
 from snooker_env.planning.worth import chosen, last_of, lead_of, left_of
 from snooker_env.players.tactician import Tactician
-from snooker_env.players.weights import learned_worth
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from tests.planning.test_frame_judge import frame_of
 from tests.planning.test_trials import GAME, frames_in_play, positions_of
@@ -218,14 +217,6 @@ def test_a_foul_that_wins_the_frame_may_be_played():
     assert (tried.scores == 1.0).all()
 
 
-def test_a_frame_that_is_over_is_won_or_lost():
-    over = frame_of(PINK_BALL, scores=(10, 90))
-    over.game[:, columns.PHASE], over.game[:, columns.OVER] = columns.FINISHED, 1
-    for winner, chance in ((0, 1.0), (1, 0.0)):  # the other conceded although ahead, or did not
-        over.game[:, columns.WINNER] = winner
-        assert sn.player("tactician_30").at(OPTIONS).chance_to_win(over).tolist() == [chance]
-
-
 def test_the_chance_after_a_foul_is_that_of_the_best_decision():
     player = sn.player("tactician_30").at(OPTIONS)
     # whoever plays from the lower half is worth 20 points more than the other
@@ -263,12 +254,3 @@ def test_nobody_wins_a_visit_and_a_player_without_a_law_says_nothing():
         player.at(OPTIONS).chance_to_win(PINK_BALL)
     with pytest.raises(ValueError, match="law of the chance"):
         Tactician(30, (None, None)).at(OPTIONS).chance_to_win(frame_of(PINK_BALL))
-
-
-def test_weights_are_of_the_network_that_reads_them():
-    layers, chance = learned_worth()
-    from snooker_env.planning.learned.learned_worth import SIZE
-
-    assert layers[0][0].shape[1] == SIZE and layers[-1][0].shape[0] == 1
-    assert chance.near >= 0.0 and chance.far > 0.0
-    assert Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3))).of_frames is False

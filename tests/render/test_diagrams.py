@@ -122,12 +122,6 @@ def test_every_table_draws_as_itself(table):
         assert (points[:, 0] > top).all() and (points[:, 0] < bottom).all()
 
 
-def test_given_axes_are_drawn_on(screw):
-    figure, (one, other) = plt.subplots(1, 2)
-    assert screw.plot(one) is one and not other.patches
-    assert figure.axes == [one, other] and plt.get_fignums() == [figure.number]
-
-
 def test_what_cannot_be_drawn_is_refused_and_no_figure_is_left(screw, monkeypatch):
     env = sn.SnookerEnv()
     env.reset(seed=1)

@@ -74,22 +74,6 @@ def test_picture_of_the_table():
     assert at(unbounded, (0.889, 1.7845))[1] > 60  # no pocket
 
 
-def test_overlays_and_text_change_only_where_they_are():
-    plain = rgb_array(scene("match", SPOTS, ~ALL))
-    path = np.array([(-0.5, 0.5), (0.5, 0.5)])
-    drawn = rgb_array(scene("match", SPOTS, ~ALL, paths={CUE: path}))
-    assert at(drawn, (0.1, 0.5)).min() > 200
-    assert np.array_equal(at(drawn, (0.1, 0.55)), at(plain, (0.1, 0.55)))
-    nothing = rgb_array(scene("match", SPOTS, ~ALL, text=" "))
-    # what does not fit is cut off
-    for text, least, most in (("break 12", 100, 300), ("long " * 100, 1700, 1900)):
-        said = rgb_array(scene("match", SPOTS, ~ALL, text=text))
-        rows, columns = np.nonzero(np.any(said != nothing, axis=2))
-        assert said.shape == plain.shape and rows.min() > to_pixels((0.889 + 0.155, 0.0))[1]
-        assert least < columns.max() < most
-        assert np.array_equal(said[:1000], plain[:1000])
-
-
 def test_pictures_are_fresh_repeatable_and_need_no_display():
     pygame = pytest.importorskip("pygame")
     one, two = rgb_array(scene("match", SPOTS)), rgb_array(scene("match", SPOTS))
@@ -145,11 +129,6 @@ def test_text_never_hides_the_cue_ball():
             assert sum("W" in line for line in lines[:27]) == 1
             assert lines[-1] == f"hidden: {'r' if other == 1 else 'Y' if other == YELLOW else 'K'} under W"
     assert "W" not in "".join(ansi(scene("match", SPOTS, without(CUE))).split("\n")[:27])
-
-
-def test_a_path_in_text():
-    plain = ansi(scene("match", SPOTS, ALL, paths={CUE: np.array([(-0.5, 0.3), (0.5, 0.3)])}))
-    assert "".join(plain.split("\n")[:27]).count(".") >= 13
 
 
 def test_without_pygame_the_message_says_what_to_install(monkeypatch):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from snooker_env.game.balls import SPOTS
-from snooker_env.render.palette import COLOURS, PALETTE
+from snooker_env.render.palette import PALETTE
 from snooker_env.render.pygame_balls import BOLD, MEDIUM, typeset
-from snooker_env.render.pygame_view import in_words, rgb_array, score_bar
+from snooker_env.render.pygame_view import rgb_array, score_bar
 from snooker_env.render.scene import ScoreBar, scene
 
 pytest.importorskip("pygame")
@@ -56,21 +56,6 @@ def test_the_chance_to_win_is_a_strip_of_two_colours():
     assert np.array_equal(plain[7:], said[7:]) and not np.any(np.all(plain[:7] == PALETTE["first"], axis=2))
 
 
-def test_balls_of_the_break_are_shown_in_order():
-    for potted in ((16,), (1, 16, 2, 17), (1, 21) * 15 + (16, 17, 18, 19, 20, 21)):
-        bar = pixels(ScoreBar(("Ann", "Bob"), (0, 0), break_points=1, potted=potted))
-        without = pixels(ScoreBar(("Ann", "Bob"), (0, 0), break_points=1))
-        left, right = where(bar, without)
-        assert left > 60 and right < 720
-        step = min(22.0, (right - left - 18) / max(len(potted) - 1, 1))
-        for k, ball in enumerate(potted):
-            x = left + 9.5 + k * step
-            if step > 18 or k == len(potted) - 1:  # not half hidden by the next
-                shown = bar[30:46, round(x) - 2 : round(x) + 3].reshape(-1, 3)
-                far = np.abs(shown[:, None] - COLOURS.astype(int)).sum(axis=2).min(axis=0)
-                assert far[ball] < 60 and far[ball] == far.min(), (k, ball)
-
-
 def test_each_thing_has_its_place():
     """What changes when one thing changes lies where it belongs, and never over the rest."""
     given = {"players": ("Ann", "Bob"), "scores": (41, 12), "striker": 0, **FULL}
@@ -113,11 +98,3 @@ def test_a_bar_of_any_size_and_with_anything_left_out(given, width):
     for height in (7, 35, 36, 72, 200):
         assert pixels(ScoreBar(**given), width=width, height=height).shape == (height, width, 3)
         assert pixels(ScoreBar(**given, **FULL), width=width, height=height).shape == (height, width, 3)
-
-
-def test_a_low_bar_is_one_line_of_text():
-    given = {"striker": 1, "break_points": 16, "ball_on": "red", "points_on": 59, "words": "foul"}
-    bar = ScoreBar(("Ann", "Bob"), (41, 12), **given)
-    assert in_words(bar) == "Ann 41, Bob 12 · Bob to play · break 16 · red on · 59 left · foul"
-    assert in_words(ScoreBar()) == ""
-    assert np.array_equal(pixels(bar, height=30), pixels(None, in_words(bar), height=30))

@@ -137,25 +137,6 @@ def test_the_page_holds_everything_and_asks_for_nothing(strokes):
     assert json.loads(data[1])["players"] == ["</script>"]
 
 
-def test_places_to_fill_in_that_a_title_names_are_left_alone(strokes):
-    page = sn.replay(strokes[:1], title="{{data}} {{module}}").html()
-    # in the title and in the data
-    assert page.count("{{data}}") == 2 and page.count('"format":"snooker-replay"') == 1
-
-
-def test_a_replay_of_a_replay_takes_another_title(strokes):
-    first = sn.replay(strokes[:2], title="one", players=["A"])
-    second = sn.replay(first, title="two")
-    assert (second.title, second.players, len(second)) == ("two", ("A",), 2)
-    assert sn.replay(first).title == "one"
-
-
-def test_nobody_named_is_the_usual_players(strokes, tmp_path):
-    assert sn.replay(strokes, players=None).players == ("Player",)
-    assert sn.replay(sn.replay(strokes, players="Ada"), players=None).players == ("Ada",)
-    assert sn.RecordReplay(made(), tmp_path, players=None).paths == []
-
-
 def test_errors_of_both_seats_and_what_was_played_on():
     """Each stroke has the errors of its player; of shots with several physics no one is all's."""
     env = keeping(task="frame", opponent="ghost_ball", action="discrete", noise={"aim_deg": 0.1}, cue="real")
@@ -190,14 +171,6 @@ def test_a_bare_shot_and_other_tables():
     assert replay.table is shot.table and data["strokes"][0]["cue"] is None
     assert replay._repr_html_().startswith("<iframe srcdoc=") and "sandbox" in replay._repr_html_()
     assert sn.replay([shot, shot]).to_dict()["strokes"][0] == data["strokes"][0]
-
-
-def test_spins_at_rest_are_kept():
-    """A ball that spins on the spot has a path; one that lies still has none."""
-    shot = sn.simulate([(0.0, 0.0), (0.4, 0.0)], [(0, 0), (0, 0)], [(0, 0, 50.0), (0, 0, 0)])
-    stroke = sn.replay(shot).to_dict()["strokes"][0]
-    which = numbers(stroke["paths"]["u1"], "u1", 2)
-    assert set(which[:, 0].tolist()) == {0} and numbers(stroke["paths"]["f4"], "f4", 3)[0, 2] == 50.0
 
 
 def test_a_frame_and_a_match_name_both_players():
@@ -242,13 +215,6 @@ def test_keeping_history_changes_no_result():
     other.reset(seed=1)
     for choice in range(5):
         assert np.array_equal(env.step(choice)[0], other.step(choice)[0])
-
-
-def test_a_position_is_shown_as_it_stands():
-    position = sn.Position(cue=(0.1, -1.2), reds=[(0.3, 0.4)], black=(0.0, 1.4605))
-    stroke = sn.replay(position).to_dict()["strokes"][0]
-    assert stroke["on_table"] == [0, 1, 21] and stroke["duration"] == 0.0 and stroke["paths"]["count"] == 0
-    assert numbers(stroke["start"], "f8", 2)[[0, 1, 21]].tolist() == [[0.1, -1.2], [0.3, 0.4], [0.0, 1.4605]]
 
 
 WRONG = """
@@ -324,15 +290,6 @@ def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
         _, _, terminated, truncated, _ = env.step(67)
         ends += terminated or truncated
     assert [p.name for p in env.paths] == [f"snooker-episode-{k}.json" for k in range(3)]
-
-
-def test_the_wrapper_writes_what_was_cut_short(tmp_path):
-    env = sn.RecordReplay(made(), tmp_path, suffix=".json", name_prefix="cut")
-    for seed in (1, 2):
-        env.reset(seed=seed)
-        env.step(67)
-    env.close()
-    assert [p.name for p in env.paths] == ["cut-episode-0.json", "cut-episode-1.json"]
 
 
 # Score bars and the referee's words follow the ``Frame`` after each stroke

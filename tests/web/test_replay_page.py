@@ -85,12 +85,6 @@ def test_it_goes_on_from_stroke_to_stroke_by_the_placed_balls(open_page, shown):
     assert p("p.seen") == [1, 2] and p("p.last[1]") == 2
 
 
-def test_reduced_motion_is_respected(open_page):
-    p = open_page(reduced_motion="reduce")
-    p.page.wait_for_timeout(200)
-    assert not p("p.playing") and p("p.time") == p("-p.leads[0]")
-
-
 def test_the_bar_scrubs(open_page, shown):
     _, shots, _, _ = shown
     p = open_page()
@@ -247,20 +241,6 @@ def test_the_score_bar_stands_still(open_page, width):
         assert p.page.locator(".sn-now span").last.locator("i").count() == (6 if on == "any colour" else 1)
         seen.append(p(places))
     assert np.allclose(seen[0], seen[1], atol=0.6) and np.allclose(seen[0], seen[2], atol=0.6)
-
-
-def test_nothing_is_on_once_a_visit_is_over(open_page):
-    p = open_page()
-
-    def on():
-        return p.page.locator(".sn-now span").last.inner_text().strip()
-
-    # the first goes on, the second's player does not, the third is the last
-    for stroke, after in ((0, "on black"), (1, ""), (2, "")):
-        p("p.seek(argument, p.strokes[argument].duration - 0.1)", stroke)
-        assert " ".join(on().split()) == ("on black" if stroke == 1 else "on red")
-        p("p.seek(argument, p.strokes[argument].duration)", stroke)
-        assert " ".join(on().split()) == after
 
 
 def test_nothing_overlaps_or_overflows_at_any_size(open_page):

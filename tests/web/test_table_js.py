@@ -257,20 +257,3 @@ def test_everything_that_a_frame_may_hold_is_drawn(page):
     assert not near(cue, scene["palette"]["cloth"], 40)
     empty_cell = [drawn(page, scene, frame, [[0.12, -0.52]])["pixels"] for frame in (bare, bare | extra)]
     assert empty_cell[0] == empty_cell[1]
-
-
-def test_balls_stand_out_from_the_cloth_and_carry_letters(page):
-    scene = scene_data("match")
-    ids = [0, 1, 16, 17, 18, 19, 20, 21]
-    x, y = [0.5] * 22, list(np.linspace(-1.5, 1.5, 22))
-    frame = {"x": x, "y": y, "on": [int(i in ids) for i in range(22)]}
-    at = [[x[i] + 0.01, y[i]] for i in ids]
-    plain = drawn(page, scene, frame, at, size=[1900, 1000])
-    assert all(np.abs(np.subtract(p, scene["palette"]["cloth"])).max() > 45 for p in plain["pixels"])
-    around = [[dx, dy] for dx in np.linspace(-0.015, 0.015, 7) for dy in np.linspace(-0.01, 0.01, 5)]
-    grid = [[x[i] + dx, y[i] + dy] for i in ids for dx, dy in around]
-    frames = [frame | {"labels": on} for on in (False, True)]
-    pixels = [drawn(page, scene, one, grid, size=[1900, 1000])["pixels"] for one in frames]
-    without, labelled = map(np.array, pixels)
-    changed = np.abs(labelled - without).max(axis=1).reshape(len(ids), -1) > 40
-    assert (changed.mean(axis=1) > 0.1).all()
