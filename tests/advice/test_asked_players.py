@@ -7,7 +7,7 @@ import pytest
 from cases import ALL, ENDGAME, IN_HAND, OPEN, state_of, stroke_of
 
 import snooker_env as sn
-from snooker_env.planning import Position, Positions
+from snooker_env.planning import Positions
 from snooker_env.players import Ranked, Strokes
 from snooker_env.tasks import choice_of
 
@@ -77,17 +77,6 @@ def test_a_players_stroke_is_read_as_the_environment_reads_it():
     assert stroke_of(Aiming(), OPEN).side == pytest.approx(0.3)
 
 
-def test_a_player_who_cannot_place_the_cue_ball_plays_from_a_good_place():
-    """From the usual place a colour is in the way of the only red; from the side it can be potted."""
-    hidden = {"yellow": (0.0, -0.9), "green": (-0.03, -0.8), "blue": (0.03, -0.8), "pink": (0.1, -0.7)}
-    position = Position(in_hand=True, reds=[(0.0, -0.2)], **hidden, black=(-0.1, -0.7))
-    usual = Position(**position.to_dict() | {"in_hand": False})
-    assert sn.planning.pots(usual).ball[0, 0] == -1
-    for agent in (Soft(), "search", "ghost_ball"):
-        place = stroke_of(agent, position).place
-        assert sn.planning.pots(Position(**position.to_dict() | {"cue": place})).ball[0, 0] == 1
-
-
 def test_a_ranking_chooses():
     """Its first stroke pots less surely, and so comes second where both are shown."""
     (first,) = sn.advise(ENDGAME, agent=Ranking(), n=1, samples=200, visits=0)
@@ -107,16 +96,3 @@ def test_a_player_of_frames_sees_the_frame_and_a_visit_as_one():
     assert len(OfFrames.seen) == 1 + len(ALL)
     assert len({seen.tobytes() for seen in OfFrames.seen}) == 1 + len(ALL)
     assert {round(stroke.aim, 6) for stroke in visits} == {round(np.pi / 2, 6)}
-
-
-def test_a_choice_in_a_frame_is_asked_as_the_stroke_to_come():
-    """After a foul of the opponent: advice is about the stroke, whatever the player would choose."""
-    from snooker_env.play.session import Session
-
-    session = Session(seed=1)
-    balls = Position(cue=(0.0, -0.5), reds=[(0.6, 1.4)], blue=(0.3, -0.5))
-    session.set_up(balls, scores=(90, 0), striker=0, free_ball=False)
-    session.play(sn.advice.CueStroke(speed=0.3, aim=-1.0))
-    assert session.frame.phase == "choice"
-    assert stroke_of(OfFrames(), session.position).aim == pytest.approx(np.pi / 2)
-    assert sn.advise(session.position, **QUICK)[0].win < 0.05  # of the one who plays on, far behind

@@ -22,9 +22,8 @@ from snooker_env.advice.__main__ import main
 from snooker_env.advice.costs import count_costs, value_strokes
 from snooker_env.advice.errors import Estimate
 from snooker_env.advice.practice import practice_of
-from snooker_env.advice.recorded import _from_replay, agree_options
+from snooker_env.advice.recorded import agree_options
 from snooker_env.planning import Planner, pot_aim, pots
-from snooker_env.players import VISITS
 from snooker_env.tasks import LEVELS, Noise
 from tests.refusals import refused
 
@@ -91,11 +90,6 @@ def test_the_interval_is_that_of_chi_square():
     assert [one.value, one.low, one.high] == pytest.approx(expected, rel=2e-3)
 
 
-def test_the_law_of_the_radius():
-    assert estimating.chi5(np.sqrt([0.831, 4.351, 11.070])) == pytest.approx([0.025, 0.5, 0.95], abs=1e-3)
-    assert estimating.weigh_radii().sum(axis=0) == pytest.approx(1.0)
-
-
 @pytest.mark.parametrize("noise", ["club", "amateur"])
 def test_pots_and_misses_alone_tell_the_direction(noise):
     ball, pocket, meant, cues, made = played_by(noise, 1500, 2)
@@ -112,20 +106,6 @@ def test_pots_and_misses_alone_tell_the_direction(noise):
     assert p[here] == pytest.approx(made.mean(), abs=0.04)
     line = errors_of([Recorded(position=ALONE, ball=ball, pocket=pocket, played=cue) for cue in cues[:400]])
     assert line.direction.value == pytest.approx(truth, rel=0.1)
-
-
-def test_safeties_among_guessed_pots_are_no_errors():
-    rng = np.random.default_rng(5)
-    pots_, width = rng.normal(0.0, 2.0, 70), np.full(100, 15.0)
-    e = np.concatenate([pots_, rng.uniform(-15.0, 15.0, 30)])
-    log_l, meant = estimating.weigh_guesses(e, width, np.ones((1, 100)))
-    one = estimating.estimate(estimating.normalise(log_l[0]), 1.0, 100)
-    assert one.low < 2.0 < one.high < 3.5
-    assert meant[:70].mean() > 0.9 and meant[70:].mean() < 0.6
-    naive = estimating.estimate(
-        estimating.normalise(estimating.weigh_errors(e, np.ones((1, 100)))[0]), 1.0, 100
-    )
-    assert naive.low > 3.5
 
 
 def test_a_replay_and_a_file_give_the_same_strokes(tmp_path):
@@ -247,15 +227,6 @@ def test_an_error_grows_as_strokes_under_that_noise_do():
         assert each[1] == pytest.approx(np.hypot(1.0, LEVELS["professional"].growth * 2.0), rel=1e-12)
 
 
-def test_side_takes_nothing_from_the_errors_of_direction():
-    """The squirt of a tip at 0.4 R changes by a quarter less with the tip: so much must not be missed."""
-    rng = np.random.default_rng(3)
-    seen = estimating.measure_errors(strokes_that_grow(1.0, 4000, rng), practice_of("professional", WHERE))
-    z = seen.directions / np.hypot(1.0, seen.paces)
-    truth = 0.2 / LEVELS["professional"].direction_deg()
-    assert z.std() == pytest.approx(truth, rel=3.0 / np.sqrt(2 * 4000))
-
-
 def missed_and_made():
     """A pot missed so that the black hangs over the pocket, and the same pot made: both ends of a frame's black."""
     ball, pocket, _ = pot_of(ALONE)
@@ -353,29 +324,6 @@ def test_bad_records_are_refused(fields, words):
     with pytest.raises(ValueError, match="must") as error:
         Recorded(position=ALONE, **fields)
     assert words in str(error.value)
-
-
-def test_strokes_that_tell_nothing_are_refused():
-    with pytest.raises(ValueError, match="none that tells an error"):
-        errors_of([Recorded(position=ALONE)])
-    with pytest.raises(ValueError, match="must hold at least one stroke"):
-        coached([])
-
-
-@pytest.mark.parametrize(("reds", "on"), [([(-0.3, 1.0), (0.6, -0.8)], "any_colour"), ([], "black")])
-def test_a_potted_free_ball_counts_as_the_ball_on(reds, on):
-    """As a red while one is on the table: then a colour is on; later the lowest ball is."""
-    env = sn.SnookerEnv(**VISITS, noise="none")
-    env.keep_history = True
-    env.reset(
-        options={"position": sn.Position(cue=(0.1, 0.2), reds=reds, pink=(-0.3, 0.9), black=(0.0, 1.46))}
-    )
-    env.step(sn.player("search").at(env).play(env, [1]).actions(env.options, sn.Positions.of(env))[0])
-    kept = sn.replay(env).to_dict()
-    assert kept["strokes"][0]["points"] > 0
-    kept["strokes"][0]["ball_on"] = "free ball"
-    (made,) = _from_replay(kept, None)
-    assert made.after.on == on
 
 
 def test_called_is_the_nearest_line():

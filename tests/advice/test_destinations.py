@@ -38,16 +38,6 @@ def test_without_noise_it_is_the_one_shot(blue):
     assert np.allclose(stops.cue[0], state["positions"][0], atol=2e-3)
 
 
-def test_an_in_off_and_a_stroke_at_nothing():
-    straight = sn.Position(cue=(0.0, 0.0), black=(0.0, 1.4605))
-    miss = destinations(straight, CueStroke(speed=1.0, aim=-np.pi / 2), samples=50)
-    assert miss.object_ball == -1 and miss.foul == 1.0 and miss.potted == 0.0 and miss.ball.shape == (0, 2)
-    assert miss.cue.shape == (50, 2)
-    at_pocket = destinations(straight, {"speed": 2.0, "aim": float(np.arctan2(-1.7845, 0.889))}, samples=50)
-    assert at_pocket.in_off > 0.9 and at_pocket.foul == 1.0
-    assert len(at_pocket.cue) == round(50 * (1 - at_pocket.in_off))
-
-
 def test_seeds_and_common_errors(blue):
     first, again, other = (destinations(ENDGAME, blue, seed=seed) for seed in (1, 1, 2))
     assert np.array_equal(first.cue, again.cue) and not np.array_equal(first.cue, other.cue)

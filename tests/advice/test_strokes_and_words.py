@@ -8,7 +8,7 @@ from cases import OPEN, Given
 from scipy.stats import binomtest
 
 import snooker_env as sn
-from snooker_env.advice import POCKET_WORDS, CueStroke, words
+from snooker_env.advice import CueStroke, words
 from snooker_env.advice.outcomes import expect_points, wilson
 from snooker_env.physics.events import EventKind
 from snooker_env.tasks import box_actions
@@ -37,36 +37,6 @@ def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
     (one,) = sn.advise(OPEN, n=1, samples=10, visits=0)
     assert CueStroke.of(one) is one
     assert one.stroke == CueStroke.of({"speed": one.speed, "aim": one.aim, "side": one.side, "top": one.top})
-
-
-def test_pockets_are_named_as_seen_from_baulk():
-    """The yellow pocket is the corner beside the yellow spot, on the right."""
-    yellow, green = sn.geometry.COLOUR_SPOTS[:2]
-    for index, (x, y) in enumerate(sn.geometry.POCKET_PLACES.tolist()):
-        name = POCKET_WORDS[index]
-        if y < 0:
-            near = min((yellow, green), key=lambda spot: np.hypot(spot[0] - x, spot[1] - y))
-            assert name == ("yellow pocket" if near is yellow else "green pocket")
-        else:
-            side = "right" if x > 0 else "left"
-            assert name == (f"top {side}" if y > 0 else f"{side} middle")
-
-
-@pytest.mark.parametrize(
-    ("speed", "top"), [(2.0, 0.0), (1.5, -0.3), (4.0, -0.4), (3.0, 0.3), (2.0, 0.45), (1.0, -0.2), (0.5, 0.0)]
-)
-@pytest.mark.parametrize("distance", [0.0, 0.1, 0.5, 1.2])
-def test_what_is_left_of_the_spin_is_what_the_simulator_says(speed, top, distance):
-    physics = sn.Physics()
-    v, w = sn.strike(speed, pi / 2, 0.0, top)
-    shot = sn.simulate([(0.0, -1.7)], [v[:2]], [w], table=None)
-    times = np.linspace(0.0, shot.duration, 40_001)
-    r, v, w = shot.at(times)
-    k = int(np.argmax(r[:, 0, 1] + 1.7 >= distance))
-    if r[k, 0, 1] + 1.7 < distance:
-        pytest.skip("it does not run so far")
-    expected = -w[k, 0, 0] * physics.R / v[k, 0, 1]
-    assert words.rolling(speed, top, distance, physics) == pytest.approx(expected, abs=2e-2)
 
 
 def test_spin_in_words():
@@ -98,16 +68,6 @@ def test_the_cushion_of_an_escape_is_the_one_that_the_ball_meets():
         assert words.cushion_words(x, y, aim) == f"{name} cushion"
         seen.add(name)
     assert len(seen) == 4
-
-
-def test_contacts_in_words():
-    """As seen along the path: a ball whose middle lies to the left of it is struck on its right."""
-    reach, names = 2 * 0.02625, ("full", "three-quarter ball", "half-ball", "quarter-ball", "thin")
-    for aim in (0.0, 1.0, -2.5):
-        for aside, said in zip((0.0, 0.25, 0.5, 0.75, 0.95), names, strict=True):
-            for sign, side in ((1, "right"), (-1, "left")):
-                x, y = cos(aim) - sign * aside * reach * sin(aim), sin(aim) + sign * aside * reach * cos(aim)
-                assert words.contact_words(x, y, aim) == (said if said == "full" else f"{said} on the {side}")
 
 
 def test_what_a_stroke_does_in_words():

@@ -202,14 +202,6 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
     assert "must be a model of ppo_value" in error
 
 
-def test_a_finished_run_has_nothing_left_to_train(tmp_path, capsys):
-    assert run(tmp_path / "run", "--steps", "1") == 0
-    assert results(tmp_path / "run")["steps"] == 128  # a whole rollout of two tables
-    before = weights(tmp_path / "run")
-    assert resume(tmp_path / "run") == 0
-    assert np.array_equal(weights(tmp_path / "run"), before)
-
-
 class AnyAction:
     """Any action of another player's own format."""
 

@@ -121,19 +121,6 @@ def test_a_program_sees_the_state_of_the_protocol(tmp_path):
     assert states[0]["seed"] == states[2]["seed"] != states[1]["seed"]  # the first table again, timed
 
 
-def test_a_program_sees_the_points_as_its_own(tmp_path):
-    tables = sn.SnookerVectorEnv(1, TASKS["SnookerBreakClub-v0"].judged(**VISITS), threads=1)
-    tables.reset(seed=1)
-    at = sn.Positions.of(tables)
-    at.points[0] = 5
-    name, seen = watching(tmp_path)
-    with closing(ProgramPlayer(name.removeprefix("program:"))) as player:
-        strokes = player.at(tables).play(at, [3])
-    assert strokes.values.tolist() == [[1.0, 0.0, 0.0, 0.0, 0.0]]
-    (state,) = seen()
-    assert state["scores"] == [5, 0] and state["break"] == 5
-
-
 class Softly:
     """A soft stroke at a random angle; the third of many positions at once fails as ``error`` says."""
 
@@ -227,13 +214,6 @@ def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
         assert line in error and error.count("\n") == 1, error
 
 
-def test_names_and_what_is_known_of_them():
-    agent = Agent.of("search_60")
-    assert (agent.label, agent.training_shots, agent.player(HARD).budget) == ("search_60", 0, 60)
-    assert Agent.of("planner_500").training_shots is None
-    assert Agent.of("planner_500@club").label == "planner_500_club"
-
-
 @pytest.fixture(scope="module")
 def model(tmp_path_factory):
     sb3 = pytest.importorskip("stable_baselines3")
@@ -267,23 +247,6 @@ def test_a_model_of_stable_baselines_plays_with_consent(model, tmp_path, capsys)
     assert [row[1:] for row in result["rows"][:2]] == [row[1:] for row in result["rows"][2:]]
     run = f"run SnookerEscape-v0 --agent {frame} --episodes 2 --trust --options aim=target".split()
     assert main(run) == 2 and "must see visits to play them" in capsys.readouterr().err
-
-
-def test_without_the_libraries_one_line_says_which_to_install(model, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "stable_baselines3", None)
-    arguments = ["run", "SnookerEscape-v0", "--agent", str(model["SnookerEscape-v0"]), "--trust"]
-    assert main([*arguments, "--options", "aim=target"]) == 1
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and "needs stable_baselines3" in error
-    assert 'pip install -e ".[train]"' in error
-
-
-def test_a_model_of_the_repository_plays_visits_and_frames():
-    pytest.importorskip("sb3_contrib")
-    agent = Agent.of("ppo_value")
-    for name, n in (("SnookerBreakClub-v0", 20), ("SnookerFrame-v0", 2)):
-        result = judge(TASKS[name], agent, episodes=n)
-        assert faults(result) == [] and result["agent"]["class"] == "model_free"
 
 
 def test_what_is_kept_is_what_was_played():

@@ -7,7 +7,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, __main__, faults, judge
-from snooker_env.benchmark.degenerate import ABOVE, best_constant, winners
+from snooker_env.benchmark.degenerate import ABOVE, winners
 from snooker_env.benchmark.playing import play_episodes
 from snooker_env.players.degenerate import MODULE, SILLY
 
@@ -58,17 +58,3 @@ def test_who_wins_is_named_and_the_command_fails(monkeypatch, tmp_path, capsys):
         monkeypatch.setattr(__main__, "results", lambda *_, mean=mean: [*good, result("constant", mean)])
         assert __main__.main(["degenerate", ESCAPE.id, "--out", str(tmp_path)]) == code
         assert (line in capsys.readouterr().out) is bool(code)
-
-
-def test_the_best_constant_is_found_on_tables_of_training(monkeypatch):
-    """Of choices that are known to score: the best one; no table of the judging is played."""
-    seen = []
-
-    def played(task, player, seeds, run, threads):
-        seen.append((task.judged_layout, max(seeds)))
-        rows = [[0, seed, int(player.choice == 123), *[0] * (len(COLUMNS) - 3)] for seed in seeds]
-        return type("Played", (), {"rows": rows})
-
-    monkeypatch.setattr("snooker_env.benchmark.degenerate.play_episodes", played)
-    assert best_constant(ESCAPE) == 123
-    assert {layout for layout, _ in seen} == {"escape"} and max(seed for _, seed in seen) < 1_000_000

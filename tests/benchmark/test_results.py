@@ -10,9 +10,8 @@ import snooker_env as sn
 from snooker_env._lib.files import with_checksum
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, interval, judge, page
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.leaderboard import LEGEND, board, lines
-from snooker_env.benchmark.playing import play_episodes
-from snooker_env.benchmark.results import budget_of, figures_of, read_result
+from snooker_env.benchmark.leaderboard import LEGEND, lines
+from snooker_env.benchmark.results import read_result
 from snooker_env.benchmark.statistics import unseen
 from snooker_env.planning import Planner
 from snooker_env.players import VISITS, BoundPlayer, Strokes, decision_seeds
@@ -85,18 +84,6 @@ def test_figures_are_those_of_the_rows(made):
     assert never["high"] == pytest.approx(1 - 0.05 ** (1 / EPISODES)) == unseen(EPISODES)
 
 
-def test_several_training_seeds_are_drawn_too():
-    rng = np.random.default_rng(0)
-    points = [rng.integers(0, 40, 50) + 20 * run for run in range(3)]
-    rows = [[k, table, x, 1, x, 0, 0, 0, 0, 1] for k in range(3) for table, x in enumerate(points[k])]
-    record, alone, part = (
-        figures_of(TASKS["SnookerBreak-v0"], "a", some) for some in (rows, rows[:50], rows[:-1])
-    )
-    widths = [one["score"]["high"] - one["score"]["low"] for one in (record, alone)]
-    assert widths[0] > 2 * widths[1] and part is None
-    assert record["by_run"] == pytest.approx([one.mean() for one in points])
-
-
 def test_simulated_shots_are_counted():
     class Thinks(BoundPlayer):
         """Before each stroke: 7 shots on copies of each table, 3 by ``simulate``, and one batch of 5."""
@@ -141,13 +128,6 @@ def test_a_shot_that_is_played_twice_counts_once(monkeypatch, log):
     assert simulated() - before == 1
 
 
-def test_randomness_is_repeated():
-    task = TASKS["SnookerBreakClub-v0"]
-    first, second = (judge(task, Agent.of("random"), episodes=12)["rows"] for _ in range(2))
-    assert first == second == play_episodes(task, "random", task.seeds(12)).rows
-    assert play_episodes(task, "random", task.seeds(12), run=1).rows != [[1, *row[1:]] for row in first]
-
-
 def test_tables_fit_100_columns(made, capsys):
     files = [str(file) for file in made.glob("*.json")]
     assert main(["table", *files]) == 0
@@ -165,20 +145,3 @@ def test_tables_fit_100_columns(made, capsys):
     assert max(map(len, lines(results))) <= 100
     assert main(["tasks"]) == 0 and max(map(len, capsys.readouterr().out.splitlines())) <= 100
     assert page(results).startswith("# Leaderboard\n") and LEGEND[:40] in page(results)
-
-
-def test_the_order_of_the_table_is_class_budget_score(made):
-    rows = []
-    for label, shots, training, value in (
-        ("d", 10, 0, 99.0),
-        ("b", 0, 0, 5.0),
-        ("a", 0, 0, 6.0),
-        ("c", 0, 10**6, 1.0),
-        ("e", 10, 50_000, 1.0),
-    ):
-        one = result(made)
-        one["agent"] |= {"label": label, "simulated_shots": float(shots), "training_shots": training}
-        one["agent"] |= {"budget": budget_of(training), "class": "planning" if shots else "model_free"}
-        one["figures"]["score"]["value"] = value
-        rows.append(one)
-    assert [row[1][0] for row in board(rows, TASKS["SnookerBreak-v0"])[1]] == list("abcde")

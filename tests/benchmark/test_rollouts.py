@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from snooker_env.benchmark import HELD_OUT_SEED, play_visits, rollouts
+from snooker_env.benchmark import HELD_OUT_SEED, play_visits
 from snooker_env.benchmark.rollouts import FIGURES, PlayedStrokes, counts, summary
 from snooker_env.benchmark.tasks import tables_of
 from snooker_env.envs.vector import SnookerVectorEnv
@@ -64,30 +64,6 @@ def test_counts_agree_with_the_summary():
     c, f = counts(s), summary(s)
     # a visit ends with its first miss
     assert f["next_pot_after_a_pot"] > 0.4 and np.all(c["strokes"] - c["pots"] == 1 - c["clearances"])
-
-
-def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
-    after = []
-
-    class Kept(SnookerVectorEnv):
-        def step(self, actions):
-            outcome = super().step(actions)
-            after.append((self.tables.positions[:, 0].copy(), self.tables.on_table[:, 0].copy()))
-            return outcome
-
-    monkeypatch.setattr(rollouts, "SnookerVectorEnv", Kept)
-    s = play_visits("random", 200, noise="club")
-    places, stayed = (np.stack(column)[s.number, s.visit] for column in zip(*after, strict=True))
-    assert 0 < (~stayed).sum() < s.foul.sum()
-    assert np.isnan(s.cue[~stayed]).all() and np.array_equal(s.cue[stayed], places[stayed])
-
-
-def test_a_control_has_other_errors_and_the_same_first_strokes():
-    """Drawn anew after each decision; equal seeds, equal errors."""
-    plain, one, same, other = (play_visits("search_30", 20, rekey=rekey) for rekey in (None, 1, 1, 2))
-    assert np.array_equal(one.cue, same.cue, equal_nan=True)
-    for two in (plain, other):
-        assert not np.array_equal(one.cue[:20], two.cue[:20], equal_nan=True)
 
 
 def test_no_table_comes_twice_or_mirrored():

@@ -36,20 +36,6 @@ def test_samples_are_those_of_a_plain_bootstrap():
         assert iqms[k] == pytest.approx(stats.trim_mean(drawn.ravel(), 0.25))
 
 
-def test_one_runs_interval_is_scipys():
-    x = np.random.default_rng(3).exponential(size=(1, 300))
-    ours = interval(Resamples(1, 300, 9000).sums(x) / 300)
-    more = {"n_resamples": 9000, "method": "percentile", "rng": np.random.default_rng(0)}
-    its = stats.bootstrap((x[0],), np.mean, **more).confidence_interval
-    assert ours == pytest.approx(tuple(its), abs=0.01)
-
-
-def test_an_interval_without_news_is_none():
-    assert all(np.isnan(interval(np.zeros(100))))
-    assert all(np.isnan(interval(np.append(np.arange(99.0), np.nan))))
-    assert np.isnan(Resamples(1, 5, 100).ratios(np.ones((1, 5)), np.zeros((1, 5)))).all()
-
-
 def coverage(runs, spreads, of_iqm=False, trials=300, tables=200):
     """How often the interval holds the true mean 0: scores are sums of parts of run, table and visit."""
     rng, hits, samples = np.random.default_rng(4), 0, Resamples(runs, tables, 400)

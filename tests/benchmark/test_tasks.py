@@ -1,7 +1,6 @@
 """Are the tasks of the benchmark what they promise: frozen options, and tables that nobody trains on?"""
 
 import dataclasses
-import multiprocessing
 
 import gymnasium
 import numpy as np
@@ -12,14 +11,12 @@ from gymnasium.utils.env_checker import check_env, data_equivalence
 import snooker_env as sn
 from snooker_env._lib.registration import ENTRY_POINTS, FORMS, ID
 from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS
-from snooker_env.benchmark import tasks as benchmark_tasks
 from snooker_env.benchmark.playing import Repeater, play_episodes, rows_of, tables_for
 from snooker_env.benchmark.results import figures_of
 from snooker_env.benchmark.tasks import FREE
 from snooker_env.game import layout
 from snooker_env.game.layouts import STORED_IN
 from snooker_env.players import BoundPlayer, Strokes
-from snooker_env.tasks import OBSERVATION_SIZE
 
 IDS = tuple(TASKS)
 
@@ -84,18 +81,6 @@ def test_what_is_frozen_is_refused(name):
         gymnasium.make(name, colour="red")
 
 
-def test_what_is_free_is_taken():
-    free = {"aim": "target", "observation": "balls", "elevation": True, "placement": True}
-    env = gymnasium.make("SnookerBreak-v0", render_mode="ansi", **free)
-    assert env.action_space.shape == (7,) and env.observation_space["state"].shape == (11,)
-    assert gymnasium.make("SnookerBreakClub-v0", action="discrete").action_space.n > 100
-    assert gymnasium.make("SnookerFrame-v0", says=["decision"], placement=True).action_space.shape == (7,)
-    envs = many("SnookerEscape-v0", 3, threads=1, autoreset_mode="SameStep", aim="target")
-    assert envs.reset(seed=1)[0].shape == (3, OBSERVATION_SIZE) and envs.threads == 1
-    with pytest.raises(ValueError, match='belongs to task="frame"'):
-        gymnasium.make("SnookerBreak-v0", says=["decision"])
-
-
 def test_an_escape_is_one_stroke_whose_reward_is_1_if_it_is_legal():
     envs = many("SnookerEscape-v0", 300, autoreset_mode="Disabled")
     envs.reset(seed=7)
@@ -125,15 +110,6 @@ def test_a_safety_is_judged_by_what_the_other_makes_of_it():
     assert figures["score"]["value"] < 0 and figures["iqm"] is not None
 
 
-def test_who_searches_escapes_and_the_plain_stroke_does_not():
-    task = TASKS["SnookerEscape-v0"]
-    share = {}
-    for name in ("ghost_ball", "search_60", "tactician_60"):
-        share[name] = np.mean([row[2] for row in play_episodes(task, name, task.seeds(100)).rows])
-    best = min(share["search_60"], share["tactician_60"])
-    assert best > 0.9 and share["ghost_ball"] < best - 0.15
-
-
 @pytest.mark.parametrize("name", IDS)
 def test_judged_tables_are_not_those_of_training(name):
     """No seed is used twice; on generated layouts they are those that the rules keep for judging."""
@@ -151,22 +127,6 @@ def test_judged_tables_are_not_those_of_training(name):
         assert len(held_out) == 30 and not dealt & held_out
     else:
         assert judged == trained and len(task.seeds(task.episodes)) == task.episodes
-
-
-def _worker(name, queue):
-    import gymnasium
-
-    env = gymnasium.make(f"snooker_env:{name}")
-    queue.put(env.reset(seed=1)[0].tolist())
-
-
-def test_a_spawned_worker_that_imports_only_gymnasium_makes_it():
-    context = multiprocessing.get_context("spawn")
-    queue = context.Queue()
-    process = context.Process(target=_worker, args=("SnookerEscape-v0", queue))
-    process.start()
-    assert queue.get(timeout=300) == gymnasium.make("SnookerEscape-v0").reset(seed=1)[0].tolist()
-    process.join(60)
 
 
 def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_decision():
@@ -191,17 +151,3 @@ def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_dec
     assert Counted.asked == played.decisions == sum(row["strokes"] for row in rows) > 0
     assert list(map(len, played.strokes)) == [row["strokes"] for row in rows]
     assert rows_of(easy, tables_for(easy, 40), seeds, Repeater(played.strokes, 8)) == played.rows
-
-
-def test_a_mirrored_table_is_no_other_table(monkeypatch):
-    """Each table is dealt twice, the second time mirrored at the long axis."""
-
-    def deal(plan, rng):
-        seed = rng.bit_generator.seed_seq.entropy - HELD_OUT_SEED
-        places = np.random.default_rng(seed // 2).uniform(-1, 1, (22, 2))
-        return (1 - 2 * (seed % 2)) * places, np.ones(22, bool)
-
-    monkeypatch.setattr(benchmark_tasks, "deal", deal)
-    monkeypatch.setattr(benchmark_tasks, "plan_of", lambda name: None)
-    made = benchmark_tasks._tables_of.__wrapped__("made here", 5)
-    assert made == tuple(HELD_OUT_SEED + 2 * k for k in range(5))

@@ -5,7 +5,6 @@ import sys
 
 from snooker_env.benchmark import TASKS, Agent
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.playing import play_episodes
 from snooker_env.benchmark.text import COUNTS, STROKES, TRIES, judge_text
 from tests.processes import ROOT
 
@@ -33,19 +32,6 @@ def test_the_example_reads_the_table_in_words_and_is_never_refused(tmp_path, cap
     for row in result["rows"]:
         assert set(row) == {"table", *COUNTS} and row["refused"] == row["forfeited"] == 0
         assert row["answers"] == row["strokes"] >= 1 and row["read"] > 500 * row["strokes"]
-
-
-def test_anchors_play_the_visits_of_the_benchmark_up_to_the_budget(tmp_path):
-    rows = judge_text(Agent.of("ghost_ball"), visits=12, out=tmp_path / "a.json")["rows"]
-    whole = [
-        dict(zip(("run", "table", "score"), row[:3], strict=True))
-        for row in play_episodes(BREAK, "ghost_ball", BREAK.seeds(12)).rows
-    ]
-    short = [k for k, row in enumerate(rows) if row["strokes"] < STROKES]
-    assert len(short) > 6
-    assert all(
-        rows[k]["points"] == whole[k]["score"] and rows[k]["table"] == whole[k]["table"] for k in short
-    )
 
 
 SECOND = """stroke = '{"speed": 2.0, "aim": 0.0}'

@@ -10,7 +10,6 @@ import time
 
 import pytest
 
-from benchmarks._common import kept
 from tests.processes import ROOT
 
 NAMES = [file.stem for file in (ROOT / "benchmarks").glob("*.py")]
@@ -62,13 +61,6 @@ def test_help_is_printed_and_nothing_is_compiled(tmp_path):
         assert "show this help message" in out and "--out FOLDER" in out and "--json FILE" in out
         assert ("--seed N" in out) == (name not in WITHOUT_CHANCE), name
     assert not list(tmp_path.rglob("*.nb?"))
-
-
-@pytest.mark.parametrize(("name", "wrong"), [("paper", "--what"), ("make_opened", "--tables=-1")])
-def test_a_wrong_argument_is_an_error_of_usage(name, wrong):
-    code, out, err = ended(started(name, wrong))
-    assert code == 2 and out == "" and err.startswith(f"usage: python -m benchmarks.{name}")
-    assert "Traceback" not in err
 
 
 def interrupted(process, seconds):
@@ -126,26 +118,3 @@ def test_a_library_that_is_missing_is_named_and_how_to_install_it(tmp_path):
     code, out, err = ended(started("paper", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
     said = 'scipy is missing; in a clone of the repository:  pip install -e ".[test]"'
     assert (code, out, err) == (1, "", f"{said}\n")
-
-
-@pytest.fixture
-def build(tmp_path, monkeypatch):
-    monkeypatch.setattr(kept, "BUILD", tmp_path / "build")
-    return tmp_path / "build"
-
-
-def test_folders_are_made_once_and_whole(build):
-    made = []
-
-    def make(folder):
-        made.append(folder)
-        (folder / "file").write_text("whole")
-        if len(made) == 1:
-            raise OSError(28, "No space left on device")
-
-    with pytest.raises(OSError, match="No space"):
-        kept.kept_folder("x", make)
-    assert not list(build.iterdir())
-    for _ in range(2):
-        assert (kept.kept_folder("x", make) / "file").read_text() == "whole"
-    assert len(made) == 2 and [file.name for file in build.iterdir()] == ["x"] and build / "x" not in made

@@ -42,13 +42,6 @@ def test_models_without_friction_are_the_package_without_friction(e, topspin):
         assert abs(np.degrees(np.arctan2(y, x))) == pytest.approx(angle, rel=1e-12)
 
 
-@pytest.mark.parametrize("cut", [5.0, 50.0])
-def test_planar_friction_is_the_package_for_a_stun_shot(cut):
-    """Slip that ends (5 deg) and slip that lasts (50 deg); with no roll the planar model is exact."""
-    planar = shots.closed(shots.E_B, shots.MU_BB, cloth=True)
-    assert planar(1.2, 0.0, cut) == pytest.approx(shots.solved("reference")(1.2, 0.0, cut), rel=1e-9)
-
-
 def test_throw_of_tp_a14():
     for name, rows in data.a14().items():
         kind, v0 = data.A14_SHOTS[name]
@@ -58,12 +51,6 @@ def test_throw_of_tp_a14():
         assert rows["fast"] == pytest.approx(rows["closed form"], abs=1e-10)
         if kind == "stun":
             assert rows["reference"] == pytest.approx(rows["closed form, mu follows"], abs=1e-8)
-
-
-def test_simulate_follows_the_papers_parabola():
-    found = shots.curved_path(0.2)
-    assert found["gap"] < 1e-12
-    assert found["leaves_deg"] - found["rolls_deg"] > 1
 
 
 def test_the_command_runs(tmp_path, capsys):

@@ -57,14 +57,6 @@ def test_made_up_data_come_back(kind):
     assert found == exact.values == pytest.approx(TRUE[kind], rel=1e-3)
 
 
-def test_marlow_s_law_comes_back():
-    true = {"a": 0.02, "b": 0.1, "c": 1.2}
-    data = measured("throw", {"mu_bb": tuple(true.values()), "e_b": 0.93}, noise=0.02)
-    fitted = fitting.fit("throw", data, fixed={"e_b": 0.93}, law="marlow")
-    assert fitted.values == pytest.approx(true, rel=0.1)
-    assert fitted.physics.mu_bb == pytest.approx(tuple(fitted.values.values()))
-
-
 def test_domenech_s_throw_gives_a_tenth():
     """A constant friction of 0.10 agrees with these 52 shots, 0.05 does not, as in ``benchmarks.paper``."""
     columns = fitting.read(DATA / "throw_domenech2023.csv", "throw", {"speed_m_s": 0.8})

@@ -9,7 +9,6 @@ import torch
 
 from agents.players.trained import load_player
 from examples import ppo_single_file as example
-from snooker_env import SnookerVectorEnv
 from snooker_env.benchmark import play_visits, summary
 from tests.docs.pages import blocks
 
@@ -124,18 +123,3 @@ def test_so_are_those_of_the_loop_on_the_page_of_trainers(capsys, played):
         assert mean == pytest.approx(
             np.mean(returns_of(played[: (update + 1) * steps], update * steps)), abs=1e-3
         )
-
-
-def test_its_file_is_played_by_our_protocol(tmp_path):
-    _, player = trained(8192, tmp_path)
-    assert player.model.num_timesteps == 8192 and player.model.recipe == "single file"
-    assert player.model.seed == 1
-    tables = SnookerVectorEnv(5, threads=1, action="discrete")
-    rows, _ = tables.reset(seed=3)
-    agent = example.mlp(121, 256, 256, 540)
-    weights = iter(part for layer in player.model.policy.weights for part in layer)
-    with torch.no_grad():
-        for part in agent.parameters():
-            part.copy_(torch.from_numpy(next(weights)))
-        scores = agent(torch.from_numpy(rows)).numpy()
-    assert np.allclose(player.model.policy(rows), scores, atol=1e-5)

@@ -140,30 +140,6 @@ def test_keys_and_dial_change_the_stroke(shown):
     assert shown("page.aim.wish.aim") - before == pytest.approx(0.05 * 0.017453293, abs=1e-9)
 
 
-def test_a_held_key_turns_the_aim_by_the_time(shown):
-    """Not by how often its keyboard repeats it; and no longer than it is held."""
-    shown.set_up(EASY)
-    press = "document.body.dispatchEvent(new KeyboardEvent('keydown', { key: argument, bubbles: true, repeat: k > 0 }))"
-    for key, part, step in (
-        ("ArrowLeft", "aim", 0.1 * pi / 180),
-        ("ArrowUp", "speed", 0.1),
-        ("d", "side", 0.05),
-    ):
-        shown("page.aim.set({aim: 1, speed: 2, side: 0})")
-        start = shown(f"page.aim.wish.{part}")
-        shown.page.evaluate(
-            f"argument => {{ for (let k = 0; k < 20; k++) {press}; page.pressed = null; }}", key
-        )
-        assert shown(f"page.aim.wish.{part}") == pytest.approx(start + step)
-        shown.page.keyboard.down(key)
-        shown.until(f"page.aim.wish.{part} > argument", start + 4.5 * step, 20)
-        shown.page.keyboard.up(key)
-        end = shown(f"page.aim.wish.{part}")
-        shown.page.wait_for_timeout(100)
-        assert shown(f"page.aim.wish.{part}") == end
-    assert shown("page.state.strokes") == 0
-
-
 def test_after_a_foul_the_choices_are_shown(shown):
     shown.set_up(COVERED)
     shown("page.aim.set({aim: 1.5708, speed: 1})")
@@ -397,65 +373,6 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
     shown.line("api/players", PERSONS)
 
 
-def test_the_first_aim_of_a_frame_is_no_foul_and_fouls_are_shown(shown):
-    shown.line("api/players", PERSONS)
-    for seed in (1, 2, 3):
-        _, state, _ = shown.line("api/new", {"layout": "break_off", "seed": seed})
-        shown.until("page.settled >= argument && page.aiming && page.advisor.found", state["revision"])
-        assert shown("page.advisor.found.foul") < 0.2 and shown("page.advisor.found.first").startswith("red")
-    shown("page.aim.set({aim: -1.5708, speed: 1})")
-    shown.until("page.advisor.found && page.advisor.found.first === null")
-    assert "foul 100 %" in shown.page.inner_text("#odds")
-
-
-def test_new_frame_and_concede_ask_first_once_something_was_played(shown):
-    shown.set_up(EASY)
-    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})
-    shown.until("page.moving")
-    shown.played(1)
-    for fold, button in (("#start", "#new"), ("#start", "#concede"), ("#files", "#load")):
-        if not shown.page.is_visible(button):
-            shown.page.click(f"{fold} summary")
-        shown.page.click(button)
-        assert shown.page.is_visible("#confirm")
-        shown.page.keyboard.press("Escape")
-        shown.until("!document.getElementById('confirm').open")
-    assert shown("page.state.strokes") == 1 and shown.page.is_enabled("#again")
-    shown.page.click("#start summary")
-    shown.page.click("#new")
-    shown.page.click("#confirm-yes")
-    shown.until("page.state.strokes === 0 && page.settled === page.state.revision")
-    assert not shown.page.is_enabled("#again")
-    shown.page.click("#start summary")
-    shown.page.click("#new")  # nothing was played: it is not asked
-    assert not shown.page.is_visible("#confirm")
-    shown.until("page.state.ball_on === 'red'")
-
-
-def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
-    """The list says its order and its intervals; the pockets that it names are written beside the pockets."""
-    shown.set_up({"reds": [[0.6, 1.4], [-0.3, 0.4]], "black": [0.0, 1.4605], "in_hand": True})
-    assert not shown.page.is_visible("#pockets")
-    shown.page.click("#advise")
-    shown.until("document.querySelectorAll('#advice button').length")
-    assert shown.page.inner_text("#advice-order") == "By chance to win, with an amateur's mistakes:"
-    assert "95 % interval" in shown.page.get_attribute("#advice li:first-child button", "title")
-    shown.until("!document.querySelector('#pockets').hidden")
-    names = shown(
-        "[...document.querySelectorAll('#pockets span')].map(one => [one.textContent, one.offsetLeft, one.offsetTop])"
-    )
-    places = {name: (x, y) for name, x, y in names}
-    assert len(places) == 6 and places["lower middle"][1] > places["upper middle"][1]
-    assert places["lower right"][0] > places["yellow pocket"][0]
-    many, before = shown("page.advisor.list.length"), shown("page.state.revision")
-    shown.page.click("#advice li:last-child button")
-    shown.until("page.state.revision > argument && page.settled === page.state.revision", before)
-    place = shown("page.advisor.list.at(-1).place")
-    assert shown("[page.balls.x[0], page.balls.y[0]]") == pytest.approx(place, abs=1e-6)
-    assert shown("document.querySelectorAll('#advice button').length") == many
-    shown.until("page.advisor.found")
-
-
 @pytest.mark.parametrize(
     "size",
     [
@@ -538,16 +455,6 @@ def test_the_page_says_and_draws_how_the_cue_finds_room_before_the_stroke(shown)
     assert "Cue raised to 45 degrees over the rail, tip moved up" in shown.page.inner_text("#last")
 
 
-def test_the_latest_answer_about_the_room_wins(shown):
-    shown.set_up(FROZEN)
-    shown("[3, 2.6, 2.2, 3.6, 4.6, 1.5].map(aim => page.aim.set({aim, top: 0, elevation: 0}))")
-    shown.until(f"{ROOM} && !page.room.found.raised")
-    shown("[1.5, 2.2, 3.6, 3.14159265].map(aim => page.aim.set({aim, top: 0, elevation: 0}))")
-    shown.until(f"{ROOM} && page.room.found.raised")
-    square = shown("page.room.found.elevation")
-    assert 0.5 < square < 0.63
-
-
 def test_the_cue_is_pulled_back_and_let_go(shown):
     """The further, the harder; pushed back to the ball it is no stroke, and the power is as before."""
     shown.set_up(EASY)
@@ -619,30 +526,6 @@ def test_the_first_look_is_calm_and_the_tutorial_is_shown_once(chromium, line): 
     shown.close()
 
 
-def test_the_controls_stay_where_they_are(shown):
-    """Before a stroke, while it moves, on a colour, after a foul: whatever stays visible has not moved."""
-    ids = "['asked', 'last', 'dial', 'left', 'speed', 'act', 'advise', 'undo'].map(id => document.getElementById(id))"
-    places = f"{ids}.filter(one => one.offsetParent).map(one => [one.id, one.getBoundingClientRect().top])"
-    shown.set_up(EASY)
-    shown("page.aim.set({aim: argument, speed: 2, side: 0, top: 0})", STRAIGHT)
-    first = dict(shown(places))
-    shown.page.click("#play")
-    shown.until("page.moving")
-    moving = dict(shown(places))
-    shown.played(1)
-    colour = dict(shown(places))
-    shown("page.aim.set({aim: 0, speed: 0.2})")
-    shown.page.click("#play")
-    shown.played(2)
-    assert shown.page.is_visible("#choices")
-    foul = dict(shown(places))
-    assert first == moving == colour
-    assert len(first) == 8
-    assert {name: first[name] for name in foul if name != "act"} == {
-        k: v for k, v in foul.items() if k != "act"
-    }
-
-
 def test_one_menu_seats_an_opponent_of_a_strength(shown):
     shown.set_up(EASY)
     shown.page.click("#start summary")
@@ -687,22 +570,6 @@ def test_a_match_of_six_red_is_played_on_the_page(shown):
     shown.until(f"page.state.game === 'shoot_out' && {SETTLED}")
     assert "time 10:00" in shown.page.inner_text("#now").replace("\n", " ")
     shown.line("api/new", {"layout": "break_off", "game": "snooker", "best_of": 1})
-
-
-def test_the_last_stroke_is_shown_again_in_slow_motion(shown):
-    shown.set_up(EASY)
-    shown.line("api/stroke", {"speed": 1.0, "aim": STRAIGHT})
-    shown.until("page.moving")
-    shown.played(1)
-    shown.page.click("#slow")
-    shown.until("page.moving && page.moving.at > 0")
-    assert shown("page.moving.rate") == 0.2
-    begun, at = shown("[page.moving.now, page.moving.at]")
-    shown.until("page.moving.at > argument", at + 0.08)
-    now, later = shown("[page.moving.now, page.moving.at]")
-    assert (later - at) == pytest.approx(0.2 * (now - begun) / 1000, abs=1e-6)
-    shown("page.skip()")
-    shown.until("!page.behind")
 
 
 def test_statistics_count_the_frame(shown):
@@ -900,20 +767,6 @@ def test_a_shot_clock_plays_the_stroke_as_it_is_aimed(shown):
     shown.played(1)
     cue = shown.line("api/strokes")[1]["strokes"][0]["cue"]
     assert (cue["speed"], cue["aim"]) == pytest.approx((0.5, AWAY))
-
-
-def test_zoom_shows_the_stroke_twice_as_large_and_is_aimed_in_as_before(shown):
-    shown.set_up(EASY)
-    whole = shown("page.view.scale")
-    shown.page.keyboard.press("z")
-    assert shown("page.view.scale") == pytest.approx(2 * whole)
-    for place in (EASY["cue"], [0.0, 0.89225]):
-        x, y = shown("page.view.toScreen(...argument)", place)
-        assert shown("page.view.toTable(...argument)", [x, y]) == pytest.approx(place)
-    shown.page.mouse.click(*shown.at(0.0, 0.89225))
-    assert shown("page.aim.wish.aim") == pytest.approx(-2.738, abs=0.005)
-    shown.page.keyboard.press("z")
-    assert shown("page.view.scale") == pytest.approx(whole)
 
 
 def test_sounds_are_made_after_the_first_touch_and_can_be_switched_off(shown):

@@ -3,7 +3,6 @@
 import base64
 import json
 import re
-import sys
 import time
 from math import erf, pi
 
@@ -17,8 +16,7 @@ from snooker_env.geometry import POCKETS
 from snooker_env.planning import Position, Positions
 from snooker_env.play import routes
 from snooker_env.players import Strokes, player
-from snooker_env.players.program import ProgramPlayer
-from snooker_env.players.table_report import find_lines, where
+from snooker_env.players.table_report import find_lines
 from snooker_env.simulation import SimulationError
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
@@ -67,17 +65,6 @@ def test_the_text_gives_a_blind_player_places_lines_and_what_is_in_the_way(game)
     open_text = game("position", position=EASY)["text"]
     far = r"cue ball 0\.\d\d m, ball 0\.\d\d m, aim 0\.93\d\d rad, may err \d\.\d\d deg, chance \d+ %"
     assert re.search(rf"red 1, top right: open, straight, {far}", open_text)
-
-
-def test_places_in_words():
-    for ball, place, words in (
-        (19, (0.0, 0.0), "on its spot"),
-        (18, (0.0, 0.0), "on the blue spot"),
-        (1, (0.86, 0.0), "tight on the right cushion"),
-        (1, (0.3, 1.74), "2 cm from the top cushion"),
-        (1, (0.0, -1.5), "in baulk, on the centre line"),
-    ):
-        assert words in where(ball, *place)
 
 
 def test_a_stroke_is_played_and_described_as_in_a_replay(game):
@@ -134,14 +121,6 @@ def test_the_chance_to_win_is_said_of_seat_0_after_each_stroke(game):
     assert game("concede")["win_chance"] == 0.0
 
 
-def test_a_program_that_plays_is_not_told_the_chance():
-    """It is to find its stroke by itself."""
-    code = "import json,sys;print(json.dumps({'speed':1.0,'aim':float('win_chance' not in json.loads(input()))}))"
-    program = ProgramPlayer(f'{sys.executable} -c "{code}"').at({"noise": "club"})
-    assert program.play(Position(**EASY), [1]).aim.tolist() == [1.0]
-    program.close()
-
-
 @pytest.mark.parametrize(
     ("who", "noise", "level"),
     [
@@ -176,17 +155,6 @@ def test_in_a_frame_those_advise_who_know_frames(game):
     state = game("players", practice=True)
     assert set(state["advisers"]) >= {"planner_500", "tactician_500", "ghost_ball"}
     assert game("advise", n=1, samples=20)["agent"] == "planner_500"
-
-
-def test_advice_knows_the_rules_that_are_played(game):
-    for rules in ("six_red", "shoot_out"):
-        game("new", game=rules, seed=4)
-        asked = game("advise", n=1, samples=20)
-        session = game.session
-        options = {"cue": "real", "miss": session.miss, "game": rules}
-        same = {"agent": "tactician_500", "noise": "amateur", "samples": 20, "n": 1}
-        (one,) = advise(session.position, options=options, **same)
-        assert asked["suggestions"][0]["words"] == one.words and asked["suggestions"][0]["win"] == one.win
 
 
 def test_an_aim_may_be_given_by_a_pot_and_is_solved(game):
@@ -415,20 +383,6 @@ def test_hints_are_different_strokes_and_the_best_of_each(game, layout, agent, p
     assert len(one) == 1
 
 
-def test_destinations_spread_with_the_errors(game):
-    game("position", position=EASY)
-    unpacked = lambda text: np.frombuffer(base64.b64decode(text), "<f4").reshape(-1, 2)  # noqa: E731
-    sure = game("destinations", speed=1.5, aim=STRAIGHT, noise="none")
-    loose = game("destinations", speed=1.5, aim=STRAIGHT, noise="club", samples=300)
-    assert sure["first"] == loose["first"] == "red 1" and sure["pots"] == [["red 1", "top right"]]
-    assert sure["potted"] == 1.0
-    assert len(unpacked(loose["cue"])) + round(300 * loose["in_off"]) == 300
-    assert unpacked(loose["cue"]).std(axis=0).max() > 0.01
-    assert np.allclose(unpacked(sure["cue"])[0], sure["paths"]["0"][-1], atol=1e-3)
-    assert game("destinations", speed=1.5, aim=STRAIGHT, noise="club", samples=300) == loose
-    assert game.get("state")["strokes"] == 0
-
-
 def test_a_question_about_a_table_that_is_gone_is_refused(game):
     revision = game("position", position=EASY)["revision"]
     assert "cue" in game("destinations", speed=1.0, aim=0.0, samples=8, revision=revision)
@@ -529,16 +483,6 @@ def test_other_games_and_matches_are_played(game):
     assert game("new", next=True)["frames"] == [0, 0]
 
 
-def test_in_the_shoot_out_an_agent_puts_the_cue_ball_anywhere(game):
-    agent = game.service.seats.players["deciding"] = Deciding(place=[[0.3, 0.45]])
-    game("new", game="shoot_out", seed=1)
-    game("players", players=["person", "deciding"])
-    game("stroke", speed=1.0, aim=-0.5 * pi)  # a foul: it strikes nothing
-    assert waited(game, lambda s: not s["thinking"])["trouble"] == ""
-    assert agent.saw[0].anywhere.all()
-    assert game.session.acts[-1].asked["place"] == pytest.approx([0.3, 0.45], abs=1e-9)
-
-
 def test_in_the_shoot_out_a_clock_runs_and_after_a_foul_the_cue_ball_goes_anywhere(game):
     state = game("new", game="shoot_out", seed=1)
     assert state["time_left"] == 600.0
@@ -625,16 +569,3 @@ def test_the_chance_is_for_the_larger_errors_and_nobody_wins_practice(game):
     game("stroke", speed=2.0, aim=STRAIGHT)
     assert game.get("strokes")["strokes"][0]["tables"][1]["win_chance"] is None
     assert game.get("replay")["win_chance"] is None
-
-
-def test_questions_are_answered_for_the_errors_of_the_seat(game):
-    game("position", position=EASY)
-    for noise, samples in (("club", 500), ("none", 1)):
-        game("players", noise=[noise, "professional"])
-        found = game("destinations", speed=2.0, aim=STRAIGHT + 0.01)
-        assert found["samples"] == samples
-        assert found == game("destinations", speed=2.0, aim=STRAIGHT + 0.01, noise=noise)
-    game("players", practice=True)
-    alone = game("advise", agent="ghost_ball", n=2)  # where nobody wins
-    assert alone["order"] == "Pots by points expected, with an amateur's errors:"
-    assert alone["suggestions"][0]["win"] is None

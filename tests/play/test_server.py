@@ -11,7 +11,7 @@ import time
 import pytest
 
 from snooker_env.play import server as module
-from snooker_env.play.__main__ import _arguments, main, service_of
+from snooker_env.play.__main__ import main
 from snooker_env.play.routes import GET, POST
 from tests.processes import ROOT
 
@@ -138,15 +138,6 @@ def test_a_post_without_a_body_has_no_fields_and_a_second_slash_does_no_harm(lin
     refused(line("/etc/passwd"), 404, "nothing")
 
 
-@pytest.mark.parametrize(
-    "address, words", [("http://127.0.0.1:9/x/", "no answer"), ("nonsense", "no address")]
-)
-def test_the_client_says_in_one_line_that_nobody_answers(address, words):
-    command = [sys.executable, ROOT / "examples" / "play_client.py", address]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1
-
-
 def test_heads_and_bodies_are_bounded_and_typed(line):
     refused(line("api/state", headers={"X-Long": "x" * 70_000}), 431, "")
     refused(line("api/state", headers={f"X-{k}": "x" * 100 for k in range(200)}), 431, "")
@@ -170,12 +161,6 @@ def raw(line, *parts):
         while part := connection.recv(65_536):
             found += part
         return found
-
-
-def test_what_is_no_http_is_refused_in_json(line):
-    for request in (b"hello\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"GET  /  x HTTP/1.1\r\n\r\n"):
-        found = raw(line, request)
-        assert (b'{"error"' in found and b"HTTP/1.1 4" in found) or b"HTTP/1.1 505" in found
 
 
 def test_a_connection_that_says_nothing_more_is_cut_off(line, monkeypatch):
@@ -236,21 +221,6 @@ def test_connections_that_are_answered_are_bounded(line):
             one.close()
 
 
-def test_one_connection_serves_many_requests(line):
-    request = f"GET /{line.server.token}/api/state HTTP/1.1\r\nHost: localhost:{line.server.server_port}\r\n".encode()
-    found = raw(line, (request + b"\r\n") * 2 + request + b"Connection: close\r\n\r\n")
-    assert found.count(b"HTTP/1.1 200 OK") == 3
-
-
-def test_the_replay_is_a_file_to_keep(line):
-    balls = {"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}
-    assert line("api/position", {"position": balls})[0] == 200
-    assert line("api/stroke", {"speed": 1, "aim": 0.5})[0] == 200
-    status, body, headers = line("api/replay.html")
-    assert status == 200 and body.startswith(b"<!DOCTYPE html>")
-    assert headers["Content-Disposition"].startswith("attachment")
-
-
 def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     start = tmp_path / "position.json"
     start.write_text(json.dumps({"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}))
@@ -283,16 +253,6 @@ def test_a_browser_that_is_not_found_is_said_with_the_address(found, monkeypatch
 
 
 @pytest.mark.parametrize(
-    ("agents", "other"), [([], "tactician_500"), (["ghost_ball", "random"], "ghost_ball")]
-)
-def test_the_first_agent_or_the_tactician_sits_opposite(agents, other):
-    arguments = [word for name in agents for word in ("--agent", name)]
-    service = service_of(_arguments(["--seed", "1", "--noise", "club", *arguments]))
-    assert service.seats.who == ["person", other] and service.session.noise == ["none", "club"]
-    service.close()
-
-
-@pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (["--position", "nowhere.json"], "nowhere.json"),
@@ -308,14 +268,6 @@ def test_what_cannot_be_is_said_in_one_line(arguments, words, capsys):
     assert main(["--no-browser", *arguments]) == 2
     out, err = capsys.readouterr()
     assert words in err and err.count("\n") == 1 and "Traceback" not in err and out == ""
-
-
-def test_a_port_in_use_is_said_with_what_to_do(line, capsys):
-    port = line.server.server_port
-    assert main(["--no-browser", "--port", str(port)]) == 2
-    _, err = capsys.readouterr()
-    assert err.startswith(f"snooker_env.play: port = {port}: must be free (") and "another with --port" in err
-    assert err.count("\n") == 1
 
 
 def test_the_port_is_always_the_same_unless_it_is_taken_and_then_any(monkeypatch, line):

@@ -9,13 +9,11 @@ import pytest
 from snooker_env.advice import CueStroke
 from snooker_env.game.balls import BLACK, BLUE, CUE, NAMES, PINK
 from snooker_env.game.frame_columns import STROKES
-from snooker_env.game.ruling import AUTO, Foul
+from snooker_env.game.ruling import AUTO
 from snooker_env.planning import Position
-from snooker_env.play.report import last_words
 from snooker_env.play.session import STATE, Session
-from snooker_env.players.table_report import nominations_of
 from snooker_env.tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
-from tests.playing import COVERED, EASY, FROZEN
+from tests.playing import COVERED, EASY
 
 ALONG_X = CueStroke(speed=0.6, aim=0.0)
 AT_NOTHING = CueStroke(speed=0.2, aim=0.5 * pi)
@@ -93,15 +91,6 @@ def test_the_choices_after_a_foul():
         session.choose("play")
 
 
-def test_a_free_ball_may_be_named_and_counts_as_the_ball_on():
-    balls = {"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "black": [-0.6, -0.9]}
-    for named, fouls in ((BLUE, Foul(0)), (BLACK, Foul.WRONG_FIRST)):
-        session = standing(balls, free_ball=True)
-        assert nominations_of(session.frame) == (BLUE, BLACK)
-        session.play(ALONG_X, nominated=named)
-        assert session.acts[-1].played.fouls == fouls
-
-
 def test_a_cue_ball_in_hand_goes_to_the_nearest_free_place_of_the_d():
     session = Session(seed=1)
     assert session.place(5.0, 5.0) == pytest.approx((0.292, -1.0475), abs=0.06)
@@ -154,29 +143,3 @@ def test_practice_gives_the_table_back():
     session.practice = True
     session.play(CueStroke(speed=1.0, aim=0.5 * pi))
     assert (session.frame.phase, session.frame.striker, session.frame.scores) == ("stroke", 0, (0, 7))
-
-
-def test_a_position_that_cannot_be_is_refused_by_its_field():
-    session = standing(EASY)
-    before = session.state
-    for more, free, words in (({}, True, "free_ball"), ({"points": 150}, False, "break_points")):
-        position = Position(**EASY | {"on": "any_colour"} | more)
-        with pytest.raises(ValueError, match=f"^{words}"):
-            session.set_up(position, scores=(0, 0), striker=0, free_ball=free)
-    session.set_up(Position(**COVERED), scores=(0, 0), striker=0, free_ball=False, check=True)
-    assert session.state == before
-
-
-def test_the_cue_is_real_and_what_it_did_is_said():
-    session = standing(FROZEN)
-    assert session.cue == "real"
-    act = session.play(CueStroke(speed=1.0, aim=pi, top=-0.4))
-    assert act.room is not None and act.room.moved and act.played is not None
-    assert act.played.cue["top"] == pytest.approx(act.room.top, abs=1e-6)
-    words = last_words(act, ("You", "A"))
-    assert " Cue raised to 45 degrees over the rail, tip moved up to " in words and words.endswith(" middle.")
-    free = standing(FROZEN)
-    free.cue = "free"
-    act = free.play(CueStroke(speed=1.0, aim=pi, top=-0.4))
-    assert act.played is not None and act.played.cue["elevation"] == 0.0
-    assert last_words(act, ("You", "A")).endswith(("potted.", "potted, 1.", "first.", "struck."))

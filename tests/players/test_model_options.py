@@ -9,7 +9,6 @@ import snooker_env as sn
 from snooker_env import watch
 from snooker_env.benchmark import HELD_OUT_SEED
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.play.__main__ import _arguments, service_of
 from snooker_env.players import model_options
 
 TARGET = {"aim": "target"}
@@ -69,12 +68,6 @@ def test_a_model_of_the_repository_says_itself_how_its_actions_are_read():
         sn.player(PRETRAINED / "ppo_value.zip", options=TARGET)
 
 
-def test_words_of_a_command_line_become_options():
-    words = ["aim=target", "placement=true", "says=decision,lot", "elevation=30"]
-    read = model_options.options_of_words(words)
-    assert read == {"aim": "target", "placement": True, "says": ("decision", "lot"), "elevation": 30}
-
-
 def test_a_visit_of_a_model_is_watched(model, tmp_path, capsys):
     out = tmp_path / "visit.json"
     assert watch.main(["--agent", model, *WORDS, "--noise", "none", "--out", str(out)]) == 0
@@ -93,16 +86,6 @@ def test_a_frame_of_a_model_is_watched_on_either_side(model, both):
     opposite = env.tables.seats[1].player.player
     assert opposite.sees["aim"] == "target" and "placement" not in opposite.sees
     assert {stroke.player for stroke in env.history} == {0, 1}
-
-
-def test_a_model_sits_at_the_page_and_gives_advice(model):
-    service = service_of(_arguments(["--agent", model, *WORDS, "--seed", "1"]))
-    (its,) = (one for name, one in service.seats.players.items() if name == "ppo")
-    assert its.sees["aim"] == "target"
-    service.close()
-    position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    (one,) = sn.advise(position, agent=its, n=1, samples=10, visits=1, noise="none")
-    assert one.kind == "pot"
 
 
 # What acts on observations

@@ -51,15 +51,6 @@ def test_equal_positions_and_seeds_give_equal_strokes_however_many_are_asked_for
     assert same(pickle.loads(pickle.dumps(player)).play(at, seeds), together)
 
 
-@pytest.mark.parametrize("name", ["random", *SEARCHING])
-def test_another_seed_may_give_another_stroke_and_ranks_begin_with_what_is_played(name):
-    at, player = of_visits(8), sn.player(name).at({"noise": "club"})
-    seeds = np.arange(8)
-    strokes, ranked = player.play(at, seeds), player.rank(at, seeds)
-    assert all(same(one.strokes[:1], strokes[k : k + 1]) for k, one in enumerate(ranked))
-    assert not np.array_equal(player.play(at, seeds + 100).values, strokes.values)
-
-
 def test_a_player_is_bound_before_it_is_asked():
     with pytest.raises(ValueError, match="must be bound first"):
         sn.player("search").play(of_visits(1), [0])

@@ -9,32 +9,19 @@ import pytest
 import snooker_env as sn
 import train
 from agents.learning import learn_strokes
-from snooker_env.benchmark import play_visits, simulated, summary
+from snooker_env.benchmark import play_visits, summary
 from snooker_env.planning import Position, Positions
 from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
-from snooker_env.planning.learned.stroke_value import LOOKS, SIZE
+from snooker_env.planning.learned.stroke_value import SIZE
 from snooker_env.players import VISITS
 from snooker_env.players.stroke_value import StrokeValuePlayer
-from snooker_env.players.weights import FOLDER, STROKES, StrokeLayers, learned_strokes
+from snooker_env.players.weights import FOLDER, STROKES, learned_strokes
 
 
 def opened(n, **options):
     tables = sn.SnookerVectorEnv(n, layout="opened", noise="professional", **VISITS, **options)
     tables.reset(seed=list(range(25_000_000, 25_000_000 + n)))
     return tables
-
-
-def test_it_decides_without_a_shot_and_each_position_by_itself():
-    tables = opened(20)
-    at, player, before = Positions.of(tables), sn.player("stroke_value").at(tables), simulated()
-    together = player.play(at, np.arange(20))
-    for k in range(20):
-        assert np.array_equal(player.play(at[[k]], [k]).values, together.values[[k]])
-    ranked = player.rank(at, np.arange(20))
-    for k, one in enumerate(ranked):
-        assert np.array_equal(one.strokes.values[0], together.values[k]) and len(one.strokes) == LOOKS
-        assert (np.diff(one.scores) <= 0.0).all()
-    assert simulated() == before
 
 
 def test_without_a_pot_it_plays_as_ghost_ball():
@@ -117,30 +104,6 @@ def frames(n, **options):
     return made
 
 
-def test_it_plays_frames_without_a_shot_and_each_position_by_itself():
-    """Pots and safeties, from where it places the cue ball; its break-off is that of ``ghost_ball``."""
-    frame = frames(40, miss="clear_path")
-    player, plain, hands, safe = sn.player("stroke_value").at(frame), sn.player("ghost_ball").at(frame), 0, 0
-    for k in range(12):
-        at, keys, before = Positions.of(frame), np.arange(40) + 100 * k, simulated()
-        strokes, other, ranked = player.play(at, keys), plain.play(at, keys), player.rank(at, keys)
-        assert simulated() == before
-        same = (strokes.values == other.values).all(axis=1).sum()
-        assert same == 40 if k == 0 else same <= 8
-        for j, one in enumerate(ranked):
-            assert np.array_equal(one.strokes.values[0], strokes.values[j])
-            assert np.array_equal(one.strokes.place[0], strokes.place[j], equal_nan=True)
-            assert one.scores is None or (np.diff(one.scores) <= 0.0).all()
-        for j in (0, 17, 39):
-            alone = player.play(at[[j]], keys[[j]])
-            for part, whole in zip(alone.parts, strokes.parts, strict=True):
-                assert np.array_equal(part[0], whole[j], equal_nan=True)
-        safe += sum(one is not None and one.kinds[0] == 1 for one in player.decided(at, keys).tried)
-        hands += int((at.in_hand & np.isfinite(strokes.place[:, 0])).sum())
-        frame.step(strokes.actions(frame.options, at))
-    assert hands > 40 and safe > 40
-
-
 @pytest.mark.parametrize(
     "options",
     [
@@ -185,39 +148,6 @@ def test_networks_that_are_none_are_refused(tmp_path, damage):
     np.savez(tmp_path / "mine.npz", **arrays)
     with pytest.raises(ValueError, match=r"mine\.npz.*visits/0 = "):
         sn.player(f"stroke_value@{tmp_path / 'mine.npz'}")
-
-
-def test_a_network_of_frames_changes_what_is_played_in_frames_alone():
-    """One that has learned nothing plays the stroke that seems to be worth most."""
-    package = learned_strokes()
-    frame = frames(20, layout="opened", miss="clear_path")
-    plain, taught = (StrokeValuePlayer(of).at(frame) for of in (StrokeLayers(package.visits), package))
-    at = Positions.of(frame)
-    looked = plain.search.look(at, np.arange(20))
-    scores = np.where(looked.there, plain.search.scores(looked.seen), -np.inf)
-    best = looked.strokes[np.arange(20), scores.argmax(axis=1)]
-    said = plain.play(at, np.arange(20)).values
-    assert np.array_equal(said[~at.in_hand], best[~at.in_hand])
-    assert (said != taught.play(at, np.arange(20)).values).any(axis=1).sum() > 5
-    tables = opened(20)
-    visits = [one.play(tables, np.arange(20)).values for one in (plain, taught)]
-    assert np.array_equal(*visits)
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"noise": "none"},
-        {"conditions": "drawn"},
-        {"table": "tight"},
-        {"physics": {"roll_drag": 0.0136}},
-        {"cue": "real"},
-    ],
-    ids=str,
-)
-def test_it_pots_under_all_options(options):
-    visits = summary(play_visits("stroke_value", 60, layout="opened", **{"noise": "professional"} | options))
-    assert visits["pots_a_visit"] > (8.0 if options.get("noise") == "none" else 2.5)
 
 
 @pytest.mark.parametrize("name", ["stroke_value@missing.npz", "stroke_value@README.md", "stroke_value_500"])

@@ -24,27 +24,6 @@ def test_it_is_a_player_of_the_package_and_takes_a_budget():
         sn.player("tactician@mine")
 
 
-def test_one_position_is_played_as_among_many():
-    at = positions_of(frames_in_play(10, OPTIONS, strokes=6, seed=61))
-    at = at[np.flatnonzero(~at.over)]
-    player, seeds = sn.player("tactician_30").at(OPTIONS), np.arange(len(at)) + 5
-    together = player.play(at, seeds)
-    for k in range(len(at)):
-        for one, other in zip(together[[k]].parts, player.play(at[[k]], seeds[[k]]).parts, strict=True):
-            assert np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
-
-
-def test_it_plays_what_it_ranks_first():
-    at = positions_of(frames_in_play(6, OPTIONS, strokes=4, seed=71))
-    at = at[np.flatnonzero(~at.over)]
-    player = sn.player("tactician_30").at(OPTIONS)
-    strokes, ranked = player.play(at, np.arange(len(at))), player.rank(at, np.arange(len(at)))
-    for k, one in enumerate(ranked):
-        assert np.array_equal(one.strokes.values[0], strokes.values[k])
-        if one.scores is not None:
-            assert len(one.scores) == len(one.strokes) and ((one.scores >= 0) & (one.scores <= 1)).all()
-
-
 def test_visits_are_played_as_the_planner_plays_them():
     position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     mine = sn.player("tactician_30").at({"noise": "club"}).play(position, [7])
@@ -182,20 +161,6 @@ def test_who_needs_snookers_plays_for_them():
     assert advice[0].kind == "safety" and sum(one.kind == "safety" for one in advice) > 5
 
 
-POOR = Position(
-    cue=(-0.6474, -1.742), reds=[(0.0536, 0.2989), (-0.0726, 0.8236)], black=(0.0, 1.4605), on="red"
-)
-
-
-def test_nobody_fouls_on_purpose():
-    """Where every safety leaves something: as it is intended, each stroke meets a ball on."""
-    player = sn.player("tactician").at(OPTIONS | {"noise": "professional", "miss": "clear_path"})
-    at, every = frame_of(POOR, scores=(14, 1))[np.zeros(60, int)], np.arange(60)
-    strokes = np.stack([one.strokes.values[0] for one in player.search.rank(at, every)])
-    after = player.judge.outcomes(at, every, strokes, np.zeros((60, 5)))
-    assert (after.game[:, columns.SCORE_1] > 1).sum() == 0
-
-
 def test_a_called_miss_is_worth_no_more_than_the_best_stroke_and_its_penalty():
     """The best is missed half of the time; one that always is would leave the other nothing."""
     judge = sn.player("tactician_30").at(OPTIONS).judge
@@ -208,13 +173,6 @@ def test_a_called_miss_is_worth_no_more_than_the_best_stroke_and_its_penalty():
     assert (chances[1], points[1]) == pytest.approx(best)
     assert (chances[2], points[2]) == pytest.approx((best[0] - 0.04, best[1] - 4.0))
     assert (chances[0], points[0]) == (0.5, 6.0)
-
-
-def test_a_foul_that_wins_the_frame_may_be_played():
-    """8 ahead with the black alone: a foul ends the frame one point ahead. Every stroke wins it."""
-    at = frame_of(HARD_BLACK, scores=(60, 52))
-    (tried,) = sn.player("tactician_30").at(OPTIONS).search.rank(at, [0])
-    assert (tried.scores == 1.0).all()
 
 
 def test_the_chance_after_a_foul_is_that_of_the_best_decision():

@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.render.scene import Film, Turning, find_contacts, scene, trace_paths
+from snooker_env.render.scene import Film, Turning, find_contacts, scene
 
 
 @pytest.fixture(scope="module")
@@ -36,18 +36,6 @@ def test_the_film_of_a_shot_shows_the_balls_of_the_shot():
     small = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], None, {"R": 0.02})
     assert {one.ball_radius for one in Film(None, small).scenes(5)} == {0.02}
     assert scene("match", SPOTS).ball_radius == scene(None, SPOTS).ball_radius == BALL_RADIUS
-
-
-def test_a_film_is_the_same_at_any_time_as_picture_after_picture(pot):
-    film = Film("match", pot, text="pot")
-    for k, one in enumerate(Film("match", pot, text="pot").scenes(20)):
-        here = film.at(min(k * 0.05, pot.duration))
-        assert np.array_equal(here.positions, one.positions) and here.paths.keys() == one.paths.keys()
-        whole = {ball: points for ball, (points, _) in trace_paths(pot, (CUE, 1)).items()}
-        for ball, points in here.paths.items():
-            assert np.array_equal(points, one.paths[ball]) and len(points) <= len(whole[ball]) + 1
-            assert np.array_equal(points[:-1], whole[ball][: len(points) - 1])
-    assert len(film.at(pot.duration).paths[CUE]) == len(whole[CUE])
 
 
 def test_contacts_and_ghosts_are_where_the_cue_ball_met_others(pot):

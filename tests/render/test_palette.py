@@ -8,7 +8,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import NAMES, SPOTS, VALUES
-from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
+from snooker_env.geometry import BAULK_Y, D_RADIUS
 from snooker_env.render import COLOURS, PALETTE, outline, scene_data
 
 
@@ -76,10 +76,3 @@ def test_the_json_is_the_table(name):
         assert max(y for _, y in data["lines"]["d"]) <= BAULK_Y + 1e-9
     else:
         assert data["lines"] is None
-
-
-def test_the_json_of_unbounded_cloth():
-    data = scene_data(None)
-    assert data["cushions"] == data["falls"] == data["throats"] == [] and data["lines"]
-    assert data["ball_radius"] == BALL_RADIUS
-    json.dumps(data, allow_nan=False)

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from snooker_env.game.balls import SPOTS
 from snooker_env.render.palette import PALETTE
-from snooker_env.render.pygame_balls import BOLD, MEDIUM, typeset
-from snooker_env.render.pygame_view import rgb_array, score_bar
-from snooker_env.render.scene import ScoreBar, scene
+from snooker_env.render.pygame_view import score_bar
+from snooker_env.render.scene import ScoreBar
 
 pytest.importorskip("pygame")
 FULL = {
@@ -30,20 +28,6 @@ def where(one, two):
     """Columns from the first to the last that differ."""
     columns = np.flatnonzero(np.any(one != two, axis=(0, 2)))
     return (int(columns[0]), int(columns[-1])) if len(columns) else None
-
-
-@pytest.mark.parametrize("file", [BOLD, MEDIUM])
-def test_figures_are_as_wide_as_each_other(file):
-    widths = {typeset(digit * 20, (255, 255, 255), 40, file).get_width() for digit in "0123456789"}
-    assert len(widths) == 1
-    narrow, wide = (typeset(text, (255, 255, 255), 40, file).get_width() for text in ("iii", "mmm"))
-    assert narrow < wide / 2
-
-
-def test_the_bar_is_under_the_table_and_changes_nothing_else():
-    bare, said = (rgb_array(scene("match", SPOTS, bar=bar)) for bar in (None, ScoreBar(**FULL)))
-    assert np.array_equal(bare[:1008], said[:1008]) and np.any(bare[1008:] != said[1008:])
-    assert np.array_equal(said, rgb_array(scene("match", SPOTS, bar=ScoreBar(**FULL), text="not shown")))
 
 
 def test_the_chance_to_win_is_a_strip_of_two_colours():
@@ -77,17 +61,6 @@ def test_each_thing_has_its_place():
     accents = [np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1)) for bar in bars]
     assert accents[0].max() < 960 < accents[1].min()  # the box of the score, and the triangle beside the name
     assert accents[0].min() < 780 and accents[1].max() > 1140
-
-
-def test_what_is_too_long_is_cut():
-    names = "A very long name of a player of snooker", "Another name that is quite as long"
-    others = {"ball_on": "a ball that is on for " * 5, "words": "words " * 50}
-    given = {**FULL, "potted": (1, 21) * 15 + tuple(range(16, 22)), **others}
-    players = {"players": names, "scores": (147, 1000), "striker": 1}
-    middle = where(pixels(ScoreBar()), pixels(ScoreBar(**players)))
-    sides = np.any(pixels(ScoreBar(**players)) != pixels(ScoreBar(**players, **given)), axis=(0, 2))
-    assert 500 < middle[0] < 700 and 1220 < middle[1] < 1420 and sides.sum() > 500
-    assert not sides[middle[0] - 10 : middle[1] + 10].any()
 
 
 @pytest.mark.parametrize(

@@ -45,34 +45,6 @@ def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
     window.close()
 
 
-def test_the_window_heeds_its_close_button_and_escape(dummy_screen, pot):
-    window = Window(size=(518, 300))
-    assert window.draw(scene("match", SPOTS))
-    dummy_screen.event.post(dummy_screen.event.Event(dummy_screen.QUIT))
-    assert not window.play(Film("match", pot), fps=1000)
-    assert (
-        not window.is_open and not window.draw(scene("match", SPOTS)) and not dummy_screen.display.get_init()
-    )
-    window.close()
-    assert window.draw(scene("match", SPOTS))
-    window.close()
-    window = Pressed(dummy_screen, {3: [dummy_screen.K_ESCAPE]})
-    assert not window.play(Film("match", pot), fps=1000)
-    assert len(window.seen) == 4 and not window.is_open
-    window.close()
-
-
-def test_a_window_keeps_its_size(dummy_screen):
-    window, size = Window(size=(360, 200)), (360, 200)
-    for table in (sn.Table.preset("carom"), sn.Table.preset("match")):
-        assert window.draw(scene(table, [(0.0, 0.0)]))
-        assert dummy_screen.display.get_surface().get_size() == (360, 200 + 14)
-        assert np.array_equal(picture(dummy_screen), rgb_array(scene(table, [(0.0, 0.0)]), size=size))
-    window.close()
-    with pytest.raises(ValueError, match="size"):
-        Window(size=(360, 5))
-
-
 class Pressed(Window):
     """A window whose user presses keys: {number of the picture: keys}. It keeps what it showed."""
 

@@ -51,14 +51,3 @@ def test_the_graph_shows_each_share_until_the_next_stroke_is_over(p):
     assert p("document.querySelector('.sn-moment').getBBox().x") == pytest.approx(
         p("p.starts[1] + 2"), abs=1e-3
     )
-
-
-def test_a_replay_without_it_shows_none(chromium, tmp_path):  # noqa: F811
-    data, _, _ = visit()
-    del data["win_chance"]  # as replays of earlier versions
-    file = tmp_path / "plain.html"
-    file.write_text(page_of(data), encoding="utf-8")
-    page = Watched(chromium, file.as_uri(), ("file:", "data:"), "p", reduced_motion="reduce")
-    page("p.seek(2, p.strokes[2].duration)")
-    assert page.page.locator(".sn-win, .sn-graph").count() == 0
-    page.close()

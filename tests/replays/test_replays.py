@@ -15,7 +15,7 @@ from snooker_env.game.balls import BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.play.session import Session
 from snooker_env.render.table_picture import View
-from snooker_env.replays.words import FOUL_WORDS, bars, foul_words, standing_bar
+from snooker_env.replays.words import FOUL_WORDS, bars, foul_words
 from tests.refusals import refuse_each, refused
 from tests.tables import begun
 
@@ -162,17 +162,6 @@ def test_errors_of_both_seats_and_what_was_played_on():
     )
 
 
-def test_a_bare_shot_and_other_tables():
-    places, pool = [(0.0, -0.5), (0.1, 0.3)], {"table": "pool9", "physics": {"R": 0.028575}}
-    shot = sn.simulate(places, [(0.4, 3.0), (0, 0)], [(0, 0, 0)] * 2, **pool)
-    replay = sn.replay(shot, title="pool")
-    data = replay.to_dict()
-    assert data["players"] == [] and data["scene"]["lines"] is None and data["R"] == 0.028575
-    assert replay.table is shot.table and data["strokes"][0]["cue"] is None
-    assert replay._repr_html_().startswith("<iframe srcdoc=") and "sandbox" in replay._repr_html_()
-    assert sn.replay([shot, shot]).to_dict()["strokes"][0] == data["strokes"][0]
-
-
 def test_a_frame_and_a_match_name_both_players():
     env = keeping(task="frame", opponent="ghost_ball", action="discrete", layout="pots:easy")
     for _ in range(6):
@@ -255,14 +244,6 @@ def test_wrong_arguments_are_refused_and_no_file_is_left(strokes, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_files_are_written_whole(strokes, tmp_path):
-    page = sn.replay(strokes[:3], tmp_path / "break.html")
-    assert (tmp_path / "break.html").read_text("utf-8") == page.html()
-    page.save(tmp_path / "break.json")
-    assert json.loads((tmp_path / "break.json").read_text()) == page.to_dict()
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["break.html", "break.json"]
-
-
 def made():
     return gymnasium.make("Snooker-v0", action="discrete")
 
@@ -338,27 +319,6 @@ def test_a_break_is_the_sum_of_its_strokes(frame):
         run, last = run + played.points, played.player if played.points else None
 
 
-def test_the_end_is_shown(frame):
-    env, seen = frame
-    last, state = bars(env.history, ("Ada", "Bo"))[-1][1], seen[-1][1]
-    if state.winner is not None:
-        assert f"Frame to {('Ada', 'Bo')[state.winner]}" in last.words
-        assert f"{state.scores[state.winner]}-{state.scores[1 - state.winner]}" in last.words
-
-
-def test_the_bar_of_a_table_as_it_stands():
-    env = keeping(action="discrete")
-    start = standing_bar(env.tables, 0, ("Ada",))
-    assert (start.scores, start.break_points, start.ball_on, start.reds_left) == ((0,), 0, "red", 15)
-    assert start.points_on == 147
-    env.step(67)
-    kept = bars(env.history, ("Ada",))[-1][1]
-    now = standing_bar(env.tables, 0, ("Ada",), kept)
-    assert now == kept and now.scores == (1,) and now.potted == kept.potted != ()
-    assert env.ball_on == BallOn.ANY_COLOUR
-    assert standing_bar(env.tables, 0, ()).players == ()
-
-
 # Films: their pictures, length and colours, and what cannot be written
 
 
@@ -401,9 +361,3 @@ def test_every_ball_keeps_its_colour(replay, tmp_path, suffix):
         # a video halves the resolution of colours
         assert np.abs(seen - drawn).max() < 60, (place, seen, drawn)
     assert [p.name for p in tmp_path.iterdir()] == [file.name]
-
-
-def test_a_film_that_cannot_be_written_leaves_nothing(replay, tmp_path):
-    with pytest.raises(OSError, match="nowhere"):
-        replay.save(tmp_path / "nowhere" / "a.mp4", **SMALL)
-    assert list(tmp_path.iterdir()) == []

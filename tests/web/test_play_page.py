@@ -1,7 +1,5 @@
 """Does the page for playing hold up in odd moments? Small screens, the end of a frame, drills, links, a held cue."""
 
-import time
-
 import pytest
 
 from tests.play.conftest import line  # noqa: F401
@@ -81,24 +79,6 @@ def test_a_match_goes_on_after_a_look_at_the_table_and_is_not_lost_by_a_click(sh
     shown.line("api/new", {"layout": "break_off", "best_of": 1})
 
 
-def test_a_pull_is_cancelled_by_escape_and_ignores_other_fingers(shown):
-    shown.set_up(EASY)
-    shown("page.aim.set({aim: Math.PI / 2, speed: 2, side: 0, top: 0})")
-    x, y = EASY["cue"]
-    shown.page.mouse.move(*shown.at(x, y - 0.3))
-    shown.page.mouse.down()
-    shown.page.mouse.move(*shown.at(x, y - 0.5))
-    pulled = shown("page.aim.wish.speed")
-    other = "document.getElementById('table').dispatchEvent(new PointerEvent(argument, { pointerId: 99, clientX: 200, clientY: 200 }))"
-    for kind in ("pointerdown", "pointermove", "pointerup"):
-        shown(other, kind)
-    assert shown("[page.aim.held, page.aim.wish.speed]") == ["cue", pulled] and pulled > 2
-    shown.page.keyboard.press("Escape")
-    shown.page.mouse.up()
-    time.sleep(0.2)
-    assert shown("[page.aim.wish.speed, page.state.strokes]") == [2, 0]
-
-
 LATE = """void (fetched => window.fetch = async (what, ...more) => {
   const answer = await fetched(what, ...more);
   if (String(what.url ?? what).includes("api/players")) await new Promise(done => setTimeout(done, 1000));
@@ -132,21 +112,6 @@ def test_a_drill_outlives_a_reload_and_gives_the_seats_back(shown):
     shown.page.click("#drill-end")
     shown.until("!page.state.practice")
     assert {name: shown("page.state")[name] for name in before} == before
-
-
-def test_the_shot_clock_stands_while_something_is_read(shown):
-    shown.set_up(EASY)
-    shown.page.click("#options summary")
-    shown.page.select_option("#limit", "15 s")
-    shown.page.keyboard.press("Escape")
-    shown.page.click("#help-open")
-    shown("page.stats.spent += 14")
-    shown.until("document.getElementById('clock').className === 'late'")
-    left = shown.page.inner_text("#clock")
-    time.sleep(1.2)
-    assert shown("page.state.strokes") == 0 and shown.page.inner_text("#clock") == left
-    shown.page.click("#help-close")
-    shown.played(1)
 
 
 def test_keys_turn_the_pages_of_the_tutorial_and_play_nothing(chromium, line):  # noqa: F811

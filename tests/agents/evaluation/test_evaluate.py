@@ -91,14 +91,6 @@ def test_held_out_tables_alone_are_played_unless_others_are_named():
         assert {name: len(its) for name, its in seeds.items()} == sizes
 
 
-def test_the_last_words_are_the_points_of_each_agent(capsys, tmp_path):
-    assert evaluate.main(["--agent", "random", *QUICK, "--json", str(tmp_path / "r.json")]) == 0
-    _, _, last = " ".join(capsys.readouterr().out.split()).rpartition("Points a visit on held_out, ")
-    rows = read(tmp_path / "r.json")["results"]
-    made = [f"{row['agent']} {report._pm(row['figures']['points_a_visit'])}" for row in rows]
-    assert last == f"noise professional: {', '.join(made)}." and len(made) == 2
-
-
 def test_figures_do_not_depend_on_the_company(models, tmp_path):
     rows = []
     for company in ([], ["random", f"other={models / 'm-0'}"]):
@@ -140,12 +132,6 @@ def test_a_path_with_a_colon_is_a_path(models, tmp_path):
 
 
 FOREIGN = "agent = '.*': must be a model saved by Stable-Baselines3"
-
-
-@pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},tests.agents.user_players:Softly"])
-def test_players_and_models_under_one_label_are_refused(which, models):
-    with pytest.raises(ValueError, match=r"agent = 'x=.*: must be players or trained models, not both"):
-        evaluate.Entrant.of(which.format(models / "m-0"))
 
 
 @pytest.mark.parametrize(
@@ -192,21 +178,6 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "r.incomplete.md"}
 
 
-def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatch, capsys):
-    interrupted_at(monkeypatch, evaluate, "play_agent", 2)
-    assert evaluate.main([*BOTH, *outputs(tmp_path)]) == 130
-    printed = capsys.readouterr()
-    lost = "interrupted when 0 of 2 parts (layouts under one noise) were complete: nothing is kept"
-    assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}" and not printed.out
-    assert not list(tmp_path.iterdir())
-
-
-def test_ctrl_c_before_play_is_one_line(monkeypatch, capsys):
-    interrupted_at(monkeypatch, evaluate.snooker_env, "warmup", 1)
-    assert evaluate.main(["--agent", "random", *QUICK]) == 130
-    assert capsys.readouterr().err == "agents.evaluate: interrupted\n"
-
-
 @pytest.mark.parametrize("full", ["r.json", "r.md"])
 def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys, full):
     original = os.replace
@@ -223,16 +194,6 @@ def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys, full):
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md"} - {full}
     printed = capsys.readouterr().out
     assert "points a visit" in printed and str(tmp_path / full) not in printed
-
-
-def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
-    def gone(report):
-        raise SystemExit(1)  # as rich does
-
-    monkeypatch.setattr(evaluate, "show", gone)
-    with pytest.raises(SystemExit):
-        evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
-    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md"}
 
 
 def test_a_physics_is_named_as_it_was_given():

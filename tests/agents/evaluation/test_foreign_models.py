@@ -13,7 +13,6 @@ from sb3_contrib import TQC, MaskablePPO, RecurrentPPO
 from stable_baselines3 import DQN, PPO, SAC
 
 from agents import evaluate
-from agents.evaluation.entrants import Entrant
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.planning import Planner, Positions
@@ -130,15 +129,3 @@ def test_nothing_of_a_foreign_model_runs_without_consent_or_if_it_does_not_fit(
     file = bombed(foreign / f"{name}.zip", tmp_path / "model.zip", tmp_path / "mark")
     error = refused(evaluate.main, "--agent", file, *options, *QUICK)
     assert f"agent = {str(file)!r}: {says}" in error and not (tmp_path / "mark").exists()
-
-
-@pytest.mark.parametrize(
-    "change", [{"gamma": None}, {"gamma": "1"}, {"num_timesteps": -1}, {"seed": [1]}, {"action_space": None}]
-)
-def test_wrong_figures_of_a_foreign_model_are_refused(foreign, tmp_path, change):
-    new, mark = tmp_path / "model.zip", tmp_path / "mark"
-    file = bombed(foreign / "ppo.zip", new, mark, change=lambda found: found.update(change))
-    says = r"^agent = '.*model.zip': must be a model saved by Stable-Baselines3 \("
-    with pytest.raises(ValueError, match=says):
-        Entrant.of(str(file), True, (("aim", "target"),)).trained()
-    assert not mark.exists()

@@ -1,17 +1,12 @@
 """Do the words of an evaluation follow from its figures? Invented agents, exact sentences and cells."""
 
 import json
-import re
 from pathlib import Path
 
 import pytest
-from scipy import stats
 
 from agents import report
 from agents.evaluation.training_summary import conclusion
-from commands.tables import WIDTH, TextTable
-from snooker_env.benchmark.statistics import unseen
-from snooker_env.benchmark.tasks import most_points
 
 GHOST = {"from": "ghost_ball"}
 
@@ -75,25 +70,6 @@ def test_who_was_trained_on_what_is_played_is_named():
     assert said(agent("a", layout="colours"), layouts=("held_out",)) == []
 
 
-def test_the_agents():
-    ghost = {"label": "ghost_ball", "runs": [GHOST]}
-    trained, long = report.agents_tables(report_of(agent("a", imitated=300, seconds=None), ghost))
-    assert trained.header == ["agent", "recipe", "trained: noise", "fidelity", "physics", "cue", "gamma"]
-    assert trained.rows == [
-        ["a", "r", "none", "fast", "paper", "real", "0.95"],
-        ["ghost_ball", "not trained", "", "", "", "", ""],
-    ]
-    assert long.header == ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
-    assert long.rows == [["a", "5", "300", "1,000", "", ""]]
-    assert report.agents_tables(report_of(agent("a")))[1].rows[0][-3:] == ["1,000", "10", "100"]
-    for name, recipe in (
-        ("planner_500", "pre-trained, by the noise played"),  # its weights are known only when it plays
-        ("planner_mine:Mine", "not trained"),
-    ):
-        played = report_of({"label": "p", "runs": [{"from": name}]})
-        assert report.agents_tables(played)[0].rows == [["p", recipe, "", "", "", "", ""]]
-
-
 PLAYED = {
     "layout": "held_out",
     "noise": "none",
@@ -137,19 +113,6 @@ def test_the_comparison_says_whose_is_which(ratio, words, more):
     ]
 
 
-def test_a_under_b():
-    made = report_of(agent("a"), agent("b", noise="club"))
-    points = {("a", "none"): 4.0, ("a", "club"): 1.0, ("b", "none"): 3.0, ("b", "club"): 2.0}
-    made["results"] = [row(label, noise, value, (None,) * 3, {}) for (label, noise), value in points.items()]
-    (table,) = report.cross(made)
-    assert (
-        table.title
-        == "held_out: points a visit, played under noise ..., fidelity standard, physics paper, cue real"
-    )
-    assert table.header == ["agent", "trained under", "none", "club"]
-    assert table.rows == [["a", "none", "4.00", "1.00"], ["b", "club", "3.00", "2.00"]]
-
-
 def result(layout="held_out", runs=1, counted=None, **figures):
     """What an agent did: only what is given."""
     points = ("points_a_visit", "points_a_visit_iqm", "pots_a_visit_iqm", "colour_value")
@@ -159,13 +122,6 @@ def result(layout="held_out", runs=1, counted=None, **figures):
     found = nothing | {"pots_a_visit": figure(1.0, 0.9, 1.1)} | shown
     known = {"counted": counted} if counted else {}
     return PLAYED | amounts | known | {"agent": "a", "layout": layout, "ratios": {}, "figures": found}
-
-
-def test_the_bound_of_what_was_never_seen_is_clopper_and_pearsons():
-    for n in (1, 30, 2000):
-        exact = stats.binomtest(0, n, alternative="less").proportion_ci(0.95, "exact")
-        assert unseen(n) == pytest.approx(exact.high)
-    assert unseen(30) == pytest.approx(0.0950, abs=1e-4) and unseen(2000) == pytest.approx(3 / 2000, rel=5e-3)
 
 
 @pytest.mark.parametrize(
@@ -184,56 +140,6 @@ def test_the_bound_of_what_was_never_seen_is_clopper_and_pearsons():
 )
 def test_where_nothing_or_everything_was_seen_the_bound_is_exact(name, value, more, cell):
     assert report._share(result(**{"clearances": 0.0, **more, name: value}), name) == cell
-
-
-def tables_of(*results, layouts):
-    """The tables of an evaluation with these results: title -> ``TextTable``."""
-    made = report_of({"label": "a", "runs": [GHOST]}) | {"results": list(results)}
-    made["protocol"] |= {"layouts": layouts, "noise": ["none"]}
-    return {part.title: part for part in report.parts(made) if isinstance(part, TextTable)}
-
-
-def test_what_cannot_be_on_a_layout_is_left_out():
-    """Pink or black without colours, a next pot of one ball, centuries of 27 points."""
-    shares = {"centuries": 0.0, "maximums": 0.0, "clearances": 0.5, "pot_rate": 0.5, "fouls_a_visit": 0.1}
-    layouts = {"pots:easy": 30, "colours": 30, "random:10": 30, "opened": 30}
-    tables = tables_of(*(result(layout, **shares) for layout in layouts), layouts=layouts)
-    where = "{}, 30 visits, physics paper, fidelity standard, real cue: {}"
-    for layout, breaks in (
-        ("pots:easy", ["clearances %"]),
-        ("colours", ["clearances %"]),
-        ("random:10", ["centuries %", "clearances %"]),
-        ("opened", ["centuries %", "147s %", "clearances %"]),
-    ):
-        assert tables[where.format(layout, "breaks")].header[2:] == breaks
-        assert tables[where.format(layout, "potting and position")].header[2:] == ["pot rate %"]
-        assert where.format(layout, "colours") not in tables
-    assert most_points("held_out") == 147 and most_points("pots:hard") == 1
-
-
-def test_rows_and_columns_without_a_figure_are_left_out():
-    rows = [["1", "x", "", "5", ""], ["2", "y", "", "", ""]]
-    table = TextTable("t", ["k", "l", "a", "b", "c"], rows, 2, 3).tidy()
-    assert (table.header, table.rows, table.left) == (["k", "l", "b"], [["1", "x", "5"]], 2)
-    assert list(TextTable("t", ["k", "a"], [["1", ""]], 1, 1).tidy().narrow()) == []
-
-
-@pytest.mark.parametrize("many", [3, 20, 60])
-def test_no_table_is_too_wide(many, capsys):
-    """Every column is there once, beside the keys; nothing wraps."""
-    header = ["noise", "agent", *(f"column {k}" for k in range(many))]
-    rows = [[f"level {i}", "a|b", *(f"{i}.{k} [low, high]" for k in range(many))] for i in range(3)]
-    parts = list(TextTable("wide", header, rows, 2, 2, True).narrow())
-    assert [name for part in parts for name in part.header[2:]] == header[2:]
-    assert all(part.header[:2] == header[:2] for part in parts)
-    report.show(parts)
-    pattern = "wide" if len(parts) == 1 else rf"wide \(\d+ of {len(parts)}\)"
-    assert all(re.fullmatch(pattern, part.title) for part in parts)
-    printed = capsys.readouterr().out
-    assert max(map(len, printed.splitlines())) <= WIDTH == 100
-    assert all(f"{i}.{k} [low, high]" in printed for i in range(3) for k in range(many))
-    cells = [row.split(" | ") for part in parts for row in part.markdown().splitlines()[2:]]
-    assert all(row[1] == "a\\|b" for row in cells if row[0].startswith("| level"))
 
 
 def test_an_incomplete_evaluation_says_so(capsys):
@@ -256,11 +162,6 @@ def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
         assert file.with_suffix(".md").read_text() == written, file
         report.show(report.parts(made))
         assert max(len(line.rstrip()) for line in capsys.readouterr().out.splitlines()) <= 100
-
-
-def test_no_two_titles_are_alike():
-    titles = {file.stem: report.title(report.read(file)) for file in KEPT}
-    assert list(titles) == ["ladder", "visits"] and len(set(titles.values())) == 2
 
 
 def test_the_command_writes_the_markdown_beside(tmp_path, capsys, refused):
@@ -305,9 +206,3 @@ WORSE = "0.03 pots and 0.10 points a visit against 0.67 pots"
 )
 def test_the_conclusion_claims_only_what_the_figures_show(trained, ghost, random, words):
     assert words in concluded(trained, ghost, random)
-
-
-@pytest.mark.parametrize("shares", [(None, 0.6), (0.6, None)])
-def test_a_share_of_next_pots_that_is_not_known_is_not_given(shares):
-    sentence = concluded((9.0, 0.3, shares[0]), (2.9, 0.3, shares[1]), POOR)
-    assert "ppo_value is better than ghost_ball" in sentence and "%" not in sentence

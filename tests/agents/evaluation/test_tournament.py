@@ -1,13 +1,12 @@
 """Does ``agents.tournament`` play, keep, check and refuse what it should, whatever stops it?"""
 
 import json
-import re
 
 import pytest
 
 from agents import report, tournament
 from agents.evaluation import tournament_play
-from agents.evaluation.tournament_figures import COLUMNS, figures_of
+from agents.evaluation.tournament_figures import COLUMNS
 from agents.evaluation.tournament_file import FIELDS, PLAYER, faults
 from snooker_env.benchmark import read_result
 from tests.agents.training import interrupted_at
@@ -65,17 +64,6 @@ def test_the_simulated_shots_of_each_player_are_counted(tmp_path):
     assert plain["shots"] == 0 and 0.9 * 8 < searches["shots"] / searches["decisions"] <= 8
 
 
-def test_a_player_of_frames_says_all_that_an_opponent_may(tmp_path):
-    found = played(tmp_path, "--frames", "2", players=(f"{USERS}:Decides", f"{USERS}:Names"))
-    assert all(p["decisions"] for p in found["players"])
-
-
-def test_a_match_is_the_unit(tmp_path, capsys):
-    found = played(tmp_path, "--match", "3", "--noise", "none", players=("ghost_ball", f"{USERS}:Softly"))
-    assert faults(found) == [] and len(found["rows"]) > 6 == found["figures"]["players"]["Softly"]["matches"]
-    assert "matches, each the best of 3 frames" in " ".join(capsys.readouterr().out.split())
-
-
 def test_resumed_is_as_if_it_had_never_stopped(tmp_path, monkeypatch, capsys, parts):
     whole = played(tmp_path, name="whole.json")
     with monkeypatch.context() as patch:
@@ -126,56 +114,6 @@ def test_another_tournament_is_not_gone_on_with(tmp_path, refused, parts, monkey
         error = refused(*again, *PLAYERS, *change.split())
         assert f"must be a file with the same {what} to go on with" in error
     assert "same players" in refused(*again, *PLAYERS[:2])
-
-
-def sound():
-    """The content of a file of two players, without playing."""
-    counted = [60, 30, 50, 30, 10, 10, 30, 20, 0, 2, 20, 12]
-    rows = [[0, 1, s, o, 0, (s + o) % 2, *counted] for s in range(3) for o in (0, 1)]
-    found = json.loads((ROOT / "agents" / "results" / "ladder.json").read_text())
-    players = [found["players"][k] | {"label": label} for k, label in enumerate("ab")]
-    protocol = found["protocol"] | {"matches": 6, "anchor": "a", "resamples": 100}
-    figures = figures_of(["a", "b"], rows, "a", 100)
-    return found | {"players": players, "protocol": protocol, "rows": rows, "figures": figures}
-
-
-@pytest.mark.parametrize(
-    ("path", "value", "says"),
-    [
-        ("schema.name", "other", "schema.name = 'other'"),
-        ("protocol.best_of", "7", "protocol.best_of = '7': must be a whole number"),
-        ("protocol.anchor", "c", "players: must be two or more"),
-        ("protocol.prior", 0.5, "protocol.prior = 0.5"),
-        ("protocol.matches", 7, "protocol.matches = 7: must be even"),
-        ("protocol.matches", 8, "rows: must be 8 matches, not 6"),
-        ("machine.cores", 0, "machine.cores = 0"),
-        ("commit", "dirty", "commit = 'dirty'"),
-        ("date", "today", "date = 'today'"),
-        ("more", 1, "more: is no field"),
-        ("players.0.seconds", "1", "players\\[0\\].seconds"),
-        ("players.0.label", "b", "players: must be two or more with different labels"),
-        ("columns", ["first"], "columns"),
-        ("rows.2", [1], "rows\\[2\\]: must be 18 whole numbers"),
-        ("rows.2.5", 3, "winner = 3"),
-        ("rows.2.3", 1, "rows: a match of players"),
-        ("rows.2.4", 1, "frame 1 must not follow"),
-        ("rows.2.5", 0, "figures"),  # the winner exchanged
-        ("rows.2.8", 70, "figures"),
-        ("figures.players.a.elo.value", 1001.0, "figures.players.a.elo.value"),
-        ("figures.pairs.0.drawn", 1, "figures.pairs\\[0\\].drawn"),
-    ],
-)
-def test_each_fault_of_a_file_is_named(path, value, says, tmp_path, capsys):
-    wrong = sound()
-    assert faults(wrong) == []
-    part, (*way, last) = wrong, [int(key) if key.isdigit() else key for key in path.split(".")]
-    for key in way:
-        part = part[key]
-    part[last] = value
-    assert any(re.search(says, line) for line in faults(wrong)), faults(wrong)
-    (tmp_path / "t.json").write_text(json.dumps(wrong))
-    assert tournament.main(["--check", str(tmp_path / "t.json"), str(tmp_path / "none.json")]) == 1
-    assert "cannot be read" in capsys.readouterr().out
 
 
 def test_the_ladder_of_the_repository_is_sound(capsys):

@@ -115,13 +115,6 @@ def test_the_order_of_the_players_does_not_matter(second):
     assert len({(r["points_first"], r["points_second"]) for r in one}) > 4
 
 
-def test_a_frame_that_is_stopped_has_no_winner():
-    rows = frames(play(ghost_ball(), softly(), [0, 1], max_strokes=7))
-    assert [r["winner"] for r in rows] == [-1] * 4
-    assert {r["strokes_first"] + r["strokes_second"] for r in rows} == {7}
-    assert {r["frame"] for r in rows} == {0}
-
-
 def test_a_frame_that_the_opponent_wins_in_his_first_visit_counts():
     rows = frames(play(Careful(), ghost_ball(), range(40), layout="pots:easy"))
     at_once = [r for r in rows if r["strokes_first"] == 0]

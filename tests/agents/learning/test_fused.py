@@ -97,17 +97,6 @@ def test_a_tables_scores_do_not_depend_on_the_tables_beside_it(policy, met):
     assert all(np.array_equal(one, together[rows]) for one, rows in zip(found, parts * 5, strict=True))
 
 
-def test_values_and_probabilities_are_those_of_the_network(policy, met):
-    seen, masks = met
-    choices, values, logs = policy.fused.act(seen, masks, np.random.default_rng(1).random(N))
-    assert masks[np.arange(N), choices].all() and len(np.unique(choices)) > 50
-    with torch.no_grad():
-        expected, expected_logs, _ = plain(policy, seen, masks, choices)
-    assert np.abs(values - expected.numpy()).max() < 1.4e-5
-    assert np.abs(logs - expected_logs.numpy()).max() < 1.4e-5
-    assert values.std() > 1e-2 and logs.std() > 1e-2
-
-
 def test_choices_are_drawn_by_their_probabilities(policy, met):
     """By inversion: of m evenly spaced numbers each choice gets its share, to within one."""
     m = 2000
@@ -117,13 +106,6 @@ def test_choices_are_drawn_by_their_probabilities(policy, met):
         shares = np.exp(scored(policy, seen[:1], masks[:1]))[0]
         assert np.abs(np.bincount(choices, minlength=CHOICES) - m * shares).max() < 1.01
         assert shares.max() > 3 / m
-
-
-def test_the_ends_of_the_interval_choose_what_is_available(policy, met):
-    seen, masks = met
-    for end in (0.0, np.nextafter(1.0, 0.0)):
-        choices = policy.fused.act(seen, masks, np.full(N, end))[0]
-        assert masks[np.arange(N), choices].all()
 
 
 def test_a_rollout_draws_by_the_fused_pass(policy, met):

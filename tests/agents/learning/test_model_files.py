@@ -237,18 +237,6 @@ def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
     assert not np.allclose(other, scores, atol=1.0)
 
 
-def test_it_plays_frames_as_an_opponent(tmp_path):
-    """By what a frame's observation has in common with a visit's."""
-    file = tmp_path / "p.npz"
-    write_policy(file, WEIGHTS, **ABOUT)
-    frames = {"task": "frame", "layout": "random:1", "action": "discrete", "opponent": str(file)}
-    tables, played = SnookerVectorEnv(3, threads=1, **frames), 0
-    tables.reset(seed=1)
-    for _ in range(5):
-        played += tables.step(tables.action_masks().argmax(axis=1))[-1]["opponent_strokes"].sum()
-    assert played > 3
-
-
 def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused):
     """A planner wants a value, a training the whole network: by the file and by its folder."""
     file = tmp_path / POLICY

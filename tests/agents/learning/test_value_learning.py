@@ -1,14 +1,12 @@
 """Are the value's targets those of the docstring, recomputed by hand, and does the network come to them?"""
 
-from itertools import combinations
-
 import numpy as np
 import pytest
 import torch
 from positions import chances_by_width, tables
 
-from agents.learning.value_learning import FIRST_GUESS, LAMBDA, RATE, ValueLearning
-from agents.learning.value_network import MEMBERS, POINTS, WIDTHS, ValueNetwork, value_of
+from agents.learning.value_learning import LAMBDA, ValueLearning
+from agents.learning.value_network import MEMBERS, POINTS, ValueNetwork, value_of
 from snooker_env.planning import Positions, Search, VisitJudge, spread_of
 from snooker_env.planning.learned.value_features import LOGIT, SIZE, value_features
 from snooker_env.tasks import LEVELS
@@ -82,21 +80,6 @@ def test_the_targets_recomputed():
     assert reached[1].any()  # a correction reaches two rounds back
 
 
-def test_the_first_targets_are_returns():
-    """Points and what followed; beyond what is known, and beyond an exploratory stroke, a guess."""
-    rng, learning = np.random.default_rng(2), learner(6)
-    rounds = [a_round(6, rng) for _ in range(3)]
-    for one in rounds:
-        learning.add(*one)
-    expected = np.zeros((3, 6))
-    for i in range(6):
-        for t in (2, 1, 0):
-            _, _, points, goes_on, follows = rounds[t]
-            more = expected[t + 1, i] if t < 2 and follows[i] else 25.0
-            expected[t, i] = points[i].mean() + goes_on[i].mean() * more
-    assert learning._returns().reshape(3, 6) == pytest.approx(expected, rel=1e-5) and FIRST_GUESS == 25.0
-
-
 def test_the_network_learns_a_known_value():
     """Strokes that end the visit: one feature says if they bring 7 points or 1, a second how many score.
 
@@ -127,39 +110,6 @@ def test_the_network_learns_a_known_value():
     assert np.abs(p - np.where(seen[:, 1] > 0, 0.9, 0.3)).mean() < 0.08
     assert learning.mean_target == pytest.approx(learning._fitted[1][-n:].mean())
     assert 1.0 < learning.mean_target < 4.0
-
-
-def test_each_member_learns_from_batches_of_its_own():
-    """Members that start alike are apart after a fit, each as far from it as a network that learns alone."""
-    rng, learning = np.random.default_rng(4), learner(16)
-    alone = ValueLearning(ValueNetwork(members=1), SPREAD, 16, np.random.default_rng(0))
-    with torch.no_grad():
-        for all_members, own in zip(learning._network.parameters(), alone._network.parameters(), strict=True):
-            all_members.copy_(all_members[:1].expand_as(all_members))
-            own.copy_(all_members[:1])
-    before = [p.detach().clone() for p in alone._network.parameters()]
-    rounds = [a_round(16, rng) for _ in range(4)]
-    for one in (learning, alone):
-        for given in rounds:
-            one.add(*given)
-        one.fit(1.0)
-
-    def moved(one):
-        """How far each member came."""
-        pairs = zip(one._network.parameters(), before, strict=True)
-        return torch.stack([(p - start).flatten(1).norm(dim=1) for p, start in pairs]).norm(dim=0).tolist()
-
-    for p in learning._network.weights:
-        assert not any(torch.equal(p[a], p[b]) for a, b in combinations(range(4), 2))
-    assert moved(learning) == pytest.approx(moved(alone) * 4, rel=0.15)
-
-
-def test_the_rate_falls_with_what_is_left():
-    learning = learner(5)
-    learning.add(*a_round(5, np.random.default_rng(0)))
-    for left, rate in ((1.0, RATE), (0.25, 0.25 * RATE), (0.0, 0.02 * RATE)):
-        learning.fit(left)
-        assert [group["lr"] for group in learning._optimizer.param_groups] == [pytest.approx(rate)]
 
 
 ERRORS = spread_of(LEVELS["professional"])
@@ -200,16 +150,6 @@ def test_the_value_is_that_of_the_network(scale):
         assert np.isfinite(value.of(seen)).all() and (value.of(seen) >= 0.0).all()
 
 
-def test_the_network_has_the_layers_that_the_file_says():
-    sizes = [(SIZE, WIDTHS[0]), (WIDTHS[0], WIDTHS[1]), (WIDTHS[1], 2)]
-    assert [tuple(w.shape) for w in network().weights] == [(MEMBERS, *size) for size in sizes]
-    assert MEMBERS == 4
-    assert [tuple(b.shape) for b in network().biases] == [(MEMBERS, 1, b) for _, b in sizes]
-    made, seen = network(2), np.random.default_rng(1).normal(0, 1, (50, SIZE)).astype(np.float32)
-    (p, u), (chance, points) = by_torch(made, seen), by_numpy(made, seen)
-    assert p == pytest.approx(chance, abs=1e-5) and u == pytest.approx(points, rel=1e-4) and POINTS == 40.0
-
-
 def test_the_members_start_apart_and_each_reads_its_own_rows():
     made = network()
     assert all(not torch.equal(w[a], w[b]) for w in made.weights for a in range(MEMBERS) for b in range(a))
@@ -232,16 +172,6 @@ def test_at_first_the_chance_is_the_likeliest_pots_and_what_follows_hardly_diffe
         assert np.abs(p - likeliest).max() < 0.03
         assert all(np.corrcoef(one, likeliest)[0, 1] > 0.999 for one in p)
         assert (u.std(axis=1) < 0.05 * u.mean(axis=1)).all() and 0.4 * POINTS < u.mean() < POINTS
-
-
-def test_a_value_keeps_the_weights_that_it_was_made_of():
-    made, seen = network(), value_features(some(20), ERRORS)
-    value = value_of(made, ERRORS)
-    before = value.of(seen)
-    with torch.no_grad():
-        for p in made.parameters():
-            p.add_(0.1)
-    assert np.array_equal(value.of(seen), before) and not np.allclose(value_of(made, ERRORS).of(seen), before)
 
 
 def test_the_value_of_a_position_is_that_of_its_features_on_any_number_of_threads_beside_any_others():

@@ -6,30 +6,16 @@ import pytest
 import snooker_env as sn
 from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe
-from agents.learning.models import PRETRAINED, load_trained, pretrained
+from agents.learning.models import PRETRAINED, load_trained
 from agents.learning.networks import arrays_of
-from agents.players.trained import load_player, read_model
 from snooker_env.planning import Positions
-from snooker_env.players.model_options import of_others
 from snooker_env.players.weights import FOLDER, levels
-from snooker_env.tasks import Noise
 
 
 def at_tables(n=6, layout="random:6"):
     tables = sn.SnookerVectorEnv(n, layout=layout, threads=1)
     tables.reset(seed=1)
     return Positions.of(tables)
-
-
-@pytest.mark.parametrize("name", pretrained())
-def test_a_player_is_a_function_of_a_position_and_a_seed(name):
-    at, player, seeds = at_tables(), sn.player(name).at({"noise": "professional"}), np.arange(6)
-    together = player.play(at, seeds)
-    for k in range(6):
-        assert np.array_equal(player.play(at[k : k + 1], seeds[k : k + 1]).values[0], together.values[k])
-    for k, one in enumerate(player.rank(at, seeds)):
-        assert np.array_equal(one.strokes.values[0], together.values[k])
-        assert (np.diff(one.scores) <= 0).all()
 
 
 def test_a_policy_ranks_its_choices_by_probability():
@@ -59,14 +45,3 @@ def test_a_planner_takes_the_value_of_a_model_of_your_own(tmp_path):
     tables.close()
     with pytest.raises(ValueError, match="must name a model with policy and value"):
         sn.player(f"planner@{tmp_path / 'without_value.zip'}")
-
-
-def test_files_of_others_are_left_to_others(tmp_path):
-    (tmp_path / "x.zip").write_bytes(b"no zip")
-    assert read_model(tmp_path / "x.zip") is None
-    assert of_others(tmp_path / "x.zip") and not of_others(
-        "program:python -c " + 300 * "x"
-    )  # a name too long for a file
-    with pytest.raises(ValueError, match=r"must be a model's \.zip or a folder"):
-        load_player(tmp_path)
-    assert Noise().silent
