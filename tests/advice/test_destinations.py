@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from cases import ENDGAME, IN_HAND, OPEN, played
+from cases import ENDGAME, played
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke, destinations
-from tests.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -47,19 +46,3 @@ def test_seeds_and_common_errors(blue):
     empty = sn.Position(cue=(-0.6, 0.6), black=(0.6, -1.5))
     near = destinations(empty, soft).cue - destinations(empty, turned).cue
     assert 0.0 < np.abs(near).max() < 1e-4
-
-
-def test_wrong_strokes_are_refused():
-    soft = {"speed": 2.0, "aim": 0.0}
-    for stroke, *said in (
-        (soft | {"speed": 9.0}, "speed", "9.0", "[0.2, 7]"),
-        ({"speed": 2.0}, "stroke", "without 'aim'", "must be a CueStroke"),
-        (soft | {"spin": 1}, "field of the stroke", "spin", "'speed'"),
-        (soft | {"side": 0.4, "top": 0.4}, "side, top", "(0.4, 0.4)", "within the disc"),
-        (soft | {"elevation": 1.3}, "elevation", "1.3", "must be"),
-        (soft | {"place": (0.0, -1.1)}, "place", "(0.0, -1.1)", "must be None: the cue ball is not in hand"),
-    ):
-        refused(lambda stroke=stroke: destinations(OPEN, stroke), *said)
-    wrong = soft | {"place": (0.0, 0.0)}
-    refused(lambda: destinations(IN_HAND, wrong), "place", "(0, 0)", "lines of the D")
-    refused(lambda: destinations(OPEN, soft, samples=0), "samples", "0", "must be an integer")

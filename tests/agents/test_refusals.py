@@ -100,7 +100,9 @@ learn_worth --budget 5 | budget = 5
 
 
 @pytest.mark.parametrize("line", WRONG.strip().splitlines())
-def test_a_wrong_command_is_refused_with_one_line_and_nothing_is_written(line, tmp_path, refused, monkeypatch):
+def test_a_wrong_command_is_refused_with_one_line_and_nothing_is_written(
+    line, tmp_path, refused, monkeypatch
+):
     monkeypatch.chdir(ROOT)
     command, _, said = line.partition(" | ")
     name, *words = shlex.split(command)

@@ -7,14 +7,16 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env.benchmark import simulated
 from snooker_env.planning import Positions
 from snooker_env.players import FRAMES, VISITS, ChoicePlayer, SeenPlayer, Strokes, decided, decision_seeds
+from snooker_env.players.degenerate import MODULE
 from tests.positions import tables
 from tests.processes import copy_of_package, python
 from tests.tables import begun
 
-SEARCHING = ("best_pot_30", "search_30", "planner_30")
-NAMES = ("random", "ghost_ball", *SEARCHING)
+SEARCHING = ("best_pot_30", "search_30", "planner_30", "tactician_30")
+NAMES = ("random", "ghost_ball", "stroke_value", "ppo_value", f"{MODULE}softest_away", *SEARCHING)
 
 
 def of_visits(n, layout="random:6", seed=5):
@@ -37,18 +39,31 @@ def same(one, other):
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("where", ["visits", "break_off", "frames"])
-def test_equal_positions_and_seeds_give_equal_strokes_however_many_are_asked_for(name, where):
+def test_every_player_is_a_function_of_a_position_and_a_seed(name, where):
+    """However many are asked for, in whatever order, on whatever copy; what it ranks first it plays; positions stay."""
+    if name.startswith("ppo_"):
+        pytest.importorskip("sb3_contrib")
     at = of_frames(9) if where == "frames" else of_visits(9) if where == "visits" else of_visits(3, where)
     at = at[~at.over]
-    rules = {"noise": "professional"} | ({"task": "frame"} if where == "frames" else {})
-    player, seeds = sn.player(name).at(rules), np.arange(len(at)) % 3
+    rules = {"noise": "professional"} | ({"task": "frame", "says": ["decision"]} if where == "frames" else {})
+    player, seeds, kept = sn.player(name).at(rules), np.arange(len(at)) % 3, at.copy()
+    before = simulated()
     together = player.play(at, seeds)
+    assert name in SEARCHING or simulated() == before
+    assert all(np.array_equal(getattr(at, part), getattr(kept, part)) for part in ("positions", "game"))
     order = np.random.default_rng(1).permutation(len(at))
     assert same(player.play(at[order], seeds[order]), together[order])
     one = sn.player(name).at(rules)
     for k in range(len(at)):
         assert same(one.play(at[k : k + 1], seeds[k : k + 1]), together[k : k + 1])
     assert same(pickle.loads(pickle.dumps(player)).play(at, seeds), together)
+    assert len(player.play(at[[]], [])) == 0
+    if where == "visits" and name in ("random", *SEARCHING):
+        assert not np.array_equal(player.play(at, seeds + 100).values, together.values)
+    for k, ranked in enumerate(player.rank(at, seeds) if hasattr(player, "rank") else ()):
+        assert np.array_equal(ranked.strokes.values[0], together.values[k])
+        assert np.array_equal(ranked.strokes.place[0], together.place[k], equal_nan=True)
+        assert ranked.scores is None or len(ranked.scores) == len(ranked.strokes)
 
 
 def test_a_player_is_bound_before_it_is_asked():

@@ -15,8 +15,7 @@ from tests.planning.test_trials import GAME, frames_in_play, positions_of
 OPTIONS = GAME | {"noise": "club", "cue": "real", "says": ["decision"]}
 
 
-def test_it_is_a_player_of_the_package_and_takes_a_budget():
-    assert "tactician" in sn.players()
+def test_it_takes_a_budget_and_no_model():
     assert sn.player("tactician").name == "tactician" and sn.player("tactician_500").budget == 500
     with pytest.raises(ValueError, match="budget"):
         sn.player("tactician_10")

@@ -99,24 +99,15 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
 
 
 @pytest.mark.parametrize(
-    ("of", "task"),
-    [
-        ("rewards", "SnookerBreak-v0"),
-        ("observations", "SnookerSafety-v0"),
-        ("infos/points", "SnookerBreak-v0"),
-        ("actions", "SnookerBreak-v0"),
-    ],
+    ("of", "task"), [("rewards", "SnookerBreak-v0"), ("observations", "SnookerSafety-v0")]
 )
 def test_a_changed_number_is_found_when_episodes_are_played_again(tmp_path, capsys, monkeypatch, of, task):
     pytest.importorskip("minari")
     import h5py
 
-    command = [
-        *("--out", "made", "--task", task),  # a folder by its relative name
-        *("--player", "ghost_ball", "--strokes", "5", "--check", "9"),
-    ]
-    monkeypatch.chdir(tmp_path)
-    assert dataset.main(command) == 0
+    monkeypatch.chdir(tmp_path)  # a folder by its relative name
+    command = f"--out made --task {task} --player ghost_ball --strokes 5 --check 9"
+    assert dataset.main(command.split()) == 0
     said = capsys.readouterr().out
     assert "6 of 6 episodes are played again bit for bit" in said and "strokes/s" in said
     (folder,) = (tmp_path / "made" / "snooker").iterdir()

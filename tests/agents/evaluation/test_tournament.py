@@ -1,17 +1,22 @@
 """Does ``agents.tournament`` play, keep, check and refuse what it should, whatever stops it?"""
 
 import json
+import re
 
 import pytest
 
 from agents import report, tournament
 from agents.evaluation import tournament_play
-from agents.evaluation.tournament_figures import COLUMNS
+from agents.evaluation.tournament_figures import COLUMNS, figures_of
 from agents.evaluation.tournament_file import FIELDS, PLAYER, faults
 from snooker_env.benchmark import read_result
 from tests.agents.training import interrupted_at
+from tests.benchmark.records import at, inner, leaves, others, put, resized
 from tests.processes import ROOT
 
+UNPROVED = r"command|commit|incomplete|(game|machine|software)\.\w+|players\.(decisions|seconds|shots|source)"
+UNPROVED += r"|protocol\.(chunk|resamples|tables)|best_(first|second)"
+"""Fields on which nothing else in the file depends; of a player's best breaks only the highest shows."""
 USERS = "tests.agents.user_players"
 PLAYERS = ("ghost_ball", "random", f"{USERS}:Softly")
 QUICK = str.split("--frames 6 --resamples 100 --max-strokes 120 --threads 1 --quiet")
@@ -114,6 +119,41 @@ def test_another_tournament_is_not_gone_on_with(tmp_path, refused, parts, monkey
         error = refused(*again, *PLAYERS, *change.split())
         assert f"must be a file with the same {what} to go on with" in error
     assert "same players" in refused(*again, *PLAYERS[:2])
+
+
+def sound():
+    """The content of a file of two players, without playing."""
+    counted = [60, 30, 50, 30, 10, 10, 30, 20, 0, 2, 20, 12]
+    rows = [[0, 1, s, o, 0, (s + o) % 2, *counted] for s in range(3) for o in (0, 1)]
+    found = json.loads((ROOT / "agents" / "results" / "ladder.json").read_text())
+    players = [found["players"][k] | {"label": label} for k, label in enumerate("ab")]
+    protocol = found["protocol"] | {"matches": 6, "anchor": "a", "resamples": 100}
+    figures = figures_of(["a", "b"], rows, "a", 100)
+    found |= {"players": players, "protocol": protocol, "rows": rows, "figures": figures}
+    return json.loads(json.dumps(found))
+
+
+def test_a_change_of_any_value_of_a_file_is_a_fault_but_for_what_nothing_proves(tmp_path, capsys):
+    """None may be missing, none may be more."""
+    record, passed = sound(), set()
+    assert faults(record) == []
+    for path in leaves(record):
+        for value in others(at(record, path)):
+            was = at(record, path)
+            near = value == was or (type(value) is type(was) is float and abs(value - was) < 1e-9)
+            if not near and faults(put(record, path, value)) == []:
+                row = path[0] == "rows"
+                passed.add(
+                    COLUMNS[path[2]] if row else ".".join(part for part in path if isinstance(part, str))
+                )
+    assert [name for name in sorted(passed) if not re.fullmatch(UNPROVED, name)] == []
+    for path in inner(record):
+        for value in resized(at(record, path)):
+            assert faults(put(record, path, value) if path else value), (path, value)
+    (tmp_path / "t.json").write_text(json.dumps(put(record, "rows.2.5", 3)))
+    assert tournament.main(["--check", str(tmp_path / "t.json"), str(tmp_path / "none.json")]) == 1
+    printed = capsys.readouterr().out
+    assert "winner = 3" in printed and "cannot be read" in printed
 
 
 def test_the_ladder_of_the_repository_is_sound(capsys):

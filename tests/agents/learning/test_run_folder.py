@@ -46,8 +46,9 @@ time.sleep(600)
     process.communicate()
 
 
-@pytest.mark.parametrize("more", [[], ["--resume"]])
-@pytest.mark.parametrize("holds", [[], ["checkpoint.pkl", "settings.json"]], ids=["begun", "saved"])
+@pytest.mark.parametrize(
+    ("more", "holds"), [([], []), (["--resume"], ["checkpoint.pkl", "settings.json"])], ids=["begun", "saved"]
+)
 def test_a_folder_in_use_is_refused_by_the_name_of_the_process(
     other, tmp_path, refused, monkeypatch, more, holds
 ):
@@ -109,15 +110,11 @@ def test_no_flipped_bit_of_a_checkpoint_or_of_settings_is_used(whole, tmp_path):
 
 
 @pytest.mark.parametrize("first", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("second", [signal.SIGINT, signal.SIGTERM])
-def test_a_second_signal_acts_at_once_whichever_it_is(first, second):
-    before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+def test_a_second_signal_acts_at_once_whichever_it_is(first):
+    plain = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
     with loop.Stop() as stop:
         signal.raise_signal(first)
-        assert stop.signal == first
-        plain = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
-        assert signal.getsignal(second) == plain[second]
-    assert before == [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+        assert stop.signal == first and all(signal.getsignal(second) == its for second, its in plain.items())
 
 
 def test_saves_are_rare(monkeypatch):
