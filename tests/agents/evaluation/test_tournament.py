@@ -148,7 +148,8 @@ def test_a_change_of_any_value_of_a_file_is_a_fault_but_for_what_nothing_proves(
                 )
     assert [name for name in sorted(passed) if not re.fullmatch(UNPROVED, name)] == []
     for path in inner(record):
-        for value in resized(at(record, path)):
+        free = not {"game", "software", "training"}.isdisjoint(path)  # as many options as there are
+        for value in () if free else resized(at(record, path)):
             assert faults(put(record, path, value) if path else value), (path, value)
     (tmp_path / "t.json").write_text(json.dumps(put(record, "rows.2.5", 3)))
     assert tournament.main(["--check", str(tmp_path / "t.json"), str(tmp_path / "none.json")]) == 1
