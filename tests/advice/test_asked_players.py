@@ -4,14 +4,11 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from cases import ALL, ENDGAME, IN_HAND, OPEN, state_of, stroke_of
+from cases import ALL, IN_HAND, OPEN, state_of, stroke_of
 
 import snooker_env as sn
 from snooker_env.planning import Positions
-from snooker_env.players import Ranked, Strokes
 from snooker_env.tasks import choice_of
-
-QUICK = {"samples": 30, "visits": 2}
 
 
 class Soft:
@@ -44,22 +41,6 @@ class OfFrames:
         return np.array([[-0.5, 0.0, 0.0, 0.5, -1.0]], np.float32)
 
 
-class Ranking:
-    """Two strokes with scores; the second one pots more surely."""
-
-    def at(self, rules):
-        choices = [choice_of(0, 8, 0, 0), choice_of(0, 3, 1, 2)]
-        values, _ = sn.Planner({"action": "discrete"}).strokes_of(ENDGAME, [0, 0], choices)
-        self.ranked = Ranked(Strokes(values), np.array([2.0, 1.0]))
-        return self
-
-    def rank(self, positions, seeds):
-        return [self.ranked]
-
-    def play(self, positions, seeds):
-        return self.ranked.strokes[:1]
-
-
 def test_a_players_stroke_is_read_as_the_environment_reads_it():
     """Squirt and all: the same stroke from the same place ends where the player's own action does."""
     for player, position in ((Soft(), OPEN), (Aiming(), OPEN), (Aiming(), IN_HAND)):
@@ -75,15 +56,6 @@ def test_a_players_stroke_is_read_as_the_environment_reads_it():
         assert np.allclose(one["positions"], same["positions"], atol=2e-3)  # float32, magnified by impacts
     assert stroke_of(Aiming(), IN_HAND).place == pytest.approx((0.146, -1.0475))
     assert stroke_of(Aiming(), OPEN).side == pytest.approx(0.3)
-
-
-def test_a_ranking_chooses():
-    """Its first stroke pots less surely, and so comes second where both are shown."""
-    (first,) = sn.advise(ENDGAME, agent=Ranking(), n=1, samples=200, visits=0)
-    advice = sn.advise(ENDGAME, agent=Ranking(), n=2, samples=200, visits=0)
-    assert advice[0].points > advice[1].points
-    assert advice.agent == "Ranking" and first == advice[1]
-    assert len(sn.advise(ENDGAME, agent=Soft(), n=3, **QUICK)) == 1
 
 
 def test_a_player_of_frames_sees_the_frame_and_a_visit_as_one():

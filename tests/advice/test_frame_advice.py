@@ -139,17 +139,3 @@ def test_a_player_of_visits_does_not_advise_a_frame():
             sn.advise(OPEN, agent=agent, **QUICK)
     for agent in ("stroke_value", "tactician_253", Given(CueStroke(speed=0.9, aim=np.pi / 2))):
         assert sn.advise(OPEN, agent=agent, n=1, **QUICK)[0].win is not None
-
-
-@pytest.mark.parametrize(
-    ("noise", "words"),
-    [
-        ("none", "without errors"),
-        ("club", "with a club player's errors"),
-        ({"aim_deg": 0.1}, "with the given errors"),
-    ],
-)
-def test_the_order_says_with_whose_errors(noise, words):
-    few: dict = {"noise": noise, "n": 1, "samples": 20, "visits": 0}
-    assert sn.advise(ENDGAME, agent="search", **few).order == f"Pots by points expected, {words}:"
-    assert sn.advise(ENDGAME, scores=(0, 0), **few).order == f"By chance to win, {words}:"

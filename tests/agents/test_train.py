@@ -242,17 +242,6 @@ def test_a_run_goes_on_with_the_tables_that_it_began_with(tmp_path, monkeypatch)
     assert results(tmp_path / "run")["steps"] == 256
 
 
-def test_agents_with_longer_actions_are_judged_and_not_taken_for_shorter(tmp_path, refused):
-    out, usual = tmp_path / "run", {"aim": "target"}
-    longer = usual | {"elevation": True, "placement": True}
-    assert run(out, "--agent", "ppo_target", "--steps", "128", "--set", f"env_kwargs={longer}") == 0
-    assert load_player(out).sees == longer
-    assert summary(play_visits(load_player(out), 4, noise="none")) == results(out)["evaluation"]["trained"]
-    start = ["--agent", "ppo_target", "--start", out, "--out", tmp_path / "new", "--set"]
-    error = refused(train.main, *start, f"env_kwargs={usual}")
-    assert "start = " in error and "must be a model with actions" in error
-
-
 def test_hyperparameters_can_be_changed(tmp_path):
     assert run(tmp_path, "--set", "gamma=0", "n_steps=32") == 0
     # the zip stays one of Stable-Baselines3

@@ -121,14 +121,3 @@ def test_weights_of_an_agent_that_observes_something_else_are_refused(observed, 
     assert not (tmp_path / "run").exists()
     assert run(tmp_path / "run", *map(str, start[:4]), *OBSERVED, "--set", "learning_rate=0.0") == 0
     assert np.array_equal(weights(tmp_path / "run"), weights(observed))
-
-
-def test_a_planner_of_a_run_over_tables_plays_them(few, tmp_path):
-    """Of train.py from end to end: expert iteration, PPO and the evaluation."""
-    out = tmp_path / "run"
-    assert run(out, "--agent", "ppo_value", "--envs", "4", "--imitate", "64", "--conditions", "drawn") == 0
-    found = results(out)
-    again = play_visits(sn.player(f"planner@{out}"), 4, conditions="drawn", noise="professional", cue="real")
-    assert summary(again) == found["evaluation"]["planner"]
-    fixed = play_visits(sn.player(f"planner@{out}"), 4, noise="professional", cue="real")
-    assert found["evaluation"]["planner"] != summary(fixed)

@@ -3,7 +3,6 @@
 import json
 import shutil
 import sys
-from contextlib import closing
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.playing import BATCH
 from snooker_env.benchmark.results import strokes_of
 from snooker_env.players import VISITS, Strokes, decided
-from snooker_env.players.program import AgentError, ProgramPlayer
 from tests.processes import ROOT
 
 EXAMPLE = f"program:{sys.executable} {ROOT / 'examples/program_player.py'}"
@@ -85,20 +83,6 @@ def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tm
     result = read_result(out)
     assert len(result["rows"]) == 3 and why in result["incomplete"] and faults(result) == []
     assert not result["protocol"]["official"]
-
-
-def test_a_program_that_does_not_read_is_ended_in_time(tmp_path):
-    """A pipe holds a few states, then a write waits: for no longer than the program has for its answer."""
-    answer = json.dumps({"speed": 2.0, "aim": 0.0})
-    body = f"import time\nwhile True: print({answer!r}, flush=True); time.sleep(0.3)"
-    (tmp_path / "silent.py").write_text(body)
-    env = sn.SnookerEnv(task="frame")
-    env.reset(seed=0)
-    at = sn.Positions.of(env)
-    silent = ProgramPlayer(f"{sys.executable} {tmp_path / 'silent.py'}", timeout=1.0).at(env)
-    with closing(silent), pytest.raises(AgentError, match="did not read its state within 1 s"):
-        for seed in range(20):
-            silent.play(at, [seed])
 
 
 def watching(tmp_path):

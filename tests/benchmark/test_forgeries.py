@@ -2,11 +2,7 @@
 
 import base64
 import copy
-import os
-import subprocess
-import sys
 import zlib
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +11,6 @@ import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, checking, judge
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.checking import afresh, faults
-from snooker_env.benchmark.provenance import arithmetic
 from snooker_env.benchmark.results import (
     complete,
     figures_of,
@@ -274,32 +269,6 @@ def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves():
     assert passed <= set(UNPROVED), passed - set(UNPROVED)
     least = "agent.label agent.sources machine.cpu timing.seconds commit software.numpy"
     assert passed.issuperset(least.split())
-
-
-CHECK = """
-import sys
-from snooker_env.benchmark import faults, read_result
-from snooker_env.benchmark.provenance import arithmetic
-print(arithmetic(), *faults(read_result(sys.argv[1])), sep="\\n")
-"""
-
-
-@pytest.mark.slow  # compiles all kernels for another processor
-def test_where_strokes_end_otherwise_that_is_said_first(tmp_path):
-    """With the system's functions without fused multiply-add, whose last bits differ: nobody is suspected."""
-    file = tmp_path / "one.json"
-    judge(TASKS["SnookerFrame-v0"], Agent.of("ghost_ball"), episodes=40, out=file)
-    here = os.environ | {"PYTHONPATH": str(Path(sn.__file__).parents[1]), "SNOOKER_ENV_QUIET": "1"}
-    command, printed = [sys.executable, "-c", CHECK, file], []
-    for tunables in ("", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable"):
-        env = here | {"GLIBC_TUNABLES": tunables}
-        run = subprocess.run(command, env=env, capture_output=True, check=True)
-        printed.append(run.stdout.decode().splitlines())
-    assert printed[0] == [arithmetic()]
-    if printed[1][0] == arithmetic():
-        pytest.skip("this system has no such functions, or this processor has no others")
-    says = f"machine.arithmetic = {arithmetic()!r}: must be {printed[1][0]!r} to check it here"
-    assert printed[1][1].startswith(says) and printed[1][2].startswith("rows[")
 
 
 def test_fresh_seeds_find_an_agent_that_knew_the_tables():

@@ -110,24 +110,6 @@ def test_simulated_shots_are_counted():
     assert faults(record) == faults(frames) == []
 
 
-@pytest.mark.parametrize("log", [2, 512])
-def test_a_shot_that_is_played_twice_counts_once(monkeypatch, log):
-    from snooker_env import simulation
-    from snooker_env.simulation.count import simulated
-    from snooker_env.tasks import stroke
-
-    monkeypatch.setattr(simulation, "_FIRST_LOG", log)
-    monkeypatch.setattr(stroke.ShotBuffers.__init__, "__defaults__", (log,))
-    before = simulated()
-    shot = sn.simulate([(0.0, -1.0), (0.0, 0.5)], [(0.0, 3.0), (0.0, 0.0)], [(0.0, 0.0, 0.0)] * 2)
-    assert simulated() - before == 1 and len(shot.events) > 2
-    env = sn.SnookerEnv()
-    env.reset(seed=1)
-    before = simulated()
-    env.step([0.3, 0.0, 0.0, 0.5])
-    assert simulated() - before == 1
-
-
 def test_tables_fit_100_columns(made, capsys):
     files = [str(file) for file in made.glob("*.json")]
     assert main(["table", *files]) == 0

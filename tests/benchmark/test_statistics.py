@@ -6,7 +6,7 @@ from scipy import stats
 
 from agents.evaluation.entrants import Entrant
 from agents.evaluation.metrics import EntrantMetrics
-from snooker_env.benchmark import interval, iqm
+from snooker_env.benchmark import iqm
 from snooker_env.benchmark.statistics import Resamples
 
 
@@ -34,30 +34,6 @@ def test_samples_are_those_of_a_plain_bootstrap():
         assert sums[k] == pytest.approx(drawn.sum())
         assert ratios[k] == pytest.approx(drawn.sum() / y[np.ix_(runs, tables)].sum())
         assert iqms[k] == pytest.approx(stats.trim_mean(drawn.ravel(), 0.25))
-
-
-def coverage(runs, spreads, of_iqm=False, trials=300, tables=200):
-    """How often the interval holds the true mean 0: scores are sums of parts of run, table and visit."""
-    rng, hits, samples = np.random.default_rng(4), 0, Resamples(runs, tables, 400)
-    shapes = ((runs, 1), (1, tables), (runs, tables))
-    for _ in range(trials):
-        x = sum(rng.normal(0, spread, shape) for spread, shape in zip(spreads, shapes, strict=True))
-        low, high = interval(samples.iqms(x.round(1)) if of_iqm else samples.sums(x))
-        hits += low <= 0 <= high
-    return hits / trials
-
-
-@pytest.mark.parametrize(
-    ("runs", "spreads", "least", "most"),
-    [
-        (1, (0, 0.3, 1), 0.91, 0.98),  # only visits differ: as it says
-        (5, (0.1, 0.3, 1), 0.92, 1.0),  # all three of a size, as in play: rather too wide
-        (5, (0, 0, 1), 0.97, 1.0),  # luck alone: too wide
-        (5, (1, 0, 0.01), 0.8, 0.92),  # nothing but seeds: five are few
-    ],
-)
-def test_coverage_is_what_the_docstring_says(runs, spreads, least, most):
-    assert least <= coverage(runs, spreads) <= most
 
 
 def played(label, points):

@@ -12,7 +12,6 @@ import snooker_env as sn
 from snooker_env._lib.registration import ENTRY_POINTS, FORMS, ID
 from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS
 from snooker_env.benchmark.playing import Repeater, play_episodes, rows_of, tables_for
-from snooker_env.benchmark.results import figures_of
 from snooker_env.benchmark.tasks import FREE
 from snooker_env.game import layout
 from snooker_env.game.layouts import STORED_IN
@@ -94,20 +93,6 @@ def test_an_escape_is_one_stroke_whose_reward_is_1_if_it_is_legal():
     assert out[1] == rewards[0] and out[2] is True
     state = env.get_state()
     assert state["over"] is True
-
-
-def test_a_safety_is_judged_by_what_the_other_makes_of_it():
-    task = TASKS["SnookerSafety-v0"]
-    rows = [
-        dict(zip(COLUMNS, row, strict=True)) for row in play_episodes(task, "random", task.seeds(40)).rows
-    ]
-    assert all(row["ended"] and row["strokes"] > row["fouls"] for row in rows)  # until one is fair
-    assert all(row["score"] == row["points"] - row["opponent_points"] <= task.most for row in rows)
-    assert any(row["opponent_points"] > 10 for row in rows) and any(row["points"] for row in rows)
-    figures = figures_of(task, "random", [list(row.values()) for row in rows])
-    shares = [one["value"] for one in figures["profile"]]
-    assert len(shares) == len(task.thresholds) and shares == sorted(shares, reverse=True) and shares[0] < 1.0
-    assert figures["score"]["value"] < 0 and figures["iqm"] is not None
 
 
 @pytest.mark.parametrize("name", IDS)

@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-import snooker_env as sn
 from benchmarks.paper import __main__ as paper
 from benchmarks.paper import other_data as data
 from benchmarks.paper import paper_shots as shots
@@ -29,17 +28,6 @@ def test_only_the_known_slips_of_the_tables_are_marked():
     rows = shots.table_rows(shots.predictions())
     assert [(r["quantity"], r["shot"]) for r in rows if r["slip"]] == [("v_c", 4)]
     assert [(r["quantity"], r["shot"]) for r in rows if r["error_slip"]] == [("angle_c", 3)]
-
-
-@pytest.mark.parametrize("e", [0.89, 1.0])
-@pytest.mark.parametrize("topspin", [0.0, 40.0])
-def test_models_without_friction_are_the_package_without_friction(e, topspin):
-    v1, w1, v2, w2 = shots.impact(1.2, topspin, 37.0, sn.Physics(e_b=e, mu_bb=0.0))
-    v_c, v_o, angle_c, angle_o = shots.closed(e, 0.0, cloth=True)(1.2, topspin, 37.0)
-    for v, w, speed, angle in ((v1, w1, v_c, angle_c), (v2, w2, v_o, angle_o)):
-        x, y = shots.rolling(v, w)
-        assert np.hypot(x, y) == pytest.approx(speed, rel=1e-12)
-        assert abs(np.degrees(np.arctan2(y, x))) == pytest.approx(angle, rel=1e-12)
 
 
 def test_throw_of_tp_a14():

@@ -7,8 +7,7 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.real_shots import __main__ as command
-from benchmarks.real_shots import constants, strikes, tracks, verdict
-from benchmarks.real_shots.paths import Judge
+from benchmarks.real_shots import verdict
 
 PHYSICS = sn.Physics.preset("carom", tables=False)
 STRIKES = ((2.2, 0.9, 0.25, 0.2, 0.03), (1.6, 2.4, -0.2, 0.1, 0.05))
@@ -77,23 +76,6 @@ def test_order_of_contacts():
     assert not verdict.same_order(measured, [measured[k] for k in (1, 0, 2, 3)])
     assert not verdict.same_order(measured, measured[:3])
     assert verdict.same_order(measured, measured[:4])
-
-
-def test_constants_move_towards_those_of_the_shots(file):
-    """From other constants, two steps lower the loss."""
-    shots = tracks.read(file)
-    other = sn.Physics.preset("carom", tables=False, mu_r=0.0050)
-    starts = [np.array([*strike, LATE]) for strike in STRIKES]
-    judges = [Judge(shot, other) for shot in shots]
-    before = constants.loss(
-        [constants.rms(j, strikes.settled(j, s)[0]) for j, s in zip(judges, starts, strict=True)]
-    )
-    found, after = constants.fitted(
-        other, shots, 0.02, names=("mu_r",), say=lambda text: None, strikes=starts
-    )
-    judges = [Judge(shot, found) for shot in shots]
-    assert abs(found.mu_r - PHYSICS.mu_r) < 0.0004
-    assert constants.loss([constants.rms(j, s) for j, s in zip(judges, after, strict=True)]) < 0.7 * before
 
 
 def spoiled(data, change):

@@ -526,21 +526,6 @@ def test_the_first_look_is_calm_and_the_tutorial_is_shown_once(chromium, line): 
     shown.close()
 
 
-def test_one_menu_seats_an_opponent_of_a_strength(shown):
-    shown.set_up(EASY)
-    shown.page.click("#start summary")
-    for level, who, noise in (("beginner", "ghost_ball", "club"), ("perfect", "tactician_500", "none")):
-        shown.page.select_option("#level", level)
-        shown.until(
-            "page.state.players[1] === argument[0] && page.state.noise[1] === argument[1]", [who, noise]
-        )
-        assert shown("page.state.noise[0]") == "none" and shown.page.input_value("#level") == level
-    shown.line("api/players", {"noise": ["none", "robot"]})
-    shown.until("page.state.noise[1] === 'robot'")
-    assert shown.page.inner_text("#level option:checked") == "tactician 500, mistakes: a robot's"
-    shown.line("api/players", PERSONS)
-
-
 def test_a_match_of_six_red_is_played_on_the_page(shown):
     shown.set_up(EASY)
     shown.page.click("#start summary")
@@ -570,31 +555,6 @@ def test_a_match_of_six_red_is_played_on_the_page(shown):
     shown.until(f"page.state.game === 'shoot_out' && {SETTLED}")
     assert "time 10:00" in shown.page.inner_text("#now").replace("\n", " ")
     shown.line("api/new", {"layout": "break_off", "game": "snooker", "best_of": 1})
-
-
-def test_statistics_count_the_frame(shown):
-    """A pot, a colour missed at a pocket, and a safety of the other."""
-    shown.set_up(EASY)
-    for stroke in (
-        {"speed": 2.0, "aim": STRAIGHT},
-        {"speed": 1.5, "aim_at": {"pot": ["black", "top left"]}, "side": 0.0},
-    ):
-        shown.line("api/stroke", stroke)
-    strokes = shown.line("api/strokes")[1]["strokes"]
-    shown.until("page.moving")
-    shown.played(len(strokes))
-    shown.page.click("#stats-open")
-    shown.until("document.getElementById('stats').open")
-    cells = shown(
-        "[...document.querySelectorAll('#stats-rows tr')].map(row => [...row.cells].map(cell => cell.textContent))"
-    )
-    rows = {name: values for name, *values in cells}
-    pots = sum(one["points"] > 0 for one in strokes)
-    points = sum(one["points"] for one in strokes)
-    assert rows["pots"][0] == f"{50 * pots} % ({pots} of 2)" and rows["pots"][1] == "–"
-    assert rows["points a visit"] == [f"{points:.1f}", "–"]
-    assert rows["highest break"] == [str(max(one["break"] for one in strokes)), "0"]
-    shown.page.keyboard.press("Escape")
 
 
 def test_a_drill_counts_and_keeps_its_best(shown):

@@ -9,7 +9,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.benchmark import simulated
 from snooker_env.planning import Positions
-from snooker_env.players import FRAMES, VISITS, ChoicePlayer, SeenPlayer, Strokes, decided, decision_seeds
+from snooker_env.players import VISITS, ChoicePlayer, SeenPlayer, Strokes, decision_seeds
 from snooker_env.players.degenerate import MODULE
 from tests.positions import tables
 from tests.processes import copy_of_package, python
@@ -106,15 +106,6 @@ def test_what_sees_observations_plays_as_in_the_environment(seen):
     other = begun(sn.SnookerVectorEnv(n, layout="random:6", threads=1, **VISITS), 5)
     other.step(strokes.actions(other.options, at))
     assert np.allclose(other.tables.positions, tables.tables.positions, atol=1e-6)
-
-
-def test_a_player_plays_on_tables_with_a_seed_for_each_decision():
-    tables = begun(sn.SnookerVectorEnv(5, task="frame", noise="professional", opponent="none", **FRAMES))
-    player, going = sn.player("ghost_ball").at(tables), np.array([True, False, True, True, False])
-    actions = decided(player, tables, going, decision_seeds(0, np.arange(5), 0))
-    assert not actions[~going].any() and actions[going].any(axis=1).all()
-    alone = decided(player, tables, np.arange(5) == 3, decision_seeds(0, np.arange(5), 0))
-    assert np.array_equal(alone[3], actions[3])
 
 
 def test_seeds_of_decisions_depend_on_the_table_and_the_decision_alone():

@@ -23,25 +23,6 @@ def test_it_takes_a_budget_and_no_model():
         sn.player("tactician@mine")
 
 
-def test_visits_are_played_as_the_planner_plays_them():
-    position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    mine = sn.player("tactician_30").at({"noise": "club"}).play(position, [7])
-    assert np.array_equal(
-        mine.values, sn.player("planner_30").at({"noise": "club"}).play(position, [7]).values
-    )
-
-
-def test_it_plays_a_frame_to_its_end_as_an_opponent():
-    game = {"task": "frame", "opponent": "tactician_30", "noise": "club", "miss": "clear_path", "cue": "real"}
-    env, rng = sn.SnookerEnv(**game), np.random.default_rng(0)
-    _, info = env.reset(seed=0)
-    for _ in range(200):
-        _, _, terminated, _, info = env.step(rng.uniform(-1, 1, 4).astype(np.float32))
-        if terminated:
-            break
-    assert terminated and info["winner"] == 1 and info["opponent_score"] > info["score"]
-
-
 def test_a_third_miss_loses_the_frame_whatever_the_lead():
     position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], black=(0.0, 1.4605), on="red")
     ahead = frame_of(position, scores=(60, 5))
@@ -191,16 +172,6 @@ def test_the_chance_after_a_foul_is_that_of_the_best_decision():
         player.chance_to_win(snookered)[0] == pytest.approx(1.0 - again, abs=1e-12)
         and 1.0 - again > 0.6 > play
     )
-
-
-def test_who_has_won_the_lot_is_never_the_worse_for_it():
-    far = frame_of(Position(cue=(0.1, -1.1), black=(0.0, 1.4605), on="black", in_hand=True))
-    far.game[:, columns.RESPOTTED_BLACK] = 1
-    player = sn.player("tactician_30").at(OPTIONS)
-    begins = player.chance_to_win(far)[0]
-    far.game[:, columns.PHASE] = columns.LOT
-    assert player.chance_to_win(far)[0] == pytest.approx(max(begins, 1.0 - begins), abs=1e-6)
-    assert far.game[0, columns.PHASE] == columns.LOT
 
 
 def test_nobody_wins_a_visit_and_a_player_without_a_law_says_nothing():

@@ -61,13 +61,3 @@ def test_each_thing_has_its_place():
     accents = [np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1)) for bar in bars]
     assert accents[0].max() < 960 < accents[1].min()  # the box of the score, and the triangle beside the name
     assert accents[0].min() < 780 and accents[1].max() > 1140
-
-
-@pytest.mark.parametrize(
-    "given", [{}, {"players": ("Ann",), "scores": (7,)}, {"players": ("Ann", "Bob"), "scores": (7, 0)}]
-)
-@pytest.mark.parametrize("width", [101, 400, 1000, 4000])
-def test_a_bar_of_any_size_and_with_anything_left_out(given, width):
-    for height in (7, 35, 36, 72, 200):
-        assert pixels(ScoreBar(**given), width=width, height=height).shape == (height, width, 3)
-        assert pixels(ScoreBar(**given, **FULL), width=width, height=height).shape == (height, width, 3)

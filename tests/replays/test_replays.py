@@ -11,7 +11,6 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke
-from snooker_env.game.balls import BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.play.session import Session
 from snooker_env.render.table_picture import View
@@ -162,23 +161,6 @@ def test_errors_of_both_seats_and_what_was_played_on():
     )
 
 
-def test_a_frame_and_a_match_name_both_players():
-    env = keeping(task="frame", opponent="ghost_ball", action="discrete", layout="pots:easy")
-    for _ in range(6):
-        if env.step(int(np.flatnonzero(env.action_masks())[0]))[2]:
-            break
-    replay = sn.replay(env)
-    assert replay.players == ("Player 1", "Player 2") and {p.player for p in replay.strokes} == {0, 1}
-    for played in env.history:
-        assert played.next_on == BallOn.NOTHING or played.next_player in (0, 1)
-    pytest.importorskip("pettingzoo")
-    match = sn.match_env()
-    match.keep_history = True
-    match.reset(seed=1)
-    match.step(np.zeros(7))
-    assert len(sn.replay(match)) == len(match.history) > 0
-
-
 def test_history_is_kept_on_request_and_starts_anew():
     env = begun(sn.SnookerEnv(action="discrete"))
     env.step(67)
@@ -261,16 +243,6 @@ def test_the_wrapper_writes_each_wanted_episode(tmp_path):
     env.close()
     assert [p.name for p in env.paths] == ["snooker-episode-0.json", "snooker-episode-2.json"]
     assert [len(json.loads(p.read_text())["strokes"]) for p in env.paths] == [lengths[0], lengths[2]]
-
-
-def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
-    env = sn.RecordReplay(gymnasium.wrappers.Autoreset(made()), tmp_path, suffix=".json")
-    env.reset(seed=1)
-    ends = 0
-    while ends < 3:
-        _, _, terminated, truncated, _ = env.step(67)
-        ends += terminated or truncated
-    assert [p.name for p in env.paths] == [f"snooker-episode-{k}.json" for k in range(3)]
 
 
 # Score bars and the referee's words follow the ``Frame`` after each stroke

@@ -7,7 +7,7 @@ from positions import tables
 
 from agents.features.observed import training_tables
 from agents.learning import expert_iteration
-from agents.learning.expert_iteration import FRESH, STARTS, ExpertIteration, Starts, judge_rewards
+from agents.learning.expert_iteration import FRESH, ExpertIteration, judge_rewards
 from agents.learning.hyperparameters import Recipe
 from agents.learning.value_network import value_of
 from snooker_env.planning import Positions, spread_of
@@ -18,7 +18,6 @@ from snooker_env.tasks import LEVELS
 
 OPTIONS = {"action": "discrete", "noise": "professional", "layout": "opened", "fidelity": "fast"}
 N, STATES = 8, 64
-SHOT = {"noise": "professional", "fidelity": "fast", "physics": "paper", "table": "match"}
 
 
 @pytest.fixture(autouse=True)
@@ -50,11 +49,6 @@ def a_run(seed=5):
 
 def weights(model):
     return {name: tensor.clone() for name, tensor in model.policy.state_dict().items()}
-
-
-def alike(some, others):
-    """Whether arrays are equal, one by one."""
-    return len(some) == len(others) and all(map(np.array_equal, some, others))
 
 
 def test_both_networks_learn_and_the_seed_matters():
@@ -122,22 +116,6 @@ def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
                 assert (now == pool).all(axis=(1, 2)).any()
         assert not run._at.over.any() and not run._at.points.any()
     assert followed > 15
-
-
-def test_visits_begin_in_all_layouts_by_their_shares(monkeypatch):
-    assert sum(share for _, share in STARTS) == pytest.approx(1.0)
-    starts = Starts(3, "opened", SHOT)
-    kept = [one.positions.copy() for one in starts._pools]
-    drawn = starts.draw(3000, np.random.default_rng(0))
-    assert len(drawn) == 3000 and not drawn.over.any()
-    pools = np.concatenate([np.full(len(one), k) for k, one in enumerate(starts._pools)])
-    places = {one.tobytes(): k for k, one in zip(pools, np.concatenate(kept), strict=True)}
-    counts = np.bincount([places[one.tobytes()] for one in drawn.positions], minlength=len(STARTS)) / 3000
-    assert counts == pytest.approx([share for _, share in STARTS], abs=0.03)
-    drawn.positions[:] = 0.0
-    assert alike([one.positions for one in starts._pools], kept)
-    again, other = ([one.positions for one in Starts(seed, "opened", SHOT)._pools] for seed in (3, 4))
-    assert alike(again, kept) and not any(map(np.array_equal, other, kept))
 
 
 def test_a_judge_adds_its_value_only_where_the_visit_goes_on():

@@ -134,32 +134,6 @@ def test_the_chance_to_win_is_that_of_the_frames():
     assert calibration(np.full(n, 0.9), won)[1] > 0.2
 
 
-def test_the_chance_to_win_is_learned_from_frames_between_equals(monkeypatch):
-    """Who won the others changes nothing."""
-    monkeypatch.setattr(learn_worth, "PASSES", 1)
-    rng, n = np.random.default_rng(2), 4000
-    lead = rng.normal(0.0, 30.0, n)
-    rows = {
-        "seen": rng.standard_normal((n, SIZE)).astype(np.float32) * 0.1,
-        "target": rng.normal(0.0, 5.0, n),
-        "held": rng.random(n) < 0.2,
-        "unit": np.arange(n) // 40,
-        "striker": np.zeros(n, int),
-        "lead": lead,
-        "left": np.full(n, 60.0),
-        "last": np.zeros(n, bool),
-        "won": lead + rng.normal(0.0, 20.0, n) > 0.0,
-        "decided": np.ones(n, bool),
-        "equals": rng.random(n) < 0.5,
-    }
-    rows["hand"] = rows["seen"]
-    other = rows | {"won": np.where(rows["equals"], rows["won"], ~rows["won"])}
-    none = rows | {"won": np.where(rows["equals"], ~rows["won"], rows["won"])}
-    kept, same, turned_round = (learn_worth.learned([one], 0)[1:] for one in (rows, other, none))
-    assert kept[0] == same[0] and kept[1] == same[1]
-    assert turned_round[1]["chance_error"] != kept[1]["chance_error"]
-
-
 def test_frames_of_which_none_ends_are_refused(tmp_path, monkeypatch):
     """Nothing says who wins them."""
     short = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 3}

@@ -152,22 +152,6 @@ def test_the_gradient_is_pytorchs_own(policy, met):
     assert np.allclose(figures, [x.item() for x in expected], rtol=1e-4, atol=1e-6) and 0.2 < clipped < 0.9
 
 
-def test_choices_of_nearly_no_probability_keep_their_logarithm(policy, met):
-    """Those of a rollout may become so unlikely that float32 holds their probability no longer."""
-    with torch.no_grad():
-        policy.action_net.score.weight.mul_(300.0)
-    seen, masks = met
-    rows, nothing = np.arange(N), np.zeros(N, np.float32)
-    choices = np.where(masks, scored(policy, seen, masks), np.inf).argmin(1)
-    _, logs, entropy = plain(policy, seen, masks, choices)
-    assert (logs < -110.0).sum() > 20  # exp(-103) is the smallest that float32 holds
-    policy.fused.zero_grad()
-    rollout = Rollout(seen, masks, choices, logs.detach().numpy() - 0.5, nothing, nothing)
-    found = policy.fused.ppo_gradient(rows, rollout, Loss(CLIP, 0.0, 0.0))
-    assert np.isclose(found[4], np.exp(0.5) - 1.5, rtol=1e-4)
-    assert np.isclose(found[2], entropy.mean().item(), rtol=1e-4)
-
-
 def test_copies_and_new_weights_have_passes_of_their_own(policy, met):
     """After passes were made: a copy, a pickle, and weights that were put in place of others."""
     seen, masks = met

@@ -253,24 +253,6 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused
         assert error.endswith(f"error: start = {str(file)!r}: {whole}")
 
 
-def test_it_is_evaluated_like_any_other_agent(tmp_path):
-    """As a file and as a run's folder, with what its file says of its training."""
-    folder = tmp_path / "mine-0"
-    folder.mkdir()
-    write_policy(folder / POLICY, WEIGHTS, **ABOUT)
-    assert load_player(folder).model.num_timesteps == 12
-    more = [*QUICK, "--json", str(tmp_path / "r.json")]
-    assert evaluate.main(["--agent", str(folder), f"same={folder / POLICY}", *more]) == 0
-    report = json.loads((tmp_path / "r.json").read_text())
-    (run,) = report["agents"][0]["runs"]
-    wanted = {"recipe": "mine", "shots": 12, "seed": 3, "gamma": 0.9, "noise": "club", "physics": "paper"}
-    wanted["imitated"] = None
-    assert report["agents"][0]["label"] == "mine-0" and {key: run[key] for key in wanted} == wanted
-    first, second = report["results"][:2]
-    assert first["agent"] == "mine-0" and second["agent"] == "same"
-    assert first["figures"]["points_a_visit"] == second["figures"]["points_a_visit"]
-
-
 def about(**changes):
     return {"about": np.array(json.dumps(ABOUT | changes))}
 

@@ -7,7 +7,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import snooker_env as sn
@@ -115,26 +114,6 @@ def test_a_second_signal_acts_at_once_whichever_it_is(first):
     with loop.Stop() as stop:
         signal.raise_signal(first)
         assert stop.signal == first and all(signal.getsignal(second) == its for second, its in plain.items())
-
-
-def test_saves_are_rare(monkeypatch):
-    """By the clock, and rarer where they are slow."""
-    saves, now = [], [0.0]
-    monkeypatch.setattr(loop.time, "perf_counter", lambda: now[0])
-
-    def save():
-        saves.append(now[0])
-        now[0] += 5.0
-
-    class Lessons(loop.Part):
-        total, done = 2000, 0
-
-        def round(self):
-            self.done += 1
-            now[0] += 1.0
-
-    assert loop.Loop("", [Lessons()], save, "", quiet=True).run() is None
-    assert saves[0] == 31.0 and np.array_equal(np.diff(saves)[:-1], [506.0] * 3)
 
 
 @pytest.mark.parametrize("broken", ["fsync", "replace"])
