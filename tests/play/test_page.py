@@ -729,24 +729,6 @@ def test_a_shot_clock_plays_the_stroke_as_it_is_aimed(shown):
     assert (cue["speed"], cue["aim"]) == pytest.approx((0.5, AWAY))
 
 
-def test_sounds_are_made_after_the_first_touch_and_can_be_switched_off(shown):
-    """Each event of a stroke that is heard starts one sound, louder the faster the balls meet."""
-    shown.set_up(EASY)
-    assert shown("page.sound.context === undefined")
-    shown.page.mouse.click(*shown.at(0.0, 0.0))
-    shown.until("page.sound.context && page.sound.context.state === 'running'")
-    shown("(window.heard = [], page.sound.play = (kind, speed) => window.heard.push([kind, speed]))")
-    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})
-    shown.until("page.moving && page.moving.at > 1")
-    kinds = shown("window.heard.map(([kind]) => kind)")
-    assert kinds[0] == 8 and 0 in kinds
-    assert all(0 <= speed <= 8 for _, speed in shown("window.heard"))
-    shown.page.keyboard.press("m")
-    assert shown.page.get_attribute("#sound", "aria-pressed") == "false"
-    assert json.loads(shown("localStorage.getItem('snooker')"))["sound"] is False
-    shown.played(1)
-
-
 def test_the_page_is_small(line):
     """Everything that a browser loads, without the game's data: under 150 kB."""
     files = [body for name in FILES for status, body, _ in [line(name)] if status == 200]

@@ -145,18 +145,6 @@ def test_chance_and_advice_are_counted_with_the_same_errors(game, who, noise, le
     assert asked["suggestions"][0]["win"] == pytest.approx(mine, abs=0.1)
 
 
-def test_in_a_frame_those_advise_who_know_frames(game):
-    """A player of visits may sit opposite, and advise whoever practises alone."""
-    state = game("players", players=["person", "planner_500"])
-    assert state["players"][1] == "planner_500" and state["advisers"] == ["tactician_500"]
-    assert game("advise", n=1, samples=20)["agent"] == "tactician_500"
-    with pytest.raises(ValueError, match=r"^agent = 'planner_500': must know frames, as \"tactician\""):
-        game("advise", agent="planner_500")
-    state = game("players", practice=True)
-    assert set(state["advisers"]) >= {"planner_500", "tactician_500", "ghost_ball"}
-    assert game("advise", n=1, samples=20)["agent"] == "planner_500"
-
-
 def test_an_aim_may_be_given_by_a_pot_and_is_solved(game):
     game("position", position=EASY | {"cue": [0.1, 1.1]})
     assert game("stroke", speed=2.3, top=0.2, aim_at={"pot": ["red 1", "right top"]})["stroke"]["pots"] == [1]
@@ -546,18 +534,3 @@ def test_lines_agree_with_geometry():
     assert club.chance == pytest.approx(within * np.exp(-0.01 * (straight.to_ball + straight.to_pocket)))
     away = lines[1, "bottom left"]
     assert not away.open and away.why == "cut too thin"
-
-
-def test_the_chance_is_for_the_larger_errors_and_nobody_wins_practice(game):
-    game("position", position=EASY, scores=[20, 30])
-    said = [
-        game("players", noise=noise)["win_chance"]
-        for noise in (["none"] * 2, ["club", "none"], ["amateur", "robot"])
-    ]
-    assert said[0] == said[2] != said[1]
-    alone = game("players", practice=True, noise=["none", "none"])
-    assert alone["labels"][0] == "You" and alone["words"].startswith("Your stroke")
-    assert alone["win_chance"] is None and "Chance to win" not in alone["text"]
-    game("stroke", speed=2.0, aim=STRAIGHT)
-    assert game.get("strokes")["strokes"][0]["tables"][1]["win_chance"] is None
-    assert game.get("replay")["win_chance"] is None

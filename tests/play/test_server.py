@@ -99,23 +99,24 @@ def test_only_known_methods_are_answered(line):
     refused(line("api/state", method="PUT", token="x"), 403, "token")
 
 
-@pytest.mark.parametrize(
-    ("body", "words"),
-    [
-        (b"{", "JSON"),
-        (b"[]", "object"),
-        (b"3", "object"),
-        (b"\xff\xfe", "JSON"),
-        (b'{"place": [NaN, 0]}', "NaN"),
-        (b'{"place": [Infinity, 0]}', "Infinity"),
-        (b'{"place": [0, 0], "place": [1, 1]}', "twice"),
-        (b"[" * 30_000, "JSON"),
-        (b'{"place": ' + b"9" * 5000 + b"}", "JSON"),
-        (b'{"a": 1} x', "JSON"),
-    ],
-)
-def test_what_is_no_json_object_is_refused(line, body, words):
-    refused(line("api/place", body), 400, words)
+NO_OBJECTS = [
+    (b"{", "JSON"),
+    (b"[]", "object"),
+    (b"3", "object"),
+    (b"\xff\xfe", "JSON"),
+    (b'{"a": 1} x', "JSON"),
+]
+NO_OBJECTS += [
+    (b'{"place": [NaN, 0]}', "NaN"),
+    (b'{"place": [Infinity, 0]}', "Infinity"),
+    (b"[" * 30_000, "JSON"),
+]
+NO_OBJECTS += [(b'{"place": [0, 0], "place": [1, 1]}', "twice"), (b'{"place": ' + b"9" * 5000 + b"}", "JSON")]
+
+
+def test_what_is_no_json_object_is_refused(line):
+    for body, words in NO_OBJECTS:
+        refused(line("api/place", body), 400, words)
 
 
 def test_wrong_fields_are_named(line):
@@ -252,22 +253,23 @@ def test_a_browser_that_is_not_found_is_said_with_the_address(found, monkeypatch
     assert opened[0].startswith("http://127.0.0.1:") and opened[0] in said.split("\n\n")[1]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--position", "nowhere.json"], "nowhere.json"),
-        (["--layout", "x"], "layout = 'x'"),
-        (["--agent", "nobody"], "player = 'nobody'"),
-        (["--options", "aim=target"], "options = {'aim': 'target'}: must be left out"),
-        (["--position", str(ROOT / "pyproject.toml")], "pyproject.toml': must be JSON ("),
-        (["--port", "99999"], "port = 99999: must be an integer in [0, 65535]"),
-        (["--seed", "-1"], "seed = -1"),
-    ],
-)
-def test_what_cannot_be_is_said_in_one_line(arguments, words, capsys):
-    assert main(["--no-browser", *arguments]) == 2
-    out, err = capsys.readouterr()
-    assert words in err and err.count("\n") == 1 and "Traceback" not in err and out == ""
+WRONG = f"""
+--position nowhere.json | nowhere.json
+--layout x | layout = 'x'
+--agent nobody | player = 'nobody'
+--options aim=target | options = {{'aim': 'target'}}: must be left out
+--position {ROOT / "pyproject.toml"} | pyproject.toml': must be JSON (
+--port 99999 | port = 99999: must be an integer in [0, 65535]
+--seed -1 | seed = -1
+"""
+
+
+def test_what_cannot_be_is_said_in_one_line(capsys):
+    for one in WRONG.strip().splitlines():
+        arguments, _, words = one.partition(" | ")
+        assert main(["--no-browser", *arguments.split()]) == 2
+        out, err = capsys.readouterr()
+        assert words in err and err.count("\n") == 1 and "Traceback" not in err and out == "", one
 
 
 def test_the_port_is_always_the_same_unless_it_is_taken_and_then_any(monkeypatch, line):

@@ -7,16 +7,14 @@ import numpy as np
 import pytest
 
 from snooker_env.advice import CueStroke
-from snooker_env.game.balls import BLACK, BLUE, CUE, NAMES, PINK
+from snooker_env.game.balls import CUE
 from snooker_env.game.frame_columns import STROKES
-from snooker_env.game.ruling import AUTO
 from snooker_env.planning import Position
 from snooker_env.play.session import STATE, Session
 from snooker_env.tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from tests.playing import COVERED, EASY
 
 ALONG_X = CueStroke(speed=0.6, aim=0.0)
-AT_NOTHING = CueStroke(speed=0.2, aim=0.5 * pi)
 
 
 def standing(position, *, scores=(0, 0), striker=0, free_ball=False):
@@ -59,21 +57,6 @@ def test_strokes_are_those_of_the_match_environment():
         # rounding of a place would grow
         session._set({k: v for k, v in env.get_state().items() if k in STATE})
     assert session.tables.game[0, STROKES] == 12
-
-
-def test_a_colour_that_was_named_must_be_struck_first_and_a_miss_is_called_for_any():
-    for named, penalty in ((AUTO, 0), (BLUE, 0), (PINK, 6), (BLACK, 7)):
-        session = standing(COVERED)
-        session.play(ALONG_X, nominated=named)
-        assert session.frame.scores == (0, penalty) and (session.frame.phase == "choice") == bool(penalty)
-        assert session.tables.nominated[0] == AUTO
-        assert session.acts[-1].detail == ("" if named == AUTO else NAMES[named])
-    # S3 R14(c) speaks of every ball that could be on: here the pink is hidden behind the blue
-    for named in (AUTO, BLACK, PINK):
-        session = standing(COVERED | {"blue": [0.08, -0.5], "pink": [0.6, -0.5]})
-        session.play(AT_NOTHING, nominated=named)
-        assert session.frame.phase == "choice" and session.frame.miss_called, named
-        assert session.frame.choices == ("play", "play_again", "replace")
 
 
 def test_the_choices_after_a_foul():

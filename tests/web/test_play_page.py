@@ -58,27 +58,6 @@ def test_a_phone_shows_the_table_and_the_controls_of_the_stroke(chromium, line):
     shown.close()
 
 
-def test_a_match_goes_on_after_a_look_at_the_table_and_is_not_lost_by_a_click(shown):
-    shown.set_up(EASY)
-    shown.line("api/new", {"layout": "break_off", "best_of": 3, "seed": 1})
-    shown.until(f"page.state.best_of === 3 && {SETTLED} && page.aiming")
-    shown.page.click("#start summary")
-    for button in ("#new", "#concede"):  # though nothing has been played yet
-        shown.page.click(button)
-        assert shown.page.is_visible("#confirm")
-        shown.page.keyboard.press("Escape")
-        shown.until("!document.getElementById('confirm').open")
-    for go_on in (lambda: shown.page.click("#go"), lambda: shown.page.keyboard.press("Enter")):
-        shown.line("api/concede", {})
-        shown.until(f"page.state.phase === 'over' && {SETTLED}")
-        shown.page.click("#over-close")
-        assert shown.page.inner_text("#go") == "Next frame"
-        go_on()
-        shown.until(f"page.state.phase !== 'over' && {SETTLED} && page.aiming")
-    assert sum(shown("page.state.frames")) == 2
-    shown.line("api/new", {"layout": "break_off", "best_of": 1})
-
-
 LATE = """void (fetched => window.fetch = async (what, ...more) => {
   const answer = await fetched(what, ...more);
   if (String(what.url ?? what).includes("api/players")) await new Promise(done => setTimeout(done, 1000));

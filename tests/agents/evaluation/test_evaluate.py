@@ -91,17 +91,6 @@ def test_held_out_tables_alone_are_played_unless_others_are_named():
         assert {name: len(its) for name, its in seeds.items()} == sizes
 
 
-def test_figures_do_not_depend_on_the_company(models, tmp_path):
-    rows = []
-    for company in ([], ["random", f"other={models / 'm-0'}"]):
-        file = tmp_path / f"{len(company)}.json"
-        agents = [*company, f"m={models / 'm-0'},{models / 'm-1'}"]
-        evaluate.main(["--agent", *agents, *QUICK, "--json", str(file)])
-        same = [row for row in read(file)["results"] if row["agent"] in ("m", "ghost_ball")]
-        rows.append([{key: row[key] for key in row if key != "ms_a_decision"} for row in same])
-    assert rows[0] == rows[1] and len(rows[0]) == 2
-
-
 def test_a_player_of_ones_own_is_compared(tmp_path):
     file, users = tmp_path / "r.json", "tests.agents.user_players"
     agents = ["--agent", f"{users}:Softly", f"me={users}:Softly"]
