@@ -73,6 +73,19 @@ def test_the_chance_is_the_first_players_and_certain_at_the_end_alone(frame):
     assert chances[0] == 0.5 and chances[-1] == float(env.history[-1].winner == 0)
 
 
+@pytest.mark.parametrize(("says", "kept"), [(1.0, (1.0, 0.0)), (1.0 - 1e-9, (0.9999, 0.0001))])
+def test_rounding_makes_no_chance_certain(frame, says, kept):
+    env, _ = frame
+
+    class Sure:
+        def chance_to_win(self, positions):
+            return np.full(len(positions), says)
+
+    chances = sn.replay(env, judge=Sure()).win_chance
+    strikers = [env.history[0].player, *(played.next_player for played in env.history[:-1])]
+    assert list(chances[:-1]) == [kept[striker] for striker in strikers]
+
+
 def test_the_first_stroke_is_undone_whatever_it_was(frame):
     """The frame before each stroke, as if the replay began there, is the one after the stroke before it."""
     history = frame[0].history
