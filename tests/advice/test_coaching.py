@@ -204,6 +204,19 @@ def test_an_error_grows_as_strokes_under_that_noise_do():
         assert each[1] == pytest.approx(np.hypot(1.0, LEVELS["professional"].growth * 2.0), rel=1e-12)
 
 
+def test_a_cue_that_errors_raised_once_more_was_meant_lower():
+    """Errors of a real cue grow with the elevation that was meant, not with the one at which they left room."""
+    at = sn.Position(cue=(0.0, -1.70), black=(0.0, 1.0))
+    real = practice_of("professional", WHERE | {"cue": "real"})
+    meant = CueStroke(speed=2.0, aim=np.pi / 2)
+    needed, _ = estimating.fit_to_room(Recorded(position=at), meant.numbers(), real)
+    assert np.radians(2.0) < needed < np.radians(15.0)
+    cue = {"speed": 2.0, "aim": np.pi / 2 + 0.003, "elevation": needed + np.radians(0.8)}
+    unit = np.radians(LEVELS["professional"].direction_deg(speed=0.0)) * (1.0 + needed / np.radians(15.0))
+    played = Recorded(position=at, intended=meant, played=cue)
+    assert estimating.measure_errors([played], real).directions[0] == pytest.approx(0.003 / unit)
+
+
 def missed_and_made():
     """A pot missed so that the black hangs over the pocket, and the same pot made: both ends of a frame's black."""
     ball, pocket, _ = pot_of(ALONE)

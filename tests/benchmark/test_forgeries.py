@@ -175,6 +175,18 @@ def test_a_known_planner_is_not_model_free(name, training):
     assert kind.startswith(f"agent.class = 'model_free': must be 'planning': '{name}' simulated ")
 
 
+@pytest.mark.parametrize(
+    ("name", "training", "says"),
+    [
+        ("search_30", 50_000_000, "agent.training_shots = 50000000: must be 0, as search_30 says"),
+        ("planner_30", 0, "agent.training_shots = 0: must be more than 0: something was learned"),
+    ],
+)
+def test_known_players_were_trained_as_they_say(name, training, says):
+    record = judge(HARD, Agent(label=name, sources=(name,), training_shots=training), episodes=3)
+    assert faults(record) == [says]
+
+
 def test_repeated_keys(official, tmp_path, capsys):
     file = tmp_path / "twice.json"
     write_result(file, official)

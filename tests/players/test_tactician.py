@@ -155,6 +155,14 @@ def test_a_called_miss_is_worth_no_more_than_the_best_stroke_and_its_penalty():
     assert (chances[0], points[0]) == (0.5, 6.0)
 
 
+def test_a_frame_that_is_over_is_won_or_lost():
+    over = frame_of(PINK_BALL, scores=(10, 90))
+    over.game[:, columns.PHASE], over.game[:, columns.OVER] = columns.FINISHED, 1
+    for winner, chance in ((0, 1.0), (1, 0.0)):  # the other conceded although ahead, or did not
+        over.game[:, columns.WINNER] = winner
+        assert sn.player("tactician_30").at(OPTIONS).chance_to_win(over).tolist() == [chance]
+
+
 def test_the_chance_after_a_foul_is_that_of_the_best_decision():
     player = sn.player("tactician_30").at(OPTIONS)
     # whoever plays from the lower half is worth 20 points more than the other

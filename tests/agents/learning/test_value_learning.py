@@ -1,5 +1,7 @@
 """Are the value's targets those of the docstring, recomputed by hand, and does the network come to them?"""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 import torch
@@ -110,6 +112,39 @@ def test_the_network_learns_a_known_value():
     assert np.abs(p - np.where(seen[:, 1] > 0, 0.9, 0.3)).mean() < 0.08
     assert learning.mean_target == pytest.approx(learning._fitted[1][-n:].mean())
     assert 1.0 < learning.mean_target < 4.0
+
+
+def test_each_member_learns_from_batches_of_its_own():
+    """Members that start alike are apart after a fit, each as far from it as a network that learns alone."""
+    rng, learning = np.random.default_rng(4), learner(16)
+    alone = ValueLearning(ValueNetwork(members=1), SPREAD, 16, np.random.default_rng(0))
+    with torch.no_grad():
+        for all_members, own in zip(learning._network.parameters(), alone._network.parameters(), strict=True):
+            all_members.copy_(all_members[:1].expand_as(all_members))
+            own.copy_(all_members[:1])
+    before = [p.detach().clone() for p in alone._network.parameters()]
+    rounds = [a_round(16, rng) for _ in range(4)]
+    for one in (learning, alone):
+        for given in rounds:
+            one.add(*given)
+        one.fit(1.0)
+
+    def moved(one):
+        """How far each member came."""
+        pairs = zip(one._network.parameters(), before, strict=True)
+        return torch.stack([(p - start).flatten(1).norm(dim=1) for p, start in pairs]).norm(dim=0).tolist()
+
+    for p in learning._network.weights:
+        assert not any(torch.equal(p[a], p[b]) for a, b in combinations(range(4), 2))
+    assert moved(learning) == pytest.approx(moved(alone) * 4, rel=0.15)
+
+
+def test_no_gradient_is_left_behind():
+    """Whoever learns next clips the gradients of the whole policy: these must not count there."""
+    learning = learner(5)
+    learning.add(*a_round(5, np.random.default_rng(0)))
+    learning.fit(1.0)
+    assert torch.nn.utils.clip_grad_norm_(learning._network.parameters(), 1.0) == 0.0
 
 
 ERRORS = spread_of(LEVELS["professional"])
