@@ -1,5 +1,6 @@
 """Are the value's targets those of the docstring, recomputed by hand, and does the network come to them?"""
 
+import pickle
 from itertools import combinations
 
 import numpy as np
@@ -145,6 +146,35 @@ def test_no_gradient_is_left_behind():
     learning.add(*a_round(5, np.random.default_rng(0)))
     learning.fit(1.0)
     assert torch.nn.utils.clip_grad_norm_(learning._network.parameters(), 1.0) == 0.0
+
+
+def test_learning_goes_on_from_a_saved_state_bit_for_bit():
+    """Saved at every step of a cycle of refreshes; the state is a copy as soon as it is a file."""
+    rng = np.random.default_rng(5)
+    rounds = [a_round(8, rng) for _ in range(12)]
+
+    def go_on(learning, some):
+        for one in some:
+            learning.add(*one)
+            learning.fit(0.7)
+
+    whole = learner(8, seed=9)
+    go_on(whole, rounds)
+    assert learner(8).mean_target is None
+    for stop in (0, 1, 5, 8, 11):
+        first = learner(8, seed=9)
+        go_on(first, rounds[:stop])
+        saved = pickle.dumps((first.get_state(), first._network.state_dict(), first._rng.bit_generator.state))
+        go_on(first, rounds[stop:])  # what comes later does not reach the file
+        state, weights, generator = pickle.loads(saved)
+        second = learner(8, seed=10)
+        second._network.load_state_dict(weights)
+        second._rng.bit_generator.state = generator
+        second.set_state(state)
+        go_on(second, rounds[stop:])
+        for one in (first, second):
+            assert all(map(torch.equal, whole._network.parameters(), one._network.parameters()))
+            assert list(one.losses) == list(whole.losses) and one.mean_target == whole.mean_target
 
 
 ERRORS = spread_of(LEVELS["professional"])
