@@ -4,14 +4,11 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from cases import ALL, ENDGAME, IN_HAND, OPEN, state_of, stroke_of
+from cases import ALL, IN_HAND, OPEN, state_of, stroke_of
 
 import snooker_env as sn
-from snooker_env.planning import Position, Positions
-from snooker_env.players import Ranked, Strokes
+from snooker_env.planning import Positions
 from snooker_env.tasks import choice_of
-
-QUICK = {"samples": 30, "visits": 2}
 
 
 class Soft:
@@ -44,22 +41,6 @@ class OfFrames:
         return np.array([[-0.5, 0.0, 0.0, 0.5, -1.0]], np.float32)
 
 
-class Ranking:
-    """Two strokes with scores; the second one pots more surely."""
-
-    def at(self, rules):
-        choices = [choice_of(0, 8, 0, 0), choice_of(0, 3, 1, 2)]
-        values, _ = sn.Planner({"action": "discrete"}).strokes_of(ENDGAME, [0, 0], choices)
-        self.ranked = Ranked(Strokes(values), np.array([2.0, 1.0]))
-        return self
-
-    def rank(self, positions, seeds):
-        return [self.ranked]
-
-    def play(self, positions, seeds):
-        return self.ranked.strokes[:1]
-
-
 def test_a_players_stroke_is_read_as_the_environment_reads_it():
     """Squirt and all: the same stroke from the same place ends where the player's own action does."""
     for player, position in ((Soft(), OPEN), (Aiming(), OPEN), (Aiming(), IN_HAND)):
@@ -77,26 +58,6 @@ def test_a_players_stroke_is_read_as_the_environment_reads_it():
     assert stroke_of(Aiming(), OPEN).side == pytest.approx(0.3)
 
 
-def test_a_player_who_cannot_place_the_cue_ball_plays_from_a_good_place():
-    """From the usual place a colour is in the way of the only red; from the side it can be potted."""
-    hidden = {"yellow": (0.0, -0.9), "green": (-0.03, -0.8), "blue": (0.03, -0.8), "pink": (0.1, -0.7)}
-    position = Position(in_hand=True, reds=[(0.0, -0.2)], **hidden, black=(-0.1, -0.7))
-    usual = Position(**position.to_dict() | {"in_hand": False})
-    assert sn.planning.pots(usual).ball[0, 0] == -1
-    for agent in (Soft(), "search", "ghost_ball"):
-        place = stroke_of(agent, position).place
-        assert sn.planning.pots(Position(**position.to_dict() | {"cue": place})).ball[0, 0] == 1
-
-
-def test_a_ranking_chooses():
-    """Its first stroke pots less surely, and so comes second where both are shown."""
-    (first,) = sn.advise(ENDGAME, agent=Ranking(), n=1, samples=200, visits=0)
-    advice = sn.advise(ENDGAME, agent=Ranking(), n=2, samples=200, visits=0)
-    assert advice[0].points > advice[1].points
-    assert advice.agent == "Ranking" and first == advice[1]
-    assert len(sn.advise(ENDGAME, agent=Soft(), n=3, **QUICK)) == 1
-
-
 def test_a_player_of_frames_sees_the_frame_and_a_visit_as_one():
     env = sn.SnookerEnv(task="frame", opponent="ghost_ball")
     env.reset(seed=2, options={"breaker": 0})
@@ -107,25 +68,3 @@ def test_a_player_of_frames_sees_the_frame_and_a_visit_as_one():
     assert len(OfFrames.seen) == 1 + len(ALL)
     assert len({seen.tobytes() for seen in OfFrames.seen}) == 1 + len(ALL)
     assert {round(stroke.aim, 6) for stroke in visits} == {round(np.pi / 2, 6)}
-
-
-def test_a_choice_in_a_frame_is_asked_as_the_stroke_to_come():
-    """After a foul of the opponent: advice is about the stroke, whatever the player would choose."""
-    from snooker_env.play.session import Session
-
-    session = Session(seed=1)
-    balls = Position(cue=(0.0, -0.5), reds=[(0.6, 1.4)], blue=(0.3, -0.5))
-    session.set_up(balls, scores=(90, 0), striker=0, free_ball=False)
-    session.play(sn.advice.CueStroke(speed=0.3, aim=-1.0))
-    assert session.frame.phase == "choice"
-    assert stroke_of(OfFrames(), session.position).aim == pytest.approx(np.pi / 2)
-    assert sn.advise(session.position, **QUICK)[0].win < 0.05  # of the one who plays on, far behind
-
-
-@pytest.mark.parametrize("name", ["planner", "ppo_value_club", "test_asked_players:Soft"])
-@pytest.mark.parametrize("position", ["open", "respotted", "snookered"])
-def test_players_are_asked_by_their_names(name, position):
-    position = ALL[position]
-    advice = sn.advise(position, agent=name, n=2, **QUICK)
-    assert len(advice) >= 1 and advice.agent == name
-    assert (advice[0].place is not None) == position.in_hand

@@ -1,14 +1,11 @@
 """Do the balls stop where destinations say?"""
 
-import json
-
 import numpy as np
 import pytest
-from cases import ENDGAME, IN_HAND, OPEN, played
+from cases import ENDGAME, played
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke, destinations
-from tests.refusals import refused
 
 
 @pytest.fixture(scope="module")
@@ -40,22 +37,6 @@ def test_without_noise_it_is_the_one_shot(blue):
     assert np.allclose(stops.cue[0], state["positions"][0], atol=2e-3)
 
 
-def test_an_in_off_and_a_stroke_at_nothing():
-    straight = sn.Position(cue=(0.0, 0.0), black=(0.0, 1.4605))
-    miss = destinations(straight, CueStroke(speed=1.0, aim=-np.pi / 2), samples=50)
-    assert miss.object_ball == -1 and miss.foul == 1.0 and miss.potted == 0.0 and miss.ball.shape == (0, 2)
-    assert miss.cue.shape == (50, 2)
-    at_pocket = destinations(straight, {"speed": 2.0, "aim": float(np.arctan2(-1.7845, 0.889))}, samples=50)
-    assert at_pocket.in_off > 0.9 and at_pocket.foul == 1.0
-    assert len(at_pocket.cue) == round(50 * (1 - at_pocket.in_off))
-
-
-def test_all_attributes_are_json(blue):
-    stops = destinations(ENDGAME, blue, noise="club", samples=500)
-    kept = json.loads(json.dumps(stops.to_dict()))
-    assert len(kept["cue"]) == len(stops.cue) and kept["potted"] == stops.potted
-
-
 def test_seeds_and_common_errors(blue):
     first, again, other = (destinations(ENDGAME, blue, seed=seed) for seed in (1, 1, 2))
     assert np.array_equal(first.cue, again.cue) and not np.array_equal(first.cue, other.cue)
@@ -65,25 +46,3 @@ def test_seeds_and_common_errors(blue):
     empty = sn.Position(cue=(-0.6, 0.6), black=(0.6, -1.5))
     near = destinations(empty, soft).cue - destinations(empty, turned).cue
     assert 0.0 < np.abs(near).max() < 1e-4
-
-
-def test_in_hand_the_place_counts():
-    strokes = [CueStroke(speed=1.0, aim=1.57, place=(x, -1.1)) for x in (-0.2, 0.2)]
-    left, right = (destinations(IN_HAND, stroke, noise="none").cue[0] for stroke in strokes)
-    assert left[0] < 0 < right[0]
-
-
-def test_wrong_strokes_are_refused():
-    soft = {"speed": 2.0, "aim": 0.0}
-    for stroke, *said in (
-        (soft | {"speed": 9.0}, "speed", "9.0", "[0.2, 7]"),
-        ({"speed": 2.0}, "stroke", "without 'aim'", "must be a CueStroke"),
-        (soft | {"spin": 1}, "field of the stroke", "spin", "'speed'"),
-        (soft | {"side": 0.4, "top": 0.4}, "side, top", "(0.4, 0.4)", "within the disc"),
-        (soft | {"elevation": 1.3}, "elevation", "1.3", "must be"),
-        (soft | {"place": (0.0, -1.1)}, "place", "(0.0, -1.1)", "must be None: the cue ball is not in hand"),
-    ):
-        refused(lambda stroke=stroke: destinations(OPEN, stroke), *said)
-    wrong = soft | {"place": (0.0, 0.0)}
-    refused(lambda: destinations(IN_HAND, wrong), "place", "(0, 0)", "lines of the D")
-    refused(lambda: destinations(OPEN, soft, samples=0), "samples", "0", "must be an integer")

@@ -5,7 +5,7 @@ from math import asin, atan2, hypot
 
 import numpy as np
 import pytest
-from cases import SNOOKERED, Given
+from cases import Given
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke
@@ -13,7 +13,6 @@ from snooker_env.play.session import Session
 
 TABLES = 30
 QUICK = {"samples": 60, "visits": 2}
-ERRORS = ", with a professional's errors:"
 
 
 @cache
@@ -90,20 +89,6 @@ def test_where_no_fair_stroke_is_found_the_least_bad_is_said_to_be_that():
         assert len(advice) == 1 and foul(advice[0])
         assert advice[0].words.startswith(f"no fair stroke found: {advice[0].kind}")
         assert f"fair {100 * advice[0].chance:.0f} %" in advice[0].words
-
-
-def test_a_heading_says_by_what():
-    last, pots = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), f"Pots by points expected{ERRORS}"
-    assert sn.advise(last, agent="search", **QUICK).order == pots
-    others = sn.advise(SNOOKERED, agent="random", **QUICK).order
-    assert others == f"Strokes without a pot by how often they are fair{ERRORS}"
-    long = sn.Position(in_hand=True, black=(0.0, 1.4605))
-    both = sn.advise(long, agent="random", n=20, **QUICK)
-    assert {one.kind == "pot" for one in both} == {True, False} and both[0].kind != "pot"
-    assert (
-        both.order
-        == f"Strokes without a pot by how often they are fair, then pots by points expected{ERRORS}"
-    )
 
 
 def test_a_pot_that_hardly_ever_goes_is_suggested_only_where_nothing_better_is():

@@ -1,8 +1,5 @@
 """Does advice of a frame say why: the chance to win, what the other finds, where the cue ball goes?"""
 
-import json
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from cases import ENDGAME, HIDDEN, OPEN, SNOOKERED, Given, played, stroke_of
@@ -12,7 +9,6 @@ from snooker_env.advice import CueStroke, stroke_words
 from snooker_env.advice.practice import one_position
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position, Positions, clear_paths
-from tests.refusals import refused
 
 QUICK = {"samples": 60, "visits": 4, "scores": (20, 24)}
 LAST = Position(cue=(0.0, 0.4), black=(0.0, 1.0))
@@ -83,17 +79,6 @@ def test_what_the_other_finds_is_said_and_is_so():
     assert (made.kind, made.win, made.replies, made.leaves) == ("pot", 1.0, None, None) and made.chance == 1.0
 
 
-def test_a_missed_pot_says_what_it_leaves():
-    far = Position(cue=(0.3, -1.5), pink=(-0.5, 1.2), black=(0.0, 1.4605))
-    pot = Given(stroke_of("search", far, noise="club"))
-    (one,) = sn.advise(far, agent=pot, noise="club", **QUICK | {"samples": 200, "visits": 60})
-    assert one.kind == "pot" and one.chance < 0.8
-    assert (
-        f"leaves the opponent {stroke_words.points_words(one.leaves)} if missed" in one.words
-        and 0.0 < one.leaves < 13.0
-    )
-
-
 def test_how_often_he_is_snookered_is_as_in_the_environment():
     """By independent strokes in visits, whose balls stop where those of frames do: the red beside the brown is hidden if
     the cue ball comes near enough to it."""
@@ -112,17 +97,6 @@ def test_how_often_he_is_snookered_is_as_in_the_environment():
             and f"snookered in {100 * one.snookers:.0f} %"
             in stroke_words.reply_words(one.kind, 0.0, 0.0, one.snookers)
         )
-
-
-def test_fouls_and_points_are_those_of_the_frame():
-    """With a free ball any ball may be struck first, and a colour counts as the ball on."""
-    at = one_position(Position(cue=(0.3, 1.1), reds=[(-0.6, -0.5)], black=(0.0, 1.4605), on="red"), (5, 5))
-    stroke = stroke_of("search", Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), noise="none")
-    (foul,) = sn.advise(at, agent=Given(stroke), noise="none", n=1)
-    assert foul.stroke != stroke  # the black is not on
-    at.game[:, columns.FREE_BALL] = 1
-    (free,) = sn.advise(at, agent=Given(stroke), noise="none", visits=0)
-    assert (free.stroke, free.kind, free.ball, free.points) == (stroke, "pot", 21, 1.0)
 
 
 def test_the_decision_after_a_foul_and_the_lot_are_behind_the_stroke():
@@ -158,50 +132,6 @@ def test_where_the_cue_ball_goes_in_words():
     assert out.kind == "escape" and out.words.startswith("escape off the ")
 
 
-def test_a_touching_ball_is_played_away_from():
-    touching = Position(cue=(0.0, 0.5), reds=[(0.0, 0.5525001)], black=(0.0, 1.4605))
-    away = Given(CueStroke(speed=1.5, aim=-np.pi / 2 + 0.3))
-    (one,) = sn.advise(touching, agent=away, noise="none", scores=(0, 0))
-    assert (one.kind, one.ball, one.first) == ("safety", 1, -1)
-    assert one.words.startswith("safety away from the touching red, 1.5 m/s")
-    (visit,) = sn.advise(touching, agent=away, noise="none")
-    assert visit.kind == "contact" and visit.words.startswith("away from the touching red, 1.5 m/s")
-
-
-def test_it_is_json_and_of_its_seed_alone():
-    advice = sn.advise(HIDDEN, n=2, **QUICK)
-    kept = json.loads(json.dumps(advice.to_dict()))
-    assert kept["scores"] == [20, 24] and kept["suggestions"][0]["win_interval"] == list(
-        advice[0].win_interval
-    )
-    assert kept == sn.advise(HIDDEN, n=2, **QUICK).to_dict()
-    assert sn.advise(HIDDEN, n=2, seed=1, **QUICK).to_dict() != kept
-    visit = sn.advise(OPEN, n=1, samples=10, visits=0)
-    assert visit.scores is None and visit[0].win is None and "win chance" not in visit[0].words
-    assert replace(visit[0], win=0.4).figure == 0.4 and visit[0].figure == visit[0].points
-
-
-WRONG = (
-    ((1,), "scores", "must be two integers"),
-    (7, "scores", "must be two integers"),
-    ((0, -1), "scores[1]", "must be an integer in [0, 1000]"),
-    ((0.5, 0), "scores[0]", "must be an integer"),
-)
-
-
-@pytest.mark.parametrize(("scores", "field", "allowed"), WRONG, ids=[str(wrong[0]) for wrong in WRONG])
-def test_wrong_scores_are_refused(scores, field, allowed):
-    with pytest.raises(ValueError, match="scores") as error:
-        sn.advise(OPEN, scores=scores)
-    assert str(error.value).startswith(f"{field} = ") and allowed in str(error.value)
-
-
-def test_a_frame_has_its_own_scores_and_options():
-    refused(lambda: sn.advise(one_position(OPEN, (0, 0)), scores=(1, 2)), "scores", "(1, 2)", "must be None")
-    refused(lambda: sn.advise(OPEN, options={"miss": "off"}), "key of options", "miss", "'physics'")
-    assert sn.advise(OPEN, options={"miss": "clear_path"}, n=1, **QUICK)[0].win is not None
-
-
 def test_a_player_of_visits_does_not_advise_a_frame():
     """It knows no safety and no score: a pot of 4 % would be its first suggestion. Who knows frames is said."""
     network = type("Seen", (), {"act": lambda self, observations, masks, seeds: np.zeros((len(seeds), 4))})
@@ -212,41 +142,3 @@ def test_a_player_of_visits_does_not_advise_a_frame():
             sn.advise(OPEN, agent=agent, **QUICK)
     for agent in ("stroke_value", "tactician_253", Given(CueStroke(speed=0.9, aim=np.pi / 2))):
         assert sn.advise(OPEN, agent=agent, n=1, **QUICK)[0].win is not None
-
-
-@pytest.mark.parametrize(
-    ("noise", "words"),
-    [
-        ("none", "without errors"),
-        ("club", "with a club player's errors"),
-        ({"aim_deg": 0.1}, "with the given errors"),
-    ],
-)
-def test_the_order_says_with_whose_errors(noise, words):
-    few: dict = {"noise": noise, "n": 1, "samples": 20, "visits": 0}
-    assert sn.advise(ENDGAME, agent="search", **few).order == f"Pots by points expected, {words}:"
-    assert sn.advise(ENDGAME, scores=(0, 0), **few).order == f"By chance to win, {words}:"
-
-
-def test_scores_decide_what_the_chance_is():
-    ahead, behind = (sn.advise(HIDDEN, n=1, **QUICK | {"scores": pair})[0] for pair in ((60, 0), (0, 60)))
-    assert behind.win < 0.2 < 0.8 < ahead.win
-
-
-def test_figures_in_words():
-    say = stroke_words.reply_words
-    assert (
-        say("safety", 0.12, 3.04, 0.34)
-        == "the opponent pots next in 12 %, leaves the opponent 3 points, snookered in 34 %"
-    )
-    assert say("escape", 0.5, 12.6, 0.004) == "the opponent pots next in 50 %, leaves the opponent 13 points"
-    assert (
-        say("pot", 0.5, 18.2, 0.0) == "leaves the opponent 18 points if missed"
-        and say("pot", None, None, None) == ""
-    )
-    assert stroke_words.against_words(0.55, "pot") == " against 55 % for the best pot"
-    assert stroke_words.against_words(0.55, "") == " against 55 % for the next best"
-    assert (
-        stroke_words.what_words("safety", 3, -1, 3, "thin on the left")
-        == "safety off the red, thin on the left"
-    )

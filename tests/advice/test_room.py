@@ -1,6 +1,5 @@
 """Does advice say how the cue finds room, and what is in its way?"""
 
-import json
 from dataclasses import replace
 from math import degrees, pi
 from typing import Any
@@ -9,9 +8,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.advice import CueStroke, Room, advise
-from snooker_env.advice.intentions import drop_alike, intend
-from snooker_env.advice.practice import practice_of
+from snooker_env.advice import CueStroke
 from snooker_env.advice.room import room_for
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import HALF_WIDTH
@@ -80,35 +77,3 @@ def test_the_room_said_is_the_room_played():
         assert env.history[-1].room == tuple(n for n in ("raised", "moved", "unplayable") if getattr(said, n))
         seen += said.raised
     assert seen > 10
-
-
-def test_suggestions_say_their_room():
-    real = advise(FROZEN, n=3, samples=20, visits=2, options={"cue": "real"})
-    assert any(one.room.raised and one.room.words in one.words for one in real)
-    for one in real:
-        assert one.room == room(FROZEN, **one.stroke.to_dict())
-        assert json.loads(json.dumps(one.to_dict()))["room"]["words"] == one.room.words
-    free = advise(FROZEN, n=3, samples=20, visits=2)
-    assert not any(one.room.raised or "over the rail" in one.words for one in free)
-
-
-def test_strokes_that_differ_in_their_room_alone_are_one():
-    practice, at = practice_of("none", {"cue": "real"}), Positions.of(FROZEN)
-    strokes = [replace(ACROSS, top=top) for top in (0.1, 0.0, -0.1)]
-    some = intend(practice, at, strokes)
-    assert len({one.words for one in some}) == len({one.room.words for one in some}) == 3
-    assert drop_alike(some) == some[:1]
-    screws = intend(practice, at, [replace(ACROSS, speed=5.0, top=top) for top in (-0.5, -0.25)])
-    assert len(drop_alike(screws)) == 1  # both are played with the one tip that the cue reaches
-    raised = intend(practice, at, [replace(ACROSS, aim=0.5 * pi, elevation=e) for e in (0.0, 0.4)])
-    assert len(drop_alike(raised)) == 2  # a cue raised on purpose is another stroke
-
-
-def test_words_of_a_room():
-    nothing = {"raised": False, "moved": False, "unplayable": False, "over": None, "behind": 0.0}
-    assert Room(elevation=0.3, side=0.0, top=0.0, **nothing).words == ""
-    hardly = nothing | {"raised": True, "over": "rail"}
-    assert Room(elevation=0.008, side=0.0, top=0.0, **hardly).words == ""
-    moved = nothing | {"moved": True, "over": "red 3"}
-    said = Room(elevation=0.5, side=-0.1, top=0.2, **moved).words
-    assert said == "tip moved up to 0.20 above the middle, 0.10 left over a red"

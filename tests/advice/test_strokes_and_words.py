@@ -4,11 +4,11 @@ from math import atan2, cos, pi, sin
 
 import numpy as np
 import pytest
-from cases import OPEN, Given, played
+from cases import OPEN, Given
 from scipy.stats import binomtest
 
 import snooker_env as sn
-from snooker_env.advice import POCKET_WORDS, CueStroke, stroke_words
+from snooker_env.advice import CueStroke, stroke_words
 from snooker_env.advice.outcomes import expect_points, wilson
 from snooker_env.physics.events import EventKind
 from snooker_env.tasks import box_actions
@@ -37,36 +37,6 @@ def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
     (one,) = sn.advise(OPEN, n=1, samples=10, visits=0)
     assert CueStroke.of(one) is one
     assert one.stroke == CueStroke.of({"speed": one.speed, "aim": one.aim, "side": one.side, "top": one.top})
-
-
-def test_pockets_are_named_as_seen_from_baulk():
-    """The yellow pocket is the corner beside the yellow spot, on the right."""
-    yellow, green = sn.geometry.COLOUR_SPOTS[:2]
-    for index, (x, y) in enumerate(sn.geometry.POCKET_PLACES.tolist()):
-        name = POCKET_WORDS[index]
-        if y < 0:
-            near = min((yellow, green), key=lambda spot: np.hypot(spot[0] - x, spot[1] - y))
-            assert name == ("yellow pocket" if near is yellow else "green pocket")
-        else:
-            side = "right" if x > 0 else "left"
-            assert name == (f"top {side}" if y > 0 else f"{side} middle")
-
-
-@pytest.mark.parametrize(
-    ("speed", "top"), [(2.0, 0.0), (1.5, -0.3), (4.0, -0.4), (3.0, 0.3), (2.0, 0.45), (1.0, -0.2), (0.5, 0.0)]
-)
-@pytest.mark.parametrize("distance", [0.0, 0.1, 0.5, 1.2])
-def test_what_is_left_of_the_spin_is_what_the_simulator_says(speed, top, distance):
-    physics = sn.Physics()
-    v, w = sn.strike(speed, pi / 2, 0.0, top)
-    shot = sn.simulate([(0.0, -1.7)], [v[:2]], [w], table=None)
-    times = np.linspace(0.0, shot.duration, 40_001)
-    r, v, w = shot.at(times)
-    k = int(np.argmax(r[:, 0, 1] + 1.7 >= distance))
-    if r[k, 0, 1] + 1.7 < distance:
-        pytest.skip("it does not run so far")
-    expected = -w[k, 0, 0] * physics.R / v[k, 0, 1]
-    assert stroke_words.rolling(speed, top, distance, physics) == pytest.approx(expected, abs=2e-2)
 
 
 def test_spin_in_words():
@@ -100,18 +70,6 @@ def test_the_cushion_of_an_escape_is_the_one_that_the_ball_meets():
     assert len(seen) == 4
 
 
-def test_contacts_in_words():
-    """As seen along the path: a ball whose middle lies to the left of it is struck on its right."""
-    reach, names = 2 * 0.02625, ("full", "three-quarter ball", "half-ball", "quarter-ball", "thin")
-    for aim in (0.0, 1.0, -2.5):
-        for aside, said in zip((0.0, 0.25, 0.5, 0.75, 0.95), names, strict=True):
-            for sign, side in ((1, "right"), (-1, "left")):
-                x, y = cos(aim) - sign * aside * reach * sin(aim), sin(aim) + sign * aside * reach * cos(aim)
-                assert stroke_words.contact_words(x, y, aim) == (
-                    said if said == "full" else f"{said} on the {side}"
-                )
-
-
 def test_what_a_stroke_does_in_words():
     say = stroke_words.what_words
     assert say("pot", 19, 2, 19) == "blue, right middle" and say("pot", 5, 5, 5) == "red, left middle"
@@ -131,16 +89,6 @@ def test_what_a_stroke_does_in_words():
     assert stroke_words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")
     assert stroke_words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
     assert stroke_words.place_words(0, -1.0475) == "from the brown spot"
-
-
-def test_the_words_of_a_suggestion_are_its_data():
-    for one in sn.advise(OPEN, n=4, samples=50, visits=5):
-        parts = one.words.split(", ")
-        assert parts[0] == "red" and parts[1] == POCKET_WORDS[one.pocket]
-        assert parts[2] == f"{one.speed:.1f} m/s"
-        assert f"pot {100 * one.chance:.0f} %" in parts and one.words.endswith(" expected")
-        points, _, (state,) = played(OPEN, one.stroke, 1, noise="none")
-        assert points[0] >= 1 and not state["on_table"][one.ball]
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say():

@@ -31,7 +31,3 @@ def test_visits_are_played_on_stroke_by_stroke(noise):
     own = [one_by_one(position, visit, 4, 7, noise) for position, visit in asked]
     assert found.tolist() == [total for total, _ in own]
     assert max(strokes for _, strokes in own) > 2 and found.max() > 5.0
-
-
-def test_no_visits_bring_no_points():
-    assert play_on(practice_of("club"), Positions.of(OPEN)[:0], np.empty(0, np.int64), 0).shape == (0,)

@@ -6,8 +6,6 @@ import shlex
 import subprocess
 from pathlib import Path
 
-import pytest
-
 import snooker_env.players.resolver as resolver
 from agents import tournament
 from agents.evaluate import parser
@@ -51,22 +49,6 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
             for path in (paths if equals else label).split(","):
                 player, at, model = path.partition("@")
                 assert resolver.is_name(player) and (not at or (equals and model in levels()))
-
-
-def test_a_run_that_fails_stops_the_whole(tmp_path):
-    """And its log says why."""
-    fake = tmp_path / "python"
-    fake.write_text("#!/bin/sh\necho no memory\nexit 3\n")
-    fake.chmod(0o755)
-    done = make(tmp_path / "runs", ONLY="ppo_value_club", PATH=f"{tmp_path}:{os.environ['PATH']}")
-    assert done.returncode != 0 and "ppo_value_club failed" in done.stderr
-    assert (tmp_path / "runs/ppo_value_club.txt").read_text() == "no memory\n"
-
-
-@pytest.mark.parametrize("only", ["nothing-", "value-(0"])
-def test_a_choice_of_no_run_is_an_error(tmp_path, only):
-    done = make(tmp_path / "runs", ONLY=only, LIST="")
-    assert done.returncode == 2 and f"ONLY='{only}' names no run" in done.stderr
 
 
 def test_the_command_of_the_ladder_is_the_one_that_made_the_file():

@@ -45,7 +45,7 @@ TRAININGS = {
         (2,),
     ),
     "expert iteration": (start_training(EXPERT), go_on_training, weights, (1, 11, 17, 18, 19)),
-    "strokes": (start_training(STROKES), go_on_training, arrays("strokes.npz"), (2, 20)),
+    "strokes": (start_training(STROKES), go_on_training, arrays("strokes.npz"), (20,)),
     "worth": (learn, learn, arrays("worth.npz"), (2,)),
 }
 """How each is begun and gone on with, what it leaves, and before which rounds it is stopped."""

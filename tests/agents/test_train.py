@@ -18,7 +18,6 @@ import train
 from agents.evaluation import training_summary
 from agents.learning import agent_training, expert_iteration, hyperparameters
 from agents.learning.agent_training import recipe_of
-from agents.learning.hyperparameters import names
 from agents.learning.loop import Loop
 from agents.learning.settings import Settings
 from agents.players.trained import load_player
@@ -128,15 +127,6 @@ def test_kill_9_leaves_a_run_that_resume_finishes(finished, tmp_path):
     assert results(out)["curve"] == results(finished)["curve"]
 
 
-@pytest.mark.slow
-def test_ctrl_c_ends_it_in_order(tmp_path):
-    process = launch(tmp_path / "run", "--steps", "100000")
-    os.killpg(process.pid, signal.SIGINT)  # what a terminal does
-    output, _ = process.communicate(timeout=120)
-    assert process.returncode == 130, output
-    assert "--resume" in output and "Traceback" not in output
-
-
 def test_resume_refuses_other_settings(finished, refused):
     again = [train.main, "--resume", "--out", finished]
     error = refused(*again, "--noise", "club")
@@ -148,65 +138,14 @@ def test_existing_run_is_not_overwritten(finished, tmp_path, refused):
     before = (finished / "checkpoint.pkl").read_bytes()
     assert "--resume continues it" in refused(train.main, "--out", finished)
     assert (finished / "checkpoint.pkl").read_bytes() == before
-    (tmp_path / "thesis.txt").write_text("mine")
+    (file := tmp_path / "thesis.txt").write_text("mine")
     assert "thesis.txt" in refused(train.main, "--out", tmp_path)
-    assert "must be the folder of a run" in refused(train.main, "--resume", "--out", tmp_path)
-    # wrong options are reported first
-    assert "noise = 'pro'" in refused(train.main, "--noise", "pro", "--out", tmp_path)
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    str.split(
-        "layout=moon layout=held_out noise=drunk fidelity=rough agent=dqn set=gamma set=charm=2 envs=-1 steps=-1 "
-        "eval-visits=1 eval-visits=2049 seed=-1 seed=x seed=4294967296 start=nowhere start=pyproject.toml"
-    ),
-)
-def test_bad_option_gives_one_clear_error(tmp_path, refused, monkeypatch, wrong):
-    monkeypatch.setattr(sn, "warmup", None)  # nothing is compiled before
-    option, _, value = wrong.partition("=")
-    error = refused(train.main, "--out", tmp_path / "run", f"--{option}", value)
-    assert option in error and value in error and not (tmp_path / "run").exists()
-
-
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ("gamma=abc", "gamma = 'abc': must be a finite number in [0, 1]"),
-        ("gamma=2", "gamma = 2: must be a finite number in [0, 1]"),
-        ("gamma=-1", "gamma = -1"),
-        ("gae_lambda=5", "gae_lambda = 5"),
-        ("gamma=0 gamma=0.5", "must give gamma only once"),
-        ("n_epochs=abc", "n_epochs = 'abc': must be an integer"),
-        ("n_epochs=0", "n_epochs = 0"),
-        ("ent_coef=x", "ent_coef = 'x'"),
-        ("batch_size=0", "batch_size = 0"),
-        ("n_steps=0", "n_steps = 0"),
-        ("learning_rate=abc", "learning_rate = 'abc'"),
-        ("learning_rate=lin_abc", "learning_rate = 'lin_abc': must be a number in [0, 1], or lin_X"),
-        ("algo=foo", "'algo=foo': must be KEY=VALUE with KEY one of env_kwargs, n_steps"),
-        ("policy=Foo", "'policy=Foo'"),
-        ("n_envs=0", "(n_timesteps, n_envs, imitation have options of their own)"),
-        ("env_kwargs=3", "env_kwargs = 3: must be a dict"),
-        ("env_kwargs={'fun':1}", "env_kwargs = 'fun': must be one of 'action'"),
-        ("env_kwargs={'aim':'target'}", "action = 'box': must be 'discrete'"),
-        ("env_kwargs={'action':'discrete','layout':'held_out'}", "layout = 'held_out'"),
-        ("env_kwargs={'action':'discrete','fidelity':[]}", "fidelity = []"),
-    ],
-)
-def test_bad_hyperparameter_gives_one_clear_error(tmp_path, refused, monkeypatch, changes, said):
-    monkeypatch.setattr(sn, "warmup", None)
-    assert said in refused(train.main, "--out", tmp_path / "run", "--set", *changes.split())
-    assert not (tmp_path / "run").exists()
-
-
-def test_a_folder_that_cannot_be_written_is_refused(tmp_path, refused, monkeypatch):
-    monkeypatch.setattr(sn, "warmup", None)
-    file = tmp_path / "file"
-    file.write_text("mine")
     assert "must be a folder, new or empty" in refused(train.main, "--out", file)
     assert "must be a folder that can be written" in refused(train.main, "--out", file / "run")
     assert file.read_text() == "mine"
+    assert "must be the folder of a run" in refused(train.main, "--resume", "--out", tmp_path)
+    # wrong options are reported first
+    assert "noise = 'pro'" in refused(train.main, "--noise", "pro", "--out", tmp_path)
 
 
 def test_resume_refuses_a_broken_checkpoint(finished, tmp_path, refused):
@@ -225,45 +164,28 @@ def test_resume_refuses_a_broken_checkpoint(finished, tmp_path, refused):
         assert f"resume = '{file}': must be a complete checkpoint" in error
 
 
-@pytest.fixture
-def judged(finished, monkeypatch):
-    """Called with the settings of an agent: the options under which its evaluation plays."""
-    model = load_player(finished).model
-
-    def options_of(agent="ppo_value", **settings):
-        played = []
-        monkeypatch.setattr(training_summary, "play_visits", lambda player, n, **more: played.append(more))
-        monkeypatch.setattr(training_summary, "summary", lambda visits: None)
-        recipe = recipe_of(Settings(agent=agent, **settings))
-        training_summary.evaluate(recipe, model, 2, Loop("", [], None, "", 1, quiet=True))
-        assert len(played) == 3
-        return [{name: value for name, value in one.items() if name != "each"} for one in played]
-
-    return options_of
-
-
-def test_evaluation_plays_under_the_options_of_training(judged):
-    """All options but layout and reward, the environment's own noise where none is given."""
+def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
+    """All options but layout and reward, the environment's own noise where none is given, at the usual fidelity."""
+    model, played = load_player(finished).model, []
+    monkeypatch.setattr(training_summary, "play_visits", lambda player, n, **more: played.append(more))
+    monkeypatch.setattr(training_summary, "summary", lambda visits: None)
     physics = {"preset": "paper", "mu_bb": "marlow"}
     level = {"noise": "club", "table": "tight", "physics": physics, "fidelity": "fast"}
     whole = {"action": "discrete", "layout": "line_up", "reward": "pots", **level}
-    for changes, wanted in (
-        ((), {"noise": "professional", "cue": "real"}),
-        ((f"env_kwargs={whole}",), level),
-        (("env_kwargs={'action': 'discrete'}",), {"noise": "none"}),
+    for settings, wanted in (
+        ({}, {"noise": "professional", "cue": "real"}),
+        (
+            {"agent": "ppo_target", "fidelity": "fast"},
+            {"noise": "professional", "cue": "real", "fidelity": "fast"},
+        ),
+        ({"set": (f"env_kwargs={whole}",)}, level),
+        ({"set": ("env_kwargs={'action': 'discrete'}",)}, {"noise": "none"}),
     ):
-        assert judged(set=changes) == [{"first_seed": tables_of("held_out", 2)} | wanted] * 3
-
-
-@pytest.mark.parametrize("agent", names())
-def test_agents_are_judged_at_the_usual_fidelity(judged, agent):
-    """Those whose recipe learns at another too, unless one is asked for."""
-    cases = [({}, None), ({"fidelity": "fast"}, "fast")]
-    if agent == "ppo_value":
-        changes = ("env_kwargs={'action': 'discrete', 'fidelity': 'reference'}",)
-        cases.append(({"set": changes}, "reference"))
-    for settings, wanted in cases:
-        assert [one.get("fidelity") for one in judged(agent, **settings)] == [wanted] * 3
+        recipe = recipe_of(Settings(**{"agent": "ppo_value"} | settings))
+        training_summary.evaluate(recipe, model, 2, Loop("", [], None, "", 1, quiet=True))
+        seen = [{name: value for name, value in one.items() if name != "each"} for one in played]
+        assert seen == [{"first_seed": tables_of("held_out", 2)} | wanted] * 3
+        del played[:]
 
 
 def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
@@ -280,52 +202,24 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
     assert "must be a model of ppo_value" in error
 
 
-def test_an_interruption_before_the_first_save_is_reported_in_one_line(tmp_path):
-    code = f"""
-import runpy, sys, snooker_env
-def stop(): raise KeyboardInterrupt
-snooker_env.warmup, sys.argv = stop, {["train.py", *TINY, "--out", str(tmp_path / "run")]!r}
-runpy.run_path("train.py", run_name="__main__")
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
-    assert done.returncode == 130
-    again, said = done.stderr.splitlines()
-    assert again.startswith("Continue with: ") and said == "train.py: interrupted"
-
-
-def test_a_finished_run_has_nothing_left_to_train(tmp_path, capsys):
-    assert run(tmp_path / "run", "--steps", "1") == 0
-    assert results(tmp_path / "run")["steps"] == 128  # a whole rollout of two tables
-    before = weights(tmp_path / "run")
-    assert resume(tmp_path / "run") == 0
-    assert np.array_equal(weights(tmp_path / "run"), before)
-
-
 class AnyAction:
     """Any action of another player's own format."""
 
     def __init__(self, player):
-        self.options, self._space = player.sees if hasattr(player, "sees") else {"action": "discrete"}, None
+        self.options = player.sees
 
     def act(self, observations, masks, seeds):
-        rngs = [np.random.default_rng(seed) for seed in seeds]
-        if masks is not None:
-            return np.array([rng.choice(np.flatnonzero(mask)) for rng, mask in zip(rngs, masks, strict=True)])
         size = sn.Options(**self.options).rules.actions.size
-        return np.stack([rng.uniform(-1.0, 1.0, size) for rng in rngs])
+        return np.stack([np.random.default_rng(seed).uniform(-1.0, 1.0, size) for seed in seeds])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("agent", "steps", "least"),
-    [("ppo_target", "100000", 0.3)],
-)
-def test_it_learns(tmp_path, agent, steps, least):
-    assert run(tmp_path, "--agent", agent, "--steps", steps, "--envs", "64", "--eval-visits", "300") == 0
+def test_it_learns(tmp_path):
+    assert run(tmp_path, "--steps", "100000", "--envs", "64", "--eval-visits", "300") == 0
     trained = results(tmp_path)["evaluation"]["trained"]
     chance = summary(play_visits(sn.player(AnyAction(load_player(tmp_path))), 300, cue="real"))
     gain = trained["points_a_visit"] - chance["points_a_visit"]
-    assert gain > least and gain > 3 * trained["points_a_visit_se"]
+    assert gain > 0.3 and gain > 3 * trained["points_a_visit_se"]
 
 
 def test_a_run_goes_on_with_the_tables_that_it_began_with(tmp_path, monkeypatch):
@@ -346,26 +240,6 @@ def test_a_run_goes_on_with_the_tables_that_it_began_with(tmp_path, monkeypatch)
     assert resume(tmp_path / "run", "--steps", "256") == 0
     assert [options["fidelity"] for options in seen] == ["fast"]
     assert results(tmp_path / "run")["steps"] == 256
-
-
-def test_agents_with_longer_actions_are_judged_and_not_taken_for_shorter(tmp_path, refused):
-    out, usual = tmp_path / "run", {"aim": "target"}
-    longer = usual | {"elevation": True, "placement": True}
-    assert run(out, "--agent", "ppo_target", "--steps", "128", "--set", f"env_kwargs={longer}") == 0
-    assert load_player(out).sees == longer
-    assert summary(play_visits(load_player(out), 4, noise="none")) == results(out)["evaluation"]["trained"]
-    start = ["--agent", "ppo_target", "--start", out, "--out", tmp_path / "new", "--set"]
-    error = refused(train.main, *start, f"env_kwargs={usual}")
-    assert "start = " in error and "must be a model with actions" in error
-
-
-def test_only_what_has_expert_iteration_takes_its_positions(tmp_path, refused):
-    assert recipe_of(Settings(start="x")).imitation == 0 < recipe_of(Settings()).imitation
-    for options, says in (
-        ("--start x --imitate 5", "imitate = 5: must be 0 or left out with --start"),
-        ("--agent ppo_target --imitate 100", "imitate = 100: must be 0 for ppo_target"),
-    ):
-        assert says in refused(train.main, *options.split(), "--out", tmp_path / "run")
 
 
 def test_hyperparameters_can_be_changed(tmp_path):

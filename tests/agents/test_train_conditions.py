@@ -9,14 +9,13 @@ import train
 from agents.features.observed import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import ExpertIteration
-from agents.learning.hyperparameters import SHOT_OPTIONS, Recipe
-from agents.learning.model_files import packed, read
+from agents.learning.hyperparameters import Recipe
 from agents.learning.models import load_trained
 from agents.players.trained import load_player
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.physics import conditions
 from snooker_env.physics.parameters import nominal
-from snooker_env.planning import Planner, Positions
+from snooker_env.planning import Positions
 from snooker_env.planning.learned.pot_view import SHOWN
 from tests.agents.training import results, run, weights
 
@@ -38,29 +37,18 @@ def model_and_tables(agent="ppo_value", n=N):
     return recipe.new_model(venv, 5), venv
 
 
-def gains(planner, at, rows, picks, keys):
-    """Points of choices, played directly."""
-    return planner.play(at, rows, picks, keys).points
-
-
 def test_expert_iteration_plays_each_visit_on_a_table_of_its_own(few, monkeypatch):
     """What is searched has the constants of the visit, which keeps them; the next one has those that it was dealt."""
     model, venv = model_and_tables()
-    run_, searched, judged = ExpertIteration(model, venv, 96, 5, 1), [], []
+    run_, searched = ExpertIteration(model, venv, 96, 5, 1), []
     run_.begin()
-    planner, gains_of = run_._judge.planner, run_._choices._gains
-    play_strokes = planner.play_strokes
+    planner, play_strokes = run_._judge.planner, run_._judge.planner.play_strokes
 
     def watched(at, *given, **errors):
         searched.append((at.conditions.copy(), play_strokes(at, *given, **errors)))
         return searched[-1][1]
 
-    def counted(*given):
-        judged.append((given, gains_of(*given)))
-        return judged[-1][1]
-
     monkeypatch.setattr(planner, "play_strokes", watched)
-    monkeypatch.setattr(run_._choices, "_gains", counted)
     assert planner.rules.drawn
     starts = {
         row.tobytes(): own.tobytes()
@@ -81,16 +69,6 @@ def test_expert_iteration_plays_each_visit_on_a_table_of_its_own(few, monkeypatc
                 assert np.array_equal(own, was)
                 kept += 1
     assert kept > 40 and fresh > 2
-    (at, value, rows, picks, keys), made = judged[-1]
-    options = sn.Options(
-        action="discrete", **{name: getattr(venv.unwrapped.tables.options, name) for name in SHOT_OPTIONS}
-    )
-    played = Planner(options, threads=1).play(at, rows, picks, keys)
-    values = played.points.astype(np.float32)
-    values[played.goes_on] += value(played.afterstates[np.flatnonzero(played.goes_on)])
-    assert np.array_equal(made, values)
-    nominal = Planner(options.but(conditions="fixed"))
-    assert (played.points != gains(nominal, at, rows, picks, keys)).any()
 
 
 @pytest.fixture(scope="module")
@@ -136,39 +114,6 @@ def test_it_sees_those_of_the_table_that_it_plays_on(observed, monkeypatch):
         assert np.allclose(np.stack(seen)[:, SHOWN:], conditions.scale_to_unit(wanted), atol=1e-6)
 
 
-def test_such_a_model_is_stored_and_read(observed, tmp_path):
-    trained = load_trained(observed, "agent")
-    (tmp_path / "plain.zip").write_bytes(packed(trained))
-    again = read(tmp_path / "plain.zip", "agent")
-    assert packed(again) == packed(trained) and again.env_options == trained.env_options
-
-
-def test_a_run_that_does_not_observe_them_cannot_begin_to(tmp_path, refused):
-    assert run(tmp_path / "plain", "--conditions", "drawn", "--steps", "128") == 0
-    error = refused(train.main, "--resume", "--out", tmp_path / "plain", "--observe-conditions")
-    assert "--observe-conditions is True but the run" in error and "has False" in error
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (
-            "--agent ppo_target --observe-conditions",
-            'observe_conditions = True: must be False with conditions="fixed"',
-        ),
-        (
-            "--agent ppo_value --imitate 8",
-            "observe_conditions = True: must be left out for ppo_value: its networks",
-        ),
-    ],
-)
-def test_what_cannot_observe_them_is_refused(tmp_path, refused, monkeypatch, options, said):
-    monkeypatch.setattr(sn, "warmup", None)  # nothing is compiled before
-    more = [] if "--observe" in options else OBSERVED
-    assert said in refused(train.main, *options.split(), *more, "--out", tmp_path / "run")
-    assert not (tmp_path / "run").exists()
-
-
 def test_weights_of_an_agent_that_observes_something_else_are_refused(observed, tmp_path, refused):
     start = ["--agent", "ppo_target", "--start", observed, "--out", tmp_path / "run"]
     error = refused(train.main, *start, "--conditions", "drawn")
@@ -176,14 +121,3 @@ def test_weights_of_an_agent_that_observes_something_else_are_refused(observed, 
     assert not (tmp_path / "run").exists()
     assert run(tmp_path / "run", *map(str, start[:4]), *OBSERVED, "--set", "learning_rate=0.0") == 0
     assert np.array_equal(weights(tmp_path / "run"), weights(observed))
-
-
-def test_a_planner_of_a_run_over_tables_plays_them(few, tmp_path):
-    """Of train.py from end to end: expert iteration, PPO and the evaluation."""
-    out = tmp_path / "run"
-    assert run(out, "--agent", "ppo_value", "--envs", "4", "--imitate", "64", "--conditions", "drawn") == 0
-    found = results(out)
-    again = play_visits(sn.player(f"planner@{out}"), 4, conditions="drawn", noise="professional", cue="real")
-    assert summary(again) == found["evaluation"]["planner"]
-    fixed = play_visits(sn.player(f"planner@{out}"), 4, noise="professional", cue="real")
-    assert found["evaluation"]["planner"] != summary(fixed)

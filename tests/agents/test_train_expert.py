@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-import train
-from agents.learning import agent_training, loop
-from snooker_env.benchmark import count_shots, play_visits, summary
+from agents.learning import loop
+from snooker_env.benchmark import play_visits, summary
 from tests.agents import training
 from tests.agents.training import results, weights
 
@@ -51,23 +50,6 @@ def test_the_run_says_what_the_planner_gains(finished):
     for name in (f"planner@{finished}", "search"):
         again = summary(play_visits(sn.player(name), 4, cue="real"))
         assert again == found["evaluation"][name.partition("@")[0]]
-
-
-def test_rewards_stay_judged_after_a_resume(finished, tmp_path, monkeypatch):
-    judged, step = [], agent_training._Between._on_step
-    monkeypatch.setattr(
-        agent_training._Between,
-        "_on_step",
-        lambda self: judged.append(self.training_env.judge is not None) or step(self),
-    )
-    assert run(tmp_path, "--steps", "256") == 0 and training.resume(tmp_path, "--steps", "512") == 0
-    assert len(judged) == 128 and all(judged)
-
-
-def test_ppo_without_a_learned_value_is_refused(tmp_path, refused):
-    error = refused(train.main, *training.TINY, *EXPERT, "--imitate", "0", "--out", tmp_path / "run")
-    assert "imitate = 0: must be 1 or more for ppo_value without --start" in error
-    assert not (tmp_path / "run").exists()
 
 
 def test_a_run_that_starts_from_a_model_has_its_value(finished, tmp_path):

@@ -3,18 +3,16 @@
 import json
 import shutil
 import sys
-from contextlib import closing
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, write_result
-from snooker_env.benchmark.__main__ import main, suspicious
-from snooker_env.benchmark.playing import BATCH, COLUMNS
+from snooker_env.benchmark.__main__ import main
+from snooker_env.benchmark.playing import BATCH
 from snooker_env.benchmark.results import strokes_of
-from snooker_env.players import VISITS, Strokes, ask_player
-from snooker_env.players.program import AgentError, ProgramPlayer
+from snooker_env.players import VISITS, Strokes
 from tests.processes import ROOT
 
 EXAMPLE = f"program:{sys.executable} {ROOT / 'examples/program_player.py'}"
@@ -87,28 +85,6 @@ def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tm
     assert not result["protocol"]["official"]
 
 
-def test_a_program_that_does_not_read_is_ended_in_time(tmp_path):
-    """A pipe holds a few states, then a write waits: for no longer than the program has for its answer."""
-    answer = json.dumps({"speed": 2.0, "aim": 0.0})
-    body = f"import time\nwhile True: print({answer!r}, flush=True); time.sleep(0.3)"
-    (tmp_path / "silent.py").write_text(body)
-    env = sn.SnookerEnv(task="frame")
-    env.reset(seed=0)
-    at = sn.Positions.of(env)
-    silent = ProgramPlayer(f"{sys.executable} {tmp_path / 'silent.py'}", timeout=1.0).at(env)
-    with closing(silent), pytest.raises(AgentError, match="did not read its state within 1 s"):
-        for seed in range(20):
-            silent.play(at, [seed])
-
-
-def test_a_program_that_is_not_there(capsys):
-    name = "program:no-such-program-here"
-    assert main(["run", "SnookerEscape-v0", "--agent", name, "--episodes", "6"]) == 1
-    assert "cannot be started" in capsys.readouterr().err
-    with pytest.raises(AgentError, match="cannot be started"):
-        sn.player(name).at({}).play(sn.Position(cue=(0, 0), black=(0, 1)), [0])
-
-
 def watching(tmp_path):
     """A program that keeps what it is sent, and a call that reads it."""
     kept = tmp_path / "seen.jsonl"
@@ -127,19 +103,6 @@ def test_a_program_sees_the_state_of_the_protocol(tmp_path):
     assert states[0]["phase"] == "stroke" and states[0]["ball_on"] == "red"
     assert states[0]["noise"] == ["club"] * 2
     assert states[0]["seed"] == states[2]["seed"] != states[1]["seed"]  # the first table again, timed
-
-
-def test_a_program_sees_the_points_as_its_own(tmp_path):
-    tables = sn.SnookerVectorEnv(1, TASKS["SnookerBreakClub-v0"].judged_options(**VISITS), threads=1)
-    tables.reset(seed=1)
-    at = sn.Positions.of(tables)
-    at.points[0] = 5
-    name, seen = watching(tmp_path)
-    with closing(ProgramPlayer(name.removeprefix("program:"))) as player:
-        strokes = player.at(tables).play(at, [3])
-    assert strokes.values.tolist() == [[1.0, 0.0, 0.0, 0.0, 0.0]]
-    (state,) = seen()
-    assert state["scores"] == [5, 0] and state["break"] == 5
 
 
 class Softly:
@@ -204,13 +167,6 @@ def test_ctrl_c_keeps_what_was_played_and_it_can_be_resumed(tmp_path, capsys):
     assert "must be a result of other on SnookerEscape-v0" in capsys.readouterr().err
 
 
-def test_an_existing_file_is_refused_before_any_player_is_made(tmp_path, capsys):
-    out = tmp_path / "one.json"
-    out.write_text("{}")
-    assert main(["run", "SnookerEscape-v0", "--agent", "nobody.there:Player", "--out", str(out)]) == 2
-    assert "must be a new file" in capsys.readouterr().err and out.read_text() == "{}"
-
-
 @pytest.mark.parametrize("maker", [Careless, Quitter])
 def test_what_was_played_before_a_failure_is_kept(maker, tmp_path):
     maker.asked, out = 0, tmp_path / "one.json"
@@ -219,20 +175,6 @@ def test_what_was_played_before_a_failure_is_kept(maker, tmp_path):
     result = read_result(out)
     assert len(result["rows"]) == 2 * BATCH and faults(result) == []
     assert type(maker.error).__name__ in result["incomplete"]
-
-
-def test_decisions_do_not_depend_on_batches(monkeypatch):
-    """And each training seed draws its own."""
-    from snooker_env.benchmark import agents
-
-    agent = Agent(label="two", sources=(Softly(), Softly()), training_shots=0)
-    whole = judge(HARD, agent, episodes=10)
-    monkeypatch.setattr(agents, "BATCH", 4)
-    parts = judge(HARD, agent, episodes=10)
-    assert whole["rows"] == parts["rows"] and whole["strokes"] == parts["strokes"]
-    strokes = strokes_of(whole)
-    assert faults(whole) == []
-    assert len({one.tobytes() for one in strokes}) == 20
 
 
 def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
@@ -254,13 +196,6 @@ def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
         assert main(["run", "SnookerEscape-v0", "--agent", agent, "--episodes", "4"]) == 2
         error = capsys.readouterr().err
         assert line in error and error.count("\n") == 1, error
-
-
-def test_names_and_what_is_known_of_them():
-    agent = Agent.of("search_60")
-    assert (agent.label, agent.training_shots, agent.player(HARD).budget) == ("search_60", 0, 60)
-    assert Agent.of("planner_500").training_shots is None
-    assert Agent.of("planner_500@club").label == "planner_500_club"
 
 
 @pytest.fixture(scope="module")
@@ -298,23 +233,6 @@ def test_a_model_of_stable_baselines_plays_with_consent(model, tmp_path, capsys)
     assert main(run) == 2 and "must see visits to play them" in capsys.readouterr().err
 
 
-def test_without_the_libraries_one_line_says_which_to_install(model, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "stable_baselines3", None)
-    arguments = ["run", "SnookerEscape-v0", "--agent", str(model["SnookerEscape-v0"]), "--trust"]
-    assert main([*arguments, "--options", "aim=target"]) == 1
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and "needs stable_baselines3" in error
-    assert 'pip install -e ".[train]"' in error
-
-
-def test_a_model_of_the_repository_plays_visits_and_frames():
-    pytest.importorskip("sb3_contrib")
-    agent = Agent.of("ppo_value")
-    for name, n in (("SnookerBreakClub-v0", 20), ("SnookerFrame-v0", 2)):
-        result = judge(TASKS[name], agent, episodes=n)
-        assert faults(result) == [] and result["agent"]["class"] == "model_free"
-
-
 def test_what_is_kept_is_what_was_played():
     """Actions are rounded to float32 first; and one table stroke by stroke plays the same."""
     player = Softly()
@@ -328,20 +246,3 @@ def test_what_is_kept_is_what_was_played():
     tables.reset(seed=[seed])
     exact = ask_player(player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([seed]), 0))
     assert np.array_equal(kept[0], exact.astype(np.float32)) and not np.array_equal(kept[0], exact)
-
-
-@pytest.mark.parametrize(
-    ("source", "task", "scored", "said"),
-    [
-        ("mine.zip", "SnookerBreak-v0", 0, True),
-        ("mine.zip", "SnookerBreak-v0", 2, True),
-        ("mine.zip", "SnookerBreak-v0", 3, False),
-        ("random", "SnookerBreak-v0", 0, False),
-        ("mine.zip", "SnookerFrame-v0", 0, False),
-    ],
-)
-def test_a_model_that_scores_nothing_may_be_read_wrongly(source, task, scored, said):
-    """--options aim=target forgotten: nearly no points in 100 visits. No frame won is nothing odd."""
-    score = COLUMNS.index("score")
-    rows = [[4 * (k < scored) if c == score else 0 for c in range(len(COLUMNS))] for k in range(100)]
-    assert suspicious({"rows": rows, "agent": {"sources": [source]}}, TASKS[task]) == said

@@ -2,11 +2,7 @@
 
 import base64
 import copy
-import os
-import subprocess
-import sys
 import zlib
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +10,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, checking, judge
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.checking import afresh, faults, faults_of_replay
-from snooker_env.benchmark.provenance import arithmetic
+from snooker_env.benchmark.checking import afresh, faults
 from snooker_env.benchmark.results import (
     complete,
     figures_of,
@@ -24,9 +19,9 @@ from snooker_env.benchmark.results import (
     strokes_of,
     write_result,
 )
-from snooker_env.benchmark.schema import FIELDS, PACKAGES, PROTOCOL, UNPROVED
+from snooker_env.benchmark.schema import UNPROVED
 from snooker_env.players import VISITS
-from tests.benchmark.records import at, put
+from tests.benchmark.records import at, inner, leaves, others, put, resized
 
 OTHER_STROKE = "strokes: run {}, table {}: {} plays another stroke than number {} of the file"
 CLUB, BREAK, HARD = (TASKS[f"Snooker{name}-v0"] for name in ("BreakClub", "Break", "Escape"))
@@ -81,21 +76,6 @@ def test_a_maximum_in_every_visit(label):
     assert faults(record)[0].startswith("rows[0].") and faults(record)[-1].endswith(" more faults")
 
 
-def test_rows_101_to_500(official):
-    """With the strokes as they were, and with strokes for every row."""
-    record = copy.deepcopy(official)
-    for row in record["rows"][100:]:
-        row[2:] = [27, 6, 27, 6, 0, 1, 0, 1]
-    assert faults(consistent(CLUB, record))[0].startswith("strokes.data = ")
-    strokes = strokes_of(official)
-    record["strokes"] = pack_strokes(
-        strokes[:100] + [np.resize(one, (6, one.shape[1])) for one in strokes[100:]]
-    )
-    refused = faults(record)
-    assert all(line.startswith(("rows[10", "rows[11")) for line in refused[:-1])
-    assert refused[-1].endswith(" more faults")
-
-
 @pytest.mark.parametrize("name", ["random", "ghost_ball", "search_30", "ppo_value"])
 def test_the_name_of_a_known_player_for_other_strokes(name):
     """Sound in all that a replay can see; but this player does not play so."""
@@ -104,14 +84,6 @@ def test_the_name_of_a_known_player_for_other_strokes(name):
     record["agent"] |= {"label": name, "sources": [name]}
     first = OTHER_STROKE.format(0, HARD.seeds(1)[0], name, 0)
     assert first in faults(record)
-
-
-def test_other_strokes_of_a_later_training_seed():
-    record = judge(HARD, Agent(label="two", sources=("random", "search_30"), training_shots=0), episodes=4)
-    assert faults(record) == []
-    record["agent"]["sources"] = ["random", "ghost_ball"]
-    assert set(faults(record)) <= {OTHER_STROKE.format(1, seed, "ghost_ball", 0) for seed in HARD.seeds(4)}
-    assert faults(record)
 
 
 def forged(record, task, episodes, better):
@@ -149,14 +121,14 @@ def test_hindsight_from_the_second_stroke_on():
 def test_a_decision_after_a_foul_that_the_player_does_not_make():
     """A safety of a planner that is fouled against, with another decision."""
     task = TASKS["SnookerSafety-v0"]
-    record, many = judge(task, Agent.of("search_30"), episodes=60), 60
+    record = judge(task, Agent.of("search_30"), episodes=20)
     longer = [k for k, row in enumerate(record["rows"]) if row[3] > 1]
     strokes = [one.copy() for one in strokes_of(record)]
     assert longer and faults(record) == []
     for k in longer:
         strokes[k][1:, -1] = -strokes[k][1:, -1] if strokes[k][1:, -1].any() else -1.0
     record["strokes"] = pack_strokes(strokes)
-    assert any(line.startswith(("strokes: ", "rows[")) for line in faults(record)), many
+    assert any(line.startswith(("strokes: ", "rows[")) for line in faults(record))
 
 
 @pytest.mark.parametrize("share", [0.1, 1.1])
@@ -185,19 +157,8 @@ def test_tables_that_are_asked_again_are_not_known_beforehand(monkeypatch):
     record["strokes"] = pack_strokes(strokes)
     monkeypatch.setattr(checking, "TOGETHER", 4)
     monkeypatch.setattr(checking, "WORK", 8.0)
-    found = {bool(faults(record)) for _ in range(40)}
+    found = {bool(faults(record)) for _ in range(20)}
     assert found == {True, False}
-
-
-def test_simulated_shots_that_the_agent_does_not_need():
-    """The strokes of random, as if it planned: found when it plays again."""
-    random = Agent.of("random")
-    record = judge(HARD, random, episodes=4)
-    record["timing"]["simulated_shots"] = 8
-    record["agent"] |= {"simulated_shots": 2.0, "class": "planning"}
-    assert faults_of_replay(record, random, 4) == [
-        "timing.simulated_shots = 8: must be 0, as the agent played again"
-    ]
 
 
 @pytest.mark.parametrize(("name", "training"), [("search_30", 0), ("planner_30", 10**7)])
@@ -226,14 +187,6 @@ def test_known_players_were_trained_as_they_say(name, training, says):
     assert faults(record) == [says]
 
 
-def test_another_version(official):
-    record = put(official, "software.snooker_env", "9.9.9")
-    assert faults(record) == [f"software.snooker_env = '9.9.9': must be {', '.join(PACKAGES)}"]
-    assert PACKAGES[-1] == sn.__version__
-    before = put(official, "protocol.version", PROTOCOL - 1)
-    assert faults(before) == [f"protocol.version = {PROTOCOL - 1}: must be {PROTOCOL}"]
-
-
 def test_repeated_keys(official, tmp_path, capsys):
     file = tmp_path / "twice.json"
     write_result(file, official)
@@ -247,31 +200,17 @@ def test_repeated_keys(official, tmp_path, capsys):
         assert f"the key '{name}' stands there twice" in capsys.readouterr().out
 
 
-def test_a_truncated_file(official, tmp_path):
-    file = tmp_path / "part.json"
-    write_result(file, official)
-    whole = file.read_bytes()
-    for many in (0, 1, 1000, len(whole) // 2, len(whole) - 3):
-        file.write_bytes(whole[:many])
-        with pytest.raises(ValueError, match="must be JSON"):
-            read_result(file)
-    data = official["strokes"]["data"]
-    short = put(official, "strokes.data", data[: len(data) // 8 * 4])
-    assert faults(short)[0].startswith("strokes.data = more than ")
-    assert "or cut off: must be " in faults(short)[0]
-
-
 def test_one_flipped_bit_of_a_stroke(boxes):
-    """Each bit of the first stroke, each bit that the file gives, and the digest."""
+    """Bits of the first stroke, bits that the file gives, and the digest."""
     record, strokes = copy.deepcopy(boxes), strokes_of(boxes)
-    for bit in range(8 * strokes[0][0].nbytes):
+    for bit in range(0, 8 * strokes[0][0].nbytes, 5):
         raw = bytearray(strokes[0].tobytes())
         raw[bit // 8] ^= 1 << bit % 8
         flipped = np.frombuffer(bytes(raw), "<f4").reshape(strokes[0].shape)
         record["strokes"] = pack_strokes([flipped, *strokes[1:]]) | {"sha256": boxes["strokes"]["sha256"]}
         assert faults(record)[0].startswith("strokes.sha256 = ")
     raw = base64.b64decode(boxes["strokes"]["data"])
-    for bit in np.random.default_rng(0).integers(0, 8 * len(raw), 60).tolist():
+    for bit in np.random.default_rng(0).integers(0, 8 * len(raw), 30).tolist():
         other = bytearray(raw)
         other[bit // 8] ^= 1 << bit % 8
         record["strokes"] = boxes["strokes"] | {"data": base64.b64encode(bytes(other)).decode()}
@@ -305,15 +244,6 @@ def test_strokes_too_few_and_too_many(boxes):
         assert any(one.startswith(f"rows[3].strokes = {line}") for one in refused), refused
 
 
-@pytest.mark.parametrize("value", [1.5, -1.0000001, np.nan, np.inf])
-def test_strokes_outside_the_space(boxes, value):
-    record, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
-    strokes[7][0, 0] = value
-    record["strokes"] = pack_strokes(strokes)
-    assert faults(record)[0].startswith("strokes.data[")
-    assert "must be finite and within [-1, 1]" in faults(record)[0]
-
-
 def test_swapped_episodes_and_other_seeds(boxes):
     rows, strokes = copy.deepcopy(boxes["rows"]), strokes_of(boxes)
     a, b = (next(k for k, row in enumerate(rows) if row[2] == fair) for fair in (0, 1))
@@ -332,97 +262,25 @@ def test_swapped_episodes_and_other_seeds(boxes):
     assert faults(later) == [says]
 
 
-def test_rows_more_or_fewer(boxes):
-    strokes = strokes_of(boxes)
-    for episodes in (list(range(23)), [*range(24), 23]):
-        rows = [boxes["rows"][k] for k in episodes]
-        record = consistent(
-            HARD, boxes | {"rows": rows, "strokes": pack_strokes([strokes[k] for k in episodes])}
-        )
-        says = f"rows: must be 24 episodes, 24 for each training seed, not {len(rows)}"
-        assert faults(record)[0].startswith(says)
-
-
-def leaves(value, path=()):
-    """The paths of all values inside, of lists and objects of results alike."""
-    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
-    return [leaf for key, one in inner for leaf in leaves(one, (*path, key))] or [path]
-
-
-def others(value):
-    """Other values: of the same type, and of another."""
-    tried = [None, not value if isinstance(value, bool) else True, "other", 7, -1, 0.5, [], {}, ["a"]]
-    if type(value) is int:
-        tried += [value + 1, value - 1, 0, 10**400]
-    if isinstance(value, float):
-        tried += [value * (1 + 2**-52) + 5e-324]
-    if isinstance(value, str):
-        tried += [value + "x", value[1:], value.upper()]
-    return [one for one in tried if type(one) is not type(value) or one != value]
-
-
-def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves(boxes):
-    """All but a few rows are tried; what passes must be a field that the page calls unproved."""
-    passed = set()
+def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves():
+    """Of one row all columns are tried. What passes must be a field that the page calls unproved; none may be missing, none
+    may be more."""
+    boxes, passed = judge(HARD, agent(), episodes=4), set()
     for path in leaves(boxes):
-        if path[0] == "rows" and path[1] != 23:
+        if path[0] == "rows" and path[1] != 3:
             continue
         for value in others(at(boxes, path)):
-            if faults(put(boxes, path, value)) == []:
+            refused = faults(put(boxes, path, value))
+            assert all("\n" not in line for line in refused), (path, value)
+            if refused == []:
                 passed.add(".".join(part for part in path if isinstance(part, str)))
+    for path in inner(boxes):
+        if path[:1] != ("rows",) or path[1:] in ((), (3,)):
+            for value in resized(at(boxes, path)):
+                assert faults(put(boxes, path, value) if path else value), (path, value)
     assert passed <= set(UNPROVED), passed - set(UNPROVED)
     least = "agent.label agent.sources machine.cpu timing.seconds commit software.numpy"
     assert passed.issuperset(least.split())
-
-
-@pytest.mark.parametrize("change", [{"more": None}, {"iqm": ...}])
-def test_figures_have_their_fields_and_no_others(boxes, change):
-    """Also where the value of a field more, or of a field less, is null."""
-    figures = {name: value for name, value in (boxes["figures"] | change).items() if value is not ...}
-    assert faults(boxes | {"figures": figures})[0].startswith("figures: must have the fields score, iqm, ")
-
-
-def test_what_is_called_unproved_can_be_changed_unseen(boxes):
-    """All of it at once, as long as the fields fit each other."""
-    record = copy.deepcopy(boxes)
-    record["agent"] |= {"label": "other", "sources": ["there"], "training_shots": 60_000, "budget": "1M"}
-    record["agent"] |= {"simulated_shots": 9.0, "class": "planning", "declared": True}
-    record["software"] |= {name: "1.0" for name in record["software"] if name != "snooker_env"}
-    busier = {
-        name: boxes["machine"][name] + 1.0 for name in ("load", "load_at_end")
-    }  # than it happened to be
-    record["machine"] = {"platform": "one", "cpu": "two", "cores": 3, "arithmetic": "0" * 16} | busier
-    record["timing"] = {"seconds": 1.0, "simulated_shots": 6, "one_table_ms": 2.0}
-    record |= {"command": "none", "commit": "0" * 40, "date": "2026-11-22T00:00:00Z", "incomplete": "stopped"}
-    assert faults(record) == []
-    changed = {name for name in FIELDS if at(record, name) != at(boxes, name)}
-    assert changed == {*UNPROVED, "agent.class", "agent.budget"}
-
-
-CHECK = """
-import sys
-from snooker_env.benchmark import faults, read_result
-from snooker_env.benchmark.provenance import arithmetic
-print(arithmetic(), *faults(read_result(sys.argv[1])), sep="\\n")
-"""
-
-
-@pytest.mark.slow  # compiles all kernels for another processor
-def test_where_strokes_end_otherwise_that_is_said_first(tmp_path):
-    """With the system's functions without fused multiply-add, whose last bits differ: nobody is suspected."""
-    file = tmp_path / "one.json"
-    judge(TASKS["SnookerFrame-v0"], Agent.of("ghost_ball"), episodes=40, out=file)
-    here = os.environ | {"PYTHONPATH": str(Path(sn.__file__).parents[1]), "SNOOKER_ENV_QUIET": "1"}
-    command, printed = [sys.executable, "-c", CHECK, file], []
-    for tunables in ("", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable"):
-        env = here | {"GLIBC_TUNABLES": tunables}
-        run = subprocess.run(command, env=env, capture_output=True, check=True)
-        printed.append(run.stdout.decode().splitlines())
-    assert printed[0] == [arithmetic()]
-    if printed[1][0] == arithmetic():
-        pytest.skip("this system has no such functions, or this processor has no others")
-    says = f"machine.arithmetic = {arithmetic()!r}: must be {printed[1][0]!r} to check it here"
-    assert printed[1][1].startswith(says) and printed[1][2].startswith("rows[")
 
 
 def test_fresh_seeds_find_an_agent_that_knew_the_tables():
@@ -454,27 +312,3 @@ def test_fresh_seeds_find_an_agent_that_knew_the_tables():
     assert refused[0].endswith("as on fresh seeds")
     honest = judge(HARD, agent(), episodes=100)
     assert afresh(honest, agent(), 100, 6_000_000)[2] == []
-
-
-def test_fresh_seeds_find_a_planner_that_calls_itself_model_free():
-    class Plans(Aims):
-        def play(self, positions, seeds):
-            sn.simulate_batch(np.zeros((5, 1, 2)), np.zeros((5, 1, 2)), np.zeros((5, 1, 3)))
-            return super().play(positions, seeds)
-
-    record = judge(HARD, agent(Plans), episodes=10)
-    assert record["agent"]["class"] == "planning" and afresh(record, agent(Plans), 10, 5_000_000)[2] == []
-    record["timing"]["simulated_shots"] = 0
-    record["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
-    assert faults(record) == []
-    refused = afresh(record, agent(Plans), 10, 5_000_000)[2]
-    assert refused == ["agent.class = 'model_free': must be 'planning': it simulated 5 shots for 10 strokes"]
-
-
-def test_the_command_plays_on_fresh_seeds(tmp_path, capsys):
-    file = tmp_path / "one.json"
-    judge(HARD, Agent.of("ghost_ball"), episodes=100, out=file)
-    assert main(["check", str(file), "--agent", "ghost_ball", "--replay", "100", "--fresh", "100"]) == 0
-    assert "fresh seeds from " in capsys.readouterr().out
-    for wrong in (["--fresh", "5"], ["--agent", "ghost_ball"], ["--agent", "ghost_ball", "--fresh", "1"]):
-        assert main(["check", str(file), *wrong]) == 2

@@ -6,7 +6,7 @@ from scipy import stats
 
 from agents.evaluation.entrants import Entrant
 from agents.evaluation.metrics import EntrantMetrics
-from snooker_env.benchmark import interval, iqm
+from snooker_env.benchmark import iqm
 from snooker_env.benchmark.statistics import Resamples
 
 
@@ -34,48 +34,6 @@ def test_samples_are_those_of_a_plain_bootstrap():
         assert sums[k] == pytest.approx(drawn.sum())
         assert ratios[k] == pytest.approx(drawn.sum() / y[np.ix_(runs, tables)].sum())
         assert iqms[k] == pytest.approx(stats.trim_mean(drawn.ravel(), 0.25))
-
-
-def test_one_runs_interval_is_scipys():
-    x = np.random.default_rng(3).exponential(size=(1, 300))
-    ours = interval(Resamples(1, 300, 9000).sums(x) / 300)
-    more = {"n_resamples": 9000, "method": "percentile", "rng": np.random.default_rng(0)}
-    its = stats.bootstrap((x[0],), np.mean, **more).confidence_interval
-    assert ours == pytest.approx(tuple(its), abs=0.01)
-
-
-def test_an_interval_without_news_is_none():
-    assert all(np.isnan(interval(np.zeros(100))))
-    assert all(np.isnan(interval(np.append(np.arange(99.0), np.nan))))
-    assert np.isnan(Resamples(1, 5, 100).ratios(np.ones((1, 5)), np.zeros((1, 5)))).all()
-
-
-def coverage(runs, spreads, of_iqm=False, trials=300, tables=200):
-    """How often the interval holds the true mean 0: scores are sums of parts of run, table and visit."""
-    rng, hits, samples = np.random.default_rng(4), 0, Resamples(runs, tables, 400)
-    shapes = ((runs, 1), (1, tables), (runs, tables))
-    for _ in range(trials):
-        x = sum(rng.normal(0, spread, shape) for spread, shape in zip(spreads, shapes, strict=True))
-        low, high = interval(samples.iqms(x.round(1)) if of_iqm else samples.sums(x))
-        hits += low <= 0 <= high
-    return hits / trials
-
-
-@pytest.mark.parametrize(
-    ("runs", "spreads", "least", "most"),
-    [
-        (1, (0, 0.3, 1), 0.91, 0.98),  # only visits differ: as it says
-        (5, (0.1, 0.3, 1), 0.92, 1.0),  # all three of a size, as in play: rather too wide
-        (5, (0, 0, 1), 0.97, 1.0),  # luck alone: too wide
-        (5, (1, 0, 0.01), 0.8, 0.92),  # nothing but seeds: five are few
-    ],
-)
-def test_coverage_is_what_the_docstring_says(runs, spreads, least, most):
-    assert least <= coverage(runs, spreads) <= most
-
-
-def test_coverage_of_the_inter_quartile_mean():
-    assert 0.9 <= coverage(1, (0, 0.3, 1), of_iqm=True, trials=200, tables=100) <= 0.99
 
 
 def played(label, points):

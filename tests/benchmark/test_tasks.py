@@ -1,8 +1,6 @@
 """Are the tasks of the benchmark what they promise: frozen options, and tables that nobody trains on?"""
 
 import dataclasses
-import json
-import multiprocessing
 
 import gymnasium
 import numpy as np
@@ -13,14 +11,11 @@ from gymnasium.utils.env_checker import check_env, data_equivalence
 import snooker_env as sn
 from snooker_env._lib.registration import ENTRY_POINTS, FORMS, ID
 from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS
-from snooker_env.benchmark import tasks as benchmark_tasks
 from snooker_env.benchmark.playing import Repeater, play_episodes, rows_of, tables_for
-from snooker_env.benchmark.results import figures_of
-from snooker_env.benchmark.tasks import FREE, tables_of, task_of
+from snooker_env.benchmark.tasks import FREE
 from snooker_env.game import layout
 from snooker_env.game.layouts import STORED_IN
 from snooker_env.players import BoundPlayer, Strokes
-from snooker_env.tasks import OBSERVATION_SIZE
 
 IDS = tuple(TASKS)
 
@@ -71,16 +66,6 @@ def test_stable_baselines_accepts_it(name):
 
 
 @pytest.mark.parametrize("name", IDS)
-def test_its_spec_goes_through_json(name):
-    env = gymnasium.make(name, **({"action": "discrete"} if name == IDS[0] else {"aim": "target"}))
-    again = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
-    assert again.unwrapped.options == env.unwrapped.options
-    assert json.loads(env.spec.to_json())["kwargs"] == env.spec.kwargs
-    first, second = env.reset(seed=3)[0], again.reset(seed=3)[0]
-    assert np.array_equal(first, second)
-
-
-@pytest.mark.parametrize("name", IDS)
 def test_what_is_frozen_is_refused(name):
     task = TASKS[name]
     assert set(task.frozen_options) | set(FREE) == set(sn.Options.__dataclass_fields__) - {"rules"}
@@ -93,18 +78,6 @@ def test_what_is_frozen_is_refused(name):
         gymnasium.make(name, options=sn.Options())
     with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
         gymnasium.make(name, colour="red")
-
-
-def test_what_is_free_is_taken():
-    free = {"aim": "target", "observation": "balls", "elevation": True, "placement": True}
-    env = gymnasium.make("SnookerBreak-v0", render_mode="ansi", **free)
-    assert env.action_space.shape == (7,) and env.observation_space["state"].shape == (11,)
-    assert gymnasium.make("SnookerBreakClub-v0", action="discrete").action_space.n > 100
-    assert gymnasium.make("SnookerFrame-v0", says=["decision"], placement=True).action_space.shape == (7,)
-    envs = many("SnookerEscape-v0", 3, threads=1, autoreset_mode="SameStep", aim="target")
-    assert envs.reset(seed=1)[0].shape == (3, OBSERVATION_SIZE) and envs.threads == 1
-    with pytest.raises(ValueError, match='belongs to task="frame"'):
-        gymnasium.make("SnookerBreak-v0", says=["decision"])
 
 
 def test_an_escape_is_one_stroke_whose_reward_is_1_if_it_is_legal():
@@ -120,52 +93,6 @@ def test_an_escape_is_one_stroke_whose_reward_is_1_if_it_is_legal():
     assert out[1] == rewards[0] and out[2] is True
     state = env.get_state()
     assert state["over"] is True
-
-
-def test_one_stroke_is_an_option_that_no_planner_minds():
-    env = sn.SnookerEnv(layout="pots:easy", one_stroke=True)
-    env.reset(seed=1)
-    assert env.step([0.0, 0.0, 0.0, 0.1])[2]
-    colours = sn.SnookerEnv(layout="colours", action="discrete", one_stroke=True)
-    colours.reset(seed=1)
-    outcome = sn.Planner(colours, noise="none").play(colours, np.zeros(60, int), np.arange(60))
-    assert (outcome.goes_on == (outcome.points > 0)).all() and outcome.goes_on.any()
-
-
-def test_a_safety_is_judged_by_what_the_other_makes_of_it():
-    task = TASKS["SnookerSafety-v0"]
-    rows = [
-        dict(zip(COLUMNS, row, strict=True)) for row in play_episodes(task, "random", task.seeds(40)).rows
-    ]
-    assert all(row["ended"] and row["strokes"] > row["fouls"] for row in rows)  # until one is fair
-    assert all(row["score"] == row["points"] - row["opponent_points"] <= task.most for row in rows)
-    assert any(row["opponent_points"] > 10 for row in rows) and any(row["points"] for row in rows)
-    figures = figures_of(task, "random", [list(row.values()) for row in rows])
-    shares = [one["value"] for one in figures["profile"]]
-    assert len(shares) == len(task.thresholds) and shares == sorted(shares, reverse=True) and shares[0] < 1.0
-    assert figures["score"]["value"] < 0 and figures["iqm"] is not None
-
-
-def test_who_searches_escapes_and_the_plain_stroke_does_not():
-    task = TASKS["SnookerEscape-v0"]
-    share = {}
-    for name in ("ghost_ball", "search_60", "tactician_60"):
-        share[name] = np.mean([row[2] for row in play_episodes(task, name, task.seeds(100)).rows])
-    best = min(share["search_60"], share["tactician_60"])
-    assert best > 0.9 and share["ghost_ball"] < best - 0.15
-
-
-def test_a_search_for_legal_strokes_cares_for_nothing_else():
-    """Of a pot and a touch, both sure to be legal, it may play either; a foul it never ranks first."""
-    at = sn.Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red")
-    for reward in ("legal", "points"):
-        judge = sn.planning.VisitJudge({"reward": reward, "noise": "professional"})
-        (ranked,) = sn.planning.Search(judge, budget=60).rank(at, [7])
-        if reward == "legal":
-            assert set(np.unique(ranked.scores[ranked.samples == 0])) <= {0.0, 1.0}
-            assert ranked.scores.min() >= 0.0 and ranked.scores[0] > 0.8
-        else:
-            assert ranked.scores.min() < -10.0
 
 
 @pytest.mark.parametrize("name", IDS)
@@ -185,29 +112,6 @@ def test_judged_tables_are_not_those_of_training(name):
         assert len(held_out) == 30 and not dealt & held_out
     else:
         assert judged == trained and len(task.seeds(task.episodes)) == task.episodes
-
-
-def test_tables_are_different_and_always_the_same():
-    assert tables_of("colours", 40) == tables_of("colours", 60)[:40]
-    assert len(set(tables_of("colours", 60))) == 60
-    with pytest.raises(ValueError, match=r"^task = 'SnookerBreak-v9': must be one of 'SnookerBreak-v0', "):
-        task_of("SnookerBreak-v9")
-
-
-def _worker(name, queue):
-    import gymnasium
-
-    env = gymnasium.make(f"snooker_env:{name}")
-    queue.put(env.reset(seed=1)[0].tolist())
-
-
-def test_a_spawned_worker_that_imports_only_gymnasium_makes_it():
-    context = multiprocessing.get_context("spawn")
-    queue = context.Queue()
-    process = context.Process(target=_worker, args=("SnookerEscape-v0", queue))
-    process.start()
-    assert queue.get(timeout=300) == gymnasium.make("SnookerEscape-v0").reset(seed=1)[0].tolist()
-    process.join(60)
 
 
 def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_decision():
@@ -232,17 +136,3 @@ def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_dec
     assert Counted.asked == played.decisions == sum(row["strokes"] for row in rows) > 0
     assert list(map(len, played.strokes)) == [row["strokes"] for row in rows]
     assert rows_of(easy, tables_for(easy, 40), seeds, Repeater(played.strokes, 8)) == played.rows
-
-
-def test_a_mirrored_table_is_no_other_table(monkeypatch):
-    """Each table is dealt twice, the second time mirrored at the long axis."""
-
-    def deal(plan, rng):
-        seed = rng.bit_generator.seed_seq.entropy - HELD_OUT_SEED
-        places = np.random.default_rng(seed // 2).uniform(-1, 1, (22, 2))
-        return (1 - 2 * (seed % 2)) * places, np.ones(22, bool)
-
-    monkeypatch.setattr(benchmark_tasks, "deal", deal)
-    monkeypatch.setattr(benchmark_tasks, "plan_of", lambda name: None)
-    made = benchmark_tasks._tables_of.__wrapped__("made here", 5)
-    assert made == tuple(HELD_OUT_SEED + 2 * k for k in range(5))

@@ -3,11 +3,8 @@
 import json
 import sys
 
-import pytest
-
 from snooker_env.benchmark import TASKS, Agent
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.playing import play_episodes
 from snooker_env.benchmark.text import COUNTS, STROKES, TRIES, judge_text
 from tests.processes import ROOT
 
@@ -35,24 +32,6 @@ def test_the_example_reads_the_table_in_words_and_is_never_refused(tmp_path, cap
     for row in result["rows"]:
         assert set(row) == {"table", *COUNTS} and row["refused"] == row["forfeited"] == 0
         assert row["answers"] == row["strokes"] >= 1 and row["read"] > 500 * row["strokes"]
-
-
-def test_anchors_play_the_visits_of_the_benchmark_up_to_the_budget(tmp_path):
-    rows = judge_text(Agent.of("ghost_ball"), visits=12, out=tmp_path / "a.json")["rows"]
-    whole = [
-        dict(zip(("run", "table", "score"), row[:3], strict=True))
-        for row in play_episodes(BREAK, "ghost_ball", BREAK.seeds(12)).rows
-    ]
-    short = [k for k, row in enumerate(rows) if row["strokes"] < STROKES]
-    assert len(short) > 6
-    assert all(
-        rows[k]["points"] == whole[k]["score"] and rows[k]["table"] == whole[k]["table"] for k in short
-    )
-
-
-def test_no_visit_is_longer_than_its_budget(tmp_path):
-    rows = judge_text(Agent.of("search_30"), visits=8, out=tmp_path / "a.json")["rows"]
-    assert max(row["strokes"] for row in rows) == STROKES
 
 
 SECOND = """stroke = '{"speed": 2.0, "aim": 0.0}'
@@ -107,20 +86,3 @@ def test_a_program_that_dies_is_said_and_its_result_gone_on_with(tmp_path, capsy
     assert result["rows"][: len(kept["rows"])] == kept["rows"] and len(result["rows"]) == 8
     other = [*command[:2], "random", "--visits", "8", "--out", str(out), "--resume"]
     assert main(other) == 2 and "must be of the same agent" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("visits", [1, 201])
-def test_wrong_numbers_of_visits(tmp_path, visits, capsys):
-    assert (
-        main(["text", "--agent", "random", "--visits", str(visits), "--out", str(tmp_path / "a.json")]) == 2
-    )
-    assert f"visits = {visits}: must be an integer in [2, 200]" in capsys.readouterr().err
-
-
-def test_training_seeds_and_threads_are_refused(tmp_path, capsys):
-    two = Agent(label="a", sources=("random", "ghost_ball"))
-    with pytest.raises(ValueError, match=r"^agent = 'random, ghost_ball': must be one"):
-        judge_text(two, visits=2, out=tmp_path / "a.json")
-    with pytest.raises(SystemExit):
-        main(["text", "--agent", "random", "--threads", "2"])
-    assert "--threads" in capsys.readouterr().err

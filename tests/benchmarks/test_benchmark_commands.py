@@ -1,6 +1,5 @@
 """Do the benchmarks behave as commands, with help, Ctrl-C, missing libraries and what cannot be written?"""
 
-import errno
 import json
 import os
 import re
@@ -8,13 +7,9 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
-from unittest.mock import Mock
 
 import pytest
 
-from benchmarks._common import command as _command
-from benchmarks._common import kept, package_copies
 from tests.processes import ROOT
 
 NAMES = [file.stem for file in (ROOT / "benchmarks").glob("*.py")]
@@ -68,13 +63,6 @@ def test_help_is_printed_and_nothing_is_compiled(tmp_path):
     assert not list(tmp_path.rglob("*.nb?"))
 
 
-@pytest.mark.parametrize(("name", "wrong"), [("paper", "--what"), ("make_tables", "--tables=-1")])
-def test_a_wrong_argument_is_an_error_of_usage(name, wrong):
-    code, out, err = ended(started(name, wrong))
-    assert code == 2 and out == "" and err.startswith(f"usage: python -m benchmarks.{name}")
-    assert "Traceback" not in err
-
-
 def interrupted(process, seconds):
     time.sleep(seconds)
     process.send_signal(signal.SIGINT)
@@ -119,14 +107,6 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_work(tmp_path, wher
     assert re.search(says + r"\S.*\)\n$", err), err
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
-def test_a_full_disk_is_said_in_one_line():
-    code, out, err = ended(started("paper", "--no-pictures", "--json", "/dev/full"))
-    assert code == 1 and "Tables 1 and 2" in out
-    assert err == "benchmarks.paper: /dev/full cannot be written: No space left on device\n"
-    assert Path("/dev/full").is_char_device()
-
-
 def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
     new = tmp_path / "new"
     code, out, err = ended(started("paper", "--out", new, "--json", new / "figures.json"))
@@ -140,60 +120,3 @@ def test_a_library_that_is_missing_is_named_and_how_to_install_it(tmp_path):
     code, out, err = ended(started("paper", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
     said = 'scipy is missing; in a clone of the repository:  pip install -e ".[test]"'
     assert (code, out, err) == (1, "", f"{said}\n")
-
-
-def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
-    file = tmp_path / "new folder" / "figures.json"
-    _command.save_json(file, {"a": 1})
-    assert file.read_text() == '{\n "a": 1\n}\n' and list(file.parent.iterdir()) == [file]
-    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-    for stop, error in ((full, OSError), (KeyboardInterrupt(), KeyboardInterrupt)):
-        with monkeypatch.context() as patch, pytest.raises(error) as stopped:
-            patch.setattr(os, "fsync", Mock(side_effect=stop))
-            _command.save_json(file, {"half": 1})
-        if stop is full:
-            assert stopped.value.filename == str(file)
-    assert file.read_text() == '{\n "a": 1\n}\n' and list(file.parent.iterdir()) == [file]
-    _command.save_json(None, {})
-    link = tmp_path / "link.json"
-    link.symlink_to(file)
-    _command.save_json(link, [])
-    assert link.is_symlink() and file.read_text() == "[]\n"
-
-
-@pytest.fixture
-def build(tmp_path, monkeypatch):
-    monkeypatch.setattr(kept, "BUILD", tmp_path / "build")
-    return tmp_path / "build"
-
-
-def test_folders_are_made_once_and_whole(build):
-    made = []
-
-    def make(folder):
-        made.append(folder)
-        (folder / "file").write_text("whole")
-        if len(made) == 1:
-            raise OSError(28, "No space left on device")
-
-    with pytest.raises(OSError, match="No space"):
-        kept.kept_folder("x", make)
-    assert not list(build.iterdir())
-    for _ in range(2):
-        assert (kept.kept_folder("x", make) / "file").read_text() == "whole"
-    assert len(made) == 2 and [file.name for file in build.iterdir()] == ["x"] and build / "x" not in made
-
-
-def test_the_faster_of_two_processes_counts(build):
-    def make(folder):
-        (folder / "file").write_text("slower")
-        (build / "x").mkdir()
-        (build / "x" / "file").write_text("faster")
-
-    assert (kept.kept_folder("x", make) / "file").read_text() == "faster"
-    assert [file.name for file in build.iterdir()] == ["x"]
-
-
-def test_copies_of_the_package_are_kept_there(build):
-    (module,) = package_copies.load("snooker_env_copy", {"__init__.py": "", "here.py": "VALUE = 3"}, ["here"])
-    assert module.VALUE == 3 and build in Path(module.__file__).parents

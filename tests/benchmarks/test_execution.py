@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from benchmarks.execution import in_play, pot_shots, published
-from snooker_env.envs.vector import SnookerVectorEnv
+from benchmarks.execution import pot_shots, published
 from snooker_env.geometry import POCKET_AIMS
-from snooker_env.planning import Positions
-from snooker_env.tasks.noise import LEVELS, Noise
+from snooker_env.tasks.noise import Noise
 
 PHYSICS, TABLE = sn.Physics(), "match"
 
@@ -36,15 +34,6 @@ def test_pots_lie_as_they_are_described():
     for name, spot in (("blue", [0.0, 0.0]), ("black", [0.0, 1.4605])):
         pot = next(pot for pot in pot_shots.POTS if pot.name.startswith(name))
         assert pot.positions[1] == pytest.approx(spot, abs=1e-12)
-
-
-def test_rates_by_geometry_are_those_that_were_published_with_the_aim_errors():
-    """Of the four pots at 0.02 and 0.05 deg, with half a window of 22 mm."""
-    black, red, blue, long = pot_shots.DERIVED
-    assert [round(100 * pot.rate(0.02)) for pot in (black, red)] == [100, 100]
-    assert round(100 * red.rate(0.05)) == 96
-    rates = [100 * pot.rate(deg) for pot in (blue, long) for deg in (0.02, 0.05)]
-    assert rates == pytest.approx([92, 51, 75, 36], abs=1.5)
 
 
 def test_without_errors_every_pot_goes_in_and_stays_so_just_within_its_window():
@@ -79,56 +68,3 @@ def test_the_robot_pots_and_places_as_published():
     rate = published.mean_rate(shots, "robot", 2000, PHYSICS, TABLE)
     assert rate == pytest.approx(published.ROBOT_POTS, abs=0.025)
     assert 0.12 < published.mean_place(shots, "robot", 1000, PHYSICS, TABLE) < 0.18
-
-
-def test_placement_of_speed_errors_alone():
-    """As far as the stop shifts with the speed, times the speed's error, along the way and across."""
-    for shot in shots_of(pot_shots.MODERATE[:3]):
-        ends = []
-        for share in (0.99, 1.01):
-            stroke = shot.stroke * [share, 1.0, 1.0, 1.0]
-            ends.append(pot_shots.played(shot.pot, stroke, np.zeros(1), PHYSICS, TABLE)[1][0])
-        way = (shot.stops - shot.meets) / math.dist(shot.stops, shot.meets)
-        shift = 0.5 * (ends[1] - ends[0])  # of one percent
-        found = pot_shots.rolls(shot, Noise(speed_rel=0.01), 1500, 3, PHYSICS, TABLE)
-        distance, along, across = found.placement
-        assert found.rate == 1.0 and distance == pytest.approx(math.hypot(*shift), rel=0.1)
-        expected = abs(shift @ way), abs(shift @ [-way[1], way[0]])
-        assert (along, across) == pytest.approx(expected, rel=0.1, abs=1e-3)
-
-
-def test_directions_by_cause():
-    found = pot_shots.directions("professional", 3000, 1, PHYSICS)
-    player = LEVELS["professional"]
-    aim, tip = (
-        Noise(aim_deg=player.aim_deg, growth=player.growth),
-        Noise(offset_mm=player.offset_mm, growth=player.growth),
-    )
-    assert found["aim"] == pytest.approx(aim.direction_deg(), rel=0.05)
-    assert found["squirt"] == pytest.approx(tip.direction_deg(), rel=0.05)
-    assert found["all"] == pytest.approx(player.direction_deg(), rel=0.05)
-    assert found["swerve"] < 0.05 * found["squirt"]
-
-
-def test_the_likeliest_pot_scores_as_often_as_it_was_given_and_more_often_than_the_widest():
-    made, expected = in_play.in_play("club", 40, 1)
-    assert len(made) == len(expected) > 40 and abs(made.mean() - expected.mean()) < 0.15
-    assert np.corrcoef(made, expected)[0, 1] > 0.2
-    easy, hard = (in_play.first_pots("club", f"pots:{name}", 300).mean() for name in ("easy", "hard"))
-    assert easy > hard + 0.2
-
-
-def test_professionals_pot_in_play_as_documented():
-    """docs/validation/execution_errors.md: 78 % of all that they try, 84 % where the chance is half or more."""
-    made, expected = in_play.in_play("professional", 60, 3)
-    likely = made[expected >= published.LIKELY]
-    assert made.mean() == pytest.approx(0.78, abs=0.06) and likely.mean() == pytest.approx(0.84, abs=0.05)
-
-
-def test_the_likeliest_pot_is_one_that_is_there():
-    tables = SnookerVectorEnv(5, layout="random:3", noise="professional", action="discrete")
-    tables.reset(seed=4)
-    going, player = np.array([True, False, True, True, True]), in_play.Likeliest().at(tables)
-    strokes = player.play(Positions.of(tables)[going], np.arange(4))
-    (chances,) = player.chances
-    assert len(strokes) == len(chances) == 4 and (chances >= 0.0).all() and chances.max() > 0.3

@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-import snooker_env as sn
 from benchmarks.paper import __main__ as paper
 from benchmarks.paper import other_data as data
 from benchmarks.paper import paper_shots as shots
@@ -31,24 +30,6 @@ def test_only_the_known_slips_of_the_tables_are_marked():
     assert [(r["quantity"], r["shot"]) for r in rows if r["error_slip"]] == [("angle_c", 3)]
 
 
-@pytest.mark.parametrize("e", [0.89, 1.0])
-@pytest.mark.parametrize("topspin", [0.0, 40.0])
-def test_models_without_friction_are_the_package_without_friction(e, topspin):
-    v1, w1, v2, w2 = shots.impact(1.2, topspin, 37.0, sn.Physics(e_b=e, mu_bb=0.0))
-    v_c, v_o, angle_c, angle_o = shots.closed(e, 0.0, cloth=True)(1.2, topspin, 37.0)
-    for v, w, speed, angle in ((v1, w1, v_c, angle_c), (v2, w2, v_o, angle_o)):
-        x, y = shots.rolling(v, w)
-        assert np.hypot(x, y) == pytest.approx(speed, rel=1e-12)
-        assert abs(np.degrees(np.arctan2(y, x))) == pytest.approx(angle, rel=1e-12)
-
-
-@pytest.mark.parametrize("cut", [5.0, 50.0])
-def test_planar_friction_is_the_package_for_a_stun_shot(cut):
-    """Slip that ends (5 deg) and slip that lasts (50 deg); with no roll the planar model is exact."""
-    planar = shots.closed(shots.E_B, shots.MU_BB, cloth=True)
-    assert planar(1.2, 0.0, cut) == pytest.approx(shots.solved("reference")(1.2, 0.0, cut), rel=1e-9)
-
-
 def test_throw_of_tp_a14():
     for name, rows in data.a14().items():
         kind, v0 = data.A14_SHOTS[name]
@@ -58,12 +39,6 @@ def test_throw_of_tp_a14():
         assert rows["fast"] == pytest.approx(rows["closed form"], abs=1e-10)
         if kind == "stun":
             assert rows["reference"] == pytest.approx(rows["closed form, mu follows"], abs=1e-8)
-
-
-def test_simulate_follows_the_papers_parabola():
-    found = shots.curved_path(0.2)
-    assert found["gap"] < 1e-12
-    assert found["leaves_deg"] - found["rolls_deg"] > 1
 
 
 def test_the_command_runs(tmp_path, capsys):

@@ -7,8 +7,6 @@ import snooker_env as sn
 from benchmarks.pockets import openings
 from benchmarks.pockets import windows as pocket_windows
 from benchmarks.pockets.windows import CORNER, MIDDLE, Paths, alone, drops, windows
-from snooker_env.game import pots
-from tests.kernels import from_python
 
 ANGLES = {CORNER: (0, 20, 40), MIDDLE: (0, 30, 45, 60)}
 PRESETS, TABLES = ("paper", "match"), ("match", "tight")
@@ -29,20 +27,6 @@ def test_a_firm_shot_has_a_narrower_window_than_a_soft_one(preset, table, pocket
     """Every window here is wider than the clean opening, or needs a jaw."""
     slowest, slow, firm = widths(preset, table, pocket, (1.0, 2.0, 6.0) if not rolling else SPEEDS, rolling).T
     assert (firm < slow - (1.5 if rolling else 0.5)).all() and (firm < slowest - 3.0).all()
-
-
-@pytest.mark.parametrize("preset", PRESETS)
-def test_a_firm_ball_that_meets_a_jaw_of_a_middle_pocket_may_come_out_again(preset):
-    """Dropped at once at the edge, these are 0.93 to 0.98."""
-    slow, _, firm = widths(preset, "match", MIDDLE).T
-    assert (firm < 0.85 * slow).all()
-
-
-@pytest.mark.parametrize("preset", PRESETS)
-def test_the_tight_corners_are_never_wider(preset):
-    for rolling in (True, False):
-        at = CORNER, (1.0, 2.0, 4.0, 6.0, 9.0), rolling
-        assert (widths(preset, "tight", *at) < widths(preset, "match", *at)).all()
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -70,23 +54,6 @@ def test_a_window_is_what_a_dense_scan_finds():
         at = np.array([low - 1e-7, low, high, high + 1e-7])
         dropped = drops(here, angle, 0.3, speed, True, physics, at)
         assert dropped.tolist() == [False, True, True, False]
-
-
-def test_pots_are_offered_by_these_windows():
-    """Of a rolling ball at 1.5 m/s: at the angles of ``game.pots`` to a millimetre, between them to 2.5."""
-    given, physics = from_python(pots.window), sn.Physics.preset("match")
-    for pocket, nodes in ((CORNER, pots._CORNER_ANGLE), (MIDDLE, pots._MIDDLE_ANGLE)):
-        for angles, most in ((np.array(nodes), 1e-3), (0.5 * np.add(nodes[1:], nodes[:-1]), 2.5e-3)):
-            paths = Paths(np.radians(angles), 0.3, 1.5, True, False)
-            wide = windows(alone(sn.Table.preset("match"), pocket), paths, physics).width
-            offered = [given(np.cos(a), pocket == MIDDLE) for a in np.radians(angles)]
-            assert offered == pytest.approx(wide, abs=most)
-
-
-def test_no_window_where_the_ball_stops_short():
-    here, physics = alone(sn.Table.preset("match"), CORNER), sn.Physics.preset("match")
-    found = windows(here, Paths(0.0, np.array([0.3, 1.7]), 0.5, True, False), physics)
-    assert np.isnan(found.width).tolist() == [False, True]
 
 
 def test_the_openings_are_those_that_table_py_speaks_of():

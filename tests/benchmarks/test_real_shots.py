@@ -7,8 +7,7 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.real_shots import __main__ as command
-from benchmarks.real_shots import cma, constants, strikes, tracks, verdict
-from benchmarks.real_shots.paths import AIM, SPEED, Judge
+from benchmarks.real_shots import verdict
 
 PHYSICS = sn.Physics.preset("carom", tables=False)
 STRIKES = ((2.2, 0.9, 0.25, 0.2, 0.03), (1.6, 2.4, -0.2, 0.1, 0.05))
@@ -69,22 +68,6 @@ def test_the_command_finds_the_strikes(file, tmp_path, capsys):
     assert "wild samples left out: 1" in said
 
 
-def test_measured_contacts_are_the_engines(file):
-    for number, shot in enumerate(tracks.read(file)):
-        events = made(number, 0)[1].events
-        own = [
-            e for e in events if e["i"] == 0 and e["kind"] in (sn.EventKind.BALL_BALL, sn.EventKind.CUSHION)
-        ]
-        times = [float(e["time"]) + LATE for e in own]
-        assert [t for t, _ in shot.contacts][:4] == pytest.approx(
-            times[: min(4, len(shot.contacts))], abs=0.03
-        )
-        judge = Judge(shot, PHYSICS)
-        strike = np.array([*STRIKES[number], LATE])
-        assert verdict.judge_shot(judge, strike)["cue_rms"] < 0.0015
-        assert verdict.judge_shot(judge, strike)["order"]
-
-
 def test_order_of_contacts():
     measured = [(0.1, "ball 1"), (0.5, "left"), (0.51, "near"), (1.0, "right"), (2.0, "ball 2")]
     swapped = [measured[k] for k in (0, 2, 1, 3, 4)]
@@ -93,45 +76,6 @@ def test_order_of_contacts():
     assert not verdict.same_order(measured, [measured[k] for k in (1, 0, 2, 3)])
     assert not verdict.same_order(measured, measured[:3])
     assert verdict.same_order(measured, measured[:4])
-
-
-def test_runs_across():
-    contacts = [(0.1, "left"), (0.6, "right"), (1.2, "left"), (2.0, "far"), (3.0, "ball 1")]
-    assert verdict.across(contacts) == [(0.1, 2.0, 2)]
-    assert verdict.across(contacts[2:]) == []
-
-
-def test_constants_move_towards_those_of_the_shots(file):
-    """From other constants, two steps lower the loss."""
-    shots = tracks.read(file)
-    other = sn.Physics.preset("carom", tables=False, mu_r=0.0050)
-    starts = [np.array([*strike, LATE]) for strike in STRIKES]
-    judges = [Judge(shot, other) for shot in shots]
-    before = constants.loss(
-        [constants.rms(j, strikes.settled(j, s)[0]) for j, s in zip(judges, starts, strict=True)]
-    )
-    found, after = constants.fitted(
-        other, shots, 0.02, names=("mu_r",), say=lambda text: None, strikes=starts
-    )
-    judges = [Judge(shot, found) for shot in shots]
-    assert abs(found.mu_r - PHYSICS.mu_r) < 0.0004
-    assert constants.loss([constants.rms(j, s) for j, s in zip(judges, after, strict=True)]) < 0.7 * before
-
-
-def test_bounds_hold_the_strike(file):
-    for number, shot in enumerate(tracks.read(file)):
-        low, high = strikes.bounds(shot, PHYSICS)
-        strike = np.array([*STRIKES[number], LATE])
-        assert (low[[SPEED, AIM]] < strike[[SPEED, AIM]]).all()
-        assert (strike[[SPEED, AIM]] < high[[SPEED, AIM]]).all()
-
-
-def test_cma_finds_the_foot_of_a_narrow_valley():
-    search = cma.Cma(np.random.default_rng(0), np.array([3.0, -2.0]), np.ones(2), 1.0, 10)
-    for _ in range(80):
-        x = search.ask()
-        search.tell(x, 100 * (x[:, 1] - x[:, 0]) ** 2 + (x[:, 0] - 1) ** 2)
-    assert search.mean == pytest.approx([1.0, 1.0], abs=1e-3)
 
 
 def spoiled(data, change):
@@ -163,9 +107,3 @@ def test_a_bad_file_is_refused_in_one_line(tmp_path, data, capsys, change, says)
         command.main([str(path)])
     assert stopped.value.code == 2
     assert says in capsys.readouterr().err
-
-
-def test_a_missing_file_is_said(tmp_path, capsys):
-    with pytest.raises(SystemExit):
-        command.main([str(tmp_path / "none.json")])
-    assert "none.json" in capsys.readouterr().err

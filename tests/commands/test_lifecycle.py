@@ -1,10 +1,8 @@
 """Do the commands help, name what is missing, and print on any terminal?"""
 
-import json
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -78,25 +76,6 @@ def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     assert not [file for file in tmp_path.rglob("*") if file.suffix in (".nbi", ".nbc")]
 
 
-QUICK = str.split("--agent random --visits 4 --layouts held_out --noise professional --resamples 100")
-LADDER = ROOT / "results" / "agents" / "ladder.json"
-TINY = str.split("--agent ppo_target --envs 2 --eval-visits 4 --parallel one --steps 1")
-
-
-def test_any_terminal_will_do(tmp_path):
-    """One with few letters shows "?" for the others; the files are whole."""
-    name = tmp_path / "r\u00e9sum\u00e9 \u2192.json"
-
-    def printed(*arguments):
-        done = python(*arguments, PYTHONIOENCODING="ascii")
-        assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
-        return done.stdout
-
-    printed("-m", "agents.evaluate", *QUICK, "--json", name)
-    assert json.loads(Path(name).read_text())["results"]
-    printed("-m", "agents.report", "--show", name)
-
-
 def test_ctrl_c_is_one_line(capsys):
     @lifecycle.command("agents.x")
     def main(argv):
@@ -106,19 +85,3 @@ def test_ctrl_c_is_one_line(capsys):
     with pytest.raises(SystemExit) as stop, lifecycle.needs("agents.x"):
         raise KeyboardInterrupt
     assert stop.value.code == 130
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["-m", "agents.report", "--show", str(LADDER)],
-        pytest.param(["train.py", *TINY], marks=pytest.mark.slow),
-    ],
-)
-def test_a_reader_that_leaves_ends_a_command_in_one_line_at_most(arguments, tmp_path):
-    out = [] if "-m" in arguments else ["--out", str(tmp_path / "run")]
-    reading, writing = os.pipe()
-    os.close(reading)
-    with open(writing, "w") as nobody:
-        done = python(*arguments, *out, stdout=nobody)
-    assert done.returncode == 1 and done.stderr.count("\n") == bool(out)  # how the training is gone on with

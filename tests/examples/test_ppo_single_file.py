@@ -7,7 +7,6 @@ import torch
 
 from agents.players.trained import load_player
 from examples import ppo_single_file as example
-from snooker_env import SnookerVectorEnv
 from snooker_env.benchmark import play_visits, summary
 
 
@@ -109,25 +108,3 @@ def test_the_returns_that_it_prints_are_those_of_whole_visits(tmp_path, capsys, 
     assert len(played) == 16 and 300 < len(returns) < 1000
     assert points == pytest.approx(np.mean(returns))
     assert f", {np.mean(returns):.2f} points a visit" in capsys.readouterr().out
-
-
-def test_its_file_is_played_by_our_protocol(tmp_path):
-    _, player = trained(8192, tmp_path)
-    assert player.model.num_timesteps == 8192 and player.model.recipe == "single file"
-    assert player.model.seed == 1
-    tables = SnookerVectorEnv(5, threads=1, action="discrete")
-    rows, _ = tables.reset(seed=3)
-    agent = example.mlp(121, 256, 256, 540)
-    weights = iter(part for layer in player.model.policy.weights for part in layer)
-    with torch.no_grad():
-        for part in agent.parameters():
-            part.copy_(torch.from_numpy(next(weights)))
-        scores = agent(torch.from_numpy(rows)).numpy()
-    assert np.allclose(player.model.policy(rows), scores, atol=1e-5)
-
-
-def test_a_wrong_name_of_noise_is_one_line(tmp_path, capsys):
-    with pytest.raises(SystemExit) as stop:
-        example.main(["--noise", "pro", "--out", str(tmp_path / "p.npz")])
-    line = capsys.readouterr().err.splitlines()[-1]
-    assert stop.value.code == 2 and "--noise: invalid choice: 'pro'" in line and "professional" in line

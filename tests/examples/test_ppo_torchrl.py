@@ -1,11 +1,10 @@
 """Does TorchRL collect what the tables play, and does its PPO run?"""
 
 import numpy as np
-import pytest
 import torch
 
 from agents.players.trained import load_player
-from snooker_env import SnookerEnv, SnookerVectorEnv
+from snooker_env import SnookerEnv
 from tests.trainers import needed
 
 check_env_specs = needed("torchrl.envs.utils").check_env_specs
@@ -45,26 +44,6 @@ def test_a_rollout_is_what_single_tables_play():
                 ends, (seen, _) = ends + 1, env.reset()
     assert ends > 100
     check_env_specs(tables)
-
-
-@pytest.mark.parametrize(
-    ("kind", "more"), [("flat", {}), ("masked", {"action": "discrete"}), ("balls", {})], ids=str
-)
-def test_what_torchrl_makes_of_each_kind_of_observation_at_the_end_of_an_episode(kind, more):
-    """As docs/environment/trainers.md says."""
-    options = {"observation": kind, "layout": "random:1", "autoreset_mode": "SameStep", "threads": 1} | more
-    wrapper = needed("torchrl.envs").GymWrapper
-
-    def rolled():
-        return wrapper(SnookerVectorEnv(4, **options)).rollout(6, break_when_any_done=False)["next"]
-
-    if kind == "balls":
-        with pytest.raises(RuntimeError, match="StopIteration"):
-            rolled()
-        return
-    after = rolled()
-    ends = after["observations" if kind == "masked" else "observation"][after["done"].squeeze(-1)]
-    assert len(ends) and bool(ends.any()) == (kind == "flat")
 
 
 def test_it_trains_and_its_file_is_played_by_our_protocol(tmp_path, capsys):

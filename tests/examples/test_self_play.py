@@ -8,7 +8,6 @@ import pytest
 import torch
 
 from examples import self_play
-from snooker_env import SnookerVectorEnv
 from snooker_env.players import SeenPlayer
 from tests.flips import flipped
 
@@ -67,30 +66,11 @@ def test_no_flipped_bit_of_a_checkpoint_is_used(whole):
             self_play.main([*SHORT, "--out", str(whole)])
 
 
-def test_a_checkpoint_of_other_settings_is_refused(whole):
-    with pytest.raises(SystemExit, match="--shots, --tables and --seed"):
-        self_play.main([*SHORT, "--seed", "1", "--out", str(whole)])
-
-
 def test_the_weights_move(whole):
     """The first past self is the untrained network; the last weights are not."""
     first = pickle.loads((whole / "checkpoint.pkl").read_bytes())["pool"][0]
     last = torch.load(whole / "weights.pt", weights_only=True)
     assert any(not torch.equal(first[name], last[name]) for name in last)
-
-
-def test_without_a_pot_the_nearest_ball_on_stands_first():
-    """At the break-off no red can be potted: the first pot shows the way to the nearest red."""
-    tables = SnookerVectorEnv(3, threads=1, **self_play.GAME)
-    observations, _ = tables.reset(seed=1)
-    shown = self_play.view(observations)[:, self_play.OBSERVATION_SIZE :]
-    for k in range(3):
-        way = tables.tables.positions[k, 1:16] - tables.tables.positions[k, 0]
-        far = np.hypot(*way.T)
-        near = far.argmin()
-        assert shown[k, 0] == 1.0 and (shown[k, 13::13] == 0.0).all()
-        assert shown[k, 1:3] == pytest.approx(way[near] / far[near], abs=1e-5)
-        assert shown[k, 5] == pytest.approx(far[near] / 1.7845 - 1.0, abs=1e-5)
 
 
 def test_the_published_agent_is_an_opponent_that_a_constant_choice_does_not_beat():

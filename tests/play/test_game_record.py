@@ -91,8 +91,9 @@ def test_it_begins_at_the_last_new_table_and_ends_before_what_was_undone():
     open_game(other, saved)
     assert saved["state"] == session.acts[-3].state and len(saved["acts"]) == 1
     assert other.state == session.state and len(other.strokes) == 1 and other.frame.scores == (3, 5)
-    open_game(other, session.save())
-    assert other.state == session.state and not other.strokes
+    saved = json.loads(json.dumps(session.save()))
+    open_game(other, saved)
+    assert other.state == session.state and not other.strokes and len(json.dumps(saved)) < 5000
 
 
 def test_a_free_ball_that_was_declined_is_declined_again():
@@ -110,15 +111,6 @@ def pushed(saved, by):
     """With the cue ball elsewhere after its stroke, by so many metres."""
     x, y = saved["acts"][0]["left"]["cue"]
     saved["acts"][0]["left"]["cue"] = [x, y + by]
-
-
-def test_another_machine_may_round_a_little():
-    session, other = standing(EASY), Session()
-    session.play(CueStroke(speed=2.0, aim=STRAIGHT))
-    saved = sent(session)
-    pushed(saved, 0.7e-3)
-    open_game(other, saved)
-    assert other.state == session.state
 
 
 ACT = r"^saved\.acts\[0\]\."
@@ -148,7 +140,15 @@ WRONG = {  # what is done to a record | what is said
     "s['acts'][0]['left'].update(scores=[1, None])": ACT + "left = None: must be a finite",
     "s['acts'][0]['left'].update(white=[0, 0])": ACT + "field of left = 'white'",
     "s.pop('noise')": "^saved = version 1",
+    "s.update(format='x')": "must be a saved game",
+    "s.update(noise=['none', 'perfect'])": r"saved.noise\[1\]",
+    "s.update(more=1)": "must be version 1",
+    "s.update(cue='long')": r"saved\.cue",
     "s['state'].update(stream=[1])": "stream",
+    "s['state'].update(rng={})": "must be a dict with",
+    "s['state']['positions'][1].__setitem__(0, 5.0)": r"positions\[1\]",
+    "s['state']['frame'].update(scores=[-1, 0])": r"scores\[0\]",
+    "s['state']['frame'].update(striker=2)": "striker",
 }
 
 

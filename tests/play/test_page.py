@@ -140,30 +140,6 @@ def test_keys_and_dial_change_the_stroke(shown):
     assert shown("page.aim.wish.aim") - before == pytest.approx(0.05 * 0.017453293, abs=1e-9)
 
 
-def test_a_held_key_turns_the_aim_by_the_time(shown):
-    """Not by how often its keyboard repeats it; and no longer than it is held."""
-    shown.set_up(EASY)
-    press = "document.body.dispatchEvent(new KeyboardEvent('keydown', { key: argument, bubbles: true, repeat: k > 0 }))"
-    for key, part, step in (
-        ("ArrowLeft", "aim", 0.1 * pi / 180),
-        ("ArrowUp", "speed", 0.1),
-        ("d", "side", 0.05),
-    ):
-        shown("page.aim.set({aim: 1, speed: 2, side: 0})")
-        start = shown(f"page.aim.wish.{part}")
-        shown.page.evaluate(
-            f"argument => {{ for (let k = 0; k < 20; k++) {press}; page.pressed = null; }}", key
-        )
-        assert shown(f"page.aim.wish.{part}") == pytest.approx(start + step)
-        shown.page.keyboard.down(key)
-        shown.until(f"page.aim.wish.{part} > argument", start + 4.5 * step, 20)
-        shown.page.keyboard.up(key)
-        end = shown(f"page.aim.wish.{part}")
-        shown.page.wait_for_timeout(100)
-        assert shown(f"page.aim.wish.{part}") == end
-    assert shown("page.state.strokes") == 0
-
-
 def test_after_a_foul_the_choices_are_shown(shown):
     shown.set_up(COVERED)
     shown("page.aim.set({aim: 1.5708, speed: 1})")
@@ -248,23 +224,6 @@ def test_advice_is_shown_drawn_and_taken(shown):
     potted = shown.line("api/strokes")[1]["strokes"][-1]["pots"]
     assert [name for name, _ in best["pots"]] == [f"red {ball}" for ball in potted]
     assert shown("document.querySelectorAll('#advice button').length") == 0  # it was about another table
-
-
-def test_an_agent_plays_and_its_strokes_are_shown(shown):
-    shown.set_up(EASY)
-    shown.page.click("#options summary")
-    shown.page.select_option("#who-1", "ghost_ball")
-    shown.until("page.state.players[1] === 'ghost_ball' && page.state.noise[1] === 'professional'")
-    assert shown.words == "Your stroke: red is on."
-    shown("page.aim.set({aim: argument, speed: 0.5})", AWAY)
-    shown.page.click("#play")
-    shown.played(1)
-    shown.until("page.state.strokes >= 2 && !page.state.thinking")
-    shown.played(shown("page.state.strokes"))
-    assert shown.page.inner_text("#last").startswith("ghost ball")
-    shown.page.click("#undo")
-    shown.until("page.state.strokes === 0 && page.settled === page.state.revision")
-    assert shown.words == "Your stroke: red is on." and shown("page.balls.x[0]") == EASY["cue"][0]
 
 
 WATCHED = """(window.drawn = [], page.view.draw = (draw => frame => {
@@ -391,39 +350,6 @@ def test_the_end_of_a_frame_is_seen(shown):
     assert shown.page.get_attribute("#last", "class") != "trouble"
 
 
-def test_the_end_of_a_frame_is_seen_when_its_last_ball_is_down(shown):
-    shown.set_up({"cue": [0.6, 1.5], "black": [0.76, 1.66]}, scores=[5, 13])
-    shown("page.aim.set({aim: Math.PI / 4, speed: 1})")
-    shown.page.keyboard.press("Enter")
-    shown.until("page.moving")
-    assert not shown.page.is_visible("#over")
-    shown.played(1)
-    assert shown.page.inner_text("#over-who") == "Player 2 won the frame"
-    assert shown.page.inner_text("#over-score") == "Player 1 12 : 13 Player 2"
-
-
-def test_the_odds_are_those_of_the_errors_of_the_persons_seat(shown):
-    noise = "club"
-    shown.set_up(EASY)
-    state = shown.line("api/players", {"noise": [noise, "professional"]})[1]
-    shown.until("page.settled === argument", state["revision"])
-    shown("page.aim.set({aim: argument, speed: 2})", STRAIGHT + 0.01)
-    found = shown.line("api/destinations", {"speed": 2.0, "aim": STRAIGHT + 0.01, "noise": noise})[1]
-    assert found["samples"] == 500
-    shown.until("page.advisor.found && !page.advisor.wait.busy")
-    odds = shown("[page.advisor.found.samples, page.advisor.found.potted]")
-    assert odds == [found["samples"], found["potted"]]
-    assert f"red: potted {100 * found['potted']:.0f} %" in shown.page.inner_text("#odds")
-    shown.page.click("#options summary")
-    shown.page.select_option("#guide", "line")
-    assert shown("page.advisor.found") is None and shown.page.inner_text("#odds") == ""
-    shown.page.click("#advise")
-    shown.until("page.advisor.list.length")
-    asked = {"agent": shown.page.input_value("#agent"), "noise": noise}
-    words = [one["words"] for one in shown.line("api/advise", asked)[1]["suggestions"]]
-    assert shown("page.advisor.list.map(one => one.words)") == words
-
-
 def test_two_agents_play_on_by_themselves_until_paused(shown):
     """Each stroke is seen before the other agent plays; Pause stops them, Continue lets them play on."""
     shown.set_up(EASY)
@@ -445,82 +371,6 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
     shown.page.click("#go")
     shown.until("page.moving && page.state.strokes > argument", stopped)
     shown.line("api/players", PERSONS)
-
-
-def test_the_first_aim_of_a_frame_is_no_foul_and_fouls_are_shown(shown):
-    shown.line("api/players", PERSONS)
-    for seed in (1, 2, 3):
-        _, state, _ = shown.line("api/new", {"layout": "break_off", "seed": seed})
-        shown.until("page.settled >= argument && page.aiming && page.advisor.found", state["revision"])
-        assert shown("page.advisor.found.foul") < 0.2 and shown("page.advisor.found.first").startswith("red")
-    shown("page.aim.set({aim: -1.5708, speed: 1})")
-    shown.until("page.advisor.found && page.advisor.found.first === null")
-    assert "foul 100 %" in shown.page.inner_text("#odds")
-
-
-def test_new_frame_and_concede_ask_first_once_something_was_played(shown):
-    shown.set_up(EASY)
-    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})
-    shown.until("page.moving")
-    shown.played(1)
-    for fold, button in (("#start", "#new"), ("#start", "#concede"), ("#files", "#load")):
-        if not shown.page.is_visible(button):
-            shown.page.click(f"{fold} summary")
-        shown.page.click(button)
-        assert shown.page.is_visible("#confirm")
-        shown.page.keyboard.press("Escape")
-        shown.until("!document.getElementById('confirm').open")
-    assert shown("page.state.strokes") == 1 and shown.page.is_enabled("#again")
-    shown.page.click("#start summary")
-    shown.page.click("#new")
-    shown.page.click("#confirm-yes")
-    shown.until("page.state.strokes === 0 && page.settled === page.state.revision")
-    assert not shown.page.is_enabled("#again")
-    shown.page.click("#start summary")
-    shown.page.click("#new")  # nothing was played: it is not asked
-    assert not shown.page.is_visible("#confirm")
-    shown.until("page.state.ball_on === 'red'")
-
-
-def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
-    """The list says its order and its intervals; the pockets that it names are written beside the pockets."""
-    shown.set_up({"reds": [[0.6, 1.4], [-0.3, 0.4]], "black": [0.0, 1.4605], "in_hand": True})
-    assert not shown.page.is_visible("#pockets")
-    shown.page.click("#advise")
-    shown.until("document.querySelectorAll('#advice button').length")
-    assert shown.page.inner_text("#advice-order") == "By chance to win, with an amateur's mistakes:"
-    assert "95 % interval" in shown.page.get_attribute("#advice li:first-child button", "title")
-    shown.until("!document.querySelector('#pockets').hidden")
-    names = shown(
-        "[...document.querySelectorAll('#pockets span')].map(one => [one.textContent, one.offsetLeft, one.offsetTop])"
-    )
-    places = {name: (x, y) for name, x, y in names}
-    assert len(places) == 6 and places["lower middle"][1] > places["upper middle"][1]
-    assert places["lower right"][0] > places["yellow pocket"][0]
-    many, before = shown("page.advisor.list.length"), shown("page.state.revision")
-    shown.page.click("#advice li:last-child button")
-    shown.until("page.state.revision > argument && page.settled === page.state.revision", before)
-    place = shown("page.advisor.list.at(-1).place")
-    assert shown("[page.balls.x[0], page.balls.y[0]]") == pytest.approx(place, abs=1e-6)
-    assert shown("document.querySelectorAll('#advice button').length") == many
-    shown.until("page.advisor.found")
-
-
-def test_reds_off_leaves_it_to_the_balls_what_is_on(shown):
-    shown.set_up(EASY)
-    shown.page.click("#files summary")
-    shown.page.click("#set")
-    shown.until("page.setup.open")
-    shown.page.click("#set-clear")
-    shown.until("!document.getElementById('set-done').disabled")
-    shown.page.select_option("#set-on", "red")
-    shown.until("document.getElementById('set-done').disabled")
-    assert shown.page.inner_text("#set-wrong") == "There is no red left to be on."
-    assert not shown.page.is_visible("#bubble")
-    shown.page.select_option("#set-on", "automatic")
-    shown.until("!document.getElementById('set-done').disabled")
-    shown.page.click("#set-done")
-    shown.until("page.state.ball_on === 'pink'")
 
 
 @pytest.mark.parametrize(
@@ -605,33 +455,6 @@ def test_the_page_says_and_draws_how_the_cue_finds_room_before_the_stroke(shown)
     assert "Cue raised to 45 degrees over the rail, tip moved up" in shown.page.inner_text("#last")
 
 
-def test_a_ball_behind_is_drawn_and_a_free_cue_passes_through_it(shown):
-    shown.set_up({"cue": [0.0, 0.0], "reds": [[-0.5, 0.0]], "blue": [0.06, 0.0], "black": [0.0, 1.4605]})
-    shown("page.aim.set({aim: Math.PI, speed: 2, side: 0, top: 0, elevation: 0})")
-    shown.until(f"{ROOM} && page.room.found.over === 'blue'")
-    assert "over the blue" in shown.page.inner_text("#room")
-    assert shown.page.locator("#side .ball").count() == 1 and shown.page.locator("#side .wood").count() == 0
-    shown.page.click("#options summary")
-    shown.page.select_option("#cue", "free")
-    shown.until("page.state.cue === 'free' && page.room.found && !page.room.found.raised")
-    assert shown.page.inner_text("#room") == "" and shown.page.locator("#side .ball").count() == 0
-    assert shown("page.aim.overlay().cue.elevation") == 0 and shown("page.aim.wish.aim") == pytest.approx(
-        3.14159265
-    )
-    shown.page.select_option("#cue", "real")
-    shown.until("page.state.cue === 'real' && page.room.found && page.room.found.raised")
-
-
-def test_the_latest_answer_about_the_room_wins(shown):
-    shown.set_up(FROZEN)
-    shown("[3, 2.6, 2.2, 3.6, 4.6, 1.5].map(aim => page.aim.set({aim, top: 0, elevation: 0}))")
-    shown.until(f"{ROOM} && !page.room.found.raised")
-    shown("[1.5, 2.2, 3.6, 3.14159265].map(aim => page.aim.set({aim, top: 0, elevation: 0}))")
-    shown.until(f"{ROOM} && page.room.found.raised")
-    square = shown("page.room.found.elevation")
-    assert 0.5 < square < 0.63
-
-
 def test_the_cue_is_pulled_back_and_let_go(shown):
     """The further, the harder; pushed back to the ball it is no stroke, and the power is as before."""
     shown.set_up(EASY)
@@ -703,63 +526,6 @@ def test_the_first_look_is_calm_and_the_tutorial_is_shown_once(chromium, line): 
     shown.close()
 
 
-def test_the_controls_stay_where_they_are(shown):
-    """Before a stroke, while it moves, on a colour, after a foul: whatever stays visible has not moved."""
-    ids = "['asked', 'last', 'dial', 'left', 'speed', 'act', 'advise', 'undo'].map(id => document.getElementById(id))"
-    places = f"{ids}.filter(one => one.offsetParent).map(one => [one.id, one.getBoundingClientRect().top])"
-    shown.set_up(EASY)
-    shown("page.aim.set({aim: argument, speed: 2, side: 0, top: 0})", STRAIGHT)
-    first = dict(shown(places))
-    shown.page.click("#play")
-    shown.until("page.moving")
-    moving = dict(shown(places))
-    shown.played(1)
-    colour = dict(shown(places))
-    shown("page.aim.set({aim: 0, speed: 0.2})")
-    shown.page.click("#play")
-    shown.played(2)
-    assert shown.page.is_visible("#choices")
-    foul = dict(shown(places))
-    assert first == moving == colour
-    assert len(first) == 8
-    assert {name: first[name] for name in foul if name != "act"} == {
-        k: v for k, v in foul.items() if k != "act"
-    }
-
-
-def test_advice_after_a_foul_says_what_to_choose(shown):
-    """The choice that the agent would take is marked."""
-    shown.set_up(COVERED)
-    shown("page.aim.set({aim: 1.5708, speed: 1})")
-    shown.page.click("#play")
-    shown.played(1)
-    asked = shown.line("api/advise", {"noise": "amateur"})[1]
-    assert [one["choice"] for one in asked["choices"]] == ["play", "play_again", "replace"]
-    assert all(0 < one["win"] < 1 for one in asked["choices"]) and len(asked["suggestions"]) >= 1
-    shown.page.click("#advise")
-    shown.until("document.querySelectorAll('#advice button').length")
-    marked = shown("[...document.querySelectorAll('#choices .best')].map(one => one.dataset.choice)")
-    assert marked == [asked["choice"]]
-    shown.page.click("#choices button[data-choice=play]")
-    shown.until("page.aiming")
-    assert shown("document.querySelectorAll('#advice button').length")  # of the same balls
-
-
-def test_one_menu_seats_an_opponent_of_a_strength(shown):
-    shown.set_up(EASY)
-    shown.page.click("#start summary")
-    for level, who, noise in (("beginner", "ghost_ball", "club"), ("perfect", "tactician_500", "none")):
-        shown.page.select_option("#level", level)
-        shown.until(
-            "page.state.players[1] === argument[0] && page.state.noise[1] === argument[1]", [who, noise]
-        )
-        assert shown("page.state.noise[0]") == "none" and shown.page.input_value("#level") == level
-    shown.line("api/players", {"noise": ["none", "robot"]})
-    shown.until("page.state.noise[1] === 'robot'")
-    assert shown.page.inner_text("#level option:checked") == "tactician 500, mistakes: a robot's"
-    shown.line("api/players", PERSONS)
-
-
 def test_a_match_of_six_red_is_played_on_the_page(shown):
     shown.set_up(EASY)
     shown.page.click("#start summary")
@@ -791,47 +557,6 @@ def test_a_match_of_six_red_is_played_on_the_page(shown):
     shown.line("api/new", {"layout": "break_off", "game": "snooker", "best_of": 1})
 
 
-def test_the_last_stroke_is_shown_again_in_slow_motion(shown):
-    shown.set_up(EASY)
-    shown.line("api/stroke", {"speed": 1.0, "aim": STRAIGHT})
-    shown.until("page.moving")
-    shown.played(1)
-    shown.page.click("#slow")
-    shown.until("page.moving && page.moving.at > 0")
-    assert shown("page.moving.rate") == 0.2
-    begun, at = shown("[page.moving.now, page.moving.at]")
-    shown.until("page.moving.at > argument", at + 0.08)
-    now, later = shown("[page.moving.now, page.moving.at]")
-    assert (later - at) == pytest.approx(0.2 * (now - begun) / 1000, abs=1e-6)
-    shown("page.skip()")
-    shown.until("!page.behind")
-
-
-def test_statistics_count_the_frame(shown):
-    """A pot, a colour missed at a pocket, and a safety of the other."""
-    shown.set_up(EASY)
-    for stroke in (
-        {"speed": 2.0, "aim": STRAIGHT},
-        {"speed": 1.5, "aim_at": {"pot": ["black", "top left"]}, "side": 0.0},
-    ):
-        shown.line("api/stroke", stroke)
-    strokes = shown.line("api/strokes")[1]["strokes"]
-    shown.until("page.moving")
-    shown.played(len(strokes))
-    shown.page.click("#stats-open")
-    shown.until("document.getElementById('stats').open")
-    cells = shown(
-        "[...document.querySelectorAll('#stats-rows tr')].map(row => [...row.cells].map(cell => cell.textContent))"
-    )
-    rows = {name: values for name, *values in cells}
-    pots = sum(one["points"] > 0 for one in strokes)
-    points = sum(one["points"] for one in strokes)
-    assert rows["pots"][0] == f"{50 * pots} % ({pots} of 2)" and rows["pots"][1] == "–"
-    assert rows["points a visit"] == [f"{points:.1f}", "–"]
-    assert rows["highest break"] == [str(max(one["break"] for one in strokes)), "0"]
-    shown.page.keyboard.press("Escape")
-
-
 def test_a_drill_counts_and_keeps_its_best(shown):
     shown.set_up(EASY)
     shown.page.click("#drills summary")
@@ -857,17 +582,6 @@ def test_a_drill_counts_and_keeps_its_best(shown):
     shown.page.click("#drill-end")
     shown.until(f"!page.state.practice && {SETTLED}")
     assert not shown.page.is_visible("#drill")
-
-
-def test_a_stroke_that_a_drill_cuts_short_is_neither_called_nor_scored(shown):
-    shown.set_up(EASY)
-    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})  # it pots a red
-    shown.until("page.moving")
-    shown("page.drills.begin('escapes')")
-    shown.until(f"page.drills.now === 'escapes' && page.state.snookered && {SETTLED} && page.aiming")
-    assert shown("page.drills.tries") == 0 and not shown.page.is_visible("#call")
-    shown("page.drills.end()")
-    shown.until(f"!page.state.practice && {SETTLED}")
 
 
 def link_of(shown, kind):
@@ -908,17 +622,6 @@ def test_a_position_and_a_stroke_are_passed_on_as_links(shown):
     shown.page.keyboard.press("Enter")
     shown.until("document.getElementById('last').className === 'trouble'")
     assert "copied whole" in shown.page.inner_text("#last")
-
-
-def test_a_link_says_whether_it_was_copied(shown):
-    shown.set_up(EASY)
-    shown.page.click("#files summary")
-    for answer, says in (("resolve", "copied"), ("reject", "in the field Link")):
-        shown(f"(navigator.clipboard.writeText = () => Promise.{answer}(), 0)")
-        link_of(shown, "game")
-        shown.until(
-            "document.getElementById('last').textContent.startsWith(argument)", f"The link is {says}: ", 20
-        )
 
 
 def test_a_whole_replay_is_passed_on_as_a_link(shown):
@@ -1024,38 +727,6 @@ def test_a_shot_clock_plays_the_stroke_as_it_is_aimed(shown):
     shown.played(1)
     cue = shown.line("api/strokes")[1]["strokes"][0]["cue"]
     assert (cue["speed"], cue["aim"]) == pytest.approx((0.5, AWAY))
-
-
-def test_zoom_shows_the_stroke_twice_as_large_and_is_aimed_in_as_before(shown):
-    shown.set_up(EASY)
-    whole = shown("page.view.scale")
-    shown.page.keyboard.press("z")
-    assert shown("page.view.scale") == pytest.approx(2 * whole)
-    for place in (EASY["cue"], [0.0, 0.89225]):
-        x, y = shown("page.view.toScreen(...argument)", place)
-        assert shown("page.view.toTable(...argument)", [x, y]) == pytest.approx(place)
-    shown.page.mouse.click(*shown.at(0.0, 0.89225))
-    assert shown("page.aim.wish.aim") == pytest.approx(-2.738, abs=0.005)
-    shown.page.keyboard.press("z")
-    assert shown("page.view.scale") == pytest.approx(whole)
-
-
-def test_sounds_are_made_after_the_first_touch_and_can_be_switched_off(shown):
-    """Each event of a stroke that is heard starts one sound, louder the faster the balls meet."""
-    shown.set_up(EASY)
-    assert shown("page.sound.context === undefined")
-    shown.page.mouse.click(*shown.at(0.0, 0.0))
-    shown.until("page.sound.context && page.sound.context.state === 'running'")
-    shown("(window.heard = [], page.sound.play = (kind, speed) => window.heard.push([kind, speed]))")
-    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})
-    shown.until("page.moving && page.moving.at > 1")
-    kinds = shown("window.heard.map(([kind]) => kind)")
-    assert kinds[0] == 8 and 0 in kinds
-    assert all(0 <= speed <= 8 for _, speed in shown("window.heard"))
-    shown.page.keyboard.press("m")
-    assert shown.page.get_attribute("#sound", "aria-pressed") == "false"
-    assert json.loads(shown("localStorage.getItem('snooker')"))["sound"] is False
-    shown.played(1)
 
 
 def test_the_page_is_small(line):

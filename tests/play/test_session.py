@@ -1,6 +1,5 @@
 """Is the game in memory the game by the rules, and that of MatchEnv?"""
 
-import json
 from dataclasses import replace
 from math import pi
 
@@ -8,18 +7,14 @@ import numpy as np
 import pytest
 
 from snooker_env.advice import CueStroke
-from snooker_env.game.balls import BLACK, BLUE, CUE, NAMES, PINK
+from snooker_env.game.balls import CUE
 from snooker_env.game.frame_columns import STROKES
-from snooker_env.game.ruling import AUTO, Foul
 from snooker_env.planning import Position
-from snooker_env.play.report import last_words
 from snooker_env.play.session import STATE, Session
-from snooker_env.players.table_report import nominations_of
 from snooker_env.tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
-from tests.playing import COVERED, EASY, FROZEN
+from tests.playing import COVERED, EASY
 
 ALONG_X = CueStroke(speed=0.6, aim=0.0)
-AT_NOTHING = CueStroke(speed=0.2, aim=0.5 * pi)
 
 
 def standing(position, *, scores=(0, 0), striker=0, free_ball=False):
@@ -64,21 +59,6 @@ def test_strokes_are_those_of_the_match_environment():
     assert session.tables.game[0, STROKES] == 12
 
 
-def test_a_colour_that_was_named_must_be_struck_first_and_a_miss_is_called_for_any():
-    for named, penalty in ((AUTO, 0), (BLUE, 0), (PINK, 6), (BLACK, 7)):
-        session = standing(COVERED)
-        session.play(ALONG_X, nominated=named)
-        assert session.frame.scores == (0, penalty) and (session.frame.phase == "choice") == bool(penalty)
-        assert session.tables.nominated[0] == AUTO
-        assert session.acts[-1].detail == ("" if named == AUTO else NAMES[named])
-    # S3 R14(c) speaks of every ball that could be on: here the pink is hidden behind the blue
-    for named in (AUTO, BLACK, PINK):
-        session = standing(COVERED | {"blue": [0.08, -0.5], "pink": [0.6, -0.5]})
-        session.play(AT_NOTHING, nominated=named)
-        assert session.frame.phase == "choice" and session.frame.miss_called, named
-        assert session.frame.choices == ("play", "play_again", "replace")
-
-
 def test_the_choices_after_a_foul():
     """Play: the other plays on. Play again: the offender. Replace: the offender from where the balls were."""
     for what, striker, back in (("play", 1, False), ("play_again", 0, False), ("replace", 0, True)):
@@ -92,15 +72,6 @@ def test_the_choices_after_a_foul():
         assert np.array_equal(session.tables.positions[0, CUE], before[CUE]) is back
     with pytest.raises(ValueError, match="must be left out"):
         session.choose("play")
-
-
-def test_a_free_ball_may_be_named_and_counts_as_the_ball_on():
-    balls = {"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "black": [-0.6, -0.9]}
-    for named, fouls in ((BLUE, Foul(0)), (BLACK, Foul.WRONG_FIRST)):
-        session = standing(balls, free_ball=True)
-        assert nominations_of(session.frame) == (BLUE, BLACK)
-        session.play(ALONG_X, nominated=named)
-        assert session.acts[-1].played.fouls == fouls
 
 
 def test_a_cue_ball_in_hand_goes_to_the_nearest_free_place_of_the_d():
@@ -155,77 +126,3 @@ def test_practice_gives_the_table_back():
     session.practice = True
     session.play(CueStroke(speed=1.0, aim=0.5 * pi))
     assert (session.frame.phase, session.frame.striker, session.frame.scores) == ("stroke", 0, (0, 7))
-
-
-def test_a_saved_game_plays_on_identically():
-    session = standing(EASY, scores=(12, 30), striker=1)
-    session.noise[:] = ["club", "amateur"]
-    saved = json.loads(json.dumps(session.save()))
-    assert len(json.dumps(saved)) < 5000
-    other = Session(seed=9)
-    other.load(saved)
-    assert other.state == session.state and other.noise == session.noise
-    stroke = CueStroke(speed=3.0, aim=0.7, top=0.2)
-    session.play(stroke), other.play(stroke)
-    assert other.state == session.state
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (lambda s: s.pop("noise"), "saved = version 1"),
-        (lambda s: s.update(format="x"), "must be a saved game"),
-        (lambda s: s.update(noise=["none", "perfect"]), r"saved.noise\[1\]"),
-        (lambda s: s.update(more=1), "must be version 1"),
-        (lambda s: s["state"].update(rng={}), "must be a dict with"),
-        (lambda s: s["state"]["positions"][1].__setitem__(0, 5.0), r"positions\[1\]"),
-        (lambda s: s["state"]["positions"][1].__setitem__(0, float("nan")), r"positions\[1"),
-        (lambda s: s["state"]["frame"].update(scores=[-1, 0]), r"scores\[0\]"),
-        (lambda s: s["state"]["frame"].update(striker=2), "striker"),
-        (lambda s: s["state"].update(stream=[1]), "stream"),
-    ],
-)
-def test_a_file_that_is_not_sound_is_refused_and_changes_nothing(change, words):
-    session = standing(EASY)
-    before, saved = session.save(), json.loads(json.dumps(session.save()))
-    change(saved)
-    with pytest.raises(ValueError, match=words):
-        session.load(saved)
-    assert session.save() == before
-
-
-def test_a_position_that_cannot_be_is_refused_by_its_field():
-    session = standing(EASY)
-    before = session.state
-    for more, free, words in (({}, True, "free_ball"), ({"points": 150}, False, "break_points")):
-        position = Position(**EASY | {"on": "any_colour"} | more)
-        with pytest.raises(ValueError, match=f"^{words}"):
-            session.set_up(position, scores=(0, 0), striker=0, free_ball=free)
-    session.set_up(Position(**COVERED), scores=(0, 0), striker=0, free_ball=False, check=True)
-    assert session.state == before
-
-
-def test_the_cue_is_real_and_what_it_did_is_said():
-    session = standing(FROZEN)
-    assert session.cue == "real"
-    act = session.play(CueStroke(speed=1.0, aim=pi, top=-0.4))
-    assert act.room is not None and act.room.moved and act.played is not None
-    assert act.played.cue["top"] == pytest.approx(act.room.top, abs=1e-6)
-    words = last_words(act, ("You", "A"))
-    assert " Cue raised to 45 degrees over the rail, tip moved up to " in words and words.endswith(" middle.")
-    free = standing(FROZEN)
-    free.cue = "free"
-    act = free.play(CueStroke(speed=1.0, aim=pi, top=-0.4))
-    assert act.played is not None and act.played.cue["elevation"] == 0.0
-    assert last_words(act, ("You", "A")).endswith(("potted.", "potted, 1.", "first.", "struck."))
-
-
-def test_a_saved_game_keeps_its_cue():
-    session = standing(FROZEN)
-    saved = session.save()
-    assert saved["cue"] == "real"
-    session.cue = "free"
-    session.load(saved)
-    assert session.cue == "real" and session.options_with("club").cue == "real"
-    with pytest.raises(ValueError, match=r"saved\.cue"):
-        session.load(saved | {"cue": "long"})

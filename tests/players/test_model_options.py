@@ -7,13 +7,9 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import watch
-from snooker_env.benchmark import HELD_OUT_SEED, Agent
+from snooker_env.benchmark import HELD_OUT_SEED
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.planning import Planner, Positions
-from snooker_env.play.__main__ import _arguments, service_of
 from snooker_env.players import model_options
-from snooker_env.players.resolver import players_of
-from tests.bombs import bombed
 
 TARGET = {"aim": "target"}
 WORDS = ["--trust", "--options", "aim=target"]
@@ -40,18 +36,6 @@ def tables(n=3):
     return env
 
 
-def test_a_model_plays_as_its_options_say(model):
-    from stable_baselines3 import PPO
-
-    env, rows = tables(), np.arange(3)
-    at = Positions.of(env)
-    chosen = PPO.load(model, device="cpu").predict(at.observations(), deterministic=True)[0]
-    expected = Planner(env).strokes_of(at, rows, chosen)[0]
-    told = sn.player(model, trust=True, options=TARGET).at(env).play(at, rows).values
-    assert np.allclose(told, expected, atol=1e-5)
-    assert not np.allclose(sn.player(model, trust=True).at(env).play(at, rows).values, expected, atol=0.1)
-
-
 def test_what_is_assumed_of_the_aim_is_said_once(model, capsys, nothing_said):
     sn.player(model, trust=True, options=TARGET)
     assert capsys.readouterr().err == ""
@@ -63,23 +47,6 @@ def test_what_is_assumed_of_the_aim_is_said_once(model, capsys, nothing_said):
         and f"{model}: aim=absolute is assumed" in said
         and "--options aim=target" in said
     )
-
-
-def test_of_discrete_actions_nothing_is_assumed(tmp_path, capsys, nothing_said):
-    sb3 = pytest.importorskip("stable_baselines3")
-    sb3.PPO("MlpPolicy", SnookerEnv(action="discrete"), device="cpu").save(tmp_path / "model.zip")
-    assert sn.player(tmp_path / "model.zip", trust=True).sees["action"] == "discrete"
-    assert capsys.readouterr().err == ""
-
-
-def test_nothing_of_a_model_that_does_not_fit_its_options_runs(model, tmp_path):
-    file = bombed(model, tmp_path / "model.zip", tmp_path / "mark")
-    with pytest.raises(ValueError, match="must be a model whose actions are Box"):
-        sn.player(file, trust=True, options={"placement": True})
-    consent = "come with trust=True, or --trust on the command line$"
-    with pytest.raises(ValueError, match=consent):
-        sn.player(file, options=TARGET)
-    assert not (tmp_path / "mark").exists()
 
 
 class Sees:
@@ -101,38 +68,6 @@ def test_a_model_of_the_repository_says_itself_how_its_actions_are_read():
         sn.player(PRETRAINED / "ppo_value.zip", options=TARGET)
 
 
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
-        ("aim=target", "options = 'aim=target': must be a dict"),
-        ({"noise": "club"}, "key of options = 'noise': must be one of 'action', 'aim', "),
-        ({"aim": "up"}, "aim = 'up': must be one of 'absolute', 'target'"),
-        ({"elevation": 80}, "elevation = 80: must be True or False, or degrees in"),
-        ({"says": 3}, "says = 3: must be a sequence"),
-    ],
-)
-def test_options_that_cannot_be_are_refused(options, says):
-    with pytest.raises(ValueError, match=f"^{says}"):
-        sn.player("nobody.zip", options=options)
-    if isinstance(options, dict):
-        with pytest.raises(ValueError, match=f"^{says}"):
-            Agent.of("random", options=options)
-
-
-def test_words_of_a_command_line_become_options():
-    words = ["aim=target", "placement=true", "says=decision,lot", "elevation=30"]
-    read = model_options.options_of_words(words)
-    assert read == {"aim": "target", "placement": True, "says": ("decision", "lot"), "elevation": 30}
-
-
-def test_the_options_of_a_command_line_are_those_of_the_models_on_it(model):
-    one, other = players_of(["ghost_ball", model], True, TARGET)
-    assert one.name == "ghost_ball" and other.sees["aim"] == "target"
-    for names in (["ghost_ball"], []):
-        with pytest.raises(ValueError, match="must be left out"):
-            players_of(names, True, TARGET)
-
-
 def test_a_visit_of_a_model_is_watched(model, tmp_path, capsys):
     out = tmp_path / "visit.json"
     assert watch.main(["--agent", model, *WORDS, "--noise", "none", "--out", str(out)]) == 0
@@ -151,16 +86,6 @@ def test_a_frame_of_a_model_is_watched_on_either_side(model, both):
     opposite = env.tables.seats[1].player.player
     assert opposite.sees["aim"] == "target" and "placement" not in opposite.sees
     assert {stroke.player for stroke in env.history} == {0, 1}
-
-
-def test_a_model_sits_at_the_page_and_gives_advice(model):
-    service = service_of(_arguments(["--agent", model, *WORDS, "--seed", "1"]))
-    (its,) = (one for name, one in service.seats.players.items() if name == "ppo")
-    assert its.sees["aim"] == "target"
-    service.close()
-    position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    (one,) = sn.advise(position, agent=its, n=1, samples=10, visits=1, noise="none")
-    assert one.kind == "pot"
 
 
 # What acts on observations

@@ -5,10 +5,9 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game import frame_columns as columns
-from snooker_env.planning import Position, Positions
-from snooker_env.planning.worth import apply_decision, last_of, lead_of, left_of
+from snooker_env.planning import Position
+from snooker_env.planning.worth import last_of, lead_of, left_of
 from snooker_env.players.tactician import Tactician
-from snooker_env.players.weights import learned_worth
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from tests.planning.test_frame_judge import frame_of
 from tests.planning.test_trials import GAME, frames_in_play, positions_of
@@ -16,53 +15,12 @@ from tests.planning.test_trials import GAME, frames_in_play, positions_of
 OPTIONS = GAME | {"noise": "club", "cue": "real", "says": ["decision"]}
 
 
-def test_it_is_a_player_of_the_package_and_takes_a_budget():
-    assert "tactician" in sn.players()
+def test_it_takes_a_budget_and_no_model():
     assert sn.player("tactician").name == "tactician" and sn.player("tactician_500").budget == 500
     with pytest.raises(ValueError, match="budget"):
         sn.player("tactician_10")
     with pytest.raises(ValueError, match="must not name a model"):
         sn.player("tactician@mine")
-
-
-def test_one_position_is_played_as_among_many():
-    at = positions_of(frames_in_play(10, OPTIONS, strokes=6, seed=61))
-    at = at[np.flatnonzero(~at.over)]
-    player, seeds = sn.player("tactician_30").at(OPTIONS), np.arange(len(at)) + 5
-    together = player.play(at, seeds)
-    for k in range(len(at)):
-        for one, other in zip(together[[k]].parts, player.play(at[[k]], seeds[[k]]).parts, strict=True):
-            assert np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
-
-
-def test_it_plays_what_it_ranks_first():
-    at = positions_of(frames_in_play(6, OPTIONS, strokes=4, seed=71))
-    at = at[np.flatnonzero(~at.over)]
-    player = sn.player("tactician_30").at(OPTIONS)
-    strokes, ranked = player.play(at, np.arange(len(at))), player.rank(at, np.arange(len(at)))
-    for k, one in enumerate(ranked):
-        assert np.array_equal(one.strokes.values[0], strokes.values[k])
-        if one.scores is not None:
-            assert len(one.scores) == len(one.strokes) and ((one.scores >= 0) & (one.scores <= 1)).all()
-
-
-def test_visits_are_played_as_the_planner_plays_them():
-    position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    mine = sn.player("tactician_30").at({"noise": "club"}).play(position, [7])
-    assert np.array_equal(
-        mine.values, sn.player("planner_30").at({"noise": "club"}).play(position, [7]).values
-    )
-
-
-def test_it_plays_a_frame_to_its_end_as_an_opponent():
-    game = {"task": "frame", "opponent": "tactician_30", "noise": "club", "miss": "clear_path", "cue": "real"}
-    env, rng = sn.SnookerEnv(**game), np.random.default_rng(0)
-    _, info = env.reset(seed=0)
-    for _ in range(200):
-        _, _, terminated, _, info = env.step(rng.uniform(-1, 1, 4).astype(np.float32))
-        if terminated:
-            break
-    assert terminated and info["winner"] == 1 and info["opponent_score"] > info["score"]
 
 
 def test_a_third_miss_loses_the_frame_whatever_the_lead():
@@ -183,20 +141,6 @@ def test_who_needs_snookers_plays_for_them():
     assert advice[0].kind == "safety" and sum(one.kind == "safety" for one in advice) > 5
 
 
-POOR = Position(
-    cue=(-0.6474, -1.742), reds=[(0.0536, 0.2989), (-0.0726, 0.8236)], black=(0.0, 1.4605), on="red"
-)
-
-
-def test_nobody_fouls_on_purpose():
-    """Where every safety leaves something: as it is intended, each stroke meets a ball on."""
-    player = sn.player("tactician").at(OPTIONS | {"noise": "professional", "miss": "clear_path"})
-    at, every = frame_of(POOR, scores=(14, 1))[np.zeros(60, int)], np.arange(60)
-    strokes = np.stack([one.strokes.values[0] for one in player.search.rank(at, every)])
-    after = player.judge.outcomes(at, every, strokes, np.zeros((60, 5)))
-    assert (after.game[:, columns.SCORE_1] > 1).sum() == 0
-
-
 def test_a_called_miss_is_worth_no_more_than_the_best_stroke_and_its_penalty():
     """The best is missed half of the time; one that always is would leave the other nothing."""
     judge = sn.player("tactician_30").at(OPTIONS).judge
@@ -209,13 +153,6 @@ def test_a_called_miss_is_worth_no_more_than_the_best_stroke_and_its_penalty():
     assert (chances[1], points[1]) == pytest.approx(best)
     assert (chances[2], points[2]) == pytest.approx((best[0] - 0.04, best[1] - 4.0))
     assert (chances[0], points[0]) == (0.5, 6.0)
-
-
-def test_a_foul_that_wins_the_frame_may_be_played():
-    """8 ahead with the black alone: a foul ends the frame one point ahead. Every stroke wins it."""
-    at = frame_of(HARD_BLACK, scores=(60, 52))
-    (tried,) = sn.player("tactician_30").at(OPTIONS).search.rank(at, [0])
-    assert (tried.scores == 1.0).all()
 
 
 def test_a_frame_that_is_over_is_won_or_lost():
@@ -247,16 +184,6 @@ def test_the_chance_after_a_foul_is_that_of_the_best_decision():
     )
 
 
-def test_who_has_won_the_lot_is_never_the_worse_for_it():
-    far = frame_of(Position(cue=(0.1, -1.1), black=(0.0, 1.4605), on="black", in_hand=True))
-    far.game[:, columns.RESPOTTED_BLACK] = 1
-    player = sn.player("tactician_30").at(OPTIONS)
-    begins = player.chance_to_win(far)[0]
-    far.game[:, columns.PHASE] = columns.LOT
-    assert player.chance_to_win(far)[0] == pytest.approx(max(begins, 1.0 - begins), abs=1e-6)
-    assert far.game[0, columns.PHASE] == columns.LOT
-
-
 def test_nobody_wins_a_visit_and_a_player_without_a_law_says_nothing():
     player = sn.player("tactician_30")
     with pytest.raises(ValueError, match="must be bound first"):
@@ -265,12 +192,3 @@ def test_nobody_wins_a_visit_and_a_player_without_a_law_says_nothing():
         player.at(OPTIONS).chance_to_win(PINK_BALL)
     with pytest.raises(ValueError, match="law of the chance"):
         Tactician(30, (None, None)).at(OPTIONS).chance_to_win(frame_of(PINK_BALL))
-
-
-def test_weights_are_of_the_network_that_reads_them():
-    layers, chance = learned_worth()
-    from snooker_env.planning.learned.learned_worth import SIZE
-
-    assert layers[0][0].shape[1] == SIZE and layers[-1][0].shape[0] == 1
-    assert chance.near >= 0.0 and chance.far > 0.0
-    assert Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3))).of_frames is False

@@ -5,23 +5,13 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import CUE, N_BALLS, SPOTS
-from snooker_env.geometry import BALL_RADIUS
-from snooker_env.render import pygame_balls
 from snooker_env.render.outline import outline
-from snooker_env.render.palette import COLOURS
-from snooker_env.render.pygame_view import SIZE, View, rgb_array
-from snooker_env.render.scene import rotate, scene
-from snooker_env.render.table_picture import table_picture
+from snooker_env.render.pygame_view import rgb_array
+from snooker_env.render.scene import scene
 from tests.pictures import to_pixels
 
 MATCH = sn.Table.preset("match")
 NOBODY = np.zeros(N_BALLS, bool)
-
-
-def only(*balls):
-    here = NOBODY.copy()
-    here[list(balls)] = True
-    return here
 
 
 def pixel(picture, point):
@@ -32,27 +22,6 @@ def pixel(picture, point):
 @pytest.fixture(scope="module")
 def empty():
     return rgb_array(scene("match", SPOTS, NOBODY))
-
-
-def test_a_picture_is_full_hd_with_the_table_above_the_bar(empty):
-    assert SIZE == (1920, 1080) and empty.shape == (1080, 1920, 3)
-    view = View.of(MATCH)
-    (left, top), (right, bottom) = view(np.array([(-1.044, -1.9395), (1.044, 1.9395)]))
-    assert 0 < top < 10 and view.height - view.bar - 10 < bottom < view.height - view.bar and 0 < left < 50
-    assert right == 1920 - left
-    assert 2 * BALL_RADIUS * view.scale > 25  # a ball, in pixels
-    assert (view(np.array((0.3, -1.1))) - (view.x, view.y)) / view.scale == pytest.approx((-1.1, 0.3))
-
-
-@pytest.mark.parametrize("size", [(640, 360), (1000, 300), (301, 999)])
-def test_a_picture_of_any_size_holds_the_whole_table(size):
-    picture = rgb_array(scene("match", SPOTS), size=size)
-    assert picture.shape == (size[1], size[0], 3)
-    view = View.of(MATCH, size)
-    corners = view(np.array([(-1.044, -1.9395), (1.044, 1.9395)]))
-    assert corners.min() >= 0 and corners[1, 0] <= size[0] and corners[1, 1] <= size[1] - view.bar
-    one, x, y = view(np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]))
-    assert x - one == pytest.approx((0.0, view.scale)) and y - one == pytest.approx((view.scale, 0.0))
 
 
 def test_pockets_have_leather_and_depth(empty):
@@ -96,58 +65,3 @@ def test_a_path_is_three_pixels_wide_with_a_dark_edge_at_every_angle():
         assert 3.0 <= width <= 4.0, (angle, width)
         middle_at = int(np.argmax(profile))
         assert min(profile[:middle_at]) < 27 > min(profile[middle_at:])
-
-
-def test_a_path_that_grew_is_as_if_it_was_drawn_at_once():
-    turn = np.linspace(0, 3, 300)
-    points = np.stack([0.5 * np.sin(2 * turn), turn - 1.5 + 0.2 * np.sin(9 * turn)], axis=1)
-    drawn = lambda points: rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points}))  # noqa: E731
-    for length in range(2, 300, 7):
-        grown = drawn(points[:length])
-    pygame_balls._piece.cache_clear()
-    assert np.array_equal(grown, drawn(points[:length]))
-    assert np.array_equal(drawn(np.tile((0.1, 0.1), (5, 1))), rgb_array(scene("match", SPOTS, NOBODY)))
-
-
-def test_ghosts_are_faded_balls(empty):
-    place = np.array([0.3, 0.5])
-    off = np.add(place, (0.4 * BALL_RADIUS, 0.0))
-    cloth = pixel(empty, off)
-    ball = pixel(rgb_array(scene("match", np.tile(place, (N_BALLS, 1)), only(CUE))), off)
-    ghost = pixel(rgb_array(scene("match", SPOTS, NOBODY, ghosts=[place])), off)
-    share = (ghost - cloth)[0] / (ball - cloth)[0]
-    assert 0.3 < share < 0.6
-
-
-def test_spots_turn_with_the_ball():
-    """A spot on top of a ball turned by 45 degrees about +y moves to +x, which is down in the picture."""
-    place = np.array([0.3, 0.5])
-    balls = np.tile(place, (N_BALLS, 1))
-    for angle in (0.0, np.pi / 4):
-        turn = rotate(np.array([0.0, angle, 0.0]))
-        picture = rgb_array(scene("match", balls, only(CUE), turn=turn))
-        column, row = to_pixels(place)
-        rows, columns = np.nonzero((picture[..., 0] > 120) & (picture[..., 1] < 70))
-        across, down = columns + 0.5 - column, rows + 0.5 - row
-        near = (np.hypot(across, down) < 0.85 * 12.5) & (np.abs(across) < 4) & ((angle == 0) | (rows > row))
-        assert down[near].mean() == pytest.approx(12.53 * np.sin(angle), abs=1.2), angle
-    around = slice(int(row) - 13, int(row) + 13), slice(int(column) - 13, int(column) + 13)
-    plain = rgb_array(scene("match", balls, only(CUE)))[around]
-    assert not np.any((plain[..., 0] > 120) & (plain[..., 1] < 70))
-
-
-def test_the_table_is_drawn_once_and_never_drawn_on():
-    view = View.of(MATCH)
-    kept = table_picture(MATCH, view)
-    copy = kept.copy()
-    rgb_array(scene("match", SPOTS))
-    assert table_picture(MATCH, view) is kept and np.array_equal(kept, copy) and not kept.flags.writeable
-    table_picture.cache_clear()
-    assert np.array_equal(table_picture(MATCH, view), copy)
-
-
-def test_balls_outside_the_picture_do_no_harm():
-    paths, ghosts = {0: [(1e6, 1e6), (-1e6, 0.0)]}, [(1e7, 0.0)]
-    far = rgb_array(scene(None, [(1e5, 1e5), (0.0, 0.0)], paths=paths, ghosts=ghosts))
-    assert far.shape == (1080, 1920, 3)
-    assert tuple(COLOURS[1]) and pygame_balls.dot(1, 9.0).get_width() > 18

@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.render.scene import Film, Turning, find_contacts, scene, trace_paths
+from snooker_env.render.scene import Film, Turning, find_contacts, scene
 
 
 @pytest.fixture(scope="module")
@@ -29,15 +29,6 @@ def test_film_of_a_shot(pot):
     assert film[0].paths == {} and film[-1].paths.keys() == {CUE, 1}
 
 
-def test_paths_run_from_start_to_end(pot):
-    paths = {ball: points for ball, (points, _) in trace_paths(pot, (CUE, 1)).items()}
-    assert np.array_equal(paths[CUE][0], (0.2, 0.0))
-    assert paths[CUE][-1] == pytest.approx(pot.positions[0], abs=1e-4)
-    assert paths[1][-1] == pytest.approx(pot.positions[1], abs=1e-9)
-    impact = 0.7 - 2 * BALL_RADIUS
-    assert np.min(np.abs(paths[CUE][:, 0] - impact)) < 1e-6  # the place of the impact itself is on the path
-
-
 def test_the_film_of_a_shot_shows_the_balls_of_the_shot():
     pool = sn.Table.preset("pool9")
     end = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], pool, {"R": pool.ball_radius})
@@ -45,18 +36,6 @@ def test_the_film_of_a_shot_shows_the_balls_of_the_shot():
     small = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], None, {"R": 0.02})
     assert {one.ball_radius for one in Film(None, small).scenes(5)} == {0.02}
     assert scene("match", SPOTS).ball_radius == scene(None, SPOTS).ball_radius == BALL_RADIUS
-
-
-def test_a_film_is_the_same_at_any_time_as_picture_after_picture(pot):
-    film = Film("match", pot, text="pot")
-    for k, one in enumerate(Film("match", pot, text="pot").scenes(20)):
-        here = film.at(min(k * 0.05, pot.duration))
-        assert np.array_equal(here.positions, one.positions) and here.paths.keys() == one.paths.keys()
-        whole = {ball: points for ball, (points, _) in trace_paths(pot, (CUE, 1)).items()}
-        for ball, points in here.paths.items():
-            assert np.array_equal(points, one.paths[ball]) and len(points) <= len(whole[ball]) + 1
-            assert np.array_equal(points[:-1], whole[ball][: len(points) - 1])
-    assert len(film.at(pot.duration).paths[CUE]) == len(whole[CUE])
 
 
 def test_contacts_and_ghosts_are_where_the_cue_ball_met_others(pot):
@@ -69,20 +48,6 @@ def test_contacts_and_ghosts_are_where_the_cue_ball_met_others(pot):
     assert times == pot.events["time"][pot.events["kind"] == sn.EventKind.BALL_BALL][:1]
     for t, count in [(0.0, 0), (times[0] - 1e-6, 0), (times[0], 1), (pot.duration, 1)]:
         assert np.array_equal(film.at(t).ghosts, places[:count])
-
-
-def test_a_rolling_ball_turns_once_each_circumference():
-    """It rolls a quarter of a turn along +x: what was on top is in front, what was in front is below."""
-    R = BALL_RADIUS
-    shot = sn.simulate([(0.0, 0.0)], [(0.3, 0.0)], [(0.0, 0.3 / R, 0.0)], None)
-    turning = Turning(shot)
-    times = np.linspace(0.0, shot.duration, 4000)
-    t = float(np.interp(np.pi / 2 * R, shot.at(times)[0][:, 0, 0], times))
-    assert turning.at(t) == pytest.approx(np.array([(0, 0, 1), (0, 1, 0), (-1, 0, 0)]), abs=2e-3)
-    assert np.array_equal(turning.at(0.0), np.eye(3))
-    last = turning.at(shot.duration)
-    assert last @ last.T == pytest.approx(np.eye(3), abs=1e-11) and np.linalg.det(last) > 0
-    assert np.array_equal(Film(None, shot).at(t).turn, turning.at(t))
 
 
 def test_a_ball_that_rolls_and_spins_turns_about_both():

@@ -48,17 +48,6 @@ def test_picture_shows_every_ball_in_its_place():
     assert places[BLACK, 1] == places[BROWN, 1]
 
 
-def test_balls_off_the_table_do_not_appear():
-    empty = rgb_array(scene("match", SPOTS, ~ALL))
-    for ball in (CUE, 8, YELLOW, BLACK):
-        gone = rgb_array(scene("match", SPOTS, without(ball)))
-        assert not is_drawn(gone, SPOTS[ball], ball)
-    alone = rgb_array(scene("match", SPOTS, without(*range(N_BALLS - 1))))
-    changed = np.argwhere(np.any(alone != empty, axis=2))
-    # with the lamps' shadows
-    assert len(changed) and np.abs(changed[:, ::-1] - to_pixels(SPOTS[BLACK])).max() < 44
-
-
 def test_picture_of_the_table():
     picture = rgb_array(scene("match", SPOTS, ~ALL))
     for x, y, radius in sn.Table.preset("match").falls:
@@ -72,31 +61,6 @@ def test_picture_of_the_table():
     unbounded = rgb_array(scene(None, SPOTS, ALL))
     assert unbounded.shape == picture.shape and is_drawn(unbounded, SPOTS[BLACK], BLACK)
     assert at(unbounded, (0.889, 1.7845))[1] > 60  # no pocket
-
-
-def test_overlays_and_text_change_only_where_they_are():
-    plain = rgb_array(scene("match", SPOTS, ~ALL))
-    path = np.array([(-0.5, 0.5), (0.5, 0.5)])
-    drawn = rgb_array(scene("match", SPOTS, ~ALL, paths={CUE: path}))
-    assert at(drawn, (0.1, 0.5)).min() > 200
-    assert np.array_equal(at(drawn, (0.1, 0.55)), at(plain, (0.1, 0.55)))
-    nothing = rgb_array(scene("match", SPOTS, ~ALL, text=" "))
-    # what does not fit is cut off
-    for text, least, most in (("break 12", 100, 300), ("long " * 100, 1700, 1900)):
-        said = rgb_array(scene("match", SPOTS, ~ALL, text=text))
-        rows, columns = np.nonzero(np.any(said != nothing, axis=2))
-        assert said.shape == plain.shape and rows.min() > to_pixels((0.889 + 0.155, 0.0))[1]
-        assert least < columns.max() < most
-        assert np.array_equal(said[:1000], plain[:1000])
-
-
-def test_pictures_are_fresh_repeatable_and_need_no_display():
-    pygame = pytest.importorskip("pygame")
-    one, two = rgb_array(scene("match", SPOTS)), rgb_array(scene("match", SPOTS))
-    assert np.array_equal(one, two) and one.flags.writeable and one.flags.owndata
-    one[:] = 0
-    assert np.array_equal(two, rgb_array(scene("match", SPOTS)))
-    assert not pygame.display.get_init()
 
 
 def test_scene_copies_and_wrong_sizes_are_refused():
@@ -147,11 +111,6 @@ def test_text_never_hides_the_cue_ball():
     assert "W" not in "".join(ansi(scene("match", SPOTS, without(CUE))).split("\n")[:27])
 
 
-def test_a_path_in_text():
-    plain = ansi(scene("match", SPOTS, ALL, paths={CUE: np.array([(-0.5, 0.3), (0.5, 0.3)])}))
-    assert "".join(plain.split("\n")[:27]).count(".") >= 13
-
-
 def test_without_pygame_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pygame", None)
     for draw in (rgb_array, Window().draw):
@@ -200,25 +159,6 @@ def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
     near = np.abs(seen - centre).max(axis=1) < 2 * 0.03 * scale
     assert seen[near].mean(axis=0) == pytest.approx(centre, abs=0.5)
     assert near.sum() == pytest.approx(np.pi * (table.ball_radius * scale) ** 2, rel=0.12)
-
-
-@pytest.mark.parametrize("name", OTHERS)
-def test_a_text_shows_the_table_of_another_game(name):
-    """The ball in the cell of its place, the pockets where they are, and no line of snooker's."""
-    table = OTHERS[name]
-    (low_x, high_x), (low_y, high_y) = table.bounds
-    place = table.bounds @ (0.25, 0.75)
-    rows = ansi(scene(table, [place]), 80).split("\n")
-    grid = rows[1 : next(k for k in range(1, len(rows)) if rows[k][0] in "O╚")]
-    at = [(r, row.index("W")) for r, row in enumerate(grid) if "W" in row]
-    fraction = (place - (low_x, low_y)) / (high_x - low_x, high_y - low_y)
-    assert at == [(int(fraction[0] * len(grid)), 1 + int(fraction[1] * 78))]
-    assert {c for row in grid for c in row} == {"║", " ", "W"}
-    rails = rows[0] + rows[len(grid) + 1]
-    corners = rails[0] + rails[79] + rails[80] + rails[159]
-    has = {pocket.split()[0] for pocket in table.pockets}
-    assert corners == ("OOOO" if "top" in has else "╔╗╚╝")
-    assert ("O" in rails[1:79]) == ("middle" in has)
 
 
 TRIED = {"pool9": 50, "mine": 164, "carom": 4, "match": 194, "tight": 190}

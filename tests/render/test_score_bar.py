@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from snooker_env.game.balls import SPOTS
-from snooker_env.render.palette import COLOURS, PALETTE
-from snooker_env.render.pygame_balls import BOLD, MEDIUM, typeset
-from snooker_env.render.pygame_view import in_words, rgb_array, score_bar
-from snooker_env.render.scene import ScoreBar, scene
+from snooker_env.render.palette import PALETTE
+from snooker_env.render.pygame_view import score_bar
+from snooker_env.render.scene import ScoreBar
 
 pytest.importorskip("pygame")
 FULL = {
@@ -32,20 +30,6 @@ def where(one, two):
     return (int(columns[0]), int(columns[-1])) if len(columns) else None
 
 
-@pytest.mark.parametrize("file", [BOLD, MEDIUM])
-def test_figures_are_as_wide_as_each_other(file):
-    widths = {typeset(digit * 20, (255, 255, 255), 40, file).get_width() for digit in "0123456789"}
-    assert len(widths) == 1
-    narrow, wide = (typeset(text, (255, 255, 255), 40, file).get_width() for text in ("iii", "mmm"))
-    assert narrow < wide / 2
-
-
-def test_the_bar_is_under_the_table_and_changes_nothing_else():
-    bare, said = (rgb_array(scene("match", SPOTS, bar=bar)) for bar in (None, ScoreBar(**FULL)))
-    assert np.array_equal(bare[:1008], said[:1008]) and np.any(bare[1008:] != said[1008:])
-    assert np.array_equal(said, rgb_array(scene("match", SPOTS, bar=ScoreBar(**FULL), text="not shown")))
-
-
 def test_the_chance_to_win_is_a_strip_of_two_colours():
     for chance in (0.0, 0.25, 1.0):
         strip = pixels(ScoreBar(("Ann", "Bob"), (0, 0), win_chance=chance))[:7]
@@ -54,21 +38,6 @@ def test_the_chance_to_win_is_a_strip_of_two_colours():
         assert np.all(strip[:, round(1920 * chance) + 1 :] == PALETTE["other"])
     plain, said = (pixels(ScoreBar(("Ann", "Bob"), (0, 0), **FULL, win_chance=c)) for c in (None, 0.5))
     assert np.array_equal(plain[7:], said[7:]) and not np.any(np.all(plain[:7] == PALETTE["first"], axis=2))
-
-
-def test_balls_of_the_break_are_shown_in_order():
-    for potted in ((16,), (1, 16, 2, 17), (1, 21) * 15 + (16, 17, 18, 19, 20, 21)):
-        bar = pixels(ScoreBar(("Ann", "Bob"), (0, 0), break_points=1, potted=potted))
-        without = pixels(ScoreBar(("Ann", "Bob"), (0, 0), break_points=1))
-        left, right = where(bar, without)
-        assert left > 60 and right < 720
-        step = min(22.0, (right - left - 18) / max(len(potted) - 1, 1))
-        for k, ball in enumerate(potted):
-            x = left + 9.5 + k * step
-            if step > 18 or k == len(potted) - 1:  # not half hidden by the next
-                shown = bar[30:46, round(x) - 2 : round(x) + 3].reshape(-1, 3)
-                far = np.abs(shown[:, None] - COLOURS.astype(int)).sum(axis=2).min(axis=0)
-                assert far[ball] < 60 and far[ball] == far.min(), (k, ball)
 
 
 def test_each_thing_has_its_place():
@@ -92,32 +61,3 @@ def test_each_thing_has_its_place():
     accents = [np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1)) for bar in bars]
     assert accents[0].max() < 960 < accents[1].min()  # the box of the score, and the triangle beside the name
     assert accents[0].min() < 780 and accents[1].max() > 1140
-
-
-def test_what_is_too_long_is_cut():
-    names = "A very long name of a player of snooker", "Another name that is quite as long"
-    others = {"ball_on": "a ball that is on for " * 5, "words": "words " * 50}
-    given = {**FULL, "potted": (1, 21) * 15 + tuple(range(16, 22)), **others}
-    players = {"players": names, "scores": (147, 1000), "striker": 1}
-    middle = where(pixels(ScoreBar()), pixels(ScoreBar(**players)))
-    sides = np.any(pixels(ScoreBar(**players)) != pixels(ScoreBar(**players, **given)), axis=(0, 2))
-    assert 500 < middle[0] < 700 and 1220 < middle[1] < 1420 and sides.sum() > 500
-    assert not sides[middle[0] - 10 : middle[1] + 10].any()
-
-
-@pytest.mark.parametrize(
-    "given", [{}, {"players": ("Ann",), "scores": (7,)}, {"players": ("Ann", "Bob"), "scores": (7, 0)}]
-)
-@pytest.mark.parametrize("width", [101, 400, 1000, 4000])
-def test_a_bar_of_any_size_and_with_anything_left_out(given, width):
-    for height in (7, 35, 36, 72, 200):
-        assert pixels(ScoreBar(**given), width=width, height=height).shape == (height, width, 3)
-        assert pixels(ScoreBar(**given, **FULL), width=width, height=height).shape == (height, width, 3)
-
-
-def test_a_low_bar_is_one_line_of_text():
-    given = {"striker": 1, "break_points": 16, "ball_on": "red", "points_on": 59, "words": "foul"}
-    bar = ScoreBar(("Ann", "Bob"), (41, 12), **given)
-    assert in_words(bar) == "Ann 41, Bob 12 · Bob to play · break 16 · red on · 59 left · foul"
-    assert in_words(ScoreBar()) == ""
-    assert np.array_equal(pixels(bar, height=30), pixels(None, in_words(bar), height=30))

@@ -7,7 +7,7 @@ import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import Film, scene
-from snooker_env.render.window import SPEEDS, WAITING, Window, require_display
+from snooker_env.render.window import WAITING, Window, require_display
 
 
 @pytest.fixture(scope="module")
@@ -45,34 +45,6 @@ def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
     window.close()
 
 
-def test_the_window_heeds_its_close_button_and_escape(dummy_screen, pot):
-    window = Window(size=(518, 300))
-    assert window.draw(scene("match", SPOTS))
-    dummy_screen.event.post(dummy_screen.event.Event(dummy_screen.QUIT))
-    assert not window.play(Film("match", pot), fps=1000)
-    assert (
-        not window.is_open and not window.draw(scene("match", SPOTS)) and not dummy_screen.display.get_init()
-    )
-    window.close()
-    assert window.draw(scene("match", SPOTS))
-    window.close()
-    window = Pressed(dummy_screen, {3: [dummy_screen.K_ESCAPE]})
-    assert not window.play(Film("match", pot), fps=1000)
-    assert len(window.seen) == 4 and not window.is_open
-    window.close()
-
-
-def test_a_window_keeps_its_size(dummy_screen):
-    window, size = Window(size=(360, 200)), (360, 200)
-    for table in (sn.Table.preset("carom"), sn.Table.preset("match")):
-        assert window.draw(scene(table, [(0.0, 0.0)]))
-        assert dummy_screen.display.get_surface().get_size() == (360, 200 + 14)
-        assert np.array_equal(picture(dummy_screen), rgb_array(scene(table, [(0.0, 0.0)]), size=size))
-    window.close()
-    with pytest.raises(ValueError, match="size"):
-        Window(size=(360, 5))
-
-
 class Pressed(Window):
     """A window whose user presses keys: {number of the picture: keys}. It keeps what it showed."""
 
@@ -86,21 +58,6 @@ class Pressed(Window):
         shown = super().draw(scene, status)
         self.seen.append((scene.positions[CUE, 0], status))
         return shown
-
-
-def test_a_film_runs_faster_and_slower_and_shows_its_end(dummy_screen, pot):
-    whole = int(np.ceil(pot.duration * 20)) + 1
-    up, down = dummy_screen.K_UP, dummy_screen.K_DOWN
-    ends = ((up,) * 9, SPEEDS[-1]), ((down,) * 9, SPEEDS[0])
-    for keys, speed in [((), 1.0), ((up,), 2.0), ((down,), 0.5), *ends]:
-        window = Pressed(dummy_screen, {1: keys})
-        assert window.draw(scene("match", SPOTS))
-        assert window.play(Film("match", pot), fps=20_000, speed=1000)  # every 1/20 s of it, without waiting
-        played = window.seen[1:]
-        assert len(played) == pytest.approx((whole - 1) / speed + 1, abs=1 / speed + 1), speed
-        assert played[-1][0] == pot.positions[CUE, 0] and window.speed == speed
-        assert [status for _, status in window.seen[:3]] == [WAITING, "playing 1x", f"playing {speed:g}x"]
-        window.close()
 
 
 def test_a_film_is_paused_stepped_and_skipped(dummy_screen, pot):

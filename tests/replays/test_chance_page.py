@@ -4,7 +4,6 @@ import pytest
 
 from tests.web.chromium import Watched, chromium  # noqa: F401
 from tests.web.replay_data import page_of, visit
-from tests.web.test_replay_page import OVERLAPS, SIZES
 
 CHANCES = [0.5, 0.3, 0.9961, 1.0]
 
@@ -52,39 +51,3 @@ def test_the_graph_shows_each_share_until_the_next_stroke_is_over(p):
     assert p("document.querySelector('.sn-moment').getBBox().x") == pytest.approx(
         p("p.starts[1] + 2"), abs=1e-3
     )
-
-
-def test_a_click_on_the_graph_shows_the_stroke_there(p):
-    box = p.page.locator(".sn-graph").bounding_box()
-    for k, shares in ((2, "100 : 0"), (0, "30 : 70"), (1, "99 : 1")):
-        share = p("(p.starts[argument] + 0.5 * p.strokes[argument].duration) / p.total", k)
-        p.page.mouse.move(box["x"] + share * box["width"], box["y"] + 20)
-        said = p.page.locator(".sn-graph").get_attribute("title")
-        assert said == f"{k + 1}: The referee's words after stroke {k + 1}. {shares} %"
-        p.page.mouse.down()
-        p.page.mouse.up()
-        assert p("[p.stroke, p.time]") == pytest.approx([k, p("-p.leads[argument]", k)])
-
-
-def test_there_is_room_for_it_on_every_screen(p):
-    for width, height in SIZES:
-        p.page.set_viewport_size({"width": width, "height": height})
-        p.until("p.canvas.width === argument", width)
-        p("p.seek(1, p.strokes[1].duration)")
-        root = "document.documentElement"
-        inside = p(f"{root}.scrollWidth <= innerWidth && {root}.scrollHeight <= innerHeight")
-        assert inside and p.page.evaluate(OVERLAPS) == [], (width, height)
-        left, right = p("p.replay.scene.extent[1].map(y => p.view.toScreen(0, y)[0])")
-        assert right - left > min(0.85 * width, 0.84 * height), (width, height)
-        assert p.page.is_visible(".sn-win") and p.page.is_visible(".sn-graph") == (height > 500)
-
-
-def test_a_replay_without_it_shows_none(chromium, tmp_path):  # noqa: F811
-    data, _, _ = visit()
-    del data["win_chance"]  # as replays of earlier versions
-    file = tmp_path / "plain.html"
-    file.write_text(page_of(data), encoding="utf-8")
-    page = Watched(chromium, file.as_uri(), ("file:", "data:"), "p", reduced_motion="reduce")
-    page("p.seek(2, p.strokes[2].duration)")
-    assert page.page.locator(".sn-win, .sn-graph").count() == 0
-    page.close()

@@ -1,7 +1,6 @@
 """Is the chance to win in a replay that of each position of the frame, from the first player's side?"""
 
 import json
-import re
 
 import numpy as np
 import pytest
@@ -10,9 +9,7 @@ import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.frame import frame_of
 from snooker_env.planning import Positions
-from snooker_env.render import PALETTE
 from snooker_env.replays.chances import standings_of
-from snooker_env.replays.referee_words import bars
 from tests.refusals import refused
 from tests.replays.test_replays import keeping, visit
 
@@ -113,30 +110,6 @@ def test_the_first_stroke_is_undone_whatever_it_was(frame):
         here = before.on_table
         np.testing.assert_allclose(before.positions[here], after.positions[here], rtol=0, atol=1e-12)
     assert {(True, False), (False, True), (False, False)} <= seen
-
-
-def test_a_replay_holds_it_only_if_it_was_asked_for(frame):
-    env, _ = frame
-    plain, judged = sn.replay(env), sn.replay(env, judge=Judge())
-    assert plain.win_chance is None and plain.to_dict()["win_chance"] is None
-    assert judged.to_dict()["win_chance"] == list(judged.win_chance)
-    assert sn.replay(judged, title="again").win_chance == judged.win_chance
-    data = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', judged.html(), re.DOTALL)
-    assert json.loads(data[1])["win_chance"] == list(judged.win_chance)
-
-
-def test_a_film_shows_it_before_and_after_each_stroke(frame):
-    history = frame[0].history
-    replay = sn.replay(history, judge=Judge())
-    shown_bars = bars(history, replay.players, replay.win_chance)
-    assert [now.win_chance for now, _ in shown_bars] == list(replay.win_chance[:-1])
-    assert [then.win_chance for _, then in shown_bars] == list(replay.win_chance[1:])
-    pytest.importorskip("pygame")
-    pictures = [
-        next(sn.replay(history[:2], judge=judge).frames(size=(640, 360))) for judge in (Judge(), None)
-    ]
-    seen = [np.any(np.all(picture == PALETTE["first"], axis=2)) for picture in pictures]
-    assert seen == [True, False]
 
 
 def test_what_nobody_wins_is_refused(frame, tmp_path):

@@ -11,11 +11,10 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke
-from snooker_env.game.balls import BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.play.session import Session
 from snooker_env.render.table_picture import View
-from snooker_env.replays.referee_words import FOUL_WORDS, bars, foul_words, standing_bar
+from snooker_env.replays.referee_words import FOUL_WORDS, bars, foul_words
 from tests.refusals import refuse_each, refused
 from tests.tables import begun
 
@@ -137,25 +136,6 @@ def test_the_page_holds_everything_and_asks_for_nothing(strokes):
     assert json.loads(data[1])["players"] == ["</script>"]
 
 
-def test_places_to_fill_in_that_a_title_names_are_left_alone(strokes):
-    page = sn.replay(strokes[:1], title="{{data}} {{module}}").html()
-    # in the title and in the data
-    assert page.count("{{data}}") == 2 and page.count('"format":"snooker-replay"') == 1
-
-
-def test_a_replay_of_a_replay_takes_another_title(strokes):
-    first = sn.replay(strokes[:2], title="one", players=["A"])
-    second = sn.replay(first, title="two")
-    assert (second.title, second.players, len(second)) == ("two", ("A",), 2)
-    assert sn.replay(first).title == "one"
-
-
-def test_nobody_named_is_the_usual_players(strokes, tmp_path):
-    assert sn.replay(strokes, players=None).players == ("Player",)
-    assert sn.replay(sn.replay(strokes, players="Ada"), players=None).players == ("Ada",)
-    assert sn.RecordReplay(made(), tmp_path, players=None).paths == []
-
-
 def test_errors_of_both_seats_and_what_was_played_on():
     """Each stroke has the errors of its player; of shots with several physics no one is all's."""
     env = keeping(task="frame", opponent="ghost_ball", action="discrete", noise={"aim_deg": 0.1}, cue="real")
@@ -179,42 +159,6 @@ def test_errors_of_both_seats_and_what_was_played_on():
     assert (
         sn.replay(shots).to_dict()["physics"] is None and sn.replay(shots[1]).to_dict()["physics"] == "match"
     )
-
-
-def test_a_bare_shot_and_other_tables():
-    places, pool = [(0.0, -0.5), (0.1, 0.3)], {"table": "pool9", "physics": {"R": 0.028575}}
-    shot = sn.simulate(places, [(0.4, 3.0), (0, 0)], [(0, 0, 0)] * 2, **pool)
-    replay = sn.replay(shot, title="pool")
-    data = replay.to_dict()
-    assert data["players"] == [] and data["scene"]["lines"] is None and data["R"] == 0.028575
-    assert replay.table is shot.table and data["strokes"][0]["cue"] is None
-    assert replay._repr_html_().startswith("<iframe srcdoc=") and "sandbox" in replay._repr_html_()
-    assert sn.replay([shot, shot]).to_dict()["strokes"][0] == data["strokes"][0]
-
-
-def test_spins_at_rest_are_kept():
-    """A ball that spins on the spot has a path; one that lies still has none."""
-    shot = sn.simulate([(0.0, 0.0), (0.4, 0.0)], [(0, 0), (0, 0)], [(0, 0, 50.0), (0, 0, 0)])
-    stroke = sn.replay(shot).to_dict()["strokes"][0]
-    which = numbers(stroke["paths"]["u1"], "u1", 2)
-    assert set(which[:, 0].tolist()) == {0} and numbers(stroke["paths"]["f4"], "f4", 3)[0, 2] == 50.0
-
-
-def test_a_frame_and_a_match_name_both_players():
-    env = keeping(task="frame", opponent="ghost_ball", action="discrete", layout="pots:easy")
-    for _ in range(6):
-        if env.step(int(np.flatnonzero(env.action_masks())[0]))[2]:
-            break
-    replay = sn.replay(env)
-    assert replay.players == ("Player 1", "Player 2") and {p.player for p in replay.strokes} == {0, 1}
-    for played in env.history:
-        assert played.next_on == BallOn.NOTHING or played.next_player in (0, 1)
-    pytest.importorskip("pettingzoo")
-    match = sn.match_env()
-    match.keep_history = True
-    match.reset(seed=1)
-    match.step(np.zeros(7))
-    assert len(sn.replay(match)) == len(match.history) > 0
 
 
 def test_history_is_kept_on_request_and_starts_anew():
@@ -242,13 +186,6 @@ def test_keeping_history_changes_no_result():
     other.reset(seed=1)
     for choice in range(5):
         assert np.array_equal(env.step(choice)[0], other.step(choice)[0])
-
-
-def test_a_position_is_shown_as_it_stands():
-    position = sn.Position(cue=(0.1, -1.2), reds=[(0.3, 0.4)], black=(0.0, 1.4605))
-    stroke = sn.replay(position).to_dict()["strokes"][0]
-    assert stroke["on_table"] == [0, 1, 21] and stroke["duration"] == 0.0 and stroke["paths"]["count"] == 0
-    assert numbers(stroke["start"], "f8", 2)[[0, 1, 21]].tolist() == [[0.1, -1.2], [0.3, 0.4], [0.0, 1.4605]]
 
 
 WRONG = """
@@ -289,14 +226,6 @@ def test_wrong_arguments_are_refused_and_no_file_is_left(strokes, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_files_are_written_whole(strokes, tmp_path):
-    page = sn.replay(strokes[:3], tmp_path / "break.html")
-    assert (tmp_path / "break.html").read_text("utf-8") == page.html()
-    page.save(tmp_path / "break.json")
-    assert json.loads((tmp_path / "break.json").read_text()) == page.to_dict()
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["break.html", "break.json"]
-
-
 def made():
     return gymnasium.make("Snooker-v0", action="discrete")
 
@@ -314,25 +243,6 @@ def test_the_wrapper_writes_each_wanted_episode(tmp_path):
     env.close()
     assert [p.name for p in env.paths] == ["snooker-episode-0.json", "snooker-episode-2.json"]
     assert [len(json.loads(p.read_text())["strokes"]) for p in env.paths] == [lengths[0], lengths[2]]
-
-
-def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
-    env = sn.RecordReplay(gymnasium.wrappers.Autoreset(made()), tmp_path, suffix=".json")
-    env.reset(seed=1)
-    ends = 0
-    while ends < 3:
-        _, _, terminated, truncated, _ = env.step(67)
-        ends += terminated or truncated
-    assert [p.name for p in env.paths] == [f"snooker-episode-{k}.json" for k in range(3)]
-
-
-def test_the_wrapper_writes_what_was_cut_short(tmp_path):
-    env = sn.RecordReplay(made(), tmp_path, suffix=".json", name_prefix="cut")
-    for seed in (1, 2):
-        env.reset(seed=seed)
-        env.step(67)
-    env.close()
-    assert [p.name for p in env.paths] == ["cut-episode-0.json", "cut-episode-1.json"]
 
 
 # Score bars and the referee's words follow the ``Frame`` after each stroke
@@ -381,27 +291,6 @@ def test_a_break_is_the_sum_of_its_strokes(frame):
         run, last = run + played.points, played.player if played.points else None
 
 
-def test_the_end_is_shown(frame):
-    env, seen = frame
-    last, state = bars(env.history, ("Ada", "Bo"))[-1][1], seen[-1][1]
-    if state.winner is not None:
-        assert f"Frame to {('Ada', 'Bo')[state.winner]}" in last.words
-        assert f"{state.scores[state.winner]}-{state.scores[1 - state.winner]}" in last.words
-
-
-def test_the_bar_of_a_table_as_it_stands():
-    env = keeping(action="discrete")
-    start = standing_bar(env.tables, 0, ("Ada",))
-    assert (start.scores, start.break_points, start.ball_on, start.reds_left) == ((0,), 0, "red", 15)
-    assert start.points_on == 147
-    env.step(67)
-    kept = bars(env.history, ("Ada",))[-1][1]
-    now = standing_bar(env.tables, 0, ("Ada",), kept)
-    assert now == kept and now.scores == (1,) and now.potted == kept.potted != ()
-    assert env.ball_on == BallOn.ANY_COLOUR
-    assert standing_bar(env.tables, 0, ()).players == ()
-
-
 # Films: their pictures, length and colours, and what cannot be written
 
 
@@ -444,9 +333,3 @@ def test_every_ball_keeps_its_colour(replay, tmp_path, suffix):
         # a video halves the resolution of colours
         assert np.abs(seen - drawn).max() < 60, (place, seen, drawn)
     assert [p.name for p in tmp_path.iterdir()] == [file.name]
-
-
-def test_a_film_that_cannot_be_written_leaves_nothing(replay, tmp_path):
-    with pytest.raises(OSError, match="nowhere"):
-        replay.save(tmp_path / "nowhere" / "a.mp4", **SMALL)
-    assert list(tmp_path.iterdir()) == []

@@ -169,28 +169,6 @@ def _after(q, turn):
     return np.array([w * q[0] - axis @ q[1:], *(w * q[1:] + axis * q[0] + np.cross(axis, q[1:]))])
 
 
-def test_a_ball_sinks_into_its_pocket(page):
-    r = np.array([(0.7, 1.6), (-0.5, -1.0)])
-    shot = hit(r, None, 2.0, np.pi / 4, 0.0, 0.0, 0.0, "match", MATCH)
-    assert shot.potted[0] == 3
-    (pot,) = shot.events["time"][shot.events["kind"] == sn.EventKind.POT]
-    depth = page.evaluate(
-        "([replay, times]) => { const [stroke] = table.decode(replay).strokes; return times.map(t => Array.from(stroke.at(t).depth)); }",
-        [sn.replay(shot).to_dict(), [0.0, pot - 0.5 * pot, pot + 0.1, pot + 1]],
-    )
-    assert [d[1] for d in depth] == [0, 0, 0, 0]
-    assert depth[0][0] == depth[1][0] == 0 and 0 < depth[2][0] < 1 and depth[3][0] == 1
-
-
-def test_what_is_no_replay_is_refused(page):
-    refused = "replay => { try { %s; } catch (error) { return error.message; } }"
-    chess = page.evaluate(refused % "table.decode(replay)", {"format": "chess", "version": 1})
-    empty = sn.replay(hit(np.zeros((1, 2)), None, 1.0, 0.0)).to_dict() | {"strokes": []}
-    assert "chess" in chess and "stroke" in page.evaluate(
-        refused % "table.mount(document.body, replay)", empty
-    )
-
-
 DRAWN = """({scene, frame, at, size = [900, 500]}) => {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = size;
@@ -208,15 +186,6 @@ def drawn(page, scene, frame, at, **more):
 
 def near(rgb, other, most=60):
     return np.abs(np.subtract(rgb, other)).max() <= most
-
-
-def test_one_orientation_and_places_there_and_back(page):
-    found = drawn(page, scene_data("match"), {"x": [], "y": [], "on": []}, [[0, 0], [0, 1], [0.5, 0]])
-    (ox, oy), (rx, ry), (dx, dy) = found["screen"]
-    assert (ox, oy) == pytest.approx((450, 250))
-    assert ry == pytest.approx(oy) and rx - ox == pytest.approx(found["scale"])  # +y to the right
-    assert dx == pytest.approx(ox) and dy - oy == pytest.approx(found["scale"] / 2)  # +x down
-    assert np.allclose(found["back"], [[0, 0], [0, 1], [0.5, 0]], atol=1e-12)
 
 
 @pytest.mark.parametrize("table", ["match", "pool9", "carom", None])
@@ -257,20 +226,3 @@ def test_everything_that_a_frame_may_hold_is_drawn(page):
     assert not near(cue, scene["palette"]["cloth"], 40)
     empty_cell = [drawn(page, scene, frame, [[0.12, -0.52]])["pixels"] for frame in (bare, bare | extra)]
     assert empty_cell[0] == empty_cell[1]
-
-
-def test_balls_stand_out_from_the_cloth_and_carry_letters(page):
-    scene = scene_data("match")
-    ids = [0, 1, 16, 17, 18, 19, 20, 21]
-    x, y = [0.5] * 22, list(np.linspace(-1.5, 1.5, 22))
-    frame = {"x": x, "y": y, "on": [int(i in ids) for i in range(22)]}
-    at = [[x[i] + 0.01, y[i]] for i in ids]
-    plain = drawn(page, scene, frame, at, size=[1900, 1000])
-    assert all(np.abs(np.subtract(p, scene["palette"]["cloth"])).max() > 45 for p in plain["pixels"])
-    around = [[dx, dy] for dx in np.linspace(-0.015, 0.015, 7) for dy in np.linspace(-0.01, 0.01, 5)]
-    grid = [[x[i] + dx, y[i] + dy] for i in ids for dx, dy in around]
-    frames = [frame | {"labels": on} for on in (False, True)]
-    pixels = [drawn(page, scene, one, grid, size=[1900, 1000])["pixels"] for one in frames]
-    without, labelled = map(np.array, pixels)
-    changed = np.abs(labelled - without).max(axis=1).reshape(len(ids), -1) > 40
-    assert (changed.mean(axis=1) > 0.1).all()

@@ -1,12 +1,10 @@
 """Are frames read, and figures of frames counted, as their words say?"""
 
-import json
-
 import numpy as np
 import pytest
 
 from agents import calibrate
-from agents.calibrate import figures_of, frames_of, group_frames, main, tactics_of
+from agents.calibrate import figures_of, frames_of, group_frames, tactics_of
 from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, SIZE
 from snooker_env.planning.worth import Chance
 from tests.pictures import saved_figures, unreadable
@@ -92,32 +90,3 @@ def test_the_chance_to_win_is_compared_with_who_won(monkeypatch, tmp_path):
         calibrate.draw(table, error, 40, tmp_path / "c.png")
     assert len(figures) == 1 and unreadable(figures[0]) == []
     assert figures[0].axes[0].get_lines()[1].get_xydata() == pytest.approx(100.0 * table)
-
-
-@pytest.mark.slow
-def test_the_command_compares_frames_played_with_those_of_a_file(tmp_path, capsys, monkeypatch):
-    short = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 60}
-    monkeypatch.setattr(calibrate, "FRAME", short)
-    file, out, picture = (tmp_path / name for name in ("frames.txt", "figures.json", "chance.png"))
-    file.write_text(TEXT)
-    options = [
-        "--scales",
-        "1.5",
-        "--frames",
-        "8",
-        "--budget",
-        "30",
-        "--json",
-        str(out),
-        "--picture",
-        str(picture),
-    ]
-    assert main([str(file), *options]) == 0 and picture.stat().st_size > 10_000
-    for wrong in (["--budget", "5"], ["--scales", "0"], ["--frames", "1"]):
-        with pytest.raises(SystemExit):
-            main([str(file), *wrong])
-    assert "scale 1.5" in capsys.readouterr().out
-    told = json.loads(out.read_text())
-    assert told["figures"]["scale 1.5"]["strokes"][0] <= 60.0 and len(told["chances"]["groups"]) == 10
-    with pytest.raises(SystemExit):
-        main([str(tmp_path / "none.txt")])

@@ -68,24 +68,6 @@ def test_strokes_that_are_choices_become_those_choices():
     assert np.mean(dataset.nearest_choices(Strokes(values), at, masks, planner) == choices) > 0.9
 
 
-def test_what_cannot_be_made_is_refused(tmp_path, capsys):
-    pytest.importorskip("minari")
-    for words, why in (
-        (["--task", "Snooker-v0"], "task = 'Snooker-v0': must be one of"),
-        (["--form", "targets"], "form = 'targets': must be one of 'strokes', 'choices'"),
-        (["--strokes", "0"], "strokes = 0: must be an integer"),
-        (["--player", "nobody"], "player = 'nobody': must be the name of a player"),
-        (
-            ["--task", "SnookerFrame-v0", "--form", "choices"],
-            "form = 'choices': must be \"strokes\" in frames",
-        ),
-    ):
-        with pytest.raises(SystemExit):
-            dataset.main(["--out", str(tmp_path), *words])
-        assert why in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
 def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path, capsys):
     minari = pytest.importorskip("minari")
     command = ["--out", str(tmp_path), "--player", "ghost_ball", "--form", "choices", "--strokes"]
@@ -117,24 +99,15 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
 
 
 @pytest.mark.parametrize(
-    ("of", "task"),
-    [
-        ("rewards", "SnookerBreak-v0"),
-        ("observations", "SnookerSafety-v0"),
-        ("infos/points", "SnookerBreak-v0"),
-        ("actions", "SnookerBreak-v0"),
-    ],
+    ("of", "task"), [("rewards", "SnookerBreak-v0"), ("observations", "SnookerSafety-v0")]
 )
 def test_a_changed_number_is_found_when_episodes_are_played_again(tmp_path, capsys, monkeypatch, of, task):
     pytest.importorskip("minari")
     import h5py
 
-    command = [
-        *("--out", "made", "--task", task),  # a folder by its relative name
-        *("--player", "ghost_ball", "--strokes", "5", "--check", "9"),
-    ]
-    monkeypatch.chdir(tmp_path)
-    assert dataset.main(command) == 0
+    monkeypatch.chdir(tmp_path)  # a folder by its relative name
+    command = f"--out made --task {task} --player ghost_ball --strokes 5 --check 9"
+    assert dataset.main(command.split()) == 0
     said = capsys.readouterr().out
     assert "6 of 6 episodes are played again bit for bit" in said and "strokes/s" in said
     (folder,) = (tmp_path / "made" / "snooker").iterdir()

@@ -228,11 +228,6 @@ def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
         assert max(len(line.rstrip()) for line in capsys.readouterr().out.splitlines()) <= 100
 
 
-def test_no_two_titles_are_alike():
-    titles = {file.stem: report.title(report.read(file)) for file in KEPT}
-    assert list(titles) == ["ladder", "visits"] and len(set(titles.values())) == 2
-
-
 def test_the_command_writes_the_markdown_beside(tmp_path, capsys, refused):
     file = tmp_path / "r.json"
     file.write_bytes(KEPT[1].read_bytes())
@@ -275,9 +270,3 @@ WORSE = "0.03 pots and 0.10 points a visit against 0.67 pots"
 )
 def test_the_conclusion_claims_only_what_the_figures_show(trained, ghost, random, words):
     assert words in concluded(trained, ghost, random)
-
-
-@pytest.mark.parametrize("shares", [(None, 0.6), (0.6, None)])
-def test_a_share_of_next_pots_that_is_not_known_is_not_given(shares):
-    sentence = concluded((9.0, 0.3, shares[0]), (2.9, 0.3, shares[1]), POOR)
-    assert "ppo_value is better than ghost_ball" in sentence and "%" not in sentence

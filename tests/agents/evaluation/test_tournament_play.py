@@ -19,17 +19,6 @@ GAME = {"noise": "professional", "max_strokes": 1000}
 softly, ghost_ball = partial(SeenPlayer, Softly()), partial(sn.player, "ghost_ball")
 
 
-class Careful(SeenPlayer):
-    """Must not be asked where there is nothing to play."""
-
-    def __init__(self):
-        super().__init__(Softly())
-
-    def play(self, positions, seeds):
-        assert len(positions) and not positions.over.any()
-        return super().play(positions, seeds)
-
-
 def frames(rows):
     """Each row by column."""
     return [dict(zip(COLUMNS, row, strict=True)) for row in rows]
@@ -113,22 +102,6 @@ def test_the_order_of_the_players_does_not_matter(second):
             side = {"first": "second", "second": "first"}[name.rpartition("_")[2]]
             assert a[name] == b[f"{name.rpartition('_')[0]}_{side}"], name
     assert len({(r["points_first"], r["points_second"]) for r in one}) > 4
-
-
-def test_a_frame_that_is_stopped_has_no_winner():
-    rows = frames(play(ghost_ball(), softly(), [0, 1], max_strokes=7))
-    assert [r["winner"] for r in rows] == [-1] * 4
-    assert {r["strokes_first"] + r["strokes_second"] for r in rows} == {7}
-    assert {r["frame"] for r in rows} == {0}
-
-
-def test_a_frame_that_the_opponent_wins_in_his_first_visit_counts():
-    rows = frames(play(Careful(), ghost_ball(), range(40), layout="pots:easy"))
-    at_once = [r for r in rows if r["strokes_first"] == 0]
-    assert at_once and all(r["winner"] == 1 and r["opener"] == 1 and r["visits_second"] == 1 for r in at_once)
-    # the opponent won in his first visit, and the agent in its
-    assert {exchanged(r) for r in at_once} == {False, True}
-    assert len(rows) == 80
 
 
 def test_the_frames_of_a_match_are_broken_in_turn(strokes):

@@ -8,7 +8,7 @@ from agents import learn_worth
 from agents.learn_worth import main
 from agents.learning import frame_self_play
 from agents.learning.frame_self_play import frames
-from agents.learning.frame_worth import TRACE, by_stage, calibration, fitted, fitted_chance, targets
+from agents.learning.frame_worth import TRACE, calibration, fitted, fitted_chance, targets
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Positions
 from snooker_env.planning.learned.dense_layers import Layers
@@ -96,34 +96,6 @@ def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees(monkeypatch
     assert np.array_equal(replies["seen"], np.repeat(again, len(first), 0))
 
 
-def test_a_position_is_worth_what_its_best_stroke_brings():
-    player, decided = decided_at_the_break("none")
-    at, rng, errors = decided.start, np.random.default_rng(0), np.zeros((1, 5))
-    again, here, row = frame_self_play._judged(player, at, np.array([5]), rng)
-    gains = player.judge.gains(again.start, here, again.strokes.values, errors)
-    assert row["worth"] == pytest.approx(gains[:, 1], rel=1e-12)
-
-
-def test_replies_are_to_the_best_stroke_and_as_often_to_one_of_the_finalists(monkeypatch):
-    player, decided = decided_at_the_break("professional")
-    outcomes, struck = player.judge.outcomes, []
-
-    def watched(at, rows, strokes, errors):
-        if len(strokes) == 1200:
-            struck.append(strokes)
-        return outcomes(at, rows, strokes, errors)
-
-    monkeypatch.setattr(player.judge, "outcomes", watched)
-    monkeypatch.setattr(frame_self_play, "_judged", lambda *args: (None, np.arange(len(args[1])), {}))
-    frame_self_play._replies(player, decided, np.zeros(200, np.int64), np.random.default_rng(0))
-    strokes, finalists = decided.tried[0].strokes.values, frame_self_play.FINALISTS
-    pick = (struck[0][:, None] == strokes[None, :finalists]).all(axis=2).argmax(axis=1)
-    assert np.array_equal(struck[0], strokes[pick])
-    shares, other = np.bincount(pick, minlength=finalists) / 1200, 0.5 / finalists
-    expected = np.array([0.5 + other] + [other] * (finalists - 1))
-    assert (np.abs(shares - expected) < 4.0 * np.sqrt(expected * (1.0 - expected) / 1200)).all()
-
-
 @pytest.mark.parametrize("other", ["ghost_ball", (None, None)])
 def test_of_a_frame_against_another_only_ones_own_strokes_are_learned_from(other):
     rows, alone = frames(SHARED, PART | {"other": other}, 1), frames(SHARED, PART, 1)
@@ -133,17 +105,6 @@ def test_of_a_frame_against_another_only_ones_own_strokes_are_learned_from(other
     assert np.allclose((rows["lead"] + rows["swing"])[linked], rows["lead"][rows["next"][linked]])
     first, mine = rows["frame"] == 0, alone["frame"] == 0  # nobody but oneself has played there yet
     assert rows["worth"][first][0] == alone["worth"][mine][0]
-
-
-def test_the_league_is_past_selves_and_the_planner(tmp_path):
-    def others(k, *past):
-        rounds = learn_worth.WorthRounds(tmp_path, 2, 40 * learn_worth.TABLES, 30, 0, False, None)
-        rounds._past.extend(past)
-        return [part["other"] for part in rounds._drawn(k)]
-
-    assert others(1, "first", "second")[::2] == [None] * 20
-    assert set(others(1, "first", "second")[1::2]) == {"first", "second", "planner"}
-    assert set(others(0)) == {None, "planner"}
 
 
 def test_a_network_learns_what_it_is_told_beside_the_value():
@@ -173,66 +134,9 @@ def test_the_chance_to_win_is_that_of_the_frames():
     assert calibration(np.full(n, 0.9), won)[1] > 0.2
 
 
-def test_each_stage_is_compared_with_what_came_of_it():
-    """Seen by the player ahead, and each frame once in the error."""
-    now, left = np.array([10.0, -10.0, 14.0, -9.0, 6.0]), np.array([100.0, 100.0, 13.0, 7.0, 7.0])
-    last, won = np.array([False, False, False, True, True]), np.array([True, True, True, False, True])
-    rows = by_stage(np.array([0.6, 0.3, 0.9, 0.0, 0.7]), won, now, left, last, np.array([1, 2, 2, 2, 2]))
-    told = {words: figures for words, *figures in rows}
-    assert told["more than 75 points on the table"][:2] == [2, 2]
-    assert told["more than 75 points on the table"][2:4] == [pytest.approx(0.65), 0.5]
-    assert told["1 to 4 points more"][2:4] == [0.9, 1.0]
-    assert told["the black alone, a larger lead"][2:4] == [1.0, 1.0]
-    assert told["the black alone, a lead of up to 7"][2:4] == [0.7, 1.0]
-
-
-def test_the_chance_to_win_is_learned_from_frames_between_equals(monkeypatch):
-    """Who won the others changes nothing."""
-    monkeypatch.setattr(learn_worth, "PASSES", 1)
-    rng, n = np.random.default_rng(2), 4000
-    lead = rng.normal(0.0, 30.0, n)
-    rows = {
-        "seen": rng.standard_normal((n, SIZE)).astype(np.float32) * 0.1,
-        "target": rng.normal(0.0, 5.0, n),
-        "held": rng.random(n) < 0.2,
-        "unit": np.arange(n) // 40,
-        "striker": np.zeros(n, int),
-        "lead": lead,
-        "left": np.full(n, 60.0),
-        "last": np.zeros(n, bool),
-        "won": lead + rng.normal(0.0, 20.0, n) > 0.0,
-        "decided": np.ones(n, bool),
-        "equals": rng.random(n) < 0.5,
-    }
-    rows["hand"] = rows["seen"]
-    other = rows | {"won": np.where(rows["equals"], rows["won"], ~rows["won"])}
-    none = rows | {"won": np.where(rows["equals"], ~rows["won"], rows["won"])}
-    kept, same, turned_round = (learn_worth.learned([one], 0)[1:] for one in (rows, other, none))
-    assert kept[0] == same[0] and kept[1] == same[1]
-    assert turned_round[1]["chance_error"] != kept[1]["chance_error"]
-
-
-SHORT = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 40}
-LINE = ["--rounds", "2", "--frames", "16", "--budget", "30", "--out"]
-
-
-@pytest.mark.slow
-def test_each_round_is_kept_and_what_was_learned_is_finite(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(learn_worth, "FRAME", SHORT)
-    monkeypatch.setattr(learn_worth, "PASSES", 2)
-    assert main([*LINE, str(tmp_path)]) == 0
-    assert "round 0: positions" in capsys.readouterr().out
-    with np.load(tmp_path / "worth-0-weights.npz") as one, np.load(tmp_path / "worth.npz") as other:
-        assert not np.array_equal(one["worth/0/weight"], other["worth/0/weight"])
-        assert all(np.isfinite(other[name]).all() for name in other.files)
+def test_frames_of_which_none_ends_are_refused(tmp_path, monkeypatch):
+    """Nothing says who wins them."""
+    short = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 3}
+    monkeypatch.setattr(learn_worth, "FRAME", short)
     with pytest.raises(SystemExit):
-        main([*LINE[:4], "--budget", "40", "--out", str(tmp_path)])
-
-
-def test_what_cannot_be_learned_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(learn_worth, "FRAME", SHORT | {"max_strokes": 3})
-    with pytest.raises(SystemExit):  # no frame ends: nothing says who wins
-        main([*LINE, str(tmp_path / "none")])
-    for wrong in (["--rounds", "0"], ["--frames", "20"], ["--budget", "5"]):
-        with pytest.raises(SystemExit):
-            main([*wrong, "--out", str(tmp_path)])
+        main(["--rounds", "2", "--frames", "16", "--budget", "30", "--out", str(tmp_path / "none")])

@@ -97,17 +97,6 @@ def test_a_tables_scores_do_not_depend_on_the_tables_beside_it(policy, met):
     assert all(np.array_equal(one, together[rows]) for one, rows in zip(found, parts * 5, strict=True))
 
 
-def test_values_and_probabilities_are_those_of_the_network(policy, met):
-    seen, masks = met
-    choices, values, logs = policy.fused.act(seen, masks, np.random.default_rng(1).random(N))
-    assert masks[np.arange(N), choices].all() and len(np.unique(choices)) > 50
-    with torch.no_grad():
-        expected, expected_logs, _ = plain(policy, seen, masks, choices)
-    assert np.abs(values - expected.numpy()).max() < 1.4e-5
-    assert np.abs(logs - expected_logs.numpy()).max() < 1.4e-5
-    assert values.std() > 1e-2 and logs.std() > 1e-2
-
-
 def test_choices_are_drawn_by_their_probabilities(policy, met):
     """By inversion: of m evenly spaced numbers each choice gets its share, to within one."""
     m = 2000
@@ -117,13 +106,6 @@ def test_choices_are_drawn_by_their_probabilities(policy, met):
         shares = np.exp(scored(policy, seen[:1], masks[:1]))[0]
         assert np.abs(np.bincount(choices, minlength=CHOICES) - m * shares).max() < 1.01
         assert shares.max() > 3 / m
-
-
-def test_the_ends_of_the_interval_choose_what_is_available(policy, met):
-    seen, masks = met
-    for end in (0.0, np.nextafter(1.0, 0.0)):
-        choices = policy.fused.act(seen, masks, np.full(N, end))[0]
-        assert masks[np.arange(N), choices].all()
 
 
 def test_a_rollout_draws_by_the_fused_pass(policy, met):
@@ -168,38 +150,6 @@ def test_the_gradient_is_pytorchs_own(policy, met):
     clipped = ((ratio - 1.0).abs() > CLIP).float().mean()
     expected = [policy_loss, value_loss, entropy.mean(), clipped, (ratio - 1.0 - change).mean()]
     assert np.allclose(figures, [x.item() for x in expected], rtol=1e-4, atol=1e-6) and 0.2 < clipped < 0.9
-
-
-def test_choices_of_nearly_no_probability_keep_their_logarithm(policy, met):
-    """Those of a rollout may become so unlikely that float32 holds their probability no longer."""
-    with torch.no_grad():
-        policy.action_net.score.weight.mul_(300.0)
-    seen, masks = met
-    rows, nothing = np.arange(N), np.zeros(N, np.float32)
-    choices = np.where(masks, scored(policy, seen, masks), np.inf).argmin(1)
-    _, logs, entropy = plain(policy, seen, masks, choices)
-    assert (logs < -110.0).sum() > 20  # exp(-103) is the smallest that float32 holds
-    policy.fused.zero_grad()
-    rollout = Rollout(seen, masks, choices, logs.detach().numpy() - 0.5, nothing, nothing)
-    found = policy.fused.ppo_gradient(rows, rollout, Loss(CLIP, 0.0, 0.0))
-    assert np.isclose(found[4], np.exp(0.5) - 1.5, rtol=1e-4)
-    assert np.isclose(found[2], entropy.mean().item(), rtol=1e-4)
-
-
-def test_gradients_of_parts_add_up(policy, met):
-    """And a block of another size leaves nothing behind."""
-    seen, masks = met
-    choices, _, logs = policy.fused.act(seen, masks, np.random.default_rng(3).random(N))
-    rollout = Rollout(seen, masks, choices, logs, np.ones(N, np.float32), np.zeros(N, np.float32))
-    found = []
-    for parts in ([np.arange(40)], [np.arange(40), np.arange(40, 40 + 20)], [np.arange(40, 60)]):
-        policy.fused.zero_grad()
-        for rows in parts:
-            policy.fused.ppo_gradient(rows, rollout, LOSS)
-        found.append(policy.fused.gradient.clone())
-    scale = found[1].abs().max()
-    assert (found[0] + found[2] - found[1]).abs().max() < 1e-5 * scale
-    assert (found[0] - found[1]).abs().max() > 1e-2 * scale
 
 
 def test_copies_and_new_weights_have_passes_of_their_own(policy, met):

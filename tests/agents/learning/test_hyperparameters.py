@@ -9,14 +9,6 @@ from snooker_env.planning.learned import pot_view
 from snooker_env.tasks.observations import SIZE
 
 
-def test_a_recipe_with_a_wrong_value_is_refused(tmp_path, monkeypatch):
-    text = (hyperparameters.FOLDER / "ppo_value.yml").read_text().replace("gamma: 0 ", "gamma: 1.5 ")
-    (tmp_path / "mine.yml").write_text(text)
-    monkeypatch.setattr(hyperparameters, "FOLDER", tmp_path)
-    with pytest.raises(ValueError, match=r"gamma = 1.5: must be a finite number in \[0, 1\]"):
-        hyperparameters.Recipe.of("mine")
-
-
 def test_a_linear_rate_falls_from_what_it_says_to_nearly_nothing():
     tables = training_tables(2, action="discrete")
     model = hyperparameters.Recipe.of("ppo_value", ["learning_rate=lin_1e-3"]).new_model(tables, 0)

@@ -1,7 +1,5 @@
 """Does a policy come to prefer what its judge likes, simulated under errors and counted from the points?"""
 
-import pickle
-
 import numpy as np
 import pytest
 import torch
@@ -37,34 +35,6 @@ def flat(network):
 
 def some(n=N, seed=0, layout="random:6"):
     return Positions.of(tables(n, layout=layout, seed=seed))
-
-
-def played(own, at):
-    """What the policy's best choices lead to, without errors."""
-    masks = action_masks(at)
-    seen = torch.as_tensor(with_pots(at.observations()))
-    with torch.no_grad():
-        scores = own.get_distribution(seen, masks).distribution.logits.numpy()
-    picks = np.where(masks, scores, -np.inf).argmax(axis=1)
-    return Planner({"action": "discrete", "fidelity": "fast"}, threads=1).play(at, np.arange(len(at)), picks)
-
-
-def test_the_policy_prefers_what_the_judge_likes():
-    """Two judges, one for each end of the table: both policies leave the cue ball where it pays, and pot."""
-    ends, made, fresh = [], [], some(200, seed=99)
-    for sign in (-1.0, 1.0):
-        own = policy()
-        learning = learner(own)
-
-        def judge(left, sign=sign):
-            return 10.0 + 8.0 * sign * left.positions[:, 0, 1]
-
-        for k in range(16):
-            learning.round(some(seed=k), judge, 1.0 - k / 20)
-        out = played(own, fresh)
-        ends.append(out.afterstates.positions[out.goes_on, 0, 1].mean())
-        made.append((out.points > 0).mean())
-    assert ends[1] - ends[0] > 0.6 and min(made) > 0.7
 
 
 def test_a_choice_is_worth_its_points_and_what_the_judge_says_of_what_it_leaves(monkeypatch):
@@ -119,40 +89,6 @@ def test_the_value_of_positions_is_not_touched():
     assert not torch.equal(reader, flat(own.features_extractor))
     learning.round(some(16), lambda left: np.zeros(len(left)), 0.5)
     assert [group["lr"] for group in learning._optimizer.param_groups] == [pytest.approx(0.5 * RATE)]
-
-
-def test_the_oldest_rounds_are_forgotten(monkeypatch):
-    monkeypatch.setattr(judged_choices, "KEPT", 24)
-    learning = learner(policy(), 8)
-    for k in range(5):
-        learning.round(some(8, seed=k), lambda left: np.zeros(len(left)), 1.0)
-    assert len(learning._rounds) == 3
-    assert np.array_equal(learning._rounds[-1][0], with_pots(some(8, seed=4).observations()))
-
-
-@pytest.mark.parametrize("stop", [1, 3])
-def test_it_goes_on_from_a_saved_state_bit_for_bit_on_any_number_of_threads(stop):
-    def judge(left):
-        return 5.0 + left.positions[:, 0, 1]
-
-    def go_on(learning, rounds):
-        for k in rounds:
-            learning.round(some(16, seed=k), judge, 0.6)
-
-    first_policy = policy(3)
-    first = learner(first_policy, 16, seed=8)
-    go_on(first, range(stop))
-    saved = pickle.dumps((first.get_state(), first_policy.state_dict(), first._rng.bit_generator.state))
-    go_on(first, range(stop, 4))
-    state, weights, generator = pickle.loads(saved)
-    second_policy = policy(4)
-    second_policy.load_state_dict(weights)
-    second = learner(second_policy, 16, threads=2)
-    second._rng.bit_generator.state = generator
-    second.set_state(state)
-    go_on(second, range(stop, 4))
-    assert torch.equal(flat(first_policy), flat(second_policy))
-    assert list(first.losses) == list(second.losses)
 
 
 def opened(n, noise="professional"):

@@ -14,8 +14,6 @@ from functools import partial
 import numpy as np
 import pytest
 import torch
-from sb3_contrib import MaskablePPO
-from stable_baselines3 import SAC
 
 import train
 from agents import evaluate
@@ -23,8 +21,8 @@ from agents.evaluation.entrants import Entrant
 from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe, names
 from agents.learning.model_files import KEPT, packed, read
-from agents.learning.models import POLICY, load_weights
-from agents.learning.policy_files import packed_policy, read_policy, write_policy
+from agents.learning.models import POLICY
+from agents.learning.policy_files import read_policy, write_policy
 from agents.players.trained import PolicyPlayer, load_player
 from snooker_env import SnookerVectorEnv
 from snooker_env.planning import Planner, Positions
@@ -79,6 +77,8 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
         assert one.policy.observation_space == model.observation_space
         played, wanted_play = (m.predict(seen, deterministic=True)[0] for m in (one.policy, model))
         assert np.array_equal(played, wanted_play)
+        its, weights = one.policy.state_dict(), model.policy.state_dict()  # a learned value of positions, too
+        assert its.keys() == weights.keys() and all(torch.equal(its[name], weights[name]) for name in its)
     with pytest.raises(Exception):  # noqa: B017 - whatever its pickles do
         type(model).load(file, device="cpu")
     assert (tmp_path / "mark").exists()  # these bombs are sharp
@@ -102,32 +102,27 @@ def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
     assert not mark.exists()
 
 
-HOSTILE = [(key, value) for key in KEPT for value in ([1], "x" * 9, {"a": 1}, -1, True, float("nan"))]
-HOSTILE.remove(("start", {"a": 1}))
-HOSTILE += [(key, None) for key in ("env_options", "num_timesteps", "gamma", "recipe")]
-HOSTILE += [("recipe", "../../etc/passwd"), ("recipe", "x" * 10**6), ("gamma", 2)]
-HOSTILE += [("num_timesteps", 1.5), ("seen", 7), ("seen", "x")]
+WRONG = ([1], "x" * 9, {"a": 1}, -1, True, float("nan"))
+OTHERS = {key: WRONG for key in KEPT} | {"start": tuple(one for one in WRONG if not isinstance(one, dict))}
+OTHERS |= {key: (*WRONG, None) for key in ("num_timesteps", "gamma")}
+OTHERS["recipe"] += (None, "../../etc/passwd", "x" * 10**6)
 OPTIONS = {"opponent": "x.zip", "aim": ["target"], "action": "box", "physics": {"R": 1}, "layout": 3}
-OPTIONS["noise"] = {"aim": 1}
-HOSTILE += [("env_options", {name: value}) for name, value in OPTIONS.items()]
+OTHERS["env_options"] += (None, {"noise": {"aim": 1}}, *({name: value} for name, value in OPTIONS.items()))
+OTHERS |= {"gamma": (*OTHERS["gamma"], 2), "num_timesteps": (*OTHERS["num_timesteps"], 1.5), "seen": (7, "x")}
 
 
-@pytest.mark.parametrize(("key", "value"), HOSTILE)
-def test_wrong_figures_are_refused(plain, tmp_path, key, value):
-    change = edited(lambda found: found.update({key: value}))
-    file = rezipped(plain, tmp_path / "wrong.zip", model_json=change)
-    says = r"must be a model (that train.py saved|of the current ppo_value)"
-    with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}") as info:
-        load_player(file)
-    assert type(info.value) is ValueError and len(str(info.value)) < 600
-    assert key in str(info.value) or "older" in str(info.value) or "NaN is no number" in str(info.value)
-
-
-@pytest.mark.parametrize("key", [key for key in KEPT if key not in ("seed", "imitated", "start", "recipe")])
-def test_missing_figures_are_refused(plain, tmp_path, key):
-    file = rezipped(plain, tmp_path / "wrong.zip", model_json=edited(lambda found: found.pop(key)))
-    with pytest.raises(ValueError, match=rf"must be a model that train.py saved \({key} = None: must be"):
-        load_player(file)
+@pytest.mark.parametrize("key", OTHERS)
+def test_a_figure_that_is_changed_to_another_kind_or_missing_is_refused_by_its_name(plain, tmp_path, key):
+    changes = [lambda found, value=value: found.update({key: value}) for value in OTHERS[key]]
+    if key not in ("seed", "imitated", "start", "recipe", "seen"):
+        changes.append(lambda found: found.pop(key))
+    for change in changes:
+        file = rezipped(plain, tmp_path / "wrong.zip", model_json=edited(change))
+        says = r"must be a model (that train.py saved|of the current ppo_value)"
+        with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}") as info:
+            load_player(file)
+        assert type(info.value) is ValueError and len(str(info.value)) < 600
+        assert key in str(info.value) or "older" in str(info.value) or "NaN is no number" in str(info.value)
 
 
 def other_weights(change):
@@ -183,39 +178,6 @@ def test_wrong_weights_are_refused(plain, tmp_path, change, says):
     file = rezipped(plain, tmp_path / "wrong.zip", policy_pth=change)
     with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}"):
         load_player(file)
-
-
-def test_a_file_says_only_once_what_it_is(plain, tmp_path):
-    """The published form is read even beside ``data``: nothing of the latter counts."""
-    with zipfile.ZipFile(plain) as file, zipfile.ZipFile(tmp_path / "both.zip", "w") as both:
-        for name in file.namelist():
-            both.writestr(name, file.read(name))
-        both.writestr("data", json.dumps({"recipe": "ppo_target"}))
-    assert read(tmp_path / "both.zip", "agent").recipe == "ppo_value"
-
-
-def test_weights_are_handed_on(mask, plain):
-    """From a run's file and from the published one, as ``--start`` does."""
-    its = MaskablePPO.load(mask, device="cpu").policy.state_dict()
-    for file in (mask, plain):
-        model = made("ppo_value", seed=9)
-        load_weights(model, file)
-        assert model.start == {
-            "model": str(file),
-            "shots": 77,
-            "imitated": 300,
-            "start": None,
-            "simulated_shots": None,
-        }
-        weights = model.policy.state_dict()
-        assert its.keys() == weights.keys() and all(torch.equal(its[name], weights[name]) for name in its)
-
-
-def test_a_model_of_another_maker_is_recognised(tmp_path):
-    SAC("MlpPolicy", "Pendulum-v1", device="cpu").save(tmp_path / "sac.zip")
-    assert read(tmp_path / "sac.zip", "agent") is None
-    with pytest.raises(ValueError, match=r"^agent = '.*sac.zip': must be a model that train.py saved$"):
-        load_player(tmp_path / "sac.zip")
 
 
 def test_a_missing_library_is_not_called_an_old_model(mask, monkeypatch):
@@ -275,18 +237,6 @@ def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
     assert not np.allclose(other, scores, atol=1.0)
 
 
-def test_it_plays_frames_as_an_opponent(tmp_path):
-    """By what a frame's observation has in common with a visit's."""
-    file = tmp_path / "p.npz"
-    write_policy(file, WEIGHTS, **ABOUT)
-    frames = {"task": "frame", "layout": "random:1", "action": "discrete", "opponent": str(file)}
-    tables, played = SnookerVectorEnv(3, threads=1, **frames), 0
-    tables.reset(seed=1)
-    for _ in range(5):
-        played += tables.step(tables.action_masks().argmax(axis=1))[-1]["opponent_strokes"].sum()
-    assert played > 3
-
-
 def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused):
     """A planner wants a value, a training the whole network: by the file and by its folder."""
     file = tmp_path / POLICY
@@ -303,68 +253,44 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused
         assert error.endswith(f"error: start = {str(file)!r}: {whole}")
 
 
-def test_the_help_of_evaluations_names_it(capsys):
-    with pytest.raises(SystemExit):
-        evaluate.main(["--help"])
-    printed = " ".join(capsys.readouterr().out.split())
-    assert "MODEL (a .zip, an .npz of plain weights, or a run's folder)" in printed
-
-
-def test_it_is_evaluated_like_any_other_agent(tmp_path):
-    """As a file and as a run's folder, with what its file says of its training."""
-    folder = tmp_path / "mine-0"
-    folder.mkdir()
-    write_policy(folder / POLICY, WEIGHTS, **ABOUT)
-    assert load_player(folder).model.num_timesteps == 12
-    more = [*QUICK, "--json", str(tmp_path / "r.json")]
-    assert evaluate.main(["--agent", str(folder), f"same={folder / POLICY}", *more]) == 0
-    report = json.loads((tmp_path / "r.json").read_text())
-    (run,) = report["agents"][0]["runs"]
-    wanted = {"recipe": "mine", "shots": 12, "seed": 3, "gamma": 0.9, "noise": "club", "physics": "paper"}
-    wanted["imitated"] = None
-    assert report["agents"][0]["label"] == "mine-0" and {key: run[key] for key in wanted} == wanted
-    first, second = report["results"][:2]
-    assert first["agent"] == "mine-0" and second["agent"] == "same"
-    assert first["figures"]["points_a_visit"] == second["figures"]["points_a_visit"]
-
-
 def about(**changes):
     return {"about": np.array(json.dumps(ABOUT | changes))}
 
 
-@pytest.mark.parametrize(
-    ("changes", "says"),
-    [
-        ({"about": None}, "about"),
-        ({"about": np.array("[]")}, "about has not the keys"),
-        ({"about": np.array("?")}, "Expecting value"),
-        (about(more=1), "about has not the keys"),
-        (about(shots=-1), "about.shots = -1"),
-        (about(activation="sin"), "about.activation = 'sin': must be one of 'tanh', 'relu'"),
-        (about(env_options={"aim": "target"}), "key of about.env_options = 'aim'"),
-        (about(trainer=3), "about.trainer is no text"),
-        ({"weight_0": None}, "the last layer gives 121 numbers and not 540"),
-        ({"weight_1": None}, "the last layer gives 32 numbers"),
-        ({"bias_1": None}, "bias_1"),
-        ({"bias_0": np.zeros(7, np.float32)}, "weight_0 float32 (32, 121), bias_0 float32 (7,)"),
-        ({"weight_0": np.zeros((32, 120), np.float32)}, "after 121 numbers"),
-        ({"weight_0": np.zeros((32, 121))}, "weight_0 float64"),
-        ({"bias_1": np.full(540, np.nan, np.float32)}, "layer 1 is not finite"),
-    ],
-)
-def test_what_is_no_policy_is_refused_in_one_line(tmp_path, changes, says):
+WRONG_ARRAYS = """
+about=None | about
+about=np.array("[]") | about has not the keys
+about=np.array("?") | Expecting value
+**about(more=1) | about has not the keys
+**about(shots=-1) | about.shots = -1
+**about(activation="sin") | about.activation = 'sin': must be one of 'tanh', 'relu'
+**about(env_options={"aim": "target"}) | key of about.env_options = 'aim'
+**about(trainer=3) | about.trainer is no text
+weight_0=None | the last layer gives 121 numbers and not 540
+weight_1=None | the last layer gives 32 numbers
+bias_1=None | bias_1
+bias_0=np.zeros(7, np.float32) | weight_0 float32 (32, 121), bias_0 float32 (7,)
+weight_0=np.zeros((32, 120), np.float32) | after 121 numbers
+weight_0=np.zeros((32, 121)) | weight_0 float64
+bias_1=np.full(540, np.nan, np.float32) | layer 1 is not finite
+"""
+
+
+def test_an_array_that_is_changed_or_missing_is_refused_in_one_line(tmp_path):
     file = tmp_path / "p.npz"
-    np.savez(file, **arrays(**changes))
-    for reader in (
-        lambda path: read_policy(file, "agent"),
-        lambda path: Entrant.of(path).trained(),
-        load_player,
-    ):
-        with pytest.raises(ValueError) as info:
-            reader(str(file))
-        text = str(info.value)
-        assert text.startswith(f"agent = {str(file)!r}: must be a policy's .npz: ") and says in text
-        assert "\n" not in text
+    for line in WRONG_ARRAYS.strip().splitlines():
+        changes, _, says = line.partition(" | ")
+        np.savez(file, **eval(f"arrays({changes})"))
+        for reader in (
+            read_policy,
+            lambda path, _: Entrant.of(path).trained(),
+            lambda path, _: load_player(path),
+        ):
+            with pytest.raises(ValueError) as info:
+                reader(str(file), "agent")
+            text = str(info.value)
+            assert text.startswith(f"agent = {str(file)!r}: must be a policy's .npz: ") and says in text, line
+            assert "\n" not in text
 
 
 def test_nothing_in_a_file_is_unpickled(tmp_path):
@@ -378,8 +304,3 @@ def test_nothing_in_a_file_is_unpickled(tmp_path):
     with pytest.raises(ValueError, match=r"^agent = "):
         read_policy(tmp_path / "q.npz", "agent")
     assert not (tmp_path / "mark").exists()
-
-
-def test_what_is_written_must_be_described():
-    with pytest.raises(ValueError, match=r"^about = .*must have the keys trainer, activation"):
-        packed_policy(WEIGHTS, trainer="mine")

@@ -8,9 +8,8 @@ import pytest
 import torch
 from positions import chances_by_width, tables
 
-from agents.learning import value_learning
-from agents.learning.value_learning import FIRST_GUESS, LAMBDA, RATE, ValueLearning
-from agents.learning.value_network import MEMBERS, POINTS, WIDTHS, ValueNetwork, value_of
+from agents.learning.value_learning import LAMBDA, ValueLearning
+from agents.learning.value_network import MEMBERS, POINTS, ValueNetwork, value_of
 from snooker_env.planning import Positions, Search, VisitJudge, spread_of
 from snooker_env.planning.learned.value_features import LOGIT, SIZE, value_features
 from snooker_env.tasks import LEVELS
@@ -84,41 +83,6 @@ def test_the_targets_recomputed():
     assert reached[1].any()  # a correction reaches two rounds back
 
 
-def test_the_first_targets_are_returns():
-    """Points and what followed; beyond what is known, and beyond an exploratory stroke, a guess."""
-    rng, learning = np.random.default_rng(2), learner(6)
-    rounds = [a_round(6, rng) for _ in range(3)]
-    for one in rounds:
-        learning.add(*one)
-    expected = np.zeros((3, 6))
-    for i in range(6):
-        for t in (2, 1, 0):
-            _, _, points, goes_on, follows = rounds[t]
-            more = expected[t + 1, i] if t < 2 and follows[i] else 25.0
-            expected[t, i] = points[i].mean() + goes_on[i].mean() * more
-    assert learning._returns().reshape(3, 6) == pytest.approx(expected, rel=1e-5) and FIRST_GUESS == 25.0
-
-
-def test_the_oldest_rounds_are_forgotten(monkeypatch):
-    monkeypatch.setattr(value_learning, "KEPT", 20)
-    rng, learning = np.random.default_rng(0), learner(5)
-    rounds = [a_round(5, rng) for _ in range(7)]
-    for one in rounds:
-        learning.add(*one)
-    assert len(learning._rounds) == 4
-    expected = by_hand(learning._network, rounds[3:])
-    assert learning._targets().reshape(4, 5) == pytest.approx(expected, rel=1e-3, abs=2e-3)
-
-
-def test_nothing_given_is_changed():
-    given = a_round(5, np.random.default_rng(4))
-    kept = [one.copy() for one in given]
-    learning = learner(5)
-    learning.add(*given)
-    learning.fit(1.0)
-    assert all(np.array_equal(a, b) for a, b in zip(given, kept, strict=True))
-
-
 def test_the_network_learns_a_known_value():
     """Strokes that end the visit: one feature says if they bring 7 points or 1, a second how many score.
 
@@ -176,36 +140,12 @@ def test_each_member_learns_from_batches_of_its_own():
     assert moved(learning) == pytest.approx(moved(alone) * 4, rel=0.15)
 
 
-def test_values_spread_backwards_along_a_visit():
-    """A leads to B without points, B to 10 points and the end: by backups alone A comes to B's value."""
-    n, learning = 32, learner(32)
-    a, b = np.zeros((n, SIZE), np.float32), np.zeros((n, SIZE), np.float32)
-    a[:, 0], b[:, 1] = 1.0, 1.0
-    to_b = np.tile(b[:, None], (1, 2, 1)).astype(np.float16)
-    nothing = np.zeros((n, 2, SIZE), np.float16)
-    for _ in range(6):
-        learning.add(a, to_b, np.zeros((n, 2)), np.ones((n, 2), bool), np.zeros(n, bool))
-        learning.add(b, nothing, np.full((n, 2), 10.0), np.zeros((n, 2), bool), np.zeros(n, bool))
-    for step in range(300):
-        learning.fit(1.0 - step / 320)
-    found = learning.value().of(np.stack([a[0], b[0]]))
-    assert found == pytest.approx([10.0, 10.0], abs=1.5)
-
-
 def test_no_gradient_is_left_behind():
     """Whoever learns next clips the gradients of the whole policy: these must not count there."""
     learning = learner(5)
     learning.add(*a_round(5, np.random.default_rng(0)))
     learning.fit(1.0)
     assert torch.nn.utils.clip_grad_norm_(learning._network.parameters(), 1.0) == 0.0
-
-
-def test_the_rate_falls_with_what_is_left():
-    learning = learner(5)
-    learning.add(*a_round(5, np.random.default_rng(0)))
-    for left, rate in ((1.0, RATE), (0.25, 0.25 * RATE), (0.0, 0.02 * RATE)):
-        learning.fit(left)
-        assert [group["lr"] for group in learning._optimizer.param_groups] == [pytest.approx(rate)]
 
 
 def test_learning_goes_on_from_a_saved_state_bit_for_bit():
@@ -275,16 +215,6 @@ def test_the_value_is_that_of_the_network(scale):
         assert np.isfinite(value.of(seen)).all() and (value.of(seen) >= 0.0).all()
 
 
-def test_the_network_has_the_layers_that_the_file_says():
-    sizes = [(SIZE, WIDTHS[0]), (WIDTHS[0], WIDTHS[1]), (WIDTHS[1], 2)]
-    assert [tuple(w.shape) for w in network().weights] == [(MEMBERS, *size) for size in sizes]
-    assert MEMBERS == 4
-    assert [tuple(b.shape) for b in network().biases] == [(MEMBERS, 1, b) for _, b in sizes]
-    made, seen = network(2), np.random.default_rng(1).normal(0, 1, (50, SIZE)).astype(np.float32)
-    (p, u), (chance, points) = by_torch(made, seen), by_numpy(made, seen)
-    assert p == pytest.approx(chance, abs=1e-5) and u == pytest.approx(points, rel=1e-4) and POINTS == 40.0
-
-
 def test_the_members_start_apart_and_each_reads_its_own_rows():
     made = network()
     assert all(not torch.equal(w[a], w[b]) for w in made.weights for a in range(MEMBERS) for b in range(a))
@@ -307,16 +237,6 @@ def test_at_first_the_chance_is_the_likeliest_pots_and_what_follows_hardly_diffe
         assert np.abs(p - likeliest).max() < 0.03
         assert all(np.corrcoef(one, likeliest)[0, 1] > 0.999 for one in p)
         assert (u.std(axis=1) < 0.05 * u.mean(axis=1)).all() and 0.4 * POINTS < u.mean() < POINTS
-
-
-def test_a_value_keeps_the_weights_that_it_was_made_of():
-    made, seen = network(), value_features(some(20), ERRORS)
-    value = value_of(made, ERRORS)
-    before = value.of(seen)
-    with torch.no_grad():
-        for p in made.parameters():
-            p.add_(0.1)
-    assert np.array_equal(value.of(seen), before) and not np.allclose(value_of(made, ERRORS).of(seen), before)
 
 
 def test_the_value_of_a_position_is_that_of_its_features_on_any_number_of_threads_beside_any_others():

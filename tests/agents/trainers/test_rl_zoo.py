@@ -3,19 +3,11 @@
 import subprocess
 import sys
 
-import yaml
-
 from agents import evaluate
-from agents.learning.hyperparameters import ENV_ID, FOLDER
+from agents.learning.hyperparameters import FOLDER
 from tests.trainers import needed
 
 NAME, MORE = "ppo_target", ["n_steps:16", "batch_size:64", "n_epochs:1"]
-
-
-def test_what_the_zoo_does_not_know_stands_apart():
-    found = yaml.safe_load((FOLDER / f"{NAME}.yml").read_text(encoding="utf-8"))
-    assert not {"algo", "imitation", "expert", "first_aim_std"} & set(found[ENV_ID])
-    assert found["agent"]["algo"] == "ppo"
 
 
 def test_it_trains_and_its_model_is_evaluated(tmp_path):
