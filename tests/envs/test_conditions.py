@@ -8,14 +8,12 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
-from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
 from snooker_env.physics import conditions
 from snooker_env.physics.conditions import NAMES, RANGES
 from snooker_env.physics.parameters import nominal, pack_into, physics_with
 from snooker_env.planning import Planner, Positions, Strokes
-from tests.envs.test_vector import check_equal
 from tests.processes import ROOT
 from tests.tables import begun
 
@@ -148,48 +146,6 @@ def test_a_state_restores_the_table(options):
     assert other.get_state() == pickle.loads(pickle.dumps(other)).get_state()
 
 
-def test_a_position_is_played_on_a_table_that_the_seed_draws():
-    env = sn.SnookerEnv(**DRAWN)
-    at = {"position": sn.Position(cue=(0.0, 0.0), black=(0.3, 0.9))}
-    one, two = (of_info(env.reset(seed=3, options=at)[1]) for _ in range(2))
-    assert (one == two).all() and (of_info(env.reset(options=at)[1]) != one).all()
-    many = sn.SnookerVectorEnv(2, threads=1, **DRAWN)
-    infos = many.reset(seed=3, options=at)[1]
-    assert (np.array([infos[name][0] for name in NAMES]) == one).all()
-
-
-@pytest.mark.parametrize("mode", list(AutoresetMode))
-def test_many_tables_are_those_of_single_environments(mode):
-    ends, _, scored, infos = check_equal(6, mode, 30, noise="club", aim="target", threads=2, **OBSERVED)
-    assert ends > 5 and scored > 0.0
-    # six tables, and more of them in time
-    assert len(np.unique(np.concatenate([info["mu_s"] for info in infos]))) > 6
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"action": "discrete", "observation": "masked"},
-        {"observation": "balls", "task": "frame", "opponent": "ghost_ball", "miss": "attempt"},
-        {"task": "frame", "opponent": "best_pot_8", "noise": "club"},
-        {"task": "frame", "opponent": "ghost_ball", "says": ("nominate",), "physics": "match"},
-    ],
-)
-def test_many_tables_of_other_kinds_are_those_of_single_environments(options):
-    steps = 8 if "opponent" in options else 20
-    ends, _, _, _ = check_equal(3, AutoresetMode.NEXT_STEP, steps, **OBSERVED | options)
-    assert ends >= 0
-
-
-def test_a_view_of_one_table_is_that_table():
-    many = sn.SnookerVectorEnv(3, threads=1, **DRAWN)
-    many.reset(seed=1)
-    assert [one.mu_s for one in many.call("physics")] == many.tables.conditions[:, 0].tolist()
-    assert many.call("get_state")[2]["conditions"] == many.get_state()[2]["conditions"]
-    view = many.tables.view(2)
-    assert (view.phys == many.tables.phys[2:]).all()
-
-
 @pytest.mark.parametrize(
     "options",
     [DRAWN, OBSERVED, OBSERVED | {"observation": "balls", "task": "frame", "miss": "clear_path"}],
@@ -217,22 +173,6 @@ def test_two_players_meet_on_a_table_that_is_drawn():
     assert (np.array([many[name][0] for name in NAMES]) == of_info(infos[0])).all()
     observations, _, _, _, infos = tables.step(np.zeros((2, 7)))
     assert observations.shape == (2, 148) and (infos["mu_s"] == many["mu_s"]).all()
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"conditions": "random"}, r"^conditions = 'random': must be one of 'fixed', 'drawn'"),
-        ({"conditions": True}, r"^conditions = True"),
-        ({"observe_conditions": True}, r"^observe_conditions = True: must be False with conditions"),
-        ({"conditions": "drawn", "observe_conditions": 1}, r"^observe_conditions = 1"),
-        ({"conditions": "drawn", "physics": {"nap": 0.11}}, r"^conditions = 'drawn': .*physics\.nap = 0\.11"),
-        ({"conditions": "drawn", "physics": {"mu_bb": 0.9}}, r"^conditions = 'drawn': .*physics\.mu_bb"),
-    ],
-)
-def test_bad_options_are_refused(options, message):
-    with pytest.raises(ValueError, match=message):
-        sn.Options(**options)
 
 
 def _planned(env, options, strokes):
