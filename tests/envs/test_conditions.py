@@ -4,10 +4,8 @@ import json
 import pickle
 import re
 
-import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
 from snooker_env.physics import conditions
@@ -95,12 +93,6 @@ def test_an_episode_keeps_its_table_and_the_next_one_has_another(task):
     assert (of_info(env.reset(seed=6)[1]) != first).all()
 
 
-def test_the_same_table_is_dealt_as_with_fixed_constants():
-    env, fixed = (begun(sn.SnookerEnv(**options), 9) for options in (DRAWN, {}))
-    assert (env.positions == fixed.positions).all()
-    assert "mu_s" not in fixed.step(MIDDLE)[4] and "conditions" not in fixed.get_state()
-
-
 def test_shots_have_the_constants_of_their_table():
     env = begun(sn.SnookerEnv(**DRAWN), 2)
     start, here = env.positions, env.on_table
@@ -144,22 +136,6 @@ def test_a_state_restores_the_table(options):
     with pytest.raises(ValueError, match=r"^state\.conditions = "):
         other.set_state(state | {"conditions": {"mu_s": 0.2}})
     assert other.get_state() == pickle.loads(pickle.dumps(other)).get_state()
-
-
-@pytest.mark.parametrize(
-    "options",
-    [DRAWN, OBSERVED, OBSERVED | {"observation": "balls", "task": "frame", "miss": "clear_path"}],
-)
-def test_gymnasium_finds_nothing(options, strict):
-    check_env(gymnasium.make("Snooker-v0", **options).unwrapped, skip_render_check=True)
-
-
-def test_observations_as_dicts_hold_the_constants():
-    env = begun(sn.SnookerEnv(observation="balls", **OBSERVED), 1)
-    flat = begun(sn.SnookerEnv(**OBSERVED), 1)
-    parts, row = env.step(MIDDLE)[0], flat.step(MIDDLE)[0]
-    assert (parts["conditions"] == row[-8:]).all() and parts["state"].shape == (11,)
-    assert env.observation_space.contains(parts) and row.shape == (129,)
 
 
 def test_two_players_meet_on_a_table_that_is_drawn():

@@ -271,6 +271,7 @@ reset({"state": ?}) | state | ? | must be a state of get_state() | None; 3
 reset(["state"]) | options | ['state'] | must be
 reset({"breaker": 0}) | options["breaker"] | 0 | no opponent
 alone({"breaker": 0}) | options["breaker"] | 0 | no opponent
+many({"reset_mask": ?}) | options["reset_mask"] |  | must be | [True, False]; np.array([True]); np.array([1, 0]); np.zeros(2, bool)
 frame({"breaker": ?}) | options["breaker"] | ? | must be an integer | 2
 frame({"breaker": ?}) | options["breaker"] | ? | must be | '0'
 frame({"breaker": [0, 1]}) | options["breaker"] | 2 numbers | 1 of them
@@ -293,8 +294,11 @@ def test_wrong_states_and_options_of_reset():
         "reset": env,
         "alone": SnookerEnv(task="frame"),
         "frame": SnookerEnv(task="frame", opponent="random"),
+        "many": begun(SnookerVectorEnv(2)),
     }
-    refuse_each(RESETS, {name: (lambda o, one=one: one.reset(options=o)) for name, one in envs.items()})
+    refuse_each(
+        RESETS, {"np": np} | {name: (lambda o, one=one: one.reset(options=o)) for name, one in envs.items()}
+    )
     assert env.get_state() == was
     for seed in (-1, "x", 1.5):
         with pytest.raises((gymnasium.error.Error, ValueError, TypeError)):

@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import CUE
-from snooker_env.render import window
 from snooker_env.tasks import observations
 from tests.processes import ROOT, python
 from tests.tables import PLACES, begun, frame_state, plain
 
 pytest.importorskip("pettingzoo")
-from pettingzoo.test import api_test, render_test, seed_test
+from pettingzoo.test import api_test, seed_test
 
 WIN = {"layout": "colours", "aim": "target", "reward": "win"}
 CHOICES = {"action": "discrete", "layout": "random:2"}
@@ -86,27 +84,6 @@ def test_pettingzoo_checks_its_seeds(options, strict):
     seed_test(lambda: sn.match_env(aim="target", **options), num_cycles=60)
 
 
-def test_pettingzoo_checks_its_pictures(monkeypatch):
-    pytest.importorskip("pygame")
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    monkeypatch.setattr(window.Window, "play", lambda self, film, fps=30.0, *, speed=1.0: film.duration > 0)
-    render_test(sn.match_env)
-
-
-@pytest.mark.parametrize(
-    ("x", "back", "place"),
-    [(0.0, -1.0, (0.0, -1.0475)), (0.0, 1.0, (0.0, -1.3395)), (-1.0, 0.3, (-0.292, -1.0475))],
-)
-def test_the_place_in_the_d_is_part_of_the_action(x, back, place):
-    env = sn.match_env(render_mode="ansi")
-    frame_state(env, PLACES | {CUE: (0.1, -1.2)}, {"in_hand": True})
-    env.step(np.array([-0.5, 0, 0, 0.2, x, back, 0], np.float32))
-    assert env.last_shot.at(0.0)[0][CUE] == pytest.approx(place, abs=1e-6)
-    moved = env.positions[CUE].copy()
-    env.step(np.array([-0.5, 0, 0, 0.2, x, back, 0], np.float32))  # no longer in hand: not moved first
-    assert env.last_shot.at(0.0)[0][CUE] == pytest.approx(moved, abs=1e-12)
-
-
 def test_each_player_sees_its_own_side():
     env = frame_state(sn.match_env(), PLACES, {"striker": 1, "scores": (31, 62)})
     mine, theirs = env.observe("player_0"), env.observe("player_1")
@@ -142,16 +119,6 @@ def test_pettingzoo_is_loaded_only_when_asked_for_and_its_lack_is_explained():
 
 
 # Two players on many tables play what ``match_env`` plays; seats may differ
-
-
-def test_seats_with_other_choices_have_masks_of_their_own():
-    seats = ({}, {"says": ["concede"]})
-    match = begun(sn.match_env(**MASKED, seats=seats, layout="random:1"), 1)
-    for name, many in (("player_0", 540), ("player_1", 541)):
-        assert match.observe(name)["action_mask"].shape == (many,)
-        assert match.observation_space(name).contains(match.observe(name))
-    with pytest.raises(ValueError, match=r"^seats = .*: must give both players the same choices"):
-        sn.MatchVectorEnv(2, **MASKED, seats=seats, threads=1)
 
 
 def test_tables_that_have_ended_stand_still_until_they_are_reset():

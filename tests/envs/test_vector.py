@@ -37,13 +37,6 @@ def test_seeds_none_int_and_list():
         native(4).reset(seed=[1, 2, 3])
 
 
-@pytest.mark.parametrize("mask", [[True, False], np.array([True]), np.array([1, 0]), np.zeros(2, bool)])
-def test_wrong_masks_are_refused(mask):
-    env = begun(native(2))
-    with pytest.raises(ValueError, match="reset_mask"):
-        env.reset(options={"reset_mask": mask})
-
-
 @pytest.mark.parametrize("observation", OBSERVATIONS)
 @pytest.mark.parametrize("mode", MODES)
 def test_what_is_returned_is_the_callers_own(observation, mode):

@@ -91,7 +91,7 @@ def strewn(rng, number, low, high):
 
 
 @pytest.mark.parametrize("anywhere", [False, True])
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), number=st.integers(0, 21))
 def test_no_place_drawn_at_random_is_nearer(anywhere, seed, number):
     rng = np.random.default_rng(seed)

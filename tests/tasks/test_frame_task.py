@@ -2,33 +2,20 @@
 
 import inspect
 
-import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env, data_equivalence
+from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
 from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import AUTO
-from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
-from snooker_env.tasks import observations
 from snooker_env.tasks.observations import FRAME_ENTRIES
 from snooker_env.tasks.options import NAMES
-from tests.tables import acting, begun, frame_env, frame_state, plain, viewed
+from tests.tables import acting, begun, frame_env, frame_state, plain
 
 SOFT = [-1.0, 0, 0, 0.5, 0, 0, 0]
 """A soft stroke up the table (with ``aim="absolute"``)."""
-
-
-@pytest.mark.parametrize("observation", observations.OBSERVATIONS)
-@pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
-def test_gymnasium_checks_it(observation, opponent):
-    says = ["decision"] * (observation != "masked")  # which is of discrete actions
-    options = {"opponent": opponent, **viewed(observation), "layout": "random:2", "says": says}
-    env = gymnasium.make("Snooker-v0", task="frame", **options)
-    check_env(env.unwrapped, skip_render_check=True)
-    assert gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())).spec == env.spec
 
 
 def test_gymnasium_checks_a_match():
@@ -57,14 +44,6 @@ def test_the_default_layout_is_that_of_the_task():
     assert env.ball_on == BallOn.YELLOW and not env.in_hand
 
 
-def test_who_breaks_is_drawn_from_the_seed():
-    env = frame_env(opponent="ghost_ball")
-    strokes = [env.reset(seed=seed)[1]["opponent_strokes"] for seed in range(30)]
-    assert 5 < sum(n > 0 for n in strokes) < 25
-    alone = frame_env()
-    assert not any(alone.reset(seed=seed)[1]["opponent_strokes"] for seed in range(10))
-
-
 def test_infos_have_the_same_keys_and_types_at_all_times():
     env, rng = frame_env(opponent="random", layout="random:4"), np.random.default_rng(3)
     infos = [env.reset(seed=3)[1]]
@@ -74,71 +53,6 @@ def test_infos_have_the_same_keys_and_types_at_all_times():
     assert {"score", "opponent_score", "opponent_strokes", "winner", "choice", "free_ball"} <= set(infos[0])
     assert {"needs_snookers", "clock", "misses", "failures", "anywhere", "warned"} <= set(infos[0])
     assert {info["winner"] for info in infos} > {-1} and {info["choice"] for info in infos} == {True, False}
-
-
-CLUB = {"noise": "club", "miss": "clear_path", "layout": "random:6"}
-GAMES = [
-    CLUB | {"opponent": "none"},
-    CLUB | {"opponent": "random"},
-    CLUB | {"opponent": "ghost_ball"},
-    {"game": "six_red", "opponent": "random", "miss": "clear_path"},
-    {"game": "shoot_out", "opponent": "random", "time_to_play": 12.0},
-]
-
-
-@pytest.mark.parametrize("options", GAMES)
-def test_a_frame_goes_on_from_its_state_as_the_same(options):
-    env, twin, rng = frame_env(**options), frame_env(**options), np.random.default_rng(1)
-    seen, _ = env.reset(seed=3)
-    twin.reset(seed=8)
-    over = anywhere = 0
-    for _ in range(120):
-        state = plain(env.get_state())
-        again, _ = twin.reset(options={"state": state})
-        assert np.array_equal(again, seen) and plain(twin.get_state()) == state
-        action = rng.uniform(-1, 1, env.action_space.shape).astype(np.float32)
-        action[1:3] *= 0.4
-        one, two = env.step(action), twin.step(action)
-        assert data_equivalence(one, two, exact=True) and env.observation_space.contains(one[0])
-        assert env.get_state() == twin.get_state()
-        seen, ended = one[0], one[2] or one[3]
-        anywhere += env.get_state()["frame"]["anywhere"]
-        while ended:
-            over += 1
-            seen, _ = env.reset()
-            ended = env.over  # the opponent may have won it in his first visit
-    assert over >= (options.get("game") == "shoot_out")
-    assert (anywhere > 5) == ("time_to_play" in options)
-
-
-def test_six_reds_are_racked():
-    env, full = SnookerEnv(task="frame", game="six_red"), SnookerEnv(task="frame")
-    env.reset(seed=1), full.reset(seed=1)
-    assert env.on_table[1:7].all() and not env.on_table[7:16].any() and env.on_table[16:].all()
-    assert np.array_equal(env.positions[CUE], full.positions[CUE])
-
-
-def test_the_place_anywhere_is_a_share_of_the_table():
-    env = begun(SnookerEnv(task="frame", game="shoot_out", placement=True))
-    env.step(np.array([-1, 0, 0, -0.5, 0, 0], np.float32))  # softly away from the reds: a foul
-    assert env.frame.anywhere and env.frame.in_hand
-    env.keep_history = True
-    env.step(np.array([-1, 0, 0, 0.5, 0.5, 0.4], np.float32))
-    start = env.history[0].shot.segments[0]
-    assert start[:2] == pytest.approx([0.5 * HALF_WIDTH, 0.4 * HALF_LENGTH], abs=1e-6)
-
-
-@pytest.mark.parametrize("mode", ["rgb_array", "ansi"])
-def test_pictures(mode):
-    if mode == "rgb_array":
-        pytest.importorskip("pygame")
-    env, blind = frame_env(render_mode=mode, opponent="ghost_ball"), frame_env(opponent="ghost_ball")
-    env.reset(seed=1), blind.reset(seed=1)
-    first = env.render()
-    # looking changes nothing
-    assert data_equivalence(env.step(np.zeros(7)), blind.step(np.zeros(7)), exact=True)
-    assert not np.array_equal(first, env.render())
-    assert mode != "ansi" or " - " in env.render()
 
 
 def test_every_argument_is_documented():

@@ -8,27 +8,13 @@ import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import Stroke
-from snooker_env.game.ruling import Foul
 from snooker_env.geometry import D_RADIUS
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
 from snooker_env.tasks.options import MAX_STROKES
 from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
-TO_BLUE = 0.0
-"""Absolute aim along +x."""
 CHOICE_SEEN, FREE_BALL_SEEN = (SIZE + FRAME_ENTRIES.index(name) for name in ("choice", "free_ball"))
 """Where an observation says that a decision is open, and that there is a free ball."""
-
-
-def test_alone_a_miss_and_a_foul_give_the_table_back():
-    places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
-    env = frame_state(frame_env(aim="absolute"), places, {})
-    before = env.positions[BLUE].copy()
-    _, reward, terminated, _, info = env.step([-0.9, 0, 0, TO_BLUE, 0, 0, 0])
-    assert (reward, info["fouls"], info["opponent_score"]) == (-5.0, Foul.WRONG_FIRST, 5.0)
-    assert info["opponent_strokes"] == 0
-    assert not terminated and not env.frame.free_ball and env.frame.phase == "stroke"
-    assert not np.array_equal(env.positions[BLUE], before)  # from where the balls lie
 
 
 FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
@@ -78,12 +64,13 @@ def test_a_free_ball_is_seen_and_scores():
     assert not other.on >> BLUE & 1
 
 
-@pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
-@pytest.mark.parametrize("layout", ["random:2", "pots:easy", "colours"])
+@pytest.mark.parametrize(
+    ("opponent", "layout"), [("none", "colours"), ("random", "random:2"), ("ghost_ball", "pots:easy")]
+)
 def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
     """From the first stroke, which may be the opponent's, to the last, which may be in his first visit."""
     broke, before = 0, 0
-    for seed in range(15):
+    for seed in range(8):
         totals = {}
         for reward in ("points", "win"):
             env = frame_env(opponent=opponent, reward=reward, layout=layout, noise="club")
@@ -105,7 +92,7 @@ def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
 def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost():
     """Nothing is dealt again: the reset shows that it is lost, the next step plays nothing and reports it."""
     env, won = frame_env(opponent="ghost_ball", layout="pots:easy", reward="win"), 0
-    for seed in range(60):
+    for seed in range(15):
         observation, info = env.reset(seed=seed)
         before = env.positions
         if info["winner"] < 0:
@@ -124,21 +111,7 @@ def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost(
             assert np.array_equal(before, env.positions)
             with pytest.raises(gymnasium.error.ResetNeeded):
                 env.step(env.action_space.sample())
-    assert won > 10
-
-
-@pytest.mark.parametrize("strokes", [5, 9])
-def test_a_frame_that_ends_by_the_rules_with_its_last_stroke_is_not_stopped(strokes):
-    places, frame = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}, {"ball_on": BallOn.BLACK, "scores": (20, 0)}
-    env = frame_env(aim="absolute", max_strokes=10)
-    for aim in 0.25 + np.random.default_rng(0).uniform(-0.01, 0.01, 40):  # to both sides of the pot
-        frame_state(env, places, frame, strokes=strokes)
-        _, _, terminated, truncated, info = env.step([-0.4, 0, 0, aim, 0, 0, 0])
-        if terminated:
-            assert not truncated and info["winner"] == 0 and info["strokes"] == strokes + 1
-            break
-        assert truncated == (strokes == 9) or info["foul"]
-    assert terminated
+    assert won > 2
 
 
 def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
@@ -185,7 +158,7 @@ def test_a_match_of_fouls_and_orders_to_play_again_ends_by_itself():
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
 def test_the_referee_stops_the_frame_after_the_very_stroke(opponent):
     env, cut = frame_env(opponent=opponent, max_strokes=6), 0
-    for seed in range(12):
+    for seed in range(6):
         _, info = env.reset(seed=seed)
         played, rng = info["strokes"], np.random.default_rng(seed)
         assert played < 6
@@ -208,21 +181,6 @@ def test_the_referee_stops_the_frame_after_the_very_stroke(opponent):
         with pytest.raises(ValueError, match=r"state\.strokes = 6: must be below max_strokes = 6"):
             other.reset(options={"state": before})
     assert (cut > 0) == (opponent != "none")  # alone the agent is always to play
-
-
-def test_the_strokes_are_counted_on_from_a_state():
-    env, other = (frame_env(max_strokes=9) for _ in range(2))
-    env.reset(seed=1)
-    for _ in range(4):
-        env.step(FOUL)
-    state = plain(env.get_state())
-    assert state["strokes"] == 4
-    assert other.reset(options={"state": state})[1]["strokes"] == 4
-    assert [other.step(FOUL)[3] for _ in range(5)] == [False] * 4 + [True]
-    assert other.reset()[1]["strokes"] == 0
-    endless = frame_env(max_strokes=None)
-    endless.reset(options={"state": state | {"strokes": 10**6}})
-    assert not endless.step(FOUL)[3]
 
 
 def test_a_frame_that_is_stopped_in_the_opening_visit_is_reported_by_the_next_step():

@@ -23,12 +23,9 @@ from snooker_env.planning import (
     prospects_of,
 )
 from snooker_env.planning import pots as direct_pots
-from snooker_env.planning.proposals import at_balls
 from snooker_env.tasks import choice_of
-from snooker_env.tasks.arrays import C_RAILS, CueLaw
+from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.discrete_actions import (
-    _NEAR_BALL,
-    _NEAR_RAIL,
     SIDES,
     SPEEDS,
     STROKES,
@@ -39,7 +36,7 @@ from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
 from snooker_env.tasks.pot_aim import _passes, stroke_in_room
 from tests.kernels import from_python
-from tests.tables import jsonable, table_state
+from tests.tables import table_state
 
 FROZEN = 0.889 - R - 1e-6
 """x of a ball that touches the cushion, nearly."""
@@ -60,15 +57,6 @@ def cue_of(env, action):
     return played.cue, played.room
 
 
-def test_an_unknown_cue_is_refused_by_name():
-    wrong: Any
-    for wrong in ("Real", True, None):
-        with pytest.raises(ValueError, match=r"^cue = .*must be one of 'free', 'real'$"):
-            sn.Options(cue=wrong)
-    assert sn.Options().cue == "free" and sn.Options(cue="real").rules.rails.size == 36
-    assert sn.Options().rules.rails is NO_RAILS and "cue" in sn.Options.group("shot")
-
-
 def test_a_frozen_ball_is_played_from_above_and_screw_with_a_higher_tip():
     """The action says: 3.6 m/s, away from the cushion, a level cue."""
     places = {0: (FROZEN, 0.9), 1: (-0.5, 0.2)}
@@ -84,15 +72,6 @@ def test_a_frozen_ball_is_played_from_above_and_screw_with_a_higher_tip():
     assert np.degrees(open_["elevation"]) < 2.5 and "moved" not in done
     over, done = cue_of(posed({0: (0.0, 0.0), 1: (-0.06, 0.0)}), [0.0, 0.0, 0.0, 0.0])
     assert np.degrees(over["elevation"]) > 30.0 and done == ("raised",)
-
-
-def test_a_raised_cue_draws_a_ball_back_by_less():
-    ends = []
-    for cue in ("free", "real"):
-        env = posed({0: (FROZEN - 0.02, 0.9), 1: (0.3, 0.9)}, cue=cue)
-        env.step(np.array([-0.2, 0.0, -0.6, 1.0], np.float32))
-        ends.append(env.positions[0, 0])
-    assert ends[1] < ends[0] - 0.05
 
 
 def test_errors_of_aim_and_tip_grow_with_the_elevation_of_a_real_cue_only():
@@ -130,9 +109,6 @@ def test_the_errors_leave_the_cue_above_the_rail():
 OPTIONS: list[dict[str, Any]] = [
     {"aim": "target", "noise": "amateur", "layout": "random:3"},
     {"action": "discrete", "noise": "club", "layout": "random:6"},
-    {"aim": "target", "elevation": True, "placement": True, "layout": "break_off", "noise": "club"},
-    {"aim": "absolute", "physics": "match", "table": "tight", "layout": "line_up"},
-    {"action": "discrete", "layout": "snookered"},
 ]
 
 
@@ -166,41 +142,7 @@ def test_a_planned_stroke_is_the_stroke_of_the_environment(options):
         assert np.array_equal(made.observations[0], observation)
         assert np.array_equal(made.afterstates.positions[0], env.positions)
         raised += np.degrees(env.history[-1].cue["elevation"]) > 3.0
-    assert raised > 2 or options["layout"] in ("break_off", "snookered")
-
-
-def test_strokes_decoded_are_what_is_meant_and_played_as_their_actions():
-    env = sn.SnookerVectorEnv(8, threads=1, cue="real", aim="target", layout="random:6", noise="club")
-    env.reset(seed=4)
-    env.tables.positions[::2, 0] = [FROZEN - 0.002, 0.31]
-    planner, rows, keys = Planner(env, threads=1), np.arange(64) % 8, np.arange(100, 164)
-    chosen = np.random.default_rng(1).uniform(-1, 1, (64, 4)).astype(np.float32)
-    strokes, at = planner.strokes_of(env, rows, chosen)
-    assert (strokes[:, 4] == 0.0).all() and np.allclose(strokes[:, 1], 0.5 * chosen[:, 1], atol=0.25)
-    whole = planner.play(env, rows, chosen, keys)
-    other = planner.play_strokes(at, np.arange(64), strokes, keys)
-    apart = np.abs(other.afterstates.positions - whole.afterstates.positions).max(axis=(1, 2))
-    assert np.median(apart) < 1e-9 and (apart < 1e-3).mean() > 0.9
-
-
-def test_many_tables_are_as_one():
-    many = sn.SnookerVectorEnv(6, threads=2, cue="real", action="discrete", noise="club", layout="random:6")
-    seen, _ = many.reset(seed=5)
-    ones = [sn.SnookerEnv(cue="real", action="discrete", noise="club", layout="random:6") for _ in range(6)]
-    for k, env in enumerate(ones):
-        assert np.array_equal(env.reset(seed=5 + k)[0], seen[k])
-    rng, over = np.random.default_rng(3), np.zeros(6, bool)
-    for _ in range(4):
-        masks = many.action_masks()
-        chosen = np.array([rng.choice(np.flatnonzero(row)) for row in masks])
-        seen, rewards, ended, _, _ = many.step(chosen)
-        for k, env in enumerate(ones):
-            if over[k]:
-                continue
-            assert np.array_equal(env.action_masks(), masks[k])
-            observation, reward, done, _, _ = env.step(int(chosen[k]))
-            assert jsonable(observation) == jsonable(seen[k]) and (reward, done) == (rewards[k], ended[k])
-            over[k] = done
+    assert raised > 2
 
 
 def at_the_cushion(n, away, seed):
@@ -226,9 +168,7 @@ def potted(places, planner, strokes):
     return np.mean(planner.play_strokes(at, np.arange(len(places)), strokes).points > 0)
 
 
-@pytest.mark.parametrize(
-    ("away", "side", "top"), [(0.0, 1, 1), (0.0, 0, 2), (0.02, 0, 2), (0.02, 2, 1), (0.1, 0, 2)]
-)
+@pytest.mark.parametrize(("away", "side", "top"), [(0.0, 1, 1), (0.02, 2, 1)])
 def test_pots_with_side_are_aimed_for_the_swerve(away, side, top):
     """At 3.6 m/s: aims of a free cue miss when they are played with the raised one, without side they may do."""
     places = at_the_cushion(40, away, 7)
@@ -262,19 +202,6 @@ def test_target_lines_are_turned_by_the_swerve(elevated):
     assert real.max() < 1e-3 and np.median(free) < 2e-3  # a level cue's squirt is all there is
 
 
-def test_proposals_pot_from_the_cushion_as_often_as_with_a_free_cue():
-    places, made = at_the_cushion(20, 0.03, 9), []
-    for cue in ("free", "real"):
-        judge, points = VisitJudge({"cue": cue}), []
-        for k, (lie, red) in enumerate(places):
-            env = posed({0: lie, 1: red}, cue=cue)
-            strokes = at_pots(judge, Positions.of(env), 30, np.array([k])).strokes[0]
-            spun = strokes[(np.abs(strokes[:, 1]) > 0.05) & (strokes[:, 0] > 1.5)]
-            points.extend(judge.planner.play_strokes(env, np.zeros(len(spun), int), spun).points)
-        made.append(np.mean(np.array(points) > 0))
-    assert made[0] > 0.5 and made[1] > made[0] - 0.1
-
-
 def test_masks_leave_out_what_must_be_steeper_than_a_player_can():
     env = posed({0: (FROZEN, 0.9), 1: (0.0, 0.9 + 0.3)}, action="discrete")
     masks = env.action_masks().reshape(-1, len(SPEEDS), len(SIDES), len(TOPS))
@@ -289,32 +216,11 @@ def test_masks_leave_out_what_must_be_steeper_than_a_player_can():
     assert free.action_masks().sum() == STROKES * lines
 
 
-def test_only_what_is_near_makes_a_cue_too_steep():
-    """Masks look no further: nothing is too steep at that distance, and something at 3 mm less."""
-    least = from_python(least_elevation)
-    rails = np.array(sn.Options(cue="real").rules.rails)
-    for far, balls in ((_NEAR_RAIL, False), (_NEAR_BALL, True)):
-        worst = []
-        for nearer in (0.0, 0.003):
-            lie = (0.0, 0.2) if balls else (0.889 - far + nearer, 0.9)
-            ball = [(far - nearer, 0.2)] if balls else []
-            found = [
-                least(
-                    (side, top, np.pi + turn, 0.0), np.array([lie, *ball]), np.ones(1 + balls, bool), rails, R
-                )
-                for top in TOPS
-                for side in SIDES
-                for turn in np.linspace(-1.5, 1.5, 301)
-            ]
-            worst.append(max(found))
-        assert worst[0] < np.radians(44.5) and worst[1] > STEEPEST
-
-
 def test_no_cue_that_must_be_steep_is_overlooked():
     """Lies at a rail or a ball, cues of all directions: a reach or a distance that is 5 % too small would miss some."""
     least, turned, near = (from_python(one) for one in (least_elevation, squirt, _lacks_room))
     rails, rng, steep = np.array(sn.Options(cue="real").rules.rails), np.random.default_rng(4), 0
-    for k in range(8000):
+    for k in range(3000):
         places, here = np.zeros((22, 2)), np.zeros(22, bool)
         places[0], here[0], here[1] = (0.0, 0.2), True, k % 2 == 0
         aim, away, to = rng.uniform(0.0, 2.0 * np.pi, 3)
@@ -327,7 +233,7 @@ def test_no_cue_that_must_be_steep_is_overlooked():
         if any(least(cue, places, here, rails, R) > STEEPEST for cue in cues):
             steep += 1
             assert near(places, here, rails, np.cos(aim), np.sin(aim)), k
-    assert steep > 800
+    assert steep > 300
 
 
 def crowded(n, seed):
@@ -418,21 +324,6 @@ def test_planning_and_players_of_choices_have_the_masks_of_the_task():
     assert abs(level - aimed).max() > 1e-4
 
 
-def test_strokes_at_balls_are_turned_by_the_swerve():
-    """From near a cushion the red is met first as by a free cue; aims of a free cue miss it or meet it elsewhere."""
-    places, shares = at_the_cushion(12, 0.02, 9), {}
-    for planned in ("free", "real"):
-        judge, fair = VisitJudge({"cue": planned}), []
-        real = Planner({"cue": "real"}, threads=1)
-        for k, (lie, red) in enumerate(places):
-            at = Positions.of(posed({0: lie, 1: red}).get_state())
-            strokes = at_balls(judge, at, 60, np.array([k])).strokes[0]
-            spun = strokes[(np.abs(strokes[:, 1]) > 0.1) & (strokes[:, 0] > 1.5)]
-            fair.extend(real.play_strokes(at, np.zeros(len(spun), int), spun).first == 1)
-        shares[planned] = np.mean(fair)
-    assert shares["real"] > 0.97 and shares["free"] < 0.9
-
-
 def test_chances_of_pots_fall_where_the_cue_must_be_raised():
     cushion, spread = at_the_cushion(1, 0.0, 7)[0], 1e-3
     at, rails = (
@@ -452,14 +343,6 @@ def test_chances_of_pots_fall_where_the_cue_must_be_raised():
     assert (proposed[1] < proposed[0]).all() and np.ptp(proposed[1]) > 10.0 * np.ptp(proposed[0])
 
 
-def test_masks_never_leave_nothing():
-    behind = {
-        2 + k: (0.06 * np.cos(t), 0.06 * np.sin(t)) for k, t in enumerate(np.arange(6) * np.pi / 3 + 0.5)
-    }
-    env = posed({0: (0.0, 0.0), **behind}, action="discrete")
-    assert env.action_masks().any()
-
-
 def test_side_without_pots_is_aimed_for_the_swerve_too():
     """A red at the far cushion, which cannot be potted: the first line without a pot is its middle."""
     places = {0: (0.3, -1.7845 + R + 0.005), 1: (0.3, 1.7845 - R - 1e-6)}
@@ -475,34 +358,3 @@ def test_side_without_pots_is_aimed_for_the_swerve_too():
         env.step(choice_of(0, 6, 0, 2))
         assert env.history[-1].first == (1,)
     assert met["real"] == 1 and met["free"] != 1
-
-
-@pytest.mark.parametrize("opponent", ["ghost_ball", "random", "search_60"])
-def test_both_players_of_a_frame_have_the_same_cue(opponent):
-    """Many tables as one; strokes of either side are raised."""
-    options: dict[str, Any] = {"task": "frame", "opponent": opponent, "cue": "real", "action": "discrete"}
-    raised = {0: 0.0, 1: 0.0}
-    env = sn.SnookerEnv(**options, noise="club", layout="random:3")
-    env.keep_history = True
-    many = sn.SnookerVectorEnv(1, **options, noise="club", layout="random:3")
-    seen, _ = many.reset(seed=2)
-    assert np.array_equal(env.reset(seed=2)[0], seen[0])
-    rng = np.random.default_rng(1)
-    for _ in range(25):
-        choice = int(rng.choice(np.flatnonzero(env.action_masks())))
-        observation, _, over, cut, _ = env.step(choice)
-        seen, _, _, _, _ = many.step(np.array([choice]))
-        if over or cut:
-            break
-        assert np.array_equal(observation, seen[0])
-    for played in env.history:
-        raised[played.player] = max(raised[played.player], np.degrees(played.cue["elevation"]))
-    assert min(raised.values()) > 3.0, raised
-
-
-def test_cue_of_two_players_is_the_same():
-    packs = [sn.MatchVectorEnv(2, cue="real").tables.pack(side) for side in range(2)]
-    rails = sn.Options(cue="real").rules.rails
-    assert all(np.array_equal(cues[0, C_RAILS:], rails) for _, cues, _, _ in packs)
-    with pytest.raises(ValueError, match="cue"):
-        sn.MatchVectorEnv(2, seats=({"cue": "real"}, {}))

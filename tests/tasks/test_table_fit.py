@@ -17,7 +17,7 @@ from tests.refusals import refused
 from tests.tables import begun
 
 MATCH = Table.preset("match")
-EVERY = (*LAYOUTS, "random:0", "random:15", "pots:easy", "pots:medium", "pots:hard")
+EVERY = (*LAYOUTS, "random:15", "pots:easy")
 NONE = {"jaws": np.zeros((0, 6)), "falls": np.zeros((0, 3))}
 
 
