@@ -126,14 +126,6 @@ def test_a_pocket_has_the_sizes_that_it_was_made_from(shape):
     assert depth == pytest.approx(shape.shelf + shape.mouth_depth, abs=1e-12)
 
 
-def test_snookers_pockets_have_the_throats_that_are_quoted():
-    match, tight = geometry.PRESETS["match"], geometry.PRESETS["tight"]
-    throats = [match.corner.throat, tight.corner.throat, match.middle.throat]
-    assert throats == pytest.approx([0.0860, 0.08014, 0.08457], abs=6e-6)
-    assert match.corner.facing == tight.corner.facing == match.middle.facing == 0.0
-    assert match.corner.taper == 0.0
-
-
 SMALL = {"mouth": 0.12, "shelf": 0.02, "fall_radius": 0.06}
 CORNER, MIDDLE = Pocket.corner(**SMALL), Pocket.middle(**SMALL)
 WRONG = """

@@ -5,7 +5,7 @@ import pytest
 
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import touching_balls as touching_kernel
-from snooker_env.planning import FrameJudge, Position, Positions, Search, at_pots, prospects_of, spread_of
+from snooker_env.planning import FrameJudge, Position, Positions, Search, prospects_of, spread_of
 from snooker_env.planning.frame_judge import PLANS
 from snooker_env.planning.proposals import EDGE, safeties
 from snooker_env.planning.search import BUDGET
@@ -14,7 +14,6 @@ from snooker_env.planning.worth import (
     NARROWEST,
     WIDEST,
     Chance,
-    best_places,
     chosen,
     decide,
     follows,
@@ -251,14 +250,6 @@ def test_a_miss_leaves_the_other_the_same_balls():
     assert left_of(at).tolist() == [7 + 8 + 5 + 7]
 
 
-def test_a_cue_ball_in_hand_goes_where_it_is_worth_most():
-    at = frame_of(Position(cue=(0.1, -1.1), reds=[(0.5, 0.5)], on="red", in_hand=True))
-    placed, worth = best_places(lambda some: some.positions[:, 0, 0], at)
-    assert placed.positions[0, 0, 0] > 0.25 and worth[0] == placed.positions[0, 0, 0]
-    placed, _ = best_places(lambda some: -some.positions[:, 0, 0], at)
-    assert placed.positions[0, 0, 0] < -0.25
-
-
 def test_who_comes_next_decides_the_sign():
     at = positions_of(frames_in_play(30, OPTIONS, strokes=3, seed=51))
     at = at[np.flatnonzero(~at.over & ~at.choice)]
@@ -275,12 +266,3 @@ def test_a_lot_decides_who_begins_at_the_black_that_makes_it_level():
     one = judge(OPTIONS | {"noise": "none"}, lambda some: np.full(len(some), 5.0), chance=LAW)
     (tried,) = Search(one).rank(at, [0])
     assert tried.kinds[0] == 0 and tried.scores[0] == 0.5 and tried.points[0] == 7.0
-
-
-def test_a_visit_is_not_judged_as_a_frame_nor_with_several_generators():
-    at, one = Position(cue=(0.377, 1.327), black=(0.0, 1.4605), on="black"), judge()
-    with pytest.raises(ValueError, match=r"^positions = those of visits: must be of frames"):
-        Search(one).rank(at, [0])
-    with pytest.raises(ValueError, match=r"^propose = 2 generators: must be one"):
-        Search(one, propose=(at_pots, at_pots)).rank(frame_of(at), [0])
-    assert one.shots == 0

@@ -45,16 +45,6 @@ def test_what_is_in_the_way_is_nearer_than_two_radii_to_the_path():
     assert np.array_equal(np.delete(ignored, [0, 5], 1), np.delete(direct, [0, 5], 1))
 
 
-def test_bad_paths_are_refused():
-    at = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)])
-    with pytest.raises(ValueError, match=r"rows\[0\] = 2"):
-        obstructions(at, [2], [(0.0, 0.0)], [(1.0, 0.0)])
-    with pytest.raises(ValueError, match="ends = array of shape"):
-        obstructions(at, [0], [(0.0, 0.0)], [1.0, 0.0])
-    with pytest.raises(ValueError, match="ignore = 22"):
-        obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)], ignore=[22])
-
-
 def test_clear_paths_are_those_of_the_miss_rule():
     at = Positions.of(tables(40, layout="snookered"))
     direct = clear_paths(at)

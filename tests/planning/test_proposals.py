@@ -23,7 +23,6 @@ from snooker_env.planning.proposals import (
     ROLLING,
     SIDE,
     SLOWEST,
-    SOFTEST,
     SPEED,
     TOP,
     WIDEST,
@@ -33,7 +32,6 @@ from snooker_env.planning.proposals import (
     strokes_at,
 )
 from snooker_env.tasks import LEVELS
-from snooker_env.tasks.box_actions import MAX_SPEED
 
 PLANNER = planning.Planner({"fidelity": "fast"}, threads=1)
 DYNAMICS = Dynamics.of(PLANNER.rules)
@@ -158,16 +156,6 @@ def test_where_there_is_no_pot_the_strokes_hit_the_balls_on_from_thin_to_full():
         assert len(mine) > 0.25 * m and (np.abs(mine) < 0.1).any()
 
 
-def test_without_a_pot_half_of_the_strokes_are_hard_and_the_others_of_any_speed():
-    """Hard strokes score more often by chance: the density of their speed grows with its square."""
-    strokes = at_balls(SEARCH, planning.Positions.of(NO_POT), 2000, [5]).strokes[0]
-    shares = [(strokes[1::2, SPEED] < v).mean() for v in (2.0, 4.0, 6.0)]
-    assert shares == pytest.approx([(v / MAX_SPEED) ** 3 for v in (2.0, 4.0, 6.0)], abs=0.01)
-    counts = np.histogram(np.log(strokes[::2, SPEED]), 4, np.log([SOFTEST, FASTEST]))[0]
-    assert counts == pytest.approx([250] * 4, abs=6)
-    assert strokes[:, SPEED].min() >= SOFTEST and 0.99 * MAX_SPEED < strokes[:, SPEED].max() <= MAX_SPEED
-
-
 def test_no_contact_is_tried_that_another_ball_hides():
     """A colour before the reds: without it, some of the plain strokes would meet its place first."""
     at = planning.Positions.of(replace(NO_POT, yellow=(0.4, 1.4)))
@@ -232,12 +220,3 @@ def test_a_position_is_proposed_for_by_itself(generate):
     assert all(not np.array_equal(other[k], made.strokes[k]) for k in some)
     names = "positions", "on_table", "game"
     assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in names)
-
-
-def test_a_wider_hand_spares_the_doubtful_pots():
-    """With larger errors every chance falls, and the likeliest pot's share of the strokes grows."""
-    at = planning.Positions.of(
-        planning.Position(cue=(0.0, 0.9), reds=[(0.5, 1.35), (-0.6, -0.9)], black=(0.0, 1.4605))
-    )
-    small, large = (at_pots(Hand(spread), at, 200, [3]).chances[0] for spread in (5e-4, 4e-3))
-    assert large.max() < small.max() and (large == large.max()).sum() > (small == small.max()).sum() > 0

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 
@@ -10,7 +9,6 @@ import snooker_env as sn
 from snooker_env.game import pots
 from snooker_env.game.balls import mask_of
 from snooker_env.geometry import BALL_RADIUS as R
-from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.cue import squirt
 from snooker_env.physics.cue_room import NO_RAILS, STEEPEST, least_elevation
 from snooker_env.planning import (
@@ -24,17 +22,13 @@ from snooker_env.planning import (
 )
 from snooker_env.planning import pots as direct_pots
 from snooker_env.tasks import choice_of
-from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.discrete_actions import (
     SIDES,
     SPEEDS,
     STROKES,
     TOPS,
-    _lacks_room,
 )
-from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
-from snooker_env.tasks.pot_aim import _passes, stroke_in_room
 from tests.kernels import from_python
 from tests.tables import table_state
 
@@ -216,26 +210,6 @@ def test_masks_leave_out_what_must_be_steeper_than_a_player_can():
     assert free.action_masks().sum() == STROKES * lines
 
 
-def test_no_cue_that_must_be_steep_is_overlooked():
-    """Lies at a rail or a ball, cues of all directions: a reach or a distance that is 5 % too small would miss some."""
-    least, turned, near = (from_python(one) for one in (least_elevation, squirt, _lacks_room))
-    rails, rng, steep = np.array(sn.Options(cue="real").rules.rails), np.random.default_rng(4), 0
-    for k in range(3000):
-        places, here = np.zeros((22, 2)), np.zeros(22, bool)
-        places[0], here[0], here[1] = (0.0, 0.2), True, k % 2 == 0
-        aim, away, to = rng.uniform(0.0, 2.0 * np.pi, 3)
-        if k % 2:
-            places[0] = 0.889 - R - (0.036 - R) * away / (2.0 * np.pi), 0.9
-        else:
-            far = 2.0 * R + (0.062 - 2.0 * R) * away / (2.0 * np.pi)
-            places[1] = places[0] + far * np.array([np.cos(to), np.sin(to)])
-        cues = ((side, TOPS[0], aim - turned(side, sn.Physics().end_mass_ratio), 0.0) for side in SIDES)
-        if any(least(cue, places, here, rails, R) > STEEPEST for cue in cues):
-            steep += 1
-            assert near(places, here, rails, np.cos(aim), np.sin(aim)), k
-    assert steep > 300
-
-
 def crowded(n, seed):
     """Tables whose cue ball lies at a cushion, or at a ball."""
     env, rng = sn.SnookerVectorEnv(n, layout="opened", action="discrete"), np.random.default_rng(seed)
@@ -272,36 +246,6 @@ def test_masks_of_crowded_tables_are_those_of_every_stroke_asked_for_its_room():
         assert np.array_equal(real[k], wanted), k
         cleared += (free[k] & ~wanted).any()
     assert cleared > 5
-
-
-@numba.njit(error_model="numpy")
-def passed_by(aims, positions, on_table, balls, targets, strokes, law, work):
-    """Angles by which object balls pass their aim points, the cue raised anew for each aim; 9: missed."""
-    out = np.empty(len(aims))
-    for k in range(len(aims)):
-        p, stroke, ball = positions[k], (strokes[k, 0], strokes[k, 1], strokes[k, 2], 0.0), balls[k]
-        played = stroke_in_room(aims[k], stroke, p, on_table[k], law)
-        place, target = (p[ball, 0], p[ball, 1]), (targets[k, 0], targets[k, 1])
-        out[k] = _passes(played, p, place, target, law, work)
-    return out
-
-
-def test_a_solved_aim_is_that_of_the_cue_as_it_is_raised_for_it():
-    """The solver keeps the elevation while the aim turns by less than 1e-4 rad. A professional's object balls err by 1e-2."""
-    env = sn.SnookerVectorEnv(400, layout="opened", action="discrete", cue="real")
-    env.reset(seed=9)
-    at, rng, n = Positions.of(env), np.random.default_rng(1), 400
-    direct, rules = direct_pots(at), env.options.rules
-    balls, targets = direct.ball[:, 0], POCKET_AIMS[direct.pocket[:, 0], :2]
-    strokes = np.zeros((n, 5))
-    for column, values in enumerate((SPEEDS[2:], SIDES, TOPS)):
-        strokes[:, column] = rng.choice(values, n)
-    aims = Planner(env).pot_aim(at, np.arange(n), balls, targets, strokes, ghosts=direct.ghost[:, 0])
-    phys, fidelity = rules.physics, rules.fidelity
-    law = CueLaw(phys.packed_for(fidelity), phys.end_mass_ratio, *fidelity, phys.max_offset, rules.rails)
-    off = np.abs(passed_by(aims, at.positions, at.on_table, balls, targets, strokes, law, new_work()))
-    solved = off < 9.0
-    assert solved.mean() > 0.95 and (np.quantile(off[solved], [0.5, 0.9, 0.99]) < [1e-6, 2e-5, 2e-4]).all()
 
 
 def test_planning_and_players_of_choices_have_the_masks_of_the_task():

@@ -19,8 +19,8 @@ def by_hand(rows, weight, bias):
     return sums
 
 
-@pytest.mark.parametrize("n", [0, 1, 2, 5, 64])
-@pytest.mark.parametrize(("a", "b"), [(1, 1), (3, 2), (4, 7), (142, 160), (32, 135)])
+@pytest.mark.parametrize("n", [0, 1, 5, 64])
+@pytest.mark.parametrize(("a", "b"), [(1, 1), (3, 2), (142, 160)])
 def test_a_layer_is_its_sums_bit_for_bit(n, a, b):
     """For odd numbers of rows, and of terms that are no multiple of those taken at a time."""
     rows, weight, bias = drawn((n, a), (a, b), (b,))

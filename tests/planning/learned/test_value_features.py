@@ -14,15 +14,12 @@ from snooker_env.planning.learned.value_features import (
     LOGIT,
     POT_ENTRIES,
     POTS_SEEN,
-    SHARED,
     SIZE,
     value_features,
 )
 from snooker_env.tasks import LEVELS
 
 SPREAD = spread_of(LEVELS["professional"])
-LAYOUTS = ["opened", "held_out", "break_off", "line_up", "colours"]
-LAYOUTS += [f"random:{n}" for n in (0, 1, 3, 9, 15)]
 OF_ALL = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES
 """The first entry of the whole position."""
 LIKELIEST, BALL_ON, LEFT, SIDE, COUNT = OF_ALL + 10, OF_ALL + 14, OF_ALL + 22, OF_ALL + 25, OF_ALL + 26
@@ -34,14 +31,6 @@ def some(n, layout="random:5", seed=0):
 
 def seen(*positions, spread=SPREAD):
     return value_features(Positions.of(list(positions)), spread)
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_they_are_numbers_of_a_moderate_size(layout):
-    rows = value_features(some(150, layout), SPREAD)
-    assert rows.shape == (150, SIZE) and rows.dtype == np.float32 and np.isfinite(rows).all()
-    assert np.abs(rows).max() <= 8.0
-    assert OF_ALL + SHARED == SIZE and LOGIT == SIZE - 1 and len(np.unique(rows, axis=0)) > 1
 
 
 def test_a_table_and_its_mirror_image_differ_by_the_side_alone():
@@ -143,20 +132,6 @@ def test_the_ball_on_is_one_of_eight():
     assert value_features(some(1, "break_off"), SPREAD)[0, LEFT] == 1.0
     assert rows[:, OF_ALL + 23].tolist() == [1, 0, 1, 1, 1, 1, 1, 1]
     assert rows[:, OF_ALL + 24].tolist() == [0, 1, 0, 0, 0, 0, 0, 0]
-
-
-def test_what_is_said_of_the_reds():
-    """Two reds at a cushion, two in a cluster; three of the four at the black end."""
-    reds = [(0.86, 0.5), (0.3, 1.74), (0.1, 0.6), (0.1, -0.6)]
-    at = Position(cue=(0.4, 0.2), reds=[*reds, (0.156, -0.6)], black=(0.0, 1.4605), on="red")
-    row = seen(at)[0, OF_ALL:]
-    assert row[0] == pytest.approx(5 / 15) and row[3] == pytest.approx(2 / 8)
-    assert row[4] == pytest.approx(2 / 8)
-    assert row[5] == pytest.approx(3 / 8)
-    away = [hypot(x - 0.4, y - 0.2) for x, y in [*reds, (0.156, -0.6)]]
-    assert row[6] == pytest.approx(np.mean(away) - 1.0, abs=1e-6)
-    assert row[11] == pytest.approx(0.4 / 0.889) and row[12] == pytest.approx(0.2 / 1.7845)
-    assert row[13] == pytest.approx(0.889 - 0.4)
 
 
 def test_any_number_of_threads_and_any_rows_give_the_same():
