@@ -10,7 +10,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.physics import conditions
 from snooker_env.physics.conditions import NAMES, RANGES
-from snooker_env.physics.parameters import nominal, pack_into, physics_with
+from snooker_env.physics.parameters import nominal
 from snooker_env.planning import Planner, Positions, Strokes
 from tests.processes import ROOT
 from tests.tables import begun
@@ -55,20 +55,6 @@ def test_the_ranges_and_their_order_are_those_of_the_page():
     page = (ROOT / "docs" / "environment" / "conditions.md").read_text(encoding="utf-8")
     row = re.compile(r"^\| `(\w+)`[^|]*\| ([\d.]+) \| ([\d.]+) \|", re.M)
     assert [(name, (float(a), float(b))) for name, a, b in row.findall(page)] == list(RANGES.items())
-
-
-def test_rows_are_the_packed_constants_of_the_physics():
-    rng = np.random.default_rng(1)
-    for base in (
-        sn.Physics(),
-        sn.Physics.preset("match"),
-        sn.Physics(e_j=0.5, nap=0.001, mu_bb=(0.01, 0.1, 2.0)),
-    ):
-        rows, values = np.tile(base.pack(), (5, 1)), conditions.drawn(rng.random((3, 8)))
-        pack_into(rows, np.array([0, 2, 4]), values, base)
-        for k, one in zip((0, 2, 4), values, strict=True):
-            assert (rows[k] == physics_with(base, one).pack()).all()
-        assert (rows[1] == base.pack()).all() and (nominal(base)[[0, 4]] == (base.mu_s, 1.0)).all()
 
 
 @pytest.mark.parametrize("task", ["visit", "frame", "match"])
@@ -138,19 +124,6 @@ def test_a_state_restores_the_table(options):
     assert other.get_state() == pickle.loads(pickle.dumps(other)).get_state()
 
 
-def test_two_players_meet_on_a_table_that_is_drawn():
-    env = sn.match_env(**OBSERVED)
-    env.reset(seed=2)
-    infos = env.infos["player_0"], env.infos["player_1"]
-    assert (of_info(infos[0]) == of_info(infos[1])).all()
-    assert (env.observe("player_0")[-8:] == env.observe("player_1")[-8:]).all()
-    tables = sn.MatchVectorEnv(2, threads=1, **OBSERVED)
-    _, many = tables.reset(seed=2)
-    assert (np.array([many[name][0] for name in NAMES]) == of_info(infos[0])).all()
-    observations, _, _, _, infos = tables.step(np.zeros((2, 7)))
-    assert observations.shape == (2, 148) and (infos["mu_s"] == many["mu_s"]).all()
-
-
 def _planned(env, options, strokes):
     return Planner(options, threads=1).play_strokes(env, np.zeros(len(strokes), int), strokes).places
 
@@ -166,34 +139,6 @@ def test_plans_are_made_with_the_constants_of_the_table():
     # what the environment does
     env.step(Strokes(strokes).actions(options, at)[0])
     assert np.allclose(env.last_shot.positions, own[0], atol=1e-9)
-
-
-def test_many_positions_are_planned_each_on_its_own_table():
-    options = sn.Options(action="discrete", **DRAWN)
-    many = sn.SnookerVectorEnv(3, options, threads=1)
-    many.reset(seed=1)
-    at, choices = Positions.of(many), np.array([67, 67, 67])
-    planner = Planner(options, threads=1)
-    together = planner.play(at, np.arange(3), choices).places
-    for k, physics in enumerate(many.call("physics")):
-        plain = Planner(sn.Options(action="discrete", physics=physics), threads=1)
-        alone = plain.play(at[[k]], [0], choices[k : k + 1]).places[0]
-        assert (together[k] == alone).all()
-    strokes = planner.strokes_of(at, np.arange(3), choices)[0]
-    for name in ("ghost_ball", "best_pot_8"):
-        player, seeds = sn.player(name), np.arange(3)
-        played = player.at(options).play(at, seeds).values
-        for k, physics in enumerate(many.call("physics")):
-            own = player.at(options.but(physics=physics, conditions="fixed"))
-            assert np.allclose(own.play(at[[k]], seeds[k : k + 1]).values, played[k], atol=1e-12), name
-        nominal = player.at(options.but(conditions="fixed")).play(at, seeds).values
-        assert (nominal[:, 3] != played[:, 3]).any(), name
-    # equal balls, other constants: the aim of a choice is solved anew
-    same = Positions(
-        *(np.repeat(a[:1], 3, 0) for a in (at.positions, at.on_table, at.game)), None, at.conditions
-    )
-    aims = planner.strokes_of(same, np.arange(3), choices)[0][:, 3]
-    assert len(np.unique(aims)) == 3 and aims[0] == strokes[0, 3]
 
 
 def test_the_aim_is_solved_for_the_table():

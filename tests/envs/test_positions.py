@@ -119,16 +119,6 @@ def test_many_tables_start_from_one_position_or_from_one_each():
         assert env.get_state() == [one.get_state() for one in singles]
 
 
-def test_a_mask_keeps_the_other_tables():
-    env = begun(sn.SnookerVectorEnv(3, threads=1, task="frame", opponent="ghost_ball", noise="club"), 2)
-    before = env.get_state()
-    mask = np.array([False, True, False])
-    env.reset(options={"reset_mask": mask, "positions": [MID_BREAK, IN_HAND, MID_BREAK]})
-    after = env.get_state()
-    assert after[0] == before[0] and after[2] == before[2] and after[1] != before[1]
-    assert Positions.of(env)[1] == IN_HAND and after[1]["stream"] == before[1]["stream"]
-
-
 OFF = sn.Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], black=(0.0, 1.775), table=None)
 
 
@@ -191,12 +181,3 @@ def test_who_breaks_is_said_only_where_balls_are_dealt():
     ):
         allowed = f'must be left out with "{key}": it says who breaks where balls are dealt'
         refused(partial(env.reset, options={key: value, "breaker": 1}), 'options["breaker"]', "1", allowed)
-
-
-def test_the_position_is_checked_on_the_table_that_is_played_on():
-    """A red in the jaws of a corner pocket, where "match" has room for it and "tight" has not."""
-    position = sn.Position(cue=(0.0, 0.0), reds=[(0.8183, 1.7610)])
-    sn.SnookerEnv().reset(**start(position))
-    tight = sn.SnookerEnv(table="tight")
-    call = partial(tight.reset, **start(position))
-    refused(call, 'options["position"].reds[0]', "(0.8183, 1.761)", "overlaps jaw")

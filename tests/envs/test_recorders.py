@@ -9,7 +9,7 @@ from gymnasium.wrappers import RecordVideo
 from gymnasium.wrappers.vector import RecordVideo as VectorRecordVideo
 
 import snooker_env as sn
-from snooker_env.envs.pictures import PictureSource, recorder_asking
+from snooker_env.envs.pictures import PictureSource
 from tests.envs.one_by_one import native
 from tests.tables import begun
 
@@ -90,14 +90,6 @@ def test_the_recorder_of_stable_baselines_films_each_stroke(tmp_path):
     env.close()
 
 
-def test_whoever_else_asks_gets_one_picture():
-    env = made()
-    env.reset(seed=1)
-    env.step(67)
-    assert env.render().shape == (100, 160, 3)
-    assert recorder_asking() is None
-
-
 def test_a_film_that_breaks_off_leaves_no_picture_behind():
     source = PictureSource()
 
@@ -123,13 +115,3 @@ def test_the_stroke_that_ends_an_episode_is_filmed_where_the_reset_is_inside_the
         expected += pictures_of(info["seconds"]) + 1
         assert len(env.recorded_frames) == expected
     env.close()
-
-
-def test_a_picture_shows_no_stroke_of_another_table():
-    """After set_state, and where a step has begun a new episode, the last stroke is not drawn."""
-    env = made()
-    env.reset(seed=1)
-    state, plain = env.unwrapped.get_state(), env.render()
-    env.step(67)
-    env.unwrapped.set_state(state)
-    assert np.array_equal(env.render(), plain) and env.unwrapped.history == []

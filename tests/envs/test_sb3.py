@@ -82,17 +82,6 @@ def test_wrong_seeds_are_refused(seed):
     refused(lambda: SnookerVecEnv(2, seed=seed), "seed", repr(seed), allowed)
 
 
-def test_terminal_observations_stay_what_they_were():
-    env = SnookerVecEnv(8)
-    env.reset()
-    a = np.full((8, 4), -1.0, np.float32)
-    infos = env.step(a)[3]
-    kept = [info["terminal_observation"].copy() for info in infos]
-    following = env.step(a)[3]
-    assert equal(kept, [info["terminal_observation"] for info in infos])
-    assert not np.array_equal(following[0]["terminal_observation"], kept[0])
-
-
 def test_states_are_saved_and_restored():
     env = SnookerVecEnv(3, noise="club")
     env.seed(1)

@@ -12,7 +12,7 @@ from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.frame import Frame, Saved
 from snooker_env.game.referee import FULL_TABLE, Stroke
 from tests.mutations import at, frozen, kind_of, mutations, names_it
-from tests.refusals import refuse_each, refused
+from tests.refusals import refuse_each
 from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
 FRAME = {"opponent": "random", "miss": "clear_path", "noise": "club", "layout": "random:3", "aim": "target"}
@@ -180,7 +180,6 @@ def changed(state, **parts):
     return state
 
 
-SAVED = "state.frame.saved"
 MISS = """
 miss(frame__striker=1) | state.frame.striker | 1 | must be 0, the agent
 miss(frame__saved__layout=None) | state.frame.saved.layout | None | must be positions and on_table
@@ -210,16 +209,6 @@ def test_faults_of_a_frame_in_which_a_miss_was_called(frame_states):
 
     refuse_each(MISS, {"miss": miss, "ALL": [True] * 22})
     assert frozen(env.get_state()) == before and env.np_random_seed == 1
-
-
-def test_a_layout_is_kept_by_the_rule_of_the_miss_only():
-    env = begun(sn.match_env())
-    env.step(np.array([-0.8, 0, 0, -0.5, 0, 0, 0]))  # at the bottom cushion, hitting nothing
-    state = plain(env.get_state())
-    assert state["frame"]["phase"] == "choice" and state["frame"]["saved"]["layout"] is None
-    env.set_state(state)
-    state["frame"]["saved"]["layout"] = [state["positions"], state["on_table"]]
-    refused(lambda: env.set_state(state), f"{SAVED}.layout", "a layout", 'must be None with miss = "off"')
 
 
 PINK_LEFT, BLACK_LEFT = ({CUE: (0, 0), ball: SPOTS[ball]} for ball in (PINK, BLACK))

@@ -149,22 +149,6 @@ forks = pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on Windows")
 
 
 @forks
-def test_processes_forked_while_threads_are_kept_play_on():
-    """AsyncVectorEnv forks; the threads of a vector environment in the parent do no harm."""
-    env = begun(native(32, threads=2), 0)
-    a = np.zeros((32, 4), np.float32)
-    want = env.step(a)[0]
-    forked = gymnasium.vector.AsyncVectorEnv([lambda: gymnasium.make("Snooker-v0")] * 2, context="fork")
-    try:
-        forked.reset(seed=0)
-        assert np.array_equal(forked.step(a[:2])[0], want[:2])
-    finally:
-        forked.close()
-    env.step(a)
-    env.close()
-
-
-@forks
 def test_an_environment_that_has_played_on_threads_plays_on_in_a_forked_process():
     """A child has none of its parent's threads; waiting for them would be for ever."""
     env = begun(native(64, threads=2), 3)
@@ -184,13 +168,6 @@ def test_an_environment_that_has_played_on_threads_plays_on_in_a_forked_process(
     os.waitpid(child, 0)
     assert got == np.ascontiguousarray(env.step(a)[0]).tobytes()
     env.close()
-
-
-def test_the_number_of_threads_is_fixed():
-    """Work space is made for it: a different number would write beyond its end."""
-    env = native(64, threads=2)
-    with pytest.raises(AttributeError):
-        env.threads = 1
 
 
 def test_an_error_of_an_opponent_asks_for_a_reset():

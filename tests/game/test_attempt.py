@@ -91,39 +91,6 @@ def is_shut_in(places, on):
     return bool(shut_in(positions, on_table, mask_of(on), table.noses, table.jaws, R))
 
 
-BESIDE_CUSHION = {CUE: (HALF_WIDTH - R, 0.5), 1: (0.0, 1.0), 16: (0.86, 0.5526), 17: (0.86, 0.4474)}
-
-
-@pytest.mark.parametrize(
-    ("places", "shut"),
-    [
-        ({CUE: (0, 0), 1: (0, 1)} | ring(2.004 * R), True),
-        ({CUE: (0, 0), 1: (0, 1)} | ring(3.999 * R, turn=0.3), True),  # six in a ring: as far from each other
-        ({CUE: (0, 0), 1: (0, 1)} | ring(4.001 * R, turn=0.3), False),
-        ({CUE: (0, 0), 1: (0, 1)} | ring(2.3 * R, balls=(16, 17, 18)), True),
-        ({CUE: (0, 0), 1: (0, 1)} | ring(2.4 * R, balls=(16, 17, 18)), False),
-        ({CUE: (0, 0), 1: (0, 1), 2: (0.2, -0.3)} | ring(2.1 * R), True),
-        (
-            {CUE: (0, 0), 1: (0, 3.5 * R), 2: (0.2, -0.3)}
-            | ring(3.5 * R, turn=np.pi / 6, balls=range(16, 21)),
-            False,
-        ),
-        (BESIDE_CUSHION | {18: (0.80, 0.5)}, True),
-        (BESIDE_CUSHION, False),
-        ({CUE: (0.86, 1.75), 1: (0, 1), 16: (0.80, 1.72), 17: (0.83, 1.69)}, True),  # before a corner pocket
-        ({CUE: (0.86, 1.75), 1: (0, 1), 17: (0.83, 1.69)}, False),
-        (
-            {CUE: (0.88, 0), 1: (0.85, -1), 16: (0.83, 0.06), 17: (0.83, -0.04)},
-            True,
-        ),  # in a middle pocket's mouth
-        ({CUE: (0.88, 0), 1: (0.85, -1), 16: (0.83, 0.06)}, False),
-    ],
-)
-def test_walls_of_balls_and_cushions_shut_the_cue_ball_in(places, shut):
-    on = [ball for ball in places if 1 <= ball <= 15]
-    assert is_shut_in(places, on) == shut
-
-
 def flooded(places, on, reach, h=0.006):
     """Whether no ball on is reached by flooding a grid from the cue ball; balls not on bar a disc of ``reach``."""
     far = np.array([HALF_WIDTH, HALF_LENGTH]) - R

@@ -23,35 +23,6 @@ def table(*places):
     return positions, on_table
 
 
-@pytest.mark.parametrize(
-    ("x", "y", "inside"),
-    [
-        (0.0, BAULK_Y, True),
-        (D_RADIUS, BAULK_Y, True),
-        (0.0, BAULK_Y - D_RADIUS, True),
-        (0.0, BAULK_Y + 1e-6, False),
-        (D_RADIUS + 1e-6, BAULK_Y, False),
-        (0.8 * D_RADIUS, BAULK_Y - 0.7 * D_RADIUS, False),
-    ],
-)
-def test_the_d(x, y, inside):
-    assert in_d(x, y) == inside
-
-
-@pytest.mark.parametrize(
-    ("wish", "place"),
-    [
-        ((0.1, -1.1), (0.1, -1.1)),
-        ((0.1, 0.5), (0.1, BAULK_Y)),
-        ((0.8, 0.5), (D_RADIUS, BAULK_Y)),
-        ((0.0, -1.7), (0.0, BAULK_Y - D_RADIUS)),
-        ((0.6, BAULK_Y - 0.6), (D_RADIUS * np.sqrt(0.5), BAULK_Y - D_RADIUS * np.sqrt(0.5))),
-    ],
-)
-def test_a_wish_outside_goes_to_the_nearest_point_of_the_d(wish, place):
-    assert place_cue(*table(), *wish) == pytest.approx(place, abs=1e-12)
-
-
 def test_the_place_is_beside_the_balls_in_the_way():
     assert place_cue(*table((0.0, -1.2)), 0.01, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
     touching = 2 * BALL_RADIUS + 0.9 * REFEREE_TOUCH  # a referee would call a touching ball there

@@ -14,7 +14,6 @@ from snooker_env.game.pots import pots
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from snooker_env.planning import Positions, prospects_of
-from tests.kernels import from_python
 
 NAMES = ["break_off", "line_up", "colours", "random:0", "random:6", "random:15"]
 
@@ -47,24 +46,6 @@ def test_every_layout_is_playable(name, seed):
     assert all(np.hypot(*(POCKET_PLACES - place).T).min() >= layouts.POCKET_GAP for place in sprinkled)
 
 
-@pytest.mark.parametrize(
-    ("too_near", "near"),
-    [
-        ((2 * BALL_RADIUS + 0.9 * layouts.GAP, 0.3), (2 * BALL_RADIUS + 1.1 * layouts.GAP, 0.3)),
-        (
-            (HALF_WIDTH - BALL_RADIUS - 0.9 * layouts.CUSHION_GAP, 0.5),
-            (HALF_WIDTH - BALL_RADIUS - 1.1 * layouts.CUSHION_GAP, 0.5),
-        ),
-        ((HALF_WIDTH - 0.9 * layouts.POCKET_GAP, 0.0), (HALF_WIDTH - 1.1 * layouts.POCKET_GAP, 0.0)),
-    ],
-)
-def test_a_place_too_near_is_not_clear(too_near, near):
-    positions, on_table = np.full((22, 2), 5.0), np.zeros(22, dtype=bool)
-    positions[1], on_table[1] = (0.0, 0.3), True
-    clear = from_python(layouts.clear)
-    assert not clear(positions, on_table, *too_near) and clear(positions, on_table, *near)
-
-
 def test_where_the_break_off_and_the_line_up_lie():
     """From one place: beside the brown, on the side that the stream decides."""
     places = [tuple(layouts.layout("break_off", np.random.default_rng(seed))[0][0]) for seed in range(60)]
@@ -76,11 +57,6 @@ def test_where_the_break_off_and_the_line_up_lie():
     assert np.all(positions[1:16, 0] == 0.0)
     assert np.diff(on_line).min() > 4 * BALL_RADIUS
     assert abs(on_line).max() < HALF_LENGTH - 3 * BALL_RADIUS
-
-
-def test_other_generators_are_refused():
-    with pytest.raises(ValueError, match="Generator"):
-        layouts.layout("break_off", np.random.RandomState(0))
 
 
 # Snookers and single pots

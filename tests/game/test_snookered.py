@@ -5,9 +5,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game.balls import BLACK, COLOURS_MASK, PINK, SPOTS, YELLOW, mask_of
+from snooker_env.game.balls import BLACK, PINK, SPOTS, YELLOW, mask_of
 from snooker_env.game.snookered import is_snookered
-from snooker_env.geometry import BALL_RADIUS, BAULK_Y
+from snooker_env.geometry import BALL_RADIUS
 from tests.miss_paths import paths
 
 R = BALL_RADIUS
@@ -29,23 +29,6 @@ def snookered(*args, **options):
 
 CUE = (0.0, -0.8)
 FAR = (0.0, 0.8)
-
-
-@pytest.mark.parametrize(
-    ("reds", "others", "expected"),
-    [
-        ([FAR], [], False),
-        ([FAR], [(0.0, 0.0)], True),
-        ([FAR], [(0.06, 0.0)], True),  # one edge hidden is enough
-        ([(0.0, -0.8 + 2 * R)], [(0.0, 0.0)], False),  # touching a ball on
-        ([(0.0, -0.8 + 2 * R + 49e-6)], [(0.0526, -0.8001)], False),  # as the referee sees it
-        ([(0.0, -0.8 + 2 * R + 51e-6)], [(0.0526, -0.8001)], True),
-        ([FAR], [(0.0, -0.8 - 2 * R)], False),  # touching a ball not on, which is behind
-        ([FAR], [(0.0, -0.8 + 2 * R)], True),
-    ],
-)
-def test_snookers(reds, others, expected):
-    assert snookered(CUE, reds, others)[0] == expected
 
 
 @pytest.mark.parametrize(
@@ -85,16 +68,6 @@ def test_in_hand_sees_from_any_place_that_is_free():
     ring = [red + 2.001 * R * np.array([np.cos(a), np.sin(a)]) for a in np.radians(range(0, 360, 60))]
     assert snookered(None, [red], ring)[0]
     assert not snookered(None, [red], ring[:3])[0]
-
-
-def test_in_hand_finds_a_narrow_view_right_beside_a_ball():
-    # Both edges of the green are in view from the baulk line 0.1 to 0.6 mm beside it, which no grid of places
-    # meets.
-    green, brown = (-0.292, BAULK_Y), (-0.27029115608194443, -1.0993258680927571)
-    far = (0.687739087233893, -0.6279441785695304), (-0.6521780571937696, -0.4790269154178912)
-    others = [*far, (0.0, 0.0), brown]
-    assert not snookered((-0.2392, BAULK_Y), [green], others)[0]
-    assert not snookered(None, [green], others)[0]
 
 
 # Small steps as the judge
@@ -164,33 +137,6 @@ def test_snookers_agree_with_rolling(scene):
 
 
 # Paths by name
-
-
-@pytest.mark.parametrize(
-    ("colours", "reds", "expected"),
-    [
-        # Two colours in one line of sight, both of which could be on: the nearer one half hidden by a red,
-        # the farther one by the nearer.
-        ([FAR, (0.03, 0.3)], [(0.06, -0.3)], (True, False)),
-        ([FAR, (0.03, 0.3)], [(0.2, -0.3)], (True, True)),  # the nearer one has nothing before it
-        ([FAR, (0.06, 0.3)], [(0.09, -0.3)], (True, True)),  # nor has the farther one
-        ([FAR, (0.0, 0.3)], [], (True, True)),
-    ],
-)
-def test_a_colour_is_met_full_only_with_nothing_at_all_before_it(colours, reds, expected):
-    """S3 R14: of colours that could be on, the nominated one alone is on."""
-    positions, on_table, _ = table(CUE, reds, colours)
-    assert paths(positions, on_table, COLOURS_MASK & mask_of(np.flatnonzero(on_table))) == expected
-
-
-@pytest.mark.parametrize("side", [-1, 1])
-def test_a_view_that_ends_where_the_cue_ball_would_meet_two_balls_at_once(side):
-    # Open between the edge of the near ball and the direction in which red and neighbour are met together:
-    # 0.0300 to 0.0313 rad.
-    red, neighbour, near = (0.0, 1.0), (side * 0.06, 1.0), (-side * 0.03756, 0.49859)
-    assert paths(*table((0.0, 0.0), [red], [neighbour, near])) == (True, False)
-    # that edge at 0.034 rad
-    assert paths(*table((0.0, 0.0), [red], [neighbour, (-side * 0.0355, 0.498)])) == (False, False)
 
 
 def test_wrong_input_is_refused():

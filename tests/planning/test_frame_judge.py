@@ -16,10 +16,8 @@ from snooker_env.planning.worth import (
     Chance,
     chosen,
     decide,
-    follows,
     lead_of,
     left_of,
-    passed,
 )
 from snooker_env.planning.worth import SPREAD as MIDDLE
 from snooker_env.players.weights import learned_worth
@@ -237,28 +235,6 @@ def test_who_leads_by_more_than_is_left_plays_on():
     for lead, sent_back in (0.0, True), (1.0, False):
         at.game[:, columns.SCORE_0] = at.game[:, columns.SCORE_1] + left_of(at) + lead
         assert np.all((decide(bad, at)[0] != columns.PLAY) == sent_back), lead
-
-
-def test_a_miss_leaves_the_other_the_same_balls():
-    at = frame_of(
-        Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], blue=(0.3, -0.3), black=(0.0, 1.4605), on="any_colour"),
-        (20, 5),
-    )
-    left = passed(at)
-    assert left.ball_on.tolist() == [1] and left.scores.tolist() == [[5, 20]]
-    assert np.array_equal(left.positions, at.positions) and at.ball_on.tolist() != [1]
-    assert left_of(at).tolist() == [7 + 8 + 5 + 7]
-
-
-def test_who_comes_next_decides_the_sign():
-    at = positions_of(frames_in_play(30, OPTIONS, strokes=3, seed=51))
-    at = at[np.flatnonzero(~at.over & ~at.choice)]
-    before = lead_of(at)
-    mine = follows(lambda some: np.full(len(some), 7.0), at, before)
-    assert mine.tolist() == [7.0] * len(at)
-    theirs = at.copy()
-    theirs.game[:, columns.STRIKER] = 1
-    assert follows(lambda some: np.full(len(some), 7.0), theirs, before).tolist() == [-7.0] * len(at)
 
 
 def test_a_lot_decides_who_begins_at_the_black_that_makes_it_level():

@@ -21,7 +21,7 @@ from snooker_env.game.frame_columns import (
     SCORE_1,
     STRIKER,
 )
-from snooker_env.planning import Planner, Position, Positions, action_masks, clear_paths, pots, prospects_of
+from snooker_env.planning import Position, Positions
 from tests.refusals import refused
 
 FULL = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (-0.3, 0.7)], "pink": (0.2, 0.1), "black": (0.0, 1.4605)}
@@ -113,37 +113,6 @@ def test_positions_of_frames_hold_what_the_striker_may_know():
     assert visits.as_visits() is visits
     assert not (visits.free_ball.any() or visits.choice.any() or visits.scores.any() or visits.of_frames)
     assert at[1].on == "any_colour" and at[0].on == "red"
-
-
-def test_planning_plays_the_strokes_of_frames_as_those_of_visits():
-    env = sn.SnookerVectorEnv(2, task="frame", layout="random:4")
-    env.reset(seed=3)
-    env.tables.game[1, FREE_BALL] = True
-    at = Positions.of(env)
-    visits, strokes = at.as_visits(), np.array([[2.0, 0.1, 0.2, 1.3, 0.0]] * 2)
-    planner = Planner({}, threads=1)
-    for plan in (
-        lambda at: planner.play_strokes(at, [0, 1], strokes).afterstates.positions,
-        lambda at: pots(at).ball,
-        action_masks,
-        lambda at: clear_paths(at).any_part,
-        Positions.observations,
-        lambda at: prospects_of(at, 1e-3)[0],
-    ):
-        assert np.array_equal(plan(at), plan(visits))
-
-
-def test_a_cue_ball_that_may_stand_anywhere_is_played_from_where_it_lies():
-    """It raised: a position in hand must lie in the D."""
-    env = sn.match_env(game="shoot_out")
-    env.reset(seed=0)
-    env.step(np.array([-0.3, 0, 0, -0.4, 0, -1, 0], np.float32))  # away from every ball: a foul
-    state = env.get_state()
-    assert state["frame"]["anywhere"] and state["frame"]["in_hand"]
-    (position,) = Positions.of(env)
-    assert not position.in_hand and position.cue == pytest.approx(state["positions"][0])
-    env.reset(options={"position": position})
-    assert np.array_equal(env.positions[1:], np.array(state["positions"])[1:]) and not env.frame.in_hand
 
 
 BALLS = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (1 / 3, -0.7)], "black": (0.0, 1.4605)}

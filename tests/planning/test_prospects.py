@@ -4,7 +4,6 @@ from math import atan, exp, hypot, radians, sqrt
 
 import numpy as np
 import pytest
-from positions import tables
 from scipy.stats import norm
 
 from snooker_env.game.balls import BLACK, CUE, PINK, BallOn, mask_of
@@ -14,6 +13,7 @@ from snooker_env.physics.parameters import Physics
 from snooker_env.planning import Positions, prospects
 from snooker_env.tasks.noise import Noise
 from snooker_env.tasks.visit import BALL_ON
+from tests.positions import tables
 
 VALUE = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 """Points of each ball."""

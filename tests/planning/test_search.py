@@ -2,13 +2,11 @@
 
 import numpy as np
 import pytest
-from positions import tables
 
 from snooker_env.game.balls import SPOTS
 from snooker_env.game.frame_columns import FREE_BALL
 from snooker_env.planning import (
     RULE_OF_THUMB,
-    SURE,
     Planner,
     Position,
     Positions,
@@ -20,12 +18,12 @@ from snooker_env.planning import (
     pots,
     prospects_of,
 )
-from snooker_env.planning.proposals import Proposals
 from snooker_env.planning.search import PRIOR
 from snooker_env.planning.sobol import normal_points
 from snooker_env.planning.visit_judge import FOUL, LEFT, schedule
 from snooker_env.tasks.noise import errors_of
 from snooker_env.tasks.options import Options
+from tests.positions import tables
 
 OPTIONS = {"noise": "club", "fidelity": "fast"}
 LOUD = {"aim_deg": 0.3, "speed_rel": 0.05, "speed_abs": 0.05, "offset_mm": 5.0, "elevation_deg": 2.0}
@@ -169,24 +167,6 @@ def test_the_ranking_recomputed(budget, value):
     assert PRIOR == 1.0 and max(one.scores.max() for one in ranked) > 3.0
 
 
-def test_without_errors_the_ranking_is_that_of_the_looks():
-    """With a chance of 1, scores are points and value, and the best scores what it says when played."""
-    at = some(6)
-
-    def sure(tool, here, m, seeds):
-        strokes, chances = at_pots(tool, here, m, seeds)
-        return Proposals(strokes, np.ones_like(chances))
-
-    tool = search(80, {"noise": "none", "fidelity": "fast"}, propose=sure)
-    ranked = tool.rank(at, np.arange(6))
-    for one in ranked:
-        assert not one.samples.any() and (np.diff(one.scores) <= 0.0).all() and len(one.scores) == 80
-    played = Planner({"fidelity": "fast"}).play_strokes(at, np.arange(6), first(ranked))
-    worth = played.points + played.goes_on * prospects_of(played.afterstates, tool.judge.spread, SURE)[0]
-    scores = [one.scores[0] for one in ranked]
-    assert scores == pytest.approx(worth, rel=1e-6) and (played.points > 0).sum() >= 4
-
-
 def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
     """Pots, balls that are seen, escapes, in visits and in frames: the position and its seed alone decide."""
     parts = [some(5), some(4, layout="break_off"), some(9, layout="snookered", seed=3)]
@@ -249,40 +229,3 @@ def test_generators_that_have_strokes_share_the_looks():
     assert [int((one.strokes.speed == 1.0).sum()) for one in ranked] == [30, 0, 30] and calls == [3]
     assert [int(one.kinds.sum()) for one in ranked] == [30, 0, 30] and same(ranked[1:2], usual[1:2])
     assert not np.array_equal(ranked[0].scores, usual[0].scores)
-
-
-def test_nothing_given_is_changed_and_nothing_returned_is_shared():
-    at, seeds = some(5), np.arange(5)
-    kept, proposed = at.copy(), []
-
-    def propose(tool, here, m, scrambles):
-        made = at_pots(tool, here, m, scrambles)
-        proposed.append((made, made.strokes.copy(), made.chances.copy()))
-        return made
-
-    tool = search(60, propose=propose)
-    ranked = tool.rank(at, seeds)
-    copies = [part.copy() for one in ranked for part in told(one)]
-    for made, strokes, chances in proposed:
-        assert np.array_equal(made.strokes, strokes) and np.array_equal(made.chances, chances)
-    names = "positions", "on_table", "game"
-    assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in names)
-    assert np.array_equal(seeds, np.arange(5))
-    for one in ranked:
-        for part in told(one):
-            part[:] = 0
-    again = [part for one in tool.rank(at, seeds) for part in told(one)]
-    assert all(map(np.array_equal, copies, again))
-
-
-def test_physics_and_fidelity_are_the_tables_and_noise_given_takes_its_place():
-    at = some(3)
-    exact = search(30, noise="none")
-    assert exact.judge.noise.silent and not exact.rank(at, [1, 2, 3])[0].samples.any()
-    loud = search(30, {"noise": "none", "fidelity": "fast"}, noise="club")
-    assert same(loud.rank(at, [1, 2, 3]), search(30).rank(at, [1, 2, 3]))
-    at = some(3)
-    usual = search(30).rank(at, [1, 2, 3])
-    for change in ({"physics": "match"}, {"fidelity": "standard"}, {"table": "tight"}):
-        other = search(30, OPTIONS | change).rank(at, [1, 2, 3])
-        assert not same(usual, other), change

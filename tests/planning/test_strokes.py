@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from positions import tables
 
 import snooker_env as sn
 from snooker_env.geometry import POCKET_AIMS
@@ -10,6 +9,7 @@ from snooker_env.planning import Planner, Position, Positions, Strokes, action_m
 from snooker_env.planning.strokes import decode
 from snooker_env.players import VISITS
 from snooker_env.tasks.carry_out import sayings
+from tests.positions import tables
 
 DISCRETE = {"action": "discrete"}
 

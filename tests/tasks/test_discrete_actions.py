@@ -146,16 +146,6 @@ def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
     assert found[:, 0] == pytest.approx([wide, wide - thin, wide + thin, 0.0], abs=1e-12)
 
 
-def test_reds_all_round_are_one_window():
-    positions, on_table = np.zeros((N_BALLS, 2)), np.arange(N_BALLS) < 16
-    angles = np.arange(15) * 2.0 * np.pi / 15.0
-    positions[1:16] = 8.0 * R * np.column_stack([np.cos(angles), np.sin(angles)])
-    ((low, high),) = windows_of(positions, on_table, mask_of(range(1, 16)))
-    assert high - low == pytest.approx(2.0 * np.pi)
-    aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
-    assert len(aims) and (first_met(positions, on_table, aims) > 0).all()
-
-
 def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
     positions, on_table = layout("break_off", np.random.default_rng(0))
     for x, ends in ((0.18, (15, 11)), (-0.18, (11, 15))):
@@ -200,21 +190,6 @@ def test_an_escape_is_solved_for_the_stroke_that_is_played():
         v = env.last_shot.at(0.0)[1][CUE]
         aims.append(np.arctan2(v[1], v[0]))
     assert met >= 0.8 * len(picks) and np.ptp(aims) > 0.05
-
-
-def test_choices_over_cushions_are_the_same_strokes_as_actions():
-    env = sn.SnookerEnv(action="discrete", layout="snookered", render_mode="ansi")
-    for seed in range(6):
-        env.reset(seed=seed)
-        at = sn.planning.Positions.of(env)
-        picks = np.flatnonzero(env.action_masks())[::50]
-        aims = sn.Planner(env).strokes_of(at, np.zeros(len(picks), int), picks)[0][:, 3]
-        state = env.get_state()
-        for pick, aim in zip(picks, aims, strict=True):
-            env.set_state(state)
-            env.step(pick)
-            v = env.last_shot.at(0.0)[1][CUE]
-            assert np.exp(1j * aim) == pytest.approx(np.exp(1j * np.arctan2(v[1], v[0])), abs=1e-6)
 
 
 def touching(ball, others):

@@ -85,12 +85,6 @@ def test_jump_shots_are_those_of_the_rule():
     assert min(found.values()) > 10
 
 
-def test_a_ball_jumped_over_costs_a_foul_and_the_visit():
-    position = sn.Position(cue=(0, -0.5), reds=[(0, -0.2), (0, 0.6)], black=(0.3, 1.3), on="red")
-    one, fouls, info = played(environment(noise="none"), position, action(6.0, math.pi / 2, 45))
-    assert fouls == Foul.JUMP and info["penalty"] == 4 and info["foul"] and one.first == (2,)
-
-
 def test_the_cue_ball_forced_off_the_table_is_a_foul_and_in_hand():
     env = environment(noise="none", task="frame", opponent="ghost_ball", miss="off")
     position = sn.Position(cue=(0, 1.2), reds=[(0.4, 0.0)], black=(-0.4, -0.3), on="red")

@@ -12,7 +12,7 @@ from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import AUTO
 from snooker_env.tasks.observations import FRAME_ENTRIES
 from snooker_env.tasks.options import NAMES
-from tests.tables import acting, begun, frame_env, frame_state, plain
+from tests.tables import begun, frame_env, frame_state, plain
 
 SOFT = [-1.0, 0, 0, 0.5, 0, 0, 0]
 """A soft stroke up the table (with ``aim="absolute"``)."""
@@ -37,13 +37,6 @@ def test_the_spaces_grow_and_those_of_a_visit_do_not():
     assert len(FRAME_ENTRIES) == 19
 
 
-def test_the_default_layout_is_that_of_the_task():
-    assert SnookerEnv().options.rules.plan.name == "opened"
-    assert frame_env().options.rules.plan.name == "break_off"
-    env = begun(frame_env(layout="colours"), 0)
-    assert env.ball_on == BallOn.YELLOW and not env.in_hand
-
-
 def test_infos_have_the_same_keys_and_types_at_all_times():
     env, rng = frame_env(opponent="random", layout="random:4"), np.random.default_rng(3)
     infos = [env.reset(seed=3)[1]]
@@ -62,34 +55,12 @@ def test_every_argument_is_documented():
     assert set(inspect.signature(SnookerEnv).parameters) == arguments
 
 
-@pytest.mark.parametrize("observation", ["flat", "balls"])
-def test_the_layout_that_replace_restores_is_within_its_space(observation):
-    """A ball may rest in the mouth of a middle pocket, farther out than the cushions' noses."""
-    options = {"miss": "clear_path", "aim": "absolute", "observation": observation}
-    env = frame_env(opponent=acting(lambda seen, rng: SOFT, aim="absolute", miss="clear_path"), **options)
-    frame_state(env, {CUE: (0.0, 0.0), 1: (-0.3, -1.0), PINK: (0.3, 0.5), BLACK: (0.8993, -0.035)}, {})
-    seen, _, _, _, _ = env.step(SOFT)
-    assert env.frame.miss_called and env.positions[BLACK, 0] > 0.889
-    assert env.observation_space.contains(seen)
-    replaced = seen["replaced"] if observation == "balls" else seen[-66:].reshape(22, 3)
-    assert replaced[BLACK].tolist() == [pytest.approx(0.8993 / 0.889), pytest.approx(-0.035 / 1.7845), 1.0]
-
-
 @pytest.mark.parametrize("game", ["snooker", "six_red", "shoot_out"])
 def test_the_state_before_the_first_reset_is_sound(game):
     env = sn.SnookerEnv(task="frame", game=game)
     state = env.get_state()
     env.set_state(plain(state))
     assert env.get_state() == state
-
-
-@pytest.mark.parametrize("decision", [-1.0, 0.0, 1.0])
-def test_who_plays_alone_stays_at_the_table_after_a_decision(decision):
-    """The state comes from a frame of two players: a foul of the other one."""
-    places = {CUE: (0.0, 0.0), 1: (-0.3, -1.0), PINK: (0.3, 0.5)}
-    env = frame_state(frame_env(aim="absolute"), places, {"phase": "choice"})
-    env.step([*SOFT[:6], decision])
-    assert env.frame.striker == 0 and env.frame.phase == "stroke"
 
 
 def test_a_nomination_does_not_outlive_its_frame():

@@ -10,7 +10,6 @@ from snooker_env.game.frame import Frame
 from snooker_env.game.referee import Stroke
 from snooker_env.geometry import D_RADIUS
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
-from snooker_env.tasks.options import MAX_STROKES
 from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
 CHOICE_SEEN, FREE_BALL_SEEN = (SIZE + FRAME_ENTRIES.index(name) for name in ("choice", "free_ball"))
@@ -30,11 +29,6 @@ def test_after_a_foul_the_action_decides(decision, own):
     _, _, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, decision])
     assert (info["events"] > 0) == own
     assert own or info["opponent_strokes"] > 0
-
-
-def test_without_the_option_the_agent_always_plays():
-    env = frame_state(frame_env(opponent="ghost_ball", says=[]), PLACES, FOULED)
-    assert env.step([-0.5, 0, 0, 0, -1.0, -1.0])[4]["events"] > 0
 
 
 def test_replacing_after_a_miss_brings_the_balls_back():
@@ -138,21 +132,6 @@ def test_fouls_without_end_score_without_end():
             frame, _ = frame.play(Stroke(), clear_path=True)
             frame = Frame.from_dict(plain(frame.to_dict())).choose("play_again")
         assert sum(frame.scores) == sum(scores) + 800
-
-
-def test_a_match_of_fouls_and_orders_to_play_again_ends_by_itself():
-    pytest.importorskip("pettingzoo")
-    env = begun(sn.match_env(layout="random:2"))
-    state = env.get_state()
-    env.reset(options={"state": state | {"frame": state["frame"] | {"scores": [9_990, 9_990]}}})
-    for _ in range(2000):  # a turn is a stroke, or gives the table over
-        env.step(FOUL)
-        assert not any(env.terminations.values())
-        if any(env.truncations.values()):
-            break
-    assert env.strokes == MAX_STROKES == 1000 and all(env.truncations.values())
-    assert sum(env.frame.scores) >= 19_980 + 4 * 900 and env.infos["player_0"]["strokes"] == 1000
-    assert all(env.observation_spaces[player].contains(env.observe(player)) for player in env.possible_agents)
 
 
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])

@@ -10,7 +10,7 @@ from snooker_env.geometry import BAULK_Y, D_RADIUS
 from tests.miss_paths import paths
 from tests.refusals import refused
 from tests.tables import PLACES as STANDING
-from tests.tables import acting, begun, frame_env, frame_state, layout, plain
+from tests.tables import acting, begun, frame_env, frame_state, layout
 
 COLOURS = {CUE: (0.0, -0.5), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
 PLACES = COLOURS | {1: (0.6, 1.4), YELLOW: SPOTS[YELLOW]}
@@ -40,12 +40,6 @@ def test_after_a_red_the_colour_nominated_is_the_one_on(part, aim, penalty, foul
     assert env.action_space.shape == (8,)
     info = env.step([-0.9, 0, 0, aim, 0, 0, named(part), 0])[4]
     assert (info["penalty"], info["fouls"]) == (penalty, foul) and env.tables.nominated[0] == AUTO
-
-
-def test_the_potting_line_is_that_of_the_ball_nominated():
-    for part, ball in ((3, BLUE), (4, PINK)):
-        env = frame_state(frame_env(says=["nominate", "decision"]), PLACES, ANY)
-        assert env.step([-0.5, 0, 0, 0, 0, 0, named(part), 0])[4]["first_ball"] == ball
 
 
 FREE = {"phase": "stroke", "free_ball": True, "scores": (0, 4)}
@@ -145,13 +139,6 @@ def test_to_concede_costs_what_is_left_on_the_table():
     _, reward, terminated, _, info = env.step(GIVES_UP)
     assert (reward, terminated, info["winner"]) == (-LEFT, True, 1)
     assert (info["score"], info["opponent_score"]) == (10.0, 30.0)  # the score stands
-
-
-def test_what_was_not_paid_yet_is_paid_with_it():
-    env = frame_env(says=["decision", "concede"], opponent="ghost_ball")
-    state = frame_state(env, STANDING, {"scores": (10, 30)}).get_state() | {"unpaid": -5}
-    env.reset(options={"state": plain(state)})
-    assert env.step(GIVES_UP)[1] == -5 - LEFT
 
 
 @pytest.mark.parametrize("striker", [0, 1])

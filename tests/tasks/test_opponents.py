@@ -11,7 +11,6 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env import SnookerEnv, SnookerVectorEnv
-from snooker_env.game.frame_columns import SCORE_1
 from snooker_env.players.saved_models import SavedModel
 from tests.bombs import bombed
 from tests.tables import PLACES, acting, frame_env, frame_state
@@ -42,12 +41,6 @@ def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
     env.reset(seed=0)
     env.step(miss)
     assert env.frame.striker == 0
-
-
-def test_the_ghost_ball_player_pots_what_is_there():
-    env = SnookerVectorEnv(60, threads=1, task="frame", layout="pots:easy", opponent="ghost_ball")
-    env.reset(seed=0, options={"breaker": 1})
-    assert (env.tables.game[:, SCORE_1] > 0).sum() > 30
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,6 @@ import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
 from snooker_env.game.frame_columns import PLAY_AGAIN, REPLACE, STRIKER
-from snooker_env.game.sides import swap_sides
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 from snooker_env.players import OpponentPool, SeenPlayer, Strokes
 from snooker_env.tasks.carry_out import carry_out
@@ -69,17 +68,6 @@ def test_a_player_sees_the_frame_as_the_striker():
     at, seeds = player.calls[0]
     assert at.of_frames and at.game[0, STRIKER] == 0 and at.scores.tolist() == [[62, 31]]
     assert player.rules is env.options and 0 <= seeds[0] < 2**32
-
-
-def test_to_change_sides_twice_changes_nothing():
-    rng = np.random.default_rng(0)
-    game = rng.integers(0, 2, (50, columns.COLUMNS))
-    game[:, columns.WINNER] = rng.integers(-1, 2, 50)
-    other = swap_sides(game)
-    assert np.array_equal(swap_sides(other), game)
-    assert np.array_equal(other[:, columns.SCORE_0], game[:, columns.SCORE_1])
-    assert (other[:, columns.BREAKER] == 1 - game[:, columns.BREAKER]).all()
-    assert ((other[:, columns.WINNER] < 0) == (game[:, columns.WINNER] < 0)).all()
 
 
 def test_one_call_serves_all_tables_that_wait():
@@ -224,31 +212,6 @@ def test_an_error_of_a_player_names_it(error, kind):
     error = KeyboardInterrupt()  # the end of a program is no error of a player
     with pytest.raises(KeyboardInterrupt):
         [env.reset(seed=seed) for seed in range(10)]
-
-
-@pytest.mark.parametrize("name", ["search_30", "pool"])
-def test_any_opponent_plays_matches_and_stable_baselines_tables(name):
-    pytest.importorskip("stable_baselines3")
-    from snooker_env.sb3 import SnookerVecEnv
-
-    opponent = {"pool": OpponentPool(["ghost_ball", Soft(), "best_pot"])}.get(name, name)
-    options = {"task": "match", "frames": 3, "layout": "pots:easy", "aim": "target", "max_strokes": 20}
-    options["opponent"] = opponent
-    env = begun(sn.SnookerEnv(**options))
-    over = strokes = steps = 0
-    while not over and steps < 100:
-        _, _, terminated, truncated, info = env.step(MISS[:4])
-        over, strokes, steps = terminated or truncated, strokes + info["opponent_strokes"], steps + 1
-    assert over and strokes > 0 and (truncated or max(info["frames_won"], info["opponent_frames"]) == 2)
-    tables = SnookerVecEnv(3, threads=1, info_keys=["opponent_strokes"], **options)
-    tables.seed(1)
-    tables.reset()
-    ended = strokes = 0
-    for _ in range(12):
-        _, _, dones, infos = tables.step(np.tile(np.array(MISS[:4], np.float32), (3, 1)))
-        ended, strokes = ended + dones.sum(), strokes + sum(info["opponent_strokes"] for info in infos)
-    tables.close()
-    assert ended > 0 and strokes > 0
 
 
 class SeesNothing(Sees):

@@ -28,7 +28,7 @@ from snooker_env.tasks.discrete_actions import (
     STROKES,
     TOPS,
 )
-from snooker_env.tasks.noise import TWICE, Noise, with_errors
+from snooker_env.tasks.noise import TWICE
 from tests.kernels import from_python
 from tests.tables import table_state
 
@@ -66,26 +66,6 @@ def test_a_frozen_ball_is_played_from_above_and_screw_with_a_higher_tip():
     assert np.degrees(open_["elevation"]) < 2.5 and "moved" not in done
     over, done = cue_of(posed({0: (0.0, 0.0), 1: (-0.06, 0.0)}), [0.0, 0.0, 0.0, 0.0])
     assert np.degrees(over["elevation"]) > 30.0 and done == ("raised",)
-
-
-def test_errors_of_aim_and_tip_grow_with_the_elevation_of_a_real_cue_only():
-    law = from_python(with_errors)
-    noise, shot, errors = (
-        Noise(aim_deg=0.1, speed_rel=0.02, offset_mm=0.3),
-        (3.0, 0.1, -0.1, 0.4),
-        (1.0,) * 4 + (0.0,),
-    )
-    for real, elevation, times in (
-        (False, TWICE, 1.0),
-        (True, 0.0, 1.0),
-        (True, TWICE, 2.0),
-        (True, 0.5 * TWICE, 1.5),
-    ):
-        got = law(*shot, elevation, errors, noise.pack(R, real=real))
-        off = np.array(got[:4]) - shot
-        assert off == pytest.approx(
-            [0.06, times * 3e-4 / R, times * 3e-4 / R, times * np.radians(0.1)], rel=1e-9
-        )
 
 
 def test_the_errors_leave_the_cue_above_the_rail():
@@ -285,20 +265,3 @@ def test_chances_of_pots_fall_where_the_cue_must_be_raised():
         for cue in ("free", "real")
     ]
     assert (proposed[1] < proposed[0]).all() and np.ptp(proposed[1]) > 10.0 * np.ptp(proposed[0])
-
-
-def test_side_without_pots_is_aimed_for_the_swerve_too():
-    """A red at the far cushion, which cannot be potted: the first line without a pot is its middle."""
-    places = {0: (0.3, -1.7845 + R + 0.005), 1: (0.3, 1.7845 - R - 1e-6)}
-    met = {}
-    for cue in ("free", "real"):
-        env = posed(places, action="discrete", cue=cue)
-        assert not len(pots.pots(env.positions, env.on_table, mask_of([1]), most=1))
-        strokes, at = Planner({"action": "discrete", "cue": cue}).strokes_of(
-            env, [0], [choice_of(0, 6, 0, 2)]
-        )
-        real = Planner({"cue": "real"})
-        met[cue] = int(real.play_strokes(at, [0], strokes).first[0])
-        env.step(choice_of(0, 6, 0, 2))
-        assert env.history[-1].first == (1,)
-    assert met["real"] == 1 and met["free"] != 1

@@ -8,7 +8,6 @@ from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, N_BALLS, REFEREE_TOUCH, SPOTS, YELLOW, BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS as R
-from snooker_env.geometry import HALF_WIDTH
 from snooker_env.tasks.rewards import REWARDS
 from tests.tables import table_state
 
@@ -66,17 +65,6 @@ def test_the_highest_break():
     assert obs[-1] == np.float32(147 / 155) and not obs[111:119].any() and env.observation_space.contains(obs)
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(STUN)
-
-
-def test_an_in_off_is_a_foul_though_a_red_went_too():
-    """A straight pot with top spin: the cue ball follows into the same pocket."""
-    env = SnookerEnv(reward="points_and_fouls")
-    table_state(env, {CUE: (0.5, 0.0), 1: (0.7, 0.0), 2: (-0.5, 0.5), BLACK: (0.0, 1.0)}, BallOn.RED)
-    obs, reward, terminated, _, info = env.step([-0.2, 0.0, 1.0, 0.0])
-    assert (reward, terminated, info["foul"], info["penalty"], info["pots"]) == (-4.0, True, True, 4, 1)
-    assert info["points"] == 0.0
-    assert info["fouls"] == Foul.CUE_POTTED and not env.on_table[CUE] and not env.on_table[1]
-    assert obs[-2] == 1.0 and env.in_hand and np.all(obs[:3] == 0.0)
 
 
 @pytest.mark.parametrize(
@@ -154,12 +142,3 @@ def test_what_a_touching_ball_allows(places, speed, aim, foul, worth, first):
     info = env.step([speed, 0.0, 0.0, aim])[4]
     assert info["penalty"] == worth and first in (None, info["first_ball"])
     assert info["fouls"] & Foul.PUSH if foul == Foul.PUSH else info["fouls"] == foul
-
-
-@pytest.mark.parametrize("gap", [0.0, 4e-5])
-def test_a_touching_ball_met_again_off_a_cushion_is_no_push(gap):
-    """Played away from the red straight onto the near cushion, from which the cue ball returns onto it."""
-    env, x = SnookerEnv(), R + 0.2 - HALF_WIDTH
-    table_state(env, {CUE: (x, 0.3), 1: (x + 2 * R + gap, 0.3), BLUE: (0.4, 1.2)}, BallOn.RED)
-    info = env.step([-0.5, 0.0, 0.0, AWAY])[4]
-    assert info["fouls"] == 0 and info["first_ball"] == 1

@@ -6,7 +6,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 import torch
-from positions import chances_by_width, tables
 
 from agents.learning import value_learning
 from agents.learning.value_learning import FIRST_GUESS, LAMBDA, RATE, ValueLearning
@@ -14,6 +13,7 @@ from agents.learning.value_network import MEMBERS, POINTS, WIDTHS, ValueNetwork,
 from snooker_env.planning import Positions, Search, VisitJudge, spread_of
 from snooker_env.planning.learned.value_features import LOGIT, SIZE, value_features
 from snooker_env.tasks import LEVELS
+from tests.positions import chances_by_width, tables
 
 SPREAD, SAMPLES = 1e-3, 3
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from positions import chances_by_width, tables
 
 from agents.learning.models import PRETRAINED, load_trained
 from snooker_env.planning import Planner, Positions, Search, VisitJudge, action_masks, pots
 from snooker_env.planning.learned.policy_proposals import TEMPERATURE, PolicyProposals
 from snooker_env.planning.proposals import AIM, RIM, SIDE, SPEED, TOP
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, TOPS, choice_of
+from tests.positions import chances_by_width, tables
 
 JUDGE = VisitJudge({"noise": "professional", "fidelity": "fast"}, threads=1)
 

@@ -4,7 +4,6 @@ from math import hypot, log10
 
 import numpy as np
 import pytest
-from positions import tables
 
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, BallOn, mask_of
@@ -15,6 +14,7 @@ from snooker_env.planning.learned import pot_view
 from snooker_env.tasks.discrete_actions import POTS
 from snooker_env.tasks.observations import SIZE
 from snooker_env.tasks.visit import BALL_ON
+from tests.positions import tables
 from tests.shots import shot
 
 VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}

@@ -4,7 +4,6 @@ from math import erf, exp, hypot, log, sqrt
 
 import numpy as np
 import pytest
-from positions import chances_by_width, tables
 
 from snooker_env.game import COLOUR_NAMES, VALUES
 from snooker_env.geometry import SIDES
@@ -18,6 +17,7 @@ from snooker_env.planning.learned.value_features import (
     value_features,
 )
 from snooker_env.tasks import LEVELS
+from tests.positions import chances_by_width, tables
 
 SPREAD = spread_of(LEVELS["professional"])
 OF_ALL = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES
@@ -132,14 +132,3 @@ def test_the_ball_on_is_one_of_eight():
     assert value_features(some(1, "break_off"), SPREAD)[0, LEFT] == 1.0
     assert rows[:, OF_ALL + 23].tolist() == [1, 0, 1, 1, 1, 1, 1, 1]
     assert rows[:, OF_ALL + 24].tolist() == [0, 1, 0, 0, 0, 0, 0, 0]
-
-
-def test_any_number_of_threads_and_any_rows_give_the_same():
-    at = some(300, "random:6")
-    kept = at.copy()
-    one = value_features(at, SPREAD)
-    assert np.array_equal(one, value_features(at, SPREAD, threads=2))
-    assert np.array_equal(one, value_features(at, SPREAD, threads=5))
-    assert np.array_equal(one[[7, 250, 3]], value_features(at[[7, 250, 3]], SPREAD))
-    assert len(value_features(at[[]], SPREAD)) == 0
-    assert np.array_equal(at.positions, kept.positions) and np.array_equal(at.game, kept.game)
