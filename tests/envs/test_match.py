@@ -52,33 +52,6 @@ def test_nothing_is_observed_before_the_first_reset(options):
     assert all(env.observation_space(name).contains(env.observe(name)) for name in env.agents)
 
 
-def test_masked_observations_of_both_players_hold_their_masks():
-    """All 0 for the player whose turn it is not, and for both at the end, as in the infos."""
-    options = {"action": "discrete", "layout": "random:0", "noise": "club"}
-    env, flat = (sn.match_env(observation=kind, **options) for kind in ("masked", "flat"))
-    env.reset(seed=2), flat.reset(seed=2)
-    rng, turns = np.random.default_rng(0), set()
-    while True:
-        for name in env.possible_agents:
-            seen, mask = env.observe(name), env.action_mask(name)
-            assert np.array_equal(seen["observations"], flat.observe(name))
-            assert env.observation_space(name).contains(seen)
-            assert seen["action_mask"].dtype == np.int8 and np.array_equal(seen["action_mask"], mask)
-            assert np.array_equal(mask, env.infos[name]["action_mask"])
-            assert np.array_equal(mask, flat.action_mask(name))
-            over = any(env.terminations.values())
-            assert mask.any() == (name == env.agent_selection and not over)
-            seen["action_mask"][:] = 1  # it is the caller's own
-        if over:
-            break
-        turns.add(env.agent_selection)
-        action = int(rng.choice(np.flatnonzero(env.action_mask(env.agent_selection))))
-        env.step(action), flat.step(action)
-    assert len(turns) == 2
-    with pytest.raises(ValueError, match="a Box has no masks"):
-        sn.match_env().action_mask("player_0")
-
-
 @pytest.mark.parametrize("options", [{"noise": "club", "layout": "random:3"}, MATCH])
 def test_pettingzoo_checks_its_seeds(options, strict):
     seed_test(lambda: sn.match_env(aim="target", **options), num_cycles=60)

@@ -62,7 +62,7 @@ def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
 
 
 def test_the_opponents_strokes_are_filmed_too(tmp_path):
-    env = RecordVideo(made(task="frame", opponent="ghost_ball"), str(tmp_path / "films"), **ALL)
+    env = RecordVideo(made(task="frame", opponent="random"), str(tmp_path / "films"), **ALL)
     env.reset(seed=2)
     before = len(env.recorded_frames)
     env.step(67)

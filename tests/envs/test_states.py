@@ -159,17 +159,6 @@ def test_inputs_of_a_shot_are_left_as_they_are(many):
         assert not any(np.shares_memory(mine, a) for a in (r, v, w, here))
 
 
-def test_any_real_dtype_and_memory_order_gives_the_same_shot():
-    r, v, w = np.array([(0.0, 0.0), (0.5, 0.0625)]), np.array([(2.0, 0.0), (0.0, 0.0)]), np.ones((2, 3))
-    want = sn.simulate(r, v, w).positions
-    others = (lambda a: a.astype(np.float32), lambda a: a.astype(">f8"), lambda a: a[::-1][::-1])
-    for change in (np.asfortranarray, list, *others):
-        assert np.array_equal(sn.simulate(change(r), change(v), change(w)).positions, want)
-    whole = np.zeros((1, 2), np.int32), np.array([(1, 0)], np.uint8), np.zeros((1, 3), np.int64)
-    want = sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [Z]).positions
-    assert np.array_equal(sn.simulate(*whole).positions, want)
-
-
 def test_what_an_environment_is_given_is_left_as_it_is_and_not_kept():
     physics, noise = {"preset": "match", "mu_s": 0.2}, {"aim_deg": 0.1}
     env = begun(SnookerEnv(physics=physics, noise=noise, layout="random:4"), 2)

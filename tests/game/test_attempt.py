@@ -52,7 +52,7 @@ def test_shots_off_cushions_against_dense_sampling():
     positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
     positions[[CUE, 1, 2, BLACK]] = (0.1, -1.2), (0.5, 1.3), (-0.6, 0.9), (0.0, 0.5)
     on_table[[CUE, 1, 2, BLACK]] = True
-    for _ in range(40):
+    for _ in range(80):
         velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
         v, spins[CUE] = sn.strike(*rng.uniform((0.5, 0, -0.3, -0.3), (5, 2 * np.pi, 0.3, 0.3)))
         velocities[CUE] = v[:2]

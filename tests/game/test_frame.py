@@ -1,6 +1,5 @@
 """Does a frame go on as the rules say, to the last black, and survive being written down?"""
 
-import json
 from dataclasses import replace
 
 import pytest
@@ -113,33 +112,3 @@ def test_a_respotted_black_is_decided_by_the_next_score_or_foul(first):
     assert played(frame, hit(BLACK), pot(BLACK)).winner == 1 - first
     with pytest.raises(ValueError, match="phase"):
         frame.draw(0)
-
-
-def test_who_may_claim_and_concede():
-    assert last(BallOn.BLACK, (60, 52)).claim().winner == 0
-    for frame in (last(BallOn.BLACK, (60, 53)), last(BallOn.PINK, (60, 20)), last(BallOn.BLACK, (20, 60))):
-        assert not frame.may_claim
-        with pytest.raises(ValueError, match="over 7"):
-            frame.claim()
-    frame = Frame.start(breaker=1)
-    assert frame.concede(1).winner == 0
-    with pytest.raises(ValueError, match="striker"):
-        frame.concede(0)
-    with pytest.raises(ValueError, match="striker"):
-        frame.concede(1).concede(1)
-
-
-def test_a_stalemate_starts_again_and_what_is_over_does_not():
-    frame = played(Frame.start(breaker=1, miss="clear_path"), pot(1), pot(BLACK), hit(2)).restart()
-    assert frame == Frame.start(breaker=1, miss="clear_path")
-    few = Frame.start(on_table=COLOURS_MASK | 0b10110, miss="clear_path")
-    assert through_json(played(few, pot(2), pot(BLACK), hit(1))).restart() == few
-    assert Frame.start(rules="six_red").restart().on_table == Frame.start(rules="six_red").on_table
-    with pytest.raises(ValueError, match="over"):
-        frame.concede(frame.striker).restart()
-    with pytest.raises(ValueError, match="over"):
-        Frame.start().concede(0).play(MISSED)
-
-
-def through_json(frame):
-    return Frame.from_dict(json.loads(json.dumps(frame.to_dict())))

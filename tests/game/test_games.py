@@ -63,7 +63,7 @@ def test_whatever_is_played_the_frame_is_possible_and_a_table_keeps_it(rules, mi
         return
     rng, met = np.random.default_rng(5), Counter()
     row, layouts = np.zeros(COLUMNS, np.int64), Layouts(np.zeros((1, 22, 2)), np.zeros((1, 22), np.bool_))
-    for game in range(24):
+    for game in range(40):
         few = COLOURS_MASK | 0b110 if game % 2 else None
         frame = Frame.start(breaker=game % 2, miss=miss, rules=rules, on_table=few)
         to_play = int(rng.choice([4_000, 9_000, 12_000, 16_000]))

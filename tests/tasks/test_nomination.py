@@ -52,14 +52,6 @@ def test_a_free_ball_is_nominated_or_declined(part, penalty):
     assert env.step([-0.9, 0, 0, TO_BLUE, 0, 0, named(part, 7), 0])[4]["penalty"] == penalty
 
 
-def test_the_ball_on_itself_as_the_free_ball_declines_it():
-    for part, penalty in ((0, 0), (4, 0), (5, 5), (6, 5)):  # blue is on
-        env = frame_state(
-            frame_env(aim="absolute", says=["nominate", "decision"]), COLOURS, FREE | {"ball_on": BallOn.BLUE}
-        )
-        assert env.step([-0.9, 0, 0, TO_BLUE, 0, 0, named(part, 7), 0])[4]["penalty"] == penalty, part
-
-
 def blocks(env):
     """Which nominations the mask allows."""
     mask = env.action_masks()
@@ -139,15 +131,6 @@ def test_to_concede_costs_what_is_left_on_the_table():
     _, reward, terminated, _, info = env.step(GIVES_UP)
     assert (reward, terminated, info["winner"]) == (-LEFT, True, 1)
     assert (info["score"], info["opponent_score"]) == (10.0, 30.0)  # the score stands
-
-
-@pytest.mark.parametrize("striker", [0, 1])
-def test_of_two_players_the_other_one_gets_it(striker):
-    match = frame_state(
-        sn.match_env(says=["decision", "concede"]), STANDING, {"scores": (10, 30), "striker": striker}
-    )
-    match.step(GIVES_UP)
-    assert match.rewards == {f"player_{striker}": -LEFT, f"player_{1 - striker}": LEFT}
 
 
 @pytest.mark.parametrize(("reward", "expected"), [("win", -1.0), ("frames", -1.0), ("points", -(147 + LEFT))])

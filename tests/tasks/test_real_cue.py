@@ -25,7 +25,6 @@ from snooker_env.tasks import choice_of
 from snooker_env.tasks.discrete_actions import (
     SIDES,
     SPEEDS,
-    STROKES,
     TOPS,
 )
 from snooker_env.tasks.noise import TWICE
@@ -78,45 +77,6 @@ def test_the_errors_leave_the_cue_above_the_rail():
         found.append(np.degrees(cue_of(env, [0.0, 0.0, 0.0, 1.0])[0]["elevation"]))
     least = min(found)
     assert np.mean(np.array(found) == least) > 0.3 and max(found) > least + 2.0
-
-
-OPTIONS: list[dict[str, Any]] = [
-    {"aim": "target", "noise": "amateur", "layout": "random:3"},
-    {"action": "discrete", "noise": "club", "layout": "random:6"},
-]
-
-
-def at_a_cushion(env, k):
-    """Every other table has its cue ball at a cushion."""
-    state = env.get_state()
-    if k % 2 and env.options.layout != "break_off":
-        x = (1 if k % 4 == 1 else -1) * (0.889 - R - 0.001 * k)
-        away = np.hypot(*(np.array(state["positions"][1:]) - (x, 0.31)).T)
-        if (away > 2.2 * R).all():
-            state["positions"][0] = [x, 0.31]
-            env.reset(options={"state": state})
-    return env.get_state()
-
-
-@pytest.mark.parametrize("options", OPTIONS)
-def test_a_planned_stroke_is_the_stroke_of_the_environment(options):
-    env = sn.SnookerEnv(cue="real", **options)
-    env.keep_history = True
-    planner, raised = Planner(env, threads=1), 0
-    rng = np.random.default_rng(0)
-    for k in range(16):
-        env.reset(seed=k)
-        state = at_a_cushion(env, k)
-        shape = env.action_space.shape
-        available = np.arange(1) if shape else np.flatnonzero(env.action_masks())
-        chosen = rng.uniform(-1, 1, (1, *shape)).astype(np.float32) if shape else rng.choice(available, 1)
-        made = planner.play(state, [0], chosen, [state["stream"]])
-        observation, reward, ended, _, _ = env.step(chosen[0])
-        assert made.points[0] == reward and made.goes_on[0] == (not ended)
-        assert np.array_equal(made.observations[0], observation)
-        assert np.array_equal(made.afterstates.positions[0], env.positions)
-        raised += np.degrees(env.history[-1].cue["elevation"]) > 3.0
-    assert raised > 2
 
 
 def at_the_cushion(n, away, seed):
@@ -174,20 +134,6 @@ def test_target_lines_are_turned_by_the_swerve(elevated):
             thick.append(np.hypot(*(place - line[2:4])))
     free, real = np.array(thick).reshape(2, -1)
     assert real.max() < 1e-3 and np.median(free) < 2e-3  # a level cue's squirt is all there is
-
-
-def test_masks_leave_out_what_must_be_steeper_than_a_player_can():
-    env = posed({0: (FROZEN, 0.9), 1: (0.0, 0.9 + 0.3)}, action="discrete")
-    masks = env.action_masks().reshape(-1, len(SPEEDS), len(SIDES), len(TOPS))
-    lines = masks.any(axis=(1, 2, 3)).sum()
-    assert lines >= 1 and not masks[:lines, :, :, 0].any() and masks[0, :, 1, 2:].all()
-    assert (masks == masks[:, :1]).all()  # whatever the speed
-    for choice in np.flatnonzero(env.action_masks())[:: STROKES // 15]:
-        again = posed({0: (FROZEN, 0.9), 1: (0.0, 0.9 + 0.3)}, action="discrete")
-        again.step(int(choice))
-        assert "moved" not in again.history[-1].room
-    free = posed({0: (FROZEN, 0.9), 1: (0.0, 0.9 + 0.3)}, action="discrete", cue="free")
-    assert free.action_masks().sum() == STROKES * lines
 
 
 def crowded(n, seed):

@@ -101,23 +101,6 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on, spread):
     assert rows[:, LIKELIEST] == pytest.approx(chances.max(axis=1), rel=1e-5) and several > 5
 
 
-def test_a_blocker_takes_a_pot_away():
-    """A red in the way of the cue ball, of the object ball, and beside both."""
-    pot = {"cue": (0.0, 0.9), "black": (0.4, 1.3)}
-    free, chance = seen(Position(**pot))[0], slice(0, POT_ENTRIES)
-    assert free[0] == 1.0 and free[1] > 0.8
-    on = {"on": "any_colour"}
-    places = (0.2, 1.08), (0.62, 1.53), (-0.4, 1.2), (0.1, 1.3)
-    for red, blocked in zip(places, (True, True, False, False), strict=True):
-        row = seen(Position(**pot, reds=[red], **on))[0]
-        assert np.array_equal(row[chance], free[chance]) != blocked, red
-        assert row[LIKELIEST] <= free[LIKELIEST] + 1e-7
-        assert (row[LIKELIEST] < 0.9 * free[LIKELIEST]) == blocked
-    open_to = POTS_SEEN * POT_ENTRIES + 5 * COLOUR_ENTRIES + 1  # how open the black is for a pocket
-    near, far = (seen(Position(**pot, reds=[red], **on))[0, open_to] for red in ((0.2, 1.08), (0.62, 1.53)))
-    assert near == free[open_to] > far  # wherever the cue ball lies
-
-
 def test_the_ball_on_is_one_of_eight():
     spots = [(0.3, -1.0), (-0.3, -1.0), (0.0, -1.0), (0.0, 0.0), (0.0, 0.9), (0.0, 1.4)]
     colours = dict(zip(COLOUR_NAMES, spots, strict=True))
