@@ -62,7 +62,7 @@ FRAMES = {
     | {"game": "shoot_out", "opponent": "random", "says": ["decision", "lot"], "time_to_play": 12.0},
     "flight": FRAME | {"layout": "random:2", "physics": {"flight": True}, "elevation": True},
     "a match": FRAME
-    | {"task": "match", "frames": 3, "layout": "random:0", "opponent": "random", "max_strokes": 60},
+    | {"task": "match", "frames": 3, "layout": "pots:easy", "opponent": "ghost_ball", "max_strokes": 60},
 }
 KINDS = VISITS | FRAMES
 
