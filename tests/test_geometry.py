@@ -1,7 +1,6 @@
 """Is there one geometry? One definition of table and ball, one order of pockets, sizes as published."""
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from snooker_env import Pocket, Table, geometry
 from snooker_env.game import balls
 from tests.refusals import refuse_each
 
-PACKAGE = Path(sn.__file__).resolve().parent
 INCH = 0.0254
 SIDE, END = {"left": -1, "right": 1}, {"bottom": -1, "middle": 0, "top": 1}
 

@@ -126,7 +126,7 @@ def test_attributes():
         SnookerVecEnv(2, info_keys=("score",))
 
 
-@pytest.mark.parametrize("observation", ["flat", "balls"])
+@pytest.mark.parametrize("observation", ["flat", pytest.param("balls", marks=pytest.mark.slow)])
 def test_ppo_and_sac_learn_on_it_without_a_warning(observation, strict):
     policy = "MlpPolicy" if observation == "flat" else "MultiInputPolicy"
     env = SnookerVecEnv(8, observation=observation, aim="target")

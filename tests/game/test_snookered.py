@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game.balls import BLACK, PINK, SPOTS, YELLOW, mask_of
+from snooker_env.game.balls import BLACK, SPOTS, YELLOW, mask_of
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS
 from tests.miss_paths import paths
@@ -29,21 +29,6 @@ def snookered(*args, **options):
 
 CUE = (0.0, -0.8)
 FAR = (0.0, 0.8)
-
-
-@pytest.mark.parametrize(
-    ("reds", "others", "effective"),
-    [
-        ([FAR], [(0.0, 0.0), (0.0, 0.3)], [BLACK]),  # the nearest
-        ([FAR], [(0.0, 0.3), (0.0, 0.0)], [PINK]),
-        ([FAR], [(-0.06, 0.0), (0.06, 0.0)], [BLACK, PINK]),  # equally near: both
-        ([FAR, (0.0, 1.2)], [(0.0, 0.0)], [BLACK]),
-        ([FAR, (0.5, 0.7)], [(0.06, 0.0), (0.33, 0.3)], []),  # different reds, different balls
-        ([FAR], [], []),
-    ],
-)
-def test_effective_snookering_ball(reds, others, effective):
-    assert snookered(CUE, reds, others)[1] == mask_of(effective)
 
 
 def test_a_cushion_does_not_snooker():

@@ -134,15 +134,3 @@ def test_a_file_holds_the_position_to_the_last_bit_on_any_table(tmp_path):
         "3.0",
         "must be on the table",
     )
-
-
-def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
-    file = tmp_path / "one.json"
-    POSITION.save(file)
-    monkeypatch.setattr(Position, "to_dict", lambda self: {"cue": object()})
-    with pytest.raises(TypeError):
-        Position(cue=(0.0, 0.0), black=(0.0, 1.0)).save(file)
-    monkeypatch.undo()
-    assert Position.load(file) == POSITION and len(list(tmp_path.iterdir())) == 1
-    with pytest.raises(OSError, match="nowhere"):
-        POSITION.save(tmp_path / "nowhere" / "one.json")

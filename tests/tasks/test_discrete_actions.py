@@ -146,18 +146,6 @@ def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
     assert found[:, 0] == pytest.approx([wide, wide - thin, wide + thin, 0.0], abs=1e-12)
 
 
-def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
-    positions, on_table = layout("break_off", np.random.default_rng(0))
-    for x, ends in ((0.18, (15, 11)), (-0.18, (11, 15))):
-        positions[CUE] = x, -1.0475
-        aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
-        met = first_met(positions, on_table, aims)
-        assert met[0] == ends[0] and ((met >= 1) & (met <= 15)).all()
-    positions[CUE] = 0.0, -1.15  # behind the brown: what it sees of the pack, if anything
-    aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
-    assert len(aims) and BROWN not in first_met(positions, on_table, aims)
-
-
 @pytest.mark.parametrize(
     ("kind", "n", "least", "target"),
     [
