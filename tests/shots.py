@@ -1,35 +1,25 @@
-"""How does a test ask what shot an action means, and where its target line leads?"""
+"""How does a test ask what shot an action means? The action is played, and the record of the cue is read."""
 
-import numba
+from math import degrees
+
 import numpy as np
 
-from snooker_env.game.pots import POT_COLUMNS
-from snooker_env.physics.parameters import Physics
-from snooker_env.tasks.box_actions import shot_of
-from snooker_env.tasks.kernel_arrays import CueLaw
-from snooker_env.tasks.lines import LINE_ROWS, line_of, new_work
-
-PAPER = Physics()
+from snooker_env import SnookerEnv
+from snooker_env.game.balls import BallOn
+from snooker_env.tasks.visit import BALL_ON
 
 
-@numba.njit(error_model="numpy")
-def _line(positions, on_table, on):
-    return line_of(positions, on_table, on, np.empty((LINE_ROWS, POT_COLUMNS)))
-
-
-@numba.njit(error_model="numpy")
-def _shot(a, positions, on_table, on, options, phys, cue):
-    law = CueLaw(phys, cue[0], 0, 0, cue[1], cue[2:])
-    return shot_of(a, positions, on_table, on, options, law, new_work())
-
-
-def shot(actions, a, positions, on_table, on, physics=PAPER):
-    """(speed, side, top, aim of the cue, elevation) of the action ``a`` of ``Actions``, with a free cue."""
-    table = np.array(positions, np.float64), np.array(on_table, np.bool_), int(on)
-    cue = np.array([physics.end_mass_ratio, physics.max_offset])
-    return _shot(np.array(a, np.float64), *table, actions.pack(), physics.pack(), cue)
-
-
-def line(positions, on_table, on):
-    """Direction [rad] of the target line: to the widest direct pot's ghost ball, else the best line."""
-    return _line(np.array(positions, np.float64), np.array(on_table, np.bool_), int(on))
+def shot(actions, a, positions, on_table, on, physics="paper"):
+    """(speed, side, top, aim of the cue, elevation) of the action ``a`` of ``Actions``, with a free cue; a red is on."""
+    elevation = degrees(actions.steepest) if actions.elevation else False
+    env = SnookerEnv(aim=actions.aim, elevation=elevation, physics=physics)
+    env.reset(seed=0)
+    env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, BALL_ON] = (
+        positions,
+        on_table,
+        BallOn.RED,
+    )
+    assert actions.aim == "absolute" or env.on == on
+    env.keep_history = True
+    env.step(np.asarray(a)[: env.action_space.shape[0]])
+    return tuple(env.history[-1].cue.values())

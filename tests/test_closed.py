@@ -24,9 +24,7 @@ COACH = (
 )
 COMMANDS = {
     "coach": COACH,
-    "advice": ("-m", "snooker_env.advice", "--help"),
     "benchmark": ("-m", "snooker_env.benchmark", "tasks"),
-    "benchmark_help": ("-m", "snooker_env.benchmark", "--help"),
     "play": ("-m", "snooker_env.play", "--help"),
     "watch": ("-m", "snooker_env.watch", "--help"),
     "agents": ("-m", "agents.report", "--help"),

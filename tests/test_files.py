@@ -33,10 +33,8 @@ JSON = {
     "infinite": b'{"a": -Infinity}',
     "1e999": b'{"a": 1e999}',
     "10^400": b'{"a": 1' + b"0" * 400 + b"}",
-    "10^9999": b'{"a": -1' + b"0" * 9999 + b"}",
     "a key twice": b'{"format": 1, "format": 2}',
     "deep": b"[" * 200_000,
-    "deep and whole": b"[" * 400 + b"]" * 400,
     "objects in objects": b'{"a":' * 40 + b"1" + b"}" * 40,
 }
 OTHER = {
@@ -177,20 +175,16 @@ LARGE = npz(a=npy(np.zeros(MOST_NPZ // 8 + 1)))
 NPZ = {
     "nothing": b"",
     "no zip": b"PK\3\4" + bytes(99),
-    "half": npz(a=ONE)[:-30],
     "large": LARGE,
     "large, and says it is small": lying(LARGE, 100),
     "small, and says it is large": lying(npz(a=ONE), 2**32 - 2),
     "bzip2": npz(zipfile.ZIP_BZIP2, a=ONE),
-    "lzma": npz(zipfile.ZIP_LZMA, a=ONE),
     "no array": npz(a=b"hello"),
-    "nothing in it": npz(a=b""),
     "more than there is": npz(a=npy(np.arange(3.0), shape=(10**12,))),
     "less than there is": npz(a=npy(np.arange(3.0), shape=(2,))),
     "no size": npz(a=npy(np.arange(3.0), shape=(-1, -3))),
     "objects": npz(a=npy(np.arange(3.0), descr="|O")),
     "nothing each": npz(a=npy(np.arange(0.0), descr="|V0", shape=(10**12,))),
-    "no kind": npz(a=npy(np.arange(3.0), descr="x9")),
     "a flipped bit": npz(zipfile.ZIP_STORED, a=ONE).replace(ONE, ONE[:-3] + b"\1" + ONE[-2:]),
 }
 ARRAYS = {

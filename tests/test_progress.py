@@ -40,18 +40,6 @@ def test_a_pipe_gets_a_line_at_the_start_every_few_seconds_and_at_the_end(quick)
     assert re.fullmatch(last, lines[-1])
 
 
-def test_what_is_quiet_or_not_known_is_not_said(quick):
-    out = io.StringIO()
-    with Progress("play", 10, "shots", to=out):
-        pass
-    assert out.getvalue() == "play: 0 of 10 shots\n"  # once: nothing has changed at the end
-    out = io.StringIO()
-    with Progress("play", 10, "shots", to=out, quiet=True) as said:
-        said.at(3)
-        time.sleep(0.1)
-    assert out.getvalue() == ""
-
-
 def test_a_terminal_gets_one_line_with_a_bar(quick, monkeypatch):
     monkeypatch.setenv("COLUMNS", "60")
     out = Terminal()
@@ -83,20 +71,6 @@ def test_the_time_left_follows_the_latest_measurements(monkeypatch):
     clock[0] += 10.0
     resumed.at(950)  # it measures only what it did itself
     assert resumed.rate == pytest.approx(5.0) and resumed.left == pytest.approx(10.0)
-
-
-def test_an_output_that_was_closed_stops_the_work(quick):
-    class Closed(io.StringIO):
-        def write(self, text):
-            if self.tell():
-                raise BrokenPipeError
-            return super().write(text)
-
-    with pytest.raises(BrokenPipeError), Progress("play", 10, "shots", to=Closed()) as said:
-        for _ in range(100):
-            time.sleep(0.02)
-            said.at(said.done)
-    assert said.done == 0
 
 
 def test_an_error_inside_is_raised_and_the_last_state_said(quick):

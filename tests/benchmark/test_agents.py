@@ -12,7 +12,7 @@ from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, writ
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.playing import BATCH
 from snooker_env.benchmark.results import strokes_of
-from snooker_env.players import VISITS, Strokes
+from snooker_env.players import VISITS, Strokes, ask_player
 from tests.processes import ROOT
 
 EXAMPLE = f"program:{sys.executable} {ROOT / 'examples/program_player.py'}"

@@ -1,22 +1,18 @@
 """Do episodes draw their tables: within the ranges, by the seed, alike one by one and side by side?"""
 
 import json
-import pickle
 import re
 
-import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env
-from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
 from snooker_env.physics import conditions
 from snooker_env.physics.conditions import NAMES, RANGES
-from snooker_env.physics.parameters import nominal, pack_into, physics_with
+from snooker_env.physics.parameters import nominal
 from snooker_env.planning import Planner, Positions, Strokes
-from tests.envs.test_vector import check_equal
 from tests.processes import ROOT
+from tests.refusals import refuse_each
 from tests.tables import begun
 
 DRAWN = {"conditions": "drawn"}
@@ -61,20 +57,6 @@ def test_the_ranges_and_their_order_are_those_of_the_page():
     assert [(name, (float(a), float(b))) for name, a, b in row.findall(page)] == list(RANGES.items())
 
 
-def test_rows_are_the_packed_constants_of_the_physics():
-    rng = np.random.default_rng(1)
-    for base in (
-        sn.Physics(),
-        sn.Physics.preset("match"),
-        sn.Physics(e_j=0.5, nap=0.001, mu_bb=(0.01, 0.1, 2.0)),
-    ):
-        rows, values = np.tile(base.pack(), (5, 1)), conditions.draw_constants(rng.random((3, 8)))
-        pack_into(rows, np.array([0, 2, 4]), values, base)
-        for k, one in zip((0, 2, 4), values, strict=True):
-            assert (rows[k] == physics_with(base, one).pack()).all()
-        assert (rows[1] == base.pack()).all() and (nominal(base)[[0, 4]] == (base.mu_s, 1.0)).all()
-
-
 @pytest.mark.parametrize("task", ["visit", "frame", "match"])
 def test_an_episode_keeps_its_table_and_the_next_one_has_another(task):
     options = OBSERVED | {"task": task, "layout": "opened"}
@@ -97,12 +79,6 @@ def test_an_episode_keeps_its_table_and_the_next_one_has_another(task):
     assert (of_info(env.reset(seed=6)[1]) != first).all()
 
 
-def test_the_same_table_is_dealt_as_with_fixed_constants():
-    env, fixed = (begun(sn.SnookerEnv(**options), 9) for options in (DRAWN, {}))
-    assert (env.positions == fixed.positions).all()
-    assert "mu_s" not in fixed.step(MIDDLE)[4] and "conditions" not in fixed.get_state()
-
-
 def test_shots_have_the_constants_of_their_table():
     env = begun(sn.SnookerEnv(**DRAWN), 2)
     start, here = env.positions, env.on_table
@@ -121,118 +97,19 @@ def test_shots_have_the_constants_of_their_table():
     assert np.allclose(ends[0], shot.positions, atol=1e-9) and np.abs(ends[1] - ends[0]).max() > 1e-3
 
 
-@pytest.mark.parametrize("options", [{}, {"task": "frame", "opponent": "ghost_ball"}, {"task": "match"}])
-def test_a_state_restores_the_table(options):
-    env = begun(sn.SnookerEnv(noise="club", **DRAWN, **options), 4)
-    env.step(MIDDLE)
+def test_a_state_holds_the_table():
+    env, fixed = (begun(sn.SnookerEnv(noise="club", **options), 4) for options in (DRAWN, {}))
     state = json.loads(json.dumps(env.get_state()))
-    after = [env.step(MIDDLE) if not env.over else env.reset() for _ in range(4)]
-    other = begun(sn.SnookerEnv(noise="club", **DRAWN, **options), 77)
-    assert (of_state(other) != np.array(list(state["conditions"].values()))).all()
-    other.set_state(state)
-    assert other.get_state() == state
-    for one in after:
-        again = other.step(MIDDLE) if not other.over else other.reset()
-        assert (again[0] == one[0]).all() and again[-1] == one[-1]
-    fixed = begun(sn.SnookerEnv(noise="club", **options))
-    with pytest.raises(ValueError, match=r"^state = a dict with \['conditions'\]"):
-        fixed.set_state(state)
-    with pytest.raises(ValueError, match=r"^state = a dict without \['conditions'\]"):
-        other.set_state({key: value for key, value in state.items() if key != "conditions"})
-    with pytest.raises(
-        ValueError, match=r"^state\.conditions\.mu_r = 0\.02: must be a finite number in \[0\.01, 0\.0128\]"
-    ):
-        other.set_state(state | {"conditions": state["conditions"] | {"mu_r": 0.02}})
-    with pytest.raises(ValueError, match=r"^state\.conditions = "):
-        other.set_state(state | {"conditions": {"mu_s": 0.2}})
-    assert other.get_state() == pickle.loads(pickle.dumps(other)).get_state()
-
-
-def test_a_position_is_played_on_a_table_that_the_seed_draws():
-    env = sn.SnookerEnv(**DRAWN)
-    at = {"position": sn.Position(cue=(0.0, 0.0), black=(0.3, 0.9))}
-    one, two = (of_info(env.reset(seed=3, options=at)[1]) for _ in range(2))
-    assert (one == two).all() and (of_info(env.reset(options=at)[1]) != one).all()
-    many = sn.SnookerVectorEnv(2, threads=1, **DRAWN)
-    infos = many.reset(seed=3, options=at)[1]
-    assert (np.array([infos[name][0] for name in NAMES]) == one).all()
-
-
-@pytest.mark.parametrize("mode", list(AutoresetMode))
-def test_many_tables_are_those_of_single_environments(mode):
-    ends, _, scored, infos = check_equal(6, mode, 30, noise="club", aim="target", threads=2, **OBSERVED)
-    assert ends > 5 and scored > 0.0
-    # six tables, and more of them in time
-    assert len(np.unique(np.concatenate([info["mu_s"] for info in infos]))) > 6
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"action": "discrete", "observation": "masked"},
-        {"observation": "balls", "task": "frame", "opponent": "ghost_ball", "miss": "attempt"},
-        {"task": "frame", "opponent": "best_pot_8", "noise": "club"},
-        {"task": "frame", "opponent": "ghost_ball", "says": ("nominate",), "physics": "match"},
-    ],
-)
-def test_many_tables_of_other_kinds_are_those_of_single_environments(options):
-    steps = 8 if "opponent" in options else 20
-    ends, _, _, _ = check_equal(3, AutoresetMode.NEXT_STEP, steps, **OBSERVED | options)
-    assert ends >= 0
-
-
-def test_a_view_of_one_table_is_that_table():
-    many = sn.SnookerVectorEnv(3, threads=1, **DRAWN)
-    many.reset(seed=1)
-    assert [one.mu_s for one in many.call("physics")] == many.tables.conditions[:, 0].tolist()
-    assert many.call("get_state")[2]["conditions"] == many.get_state()[2]["conditions"]
-    view = many.tables.view(2)
-    assert (view.phys == many.tables.phys[2:]).all()
-
-
-@pytest.mark.parametrize(
-    "options",
-    [DRAWN, OBSERVED, OBSERVED | {"observation": "balls", "task": "frame", "miss": "clear_path"}],
-)
-def test_gymnasium_finds_nothing(options, strict):
-    check_env(gymnasium.make("Snooker-v0", **options).unwrapped, skip_render_check=True)
-
-
-def test_observations_as_dicts_hold_the_constants():
-    env = begun(sn.SnookerEnv(observation="balls", **OBSERVED), 1)
-    flat = begun(sn.SnookerEnv(**OBSERVED), 1)
-    parts, row = env.step(MIDDLE)[0], flat.step(MIDDLE)[0]
-    assert (parts["conditions"] == row[-8:]).all() and parts["state"].shape == (11,)
-    assert env.observation_space.contains(parts) and row.shape == (129,)
-
-
-def test_two_players_meet_on_a_table_that_is_drawn():
-    env = sn.match_env(**OBSERVED)
-    env.reset(seed=2)
-    infos = env.infos["player_0"], env.infos["player_1"]
-    assert (of_info(infos[0]) == of_info(infos[1])).all()
-    assert (env.observe("player_0")[-8:] == env.observe("player_1")[-8:]).all()
-    tables = sn.MatchVectorEnv(2, threads=1, **OBSERVED)
-    _, many = tables.reset(seed=2)
-    assert (np.array([many[name][0] for name in NAMES]) == of_info(infos[0])).all()
-    observations, _, _, _, infos = tables.step(np.zeros((2, 7)))
-    assert observations.shape == (2, 148) and (infos["mu_s"] == many["mu_s"]).all()
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"conditions": "random"}, r"^conditions = 'random': must be one of 'fixed', 'drawn'"),
-        ({"conditions": True}, r"^conditions = True"),
-        ({"observe_conditions": True}, r"^observe_conditions = True: must be False with conditions"),
-        ({"conditions": "drawn", "observe_conditions": 1}, r"^observe_conditions = 1"),
-        ({"conditions": "drawn", "physics": {"nap": 0.11}}, r"^conditions = 'drawn': .*physics\.nap = 0\.11"),
-        ({"conditions": "drawn", "physics": {"mu_bb": 0.9}}, r"^conditions = 'drawn': .*physics\.mu_bb"),
-    ],
-)
-def test_bad_options_are_refused(options, message):
-    with pytest.raises(ValueError, match=message):
-        sn.Options(**options)
+    without = {key: value for key, value in state.items() if key != "conditions"}
+    table = """
+fixed(state) | state | a dict with ['conditions'] | must
+drawn(without) | state | a dict without ['conditions'] | must
+drawn(dict(state, conditions=dict(state["conditions"], mu_r=0.02))) | state.conditions.mu_r | 0.02 | must be a finite number in [0.01,
+drawn(dict(state, conditions={"mu_s": 0.2})) | state.conditions |  | must
+"""
+    names = {"state": state, "without": without, "fixed": fixed.set_state, "drawn": env.set_state}
+    refuse_each(table, names)
+    assert env.get_state() == state
 
 
 def _planned(env, options, strokes):
@@ -250,34 +127,6 @@ def test_plans_are_made_with_the_constants_of_the_table():
     # what the environment does
     env.step(Strokes(strokes).actions(options, at)[0])
     assert np.allclose(env.last_shot.positions, own[0], atol=1e-9)
-
-
-def test_many_positions_are_planned_each_on_its_own_table():
-    options = sn.Options(action="discrete", **DRAWN)
-    many = sn.SnookerVectorEnv(3, options, threads=1)
-    many.reset(seed=1)
-    at, choices = Positions.of(many), np.array([67, 67, 67])
-    planner = Planner(options, threads=1)
-    together = planner.play(at, np.arange(3), choices).places
-    for k, physics in enumerate(many.call("physics")):
-        plain = Planner(sn.Options(action="discrete", physics=physics), threads=1)
-        alone = plain.play(at[[k]], [0], choices[k : k + 1]).places[0]
-        assert (together[k] == alone).all()
-    strokes = planner.strokes_of(at, np.arange(3), choices)[0]
-    for name in ("ghost_ball", "best_pot_8"):
-        player, seeds = sn.player(name), np.arange(3)
-        played = player.at(options).play(at, seeds).values
-        for k, physics in enumerate(many.call("physics")):
-            own = player.at(options.but(physics=physics, conditions="fixed"))
-            assert np.allclose(own.play(at[[k]], seeds[k : k + 1]).values, played[k], atol=1e-12), name
-        nominal = player.at(options.but(conditions="fixed")).play(at, seeds).values
-        assert (nominal[:, 3] != played[:, 3]).any(), name
-    # equal balls, other constants: the aim of a choice is solved anew
-    same = Positions(
-        *(np.repeat(a[:1], 3, 0) for a in (at.positions, at.on_table, at.game)), None, at.conditions
-    )
-    aims = planner.strokes_of(same, np.arange(3), choices)[0][:, 3]
-    assert len(np.unique(aims)) == 3 and aims[0] == strokes[0, 3]
 
 
 def test_the_aim_is_solved_for_the_table():

@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
 
-from snooker_env import SnookerEnv, match_env
+import snooker_env as sn
+from snooker_env import SnookerEnv, SnookerVectorEnv, match_env
 from snooker_env._lib.registration import FORMS
 from snooker_env.benchmark.tasks import FREE
 from snooker_env.tasks import observations
 from snooker_env.tasks.box_actions import AIMS
+from snooker_env.tasks.options import Options
+from tests.envs.one_by_one import same
 from tests.tables import viewed
 
 IDS = sorted(name for name in gymnasium.registry if name.startswith("Snooker") and name not in FORMS)
@@ -37,10 +40,11 @@ def no_display(monkeypatch):
 
 @pytest.mark.parametrize(
     ("name", "render_mode"),
-    [(name, None) for name in IDS] + list(product(("Snooker-v0", "SnookerFrame-v0"), SHOWN)),
+    [(name, None) for name in IDS] + list(product(("Snooker-v0",), SHOWN)) + [("SnookerFrame-v0", "human")],
 )
-@pytest.mark.parametrize("observation", observations.OBSERVATIONS)
-@pytest.mark.parametrize("aim", AIMS)
+@pytest.mark.parametrize(
+    ("observation", "aim"), zip(observations.OBSERVATIONS, (*AIMS, "absolute"), strict=True)
+)
 def test_gymnasium_checks_it(name, render_mode, observation, aim, screen, strict):
     arguments = {**viewed(observation), "render_mode": render_mode, "aim": aim, "layout": "random:2"}
     env = gymnasium.make(name, **free(name, arguments)).unwrapped
@@ -74,10 +78,10 @@ ALLOWED = {"flat": set(), "masked": set(), "balls": {"Your observation balls has
 
 @pytest.mark.parametrize(
     ("name", "render_mode"),
-    [(name, None) for name in IDS] + [("Snooker-v0", "rgb_array"), ("Snooker-v0", "ansi")],
+    [*((name, None) for name in IDS), ("Snooker-v0", "rgb_array"), ("Snooker-v0", "ansi")],
 )
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
-@pytest.mark.parametrize("longer", [{}, {"elevation": True, "placement": True, "layout": "break_off"}])
+@pytest.mark.parametrize("longer", [{"elevation": True, "placement": True, "layout": "break_off"}])
 def test_stable_baselines_checks_it(name, observation, longer, render_mode):
     checker = pytest.importorskip("stable_baselines3.common.env_checker")
     if observation == "masked":  # of discrete actions, which have no longer form
@@ -104,8 +108,9 @@ SPECS = [
 ]
 
 
-@pytest.mark.parametrize("name", IDS)
-@pytest.mark.parametrize("arguments", SPECS)
+@pytest.mark.parametrize(
+    ("name", "arguments"), [*product(["Snooker-v0"], SPECS), *((name, {"aim": "target"}) for name in IDS)]
+)
 def test_a_spec_survives_json(name, arguments):
     arguments = free(name, arguments)
     env = gymnasium.make(name, **arguments)
@@ -139,3 +144,36 @@ def test_rendering_gives_what_the_mode_says_and_changes_nothing(mode, kind, scre
     assert data_equivalence(env.get_state(), blind.get_state(), exact=True)
     if mode == "human":
         assert len(screen) == 1 and screen[0][0] > 20 and screen[0][1] == SnookerEnv.metadata["render_fps"]
+
+
+def test_options_are_checked_once_and_taken_by_every_environment():
+    keywords = {"task": "frame", "layout": "random:2", "noise": "club", "says": ["decision"]}
+    options = Options(**keywords)
+    for one, other in (
+        (SnookerEnv(options), SnookerEnv(**keywords)),
+        (SnookerVectorEnv(2, options), SnookerVectorEnv(2, **keywords)),
+    ):
+        assert one.options == other.options == options and same(one.reset(seed=2), other.reset(seed=2))
+    assert Options().but(task="frame") == Options(task="frame")
+    assert Options(task="frame").but(task="visit").rules.plan.name == "opened"
+    level = {"aim_deg": 0.1}
+    frozen = Options(noise=level)
+    level["aim_deg"] = 5.0  # what is given may change: what is played does not
+    assert frozen.rules.noise.aim_deg == frozen.but(aim="target").rules.noise.aim_deg == 0.1
+    assert hash(frozen) == hash(Options(noise={"aim_deg": 0.1}))
+    changed = options.but(noise="none")
+    assert changed.noise == "none" and options.noise == "club" and changed.rules.noise.silent
+    with pytest.raises(AttributeError):
+        options.noise = "none"  # pyright: ignore[reportAttributeAccessIssue]
+    with pytest.raises(ValueError, match=r"options = an Options: must be None with the keywords \['layout'"):
+        SnookerEnv(options, layout="colours")
+    for make in (SnookerEnv, lambda **k: SnookerVectorEnv(2, **k), Options):
+        with pytest.raises(TypeError, match="layuot"):
+            make(layuot="colours")
+
+
+def test_a_match_takes_them_too():
+    pytest.importorskip("pettingzoo")
+    env = sn.match_env(Options(task="frame", layout="random:2", aim="target"))
+    assert env.action_space("player_0").shape == (4,)
+    assert sn.match_env().action_space("player_0").shape == (7,)

@@ -12,208 +12,170 @@ import snooker_env as sn
 from snooker_env import Options, SnookerEnv, SnookerVectorEnv
 from snooker_env.players import SeenPlayer
 from snooker_env.tasks.options import NAMES
-from tests.refusals import FIDELITY, INF, NAN, WRONG_FIDELITIES, case, make, refused
+from tests.refusals import FIDELITY, INF, NAN, WRONG_FIDELITIES, refuse_each, refused
 from tests.tables import begun
 
-NOT_A_NAME = ("", 3, None, True, b"x")
-NOT_A_TRUTH = (0, 1, None, "yes", 0.5, [True])
-LAYOUTS = (
-    "must be one of 'opened', 'held_out', 'safety', 'held_out_safety', 'escape', 'held_out_escape', 'break_off', "
-    "'line_up', 'colours', 'snookered', "
-    '"pots:easy", "pots:medium", "pots:hard", "random:N" or "break_off:N" with N from 0 to 15'
-)
-NOISE = "must be one of 'none', 'professional', 'amateur', 'club', 'robot', 'olympiad' or a dict of"
-REWARDS = "must be one of 'points', 'points_and_fouls', 'pots', 'legal'"
-FLAGS = ("elevation", "placement", "trust", "one_stroke")
-DEVIATIONS = ("aim_deg", "speed_rel", "speed_abs", "offset_mm", "elevation_deg")
-OPPONENTS = "'none', 'random', 'ghost_ball', "
-RENDER_MODES = "must be one of 'human', 'rgb_array', 'ansi'"
-FRAME, DISCRETE = {"task": "frame"}, {"action": "discrete"}
-WRONG = [
-    ({}, "task", "must be one of 'visit', 'frame'", (*NOT_A_NAME, "frames", "Visit", ["visit"], {})),
-    ({}, "aim", "must be one of 'absolute', 'target'", (*NOT_A_NAME, "relative", "Target", ["target"], {})),
-    ({}, "action", "must be one of 'box', 'discrete'", (*NOT_A_NAME, "plain", "Box", ["box"], {})),
-    ({}, "observation", "must be one of 'flat', 'balls'", (*NOT_A_NAME, "pixels", "Flat", ["flat"], {})),
-    ({}, "reward", REWARDS, (*NOT_A_NAME, "score", "Points", ["points"], {}, "win")),
-    ({}, "layout", LAYOUTS, (*NOT_A_NAME, "Opened", "Default", "pots", "pots:", "pots:Easy", "random")),
-    ({}, "layout", LAYOUTS, ("random:", "random:-1", "random:3.0", "random: 3", "random:x", "random:16")),
-    ({}, "layout", "must be one of", ([], {})),
-    ({}, "noise", NOISE, (*NOT_A_NAME, "pro")),
-    ({}, "noise", "must be one of", ([], ["none"])),
-    ({}, "fidelity", FIDELITY, WRONG_FIDELITIES),
-    ({}, "conditions", "must be one of 'fixed', 'drawn'", ("random", True, 1, None)),
-    ({}, "observe_conditions", 'must be False with conditions="fixed": there is nothing to observe', (True,)),
-    ({}, "cue", "must be one of 'free', 'real'", (*NOT_A_NAME, "Real", ["real"], {})),
-    ({}, "table", "must be one of 'match', 'tight'", ("loose",)),
-    ({}, "table", '"match", "tight"', (3, None)),
-    *[({}, field, "must be True or False", NOT_A_TRUTH) for field in FLAGS[1:]],
-    (
-        {},
-        "elevation",
-        "must be True or False, or degrees in [5, 70]",
-        (0, 1, None, "yes", [True], -0.5, 70.1, NAN, INF),
-    ),
-    (FRAME, "trust", "must be True or False", (1, None, "yes")),
-    (FRAME, "says", "must be a sequence of some of", ("lot", 3, None)),
-    (FRAME, "opponent", OPPONENTS, ("", "Random", "model", 3, None, True, ["x"])),
-    (FRAME, "opponent", "must be a model saved by Stable-Baselines3", ("missing.zip",)),
-    (FRAME, "miss", "must be one of 'off', 'clear_path'", ("on", None, True)),
-    (FRAME, "reward", "must be one of 'points', 'win'", ("pots", "wins", "frames")),
-    (FRAME, "max_strokes", "must be an integer in [1, 1000000000]", (0, -1, 1.5, "9", True, 10**9 + 1, NAN)),
-    ({"task": "match"}, "one_stroke", 'must be False with task="match"', (True,)),
-    (FRAME, "frames", 'must be 7 with task="frame"', (5,)),
-    (FRAME, "game", "must be one of", ("pool",)),
-    (FRAME | {"game": "shoot_out"}, "miss", "must be", ("clear_path",)),
-    (FRAME | {"game": "six_red"}, "time_to_play", "must be", (5.0,)),
-    (FRAME | {"game": "shoot_out"}, "time_to_play", "must be", (0.0, 15.001)),  # none would be in time
-    (FRAME | DISCRETE, "says", 'must not hold "decision"', (("decision",),)),
-    ({"task": "match"}, "frames", "must be odd", (2,)),
-    ({"task": "match"}, "frames", "must be", (0, True, "7")),
-    (DISCRETE, "elevation", "must be False", (True,)),
-    (DISCRETE, "placement", "must be False", (True,)),
-    ({}, "observation", 'must be "flat" or "balls" with action="box": a Box has no masks', ("masked",)),
-    (FRAME, "observation", 'must be "flat" or "balls" with action="box": a Box has no masks', ("masked",)),
-    ({}, "max_strokes", 'must be 1000 with task="visit"', (None, 50)),
-    ({}, "render_mode", RENDER_MODES, ("", "Human", "depth_array", 3, True, ["ansi"])),
-    ({}, "opponent", "must be 'none' with task=\"visit\"", ("random",)),
-    ({}, "miss", "must be 'off' with task=\"visit\"", ("clear_path",)),
-    *[({}, field, 'must be False with task="visit"', (True,)) for field in FLAGS[2:3]],
-    ({}, "frames", 'must be 7 with task="visit"', (5,)),
-    ({}, "game", "must be 'snooker' with task=\"visit\"", ("six_red",)),
-    ({}, "time_to_play", 'must be 9.0 with task="visit"', (5.0,)),
-]
-ENV = [
-    *[
-        case(make(**options, **{field: w}), field, repr(w), allowed, f"{options}{field}={w!r}")
-        for options, field, allowed, wrongs in WRONG
-        for w in wrongs
-    ],
-    *[
-        case(make(noise={name: w}), f"noise.{name}", repr(w), "must be a finite number in [0, inf)")
-        for name in DEVIATIONS
-        for w in (-0.1, NAN, INF, "0.1", None, True)
-    ],
-    case(make(task="frame", says=["shout"]), "says", "'shout'", "must be one of 'nominate', 'decision'"),
-    case(make(says=["lot"]), "says", "('lot',)", 'must be () with task="visit"', "visit-says"),
-    case(make(physics={"R": 0.03}), "physics.R", "0.03", "must be 0.02625 in Snooker-v0"),
-    case(make(physics={"mu_s": 0.0}), "physics.mu_s", "0.0", "must be > 0"),
-    case(make(noise={"aim": 0.1}), "noise field", "'aim'", "must be one of 'aim_deg', 'speed_rel'"),
-    case(make(noise={3: 0.1}), "noise field", "3", "must be one of 'aim_deg'"),
-    case(make(layout="random:\u0663"), "layout", "random:", "with N from 0 to 15", "arabic digits"),
-]
+ARGUMENTS = """
+env(task=?) | task | ? | must be one of 'visit', 'frame' | ''; None; b'x'; 'frames'; 'Visit'; ['visit']; {}
+env(aim=?) | aim | ? | must be one of 'absolute', 'target' | ''; 3; True; 'relative'; 'Target'; ['target']; {}
+env(action=?) | action | ? | must be one of 'box', 'discrete' | ''; None; b'x'; 'plain'; 'Box'; ['box']; {}
+env(observation=?) | observation | ? | must be one of 'flat', 'balls' | ''; 3; True; 'pixels'; 'Flat'; ['flat']; {}
+env(observation=?) | observation | ? | must be "flat" or "balls" with action="box": a Box has no masks | 'masked'
+env(task="frame", observation=?) | observation | ? | must be "flat" or "balls" with action="box" | 'masked'
+env(reward=?) | reward | ? | must be one of 'points', 'points_and_fouls', 'pots', 'legal' | ''; 3; None; 'score'; ['points']; 'win'
+frame(reward=?) | reward | ? | must be one of 'points', 'win' | 'pots'; 'wins'; 'frames'
+env(layout=?) | layout | ? | or "break_off:N" with N from 0 to 15 | ''; 3; 'Opened'; 'pots:'; 'pots:Easy'
+env(layout=?) | layout | ? | must be one of 'opened', | 'random:'; 'random:3.0'; 'random: 3'; 'random:16'; 'random:\u0663'; []; {}
+env(noise=?) | noise | ? | must be one of 'none', 'professional', 'amateur', 'club', 'robot', 'olympiad' or a dict of | ''; 3; 'pro'
+env(noise=?) | noise | ? | must be one of | []; ['none']
+env(noise={"aim_deg": ?}) | noise.aim_deg | ? | must be a finite number in [0, inf) | -0.1; NAN; INF; '0.1'; None; True
+env(noise={"speed_rel": ?}) | noise.speed_rel | ? | must be a finite number in [0, inf) | -0.1; NAN; INF
+env(noise={"speed_abs": ?}) | noise.speed_abs | ? | must be a finite number in [0, inf) | -0.1; NAN
+env(noise={"offset_mm": ?}) | noise.offset_mm | ? | must be a finite number in [0, inf) | -0.1; NAN
+env(noise={"elevation_deg": ?}) | noise.elevation_deg | ? | must be a finite number in [0, inf) | -0.1; NAN
+env(noise={"kick": ?}) | noise.kick | ? | must be | -0.1; 1.1; 'often'; NAN
+env(noise={?: 0.1}) | noise field | ? | must be one of 'aim_deg', 'speed_rel' | 'aim'; 3
+env(conditions=?) | conditions | ? | must be one of 'fixed', 'drawn' | 'random'; True; 1; None
+env(conditions="drawn", physics={"nap": 0.11}) | conditions | 'drawn' | physics.nap = 0.11
+env(conditions="drawn", physics={"mu_bb": 0.9}) | conditions | 'drawn' | physics.mu_bb
+env(observe_conditions=?) | observe_conditions | ? | must be False with conditions="fixed": there is nothing to observe | True
+env(conditions="drawn", observe_conditions=?) | observe_conditions | ? | must be True or False | 0; 1; None; 'yes'; 0.5; [True]
+env(cue=?) | cue | ? | must be one of 'free', 'real' | ''; None; b'x'; 'Real'; ['real']; {}
+env(table=?) | table | ? | must be one of 'match', 'tight' | 'loose'
+env(table=?) | table | ? | "match", "tight" | 3; None
+env(physics={"R": 0.03}) | physics.R | 0.03 | must be 0.02625 in Snooker-v0
+env(physics={"mu_s": 0.0}) | physics.mu_s | 0.0 | must be > 0
+env(placement=?) | placement | ? | must be True or False | 0; 1; None; 'yes'; 0.5; [True]
+env(elevation=?) | elevation | ? | must be True or False, or degrees in [5, 70] | 1; None; 'yes'; -0.5; 70.1; NAN; INF
+discrete(elevation=?) | elevation | ? | must be False | True
+discrete(placement=?) | placement | ? | must be False | True
+env(trust=?) | trust | ? | must be True or False | 0; None; 'yes'
+env(trust=?) | trust | ? | must be False with task="visit" | True
+frame(one_stroke=?) | one_stroke | ? | must be True or False | 1; None
+env(task="match", one_stroke=?) | one_stroke | ? | must be False with task="match" | True
+frame(says=?) | says | ? | must be a sequence of some of | 'lot'; 3; None
+frame(says=[?]) | says | ? | must be one of 'nominate', 'decision' | 'shout'
+env(says=["lot"]) | says | ('lot',) | must be () with task="visit"
+frame(action="discrete", says=("decision",)) | says | ('decision',) | must not hold "decision"
+frame(opponent=?) | opponent | ? | 'none', 'random', 'ghost_ball',  | ''; 'Random'; 'model'; 3; None; True; ['x']
+frame(opponent=?) | opponent | ? | must be a model saved by Stable-Baselines3 | 'missing.zip'
+env(opponent=?) | opponent | ? | must be 'none' with task="visit" | 'random'
+frame(miss=?) | miss | ? | must be one of 'off', 'clear_path' | 'on'; None; True
+frame(game="shoot_out", miss=?) | miss | ? | must be | 'clear_path'
+env(miss=?) | miss | ? | must be 'off' with task="visit" | 'clear_path'
+frame(max_strokes=?) | max_strokes | ? | must be an integer in [1, 1000000000] | 0; -1; 1.5; '9'; True; 10**9 + 1; NAN
+env(max_strokes=?) | max_strokes | ? | must be 1000 with task="visit" | None; 50
+frame(frames=?) | frames | ? | must be 7 with task="frame" | 5
+env(frames=?) | frames | ? | must be 7 with task="visit" | 5
+env(task="match", frames=?) | frames | ? | must be odd | 2
+env(task="match", frames=?) | frames | ? | must be | 0; True; '7'
+frame(game=?) | game | ? | must be one of | 'pool'
+env(game=?) | game | ? | must be 'snooker' with task="visit" | 'six_red'
+frame(game="six_red", time_to_play=?) | time_to_play | ? | must be | 5.0
+frame(game="shoot_out", time_to_play=?) | time_to_play | ? | must be | 0.0; 15.001
+env(time_to_play=?) | time_to_play | ? | must be 9.0 with task="visit" | 5.0
+env(render_mode=?) | render_mode | ? | must be one of 'human', 'rgb_array', 'ansi' | ''; 'Human'; 'depth_array'; 3; True; ['ansi']
+env(?) | options | ? | must be an Options or None | 'visit'
+many(options=?) | options | ? | must be an Options or None | 'frame'
+many(threads=?) | threads | ? | must be | 0
+many(num_envs=?) | num_envs | ? | must be | 0
+many(max_episode_steps=?) | max_episode_steps | ? | must be | 0
+many(render_mode=?) | render_mode | ? | must be | 'human'
+"""
+OF_TWO = """
+match(seats=({},)) | seats | {} | must be None, or two dicts
+matches(seats=({},)) | seats | {} | must be None, or two dicts
+matches(seats=({}, {"layout": "line_up"})) | key of seats[1] | 'layout' | must be one of 'action'
+matches(seats=({"noise": "club"}, {"noise": "xx"})) | seats[1].noise | 'xx' | must be
+matches(seats=({"cue": "real"}, {})) | key of seats[0] | 'cue' | must be one of 'action'
+matches(seats=({}, CONCEDES), action="discrete", observation="masked") | seats | concede | must give both players
+matches(opponent="random") | options | opponent='random' | a match has two players
+matches(autoreset_mode=?) | autoreset_mode | ? | must be | 'SameStep'
+matches(one_stroke=?) | options | one_stroke=? | a match has two players | True
+match(one_stroke=?) | options | one_stroke=? | a match has two players | True
+match(reward=?) | reward | ? | must be | 'pots'
+match(render_mode=?) | render_mode | ? | must be | 'x'
+match(Options()) | options | task='visit' | a match has two players
+match(Options(task="frame", opponent="random")) | options | opponent='random' | a match has two players
+match(task="frame", frames=?) | frames | ? | must be 7 with task="frame" | 3
+"""
+MAKES = {"NAN": NAN, "INF": INF, "Options": Options, "env": SnookerEnv, "many": SnookerVectorEnv}
+MAKES |= {"frame": partial(SnookerEnv, task="frame"), "discrete": partial(SnookerEnv, action="discrete")}
+MAKES |= {"CONCEDES": {"says": ["concede"]}, "match": sn.match_env, "matches": partial(sn.MatchVectorEnv, 2)}
 
 
-@pytest.mark.parametrize(("call", "field", "value", "allowed"), ENV)
-def test_wrong_arguments_of_the_environment(call, field, value, allowed):
-    refused(call, field, value, allowed)
-
-
-def test_every_argument_of_the_environment_is_in_the_table_of_errors():
-    named = {p.values[1].split(".")[0].split()[0] for p in ENV}
-    assert {*NAMES, "render_mode"} <= named
+def test_wrong_arguments_of_the_environment():
+    refuse_each(ARGUMENTS, MAKES)
+    for wrong in WRONG_FIDELITIES:
+        refused(lambda wrong=wrong: SnookerEnv(fidelity=wrong), "fidelity", repr(wrong), FIDELITY)
+    named = {line.split(" | ")[1].split(".")[0].split()[0] for line in ARGUMENTS.split("\n") if line}
+    assert {*NAMES, "render_mode"} <= named | {"fidelity"}
     with pytest.raises(TypeError, match="foul_play"):
         SnookerEnv(foul_play=True)
-    refused(lambda: SnookerEnv("visit"), "options", "'visit'", "must be an Options or None")
+    with pytest.raises(ValueError, match="never"):
+        SnookerVectorEnv(autoreset_mode="never")
 
 
-MATCHES = partial(sn.MatchVectorEnv, 2)
-OTHERS = [
-    (SnookerVectorEnv, {"options": "frame"}, "options = 'frame': must be an Options or None"),
-    (SnookerVectorEnv, {"threads": 0}, "threads"),
-    (SnookerVectorEnv, {"max_episode_steps": 0}, "max_episode_steps"),
-    (SnookerVectorEnv, {"render_mode": "human"}, "render_mode"),
-    (SnookerVectorEnv, {"autoreset_mode": "never"}, ".*never"),
-    (SnookerVectorEnv, {"num_envs": 0}, "num_envs"),
-    (MATCHES, {"seats": ({},)}, "seats = .*must be None, or two dicts"),
-    (
-        MATCHES,
-        {"seats": ({}, {"layout": "line_up"})},
-        r"key of seats\[1\] = 'layout': must be one of 'action'",
-    ),
-    (MATCHES, {"seats": ({"noise": "club"}, {"noise": "xx"})}, r"seats\[1\]\.noise = 'xx': must be"),
-    (MATCHES, {"opponent": "random"}, "options = .*opponent='random'"),
-    (MATCHES, {"autoreset_mode": "SameStep"}, "autoreset_mode = "),
-    (sn.match_env, {"reward": "pots"}, "reward = "),
-    (sn.match_env, {"render_mode": "x"}, "render_mode = "),
-    (sn.match_env, {"options": Options()}, ".*a match has two players"),
-    (sn.match_env, {"options": Options(task="frame", opponent="random")}, ".*a match has two players"),
-    (sn.match_env, {"task": "frame", "frames": 3}, 'frames = 3: must be 7 with task="frame"'),
-]
+def test_wrong_arguments_of_matches():
+    pytest.importorskip("pettingzoo")
+    refuse_each(OF_TWO, MAKES)
 
 
-@pytest.mark.parametrize(("make", "arguments", "says"), OTHERS)
-def test_wrong_arguments_of_many_tables_and_of_matches(make, arguments, says):
-    if make is not SnookerVectorEnv:
-        pytest.importorskip("pettingzoo")
-    with pytest.raises(ValueError, match=f"^{says}"):
-        make(**arguments)
+ACTIONS = """
+plain([0.0] * ?) | action | shape (?,) | must have shape (4,) | 3; 8
+long([0.0] * ?) | action | shape (?,) | must have shape (7,) | 3; 8
+plain(?) | action | ? | must have shape (4,) | None
+plain(0.0) | action | shape () | must have shape (4,)
+plain([[0.0] * 4]) | action | shape (1, 4) | must have shape (4,)
+plain([0.0, 0.0, 0.0, ?]) | action | ? | BOUNDS | 1.00000101; INF
+plain([?, 0.0, 0.0, 0.0]) | action | ? | BOUNDS | -1.5; NAN
+long([0.0] * 6 + [?]) | action | ? | BOUNDS | 1.00000101; NAN
+plain(np.array([-128, 0, 0, 0], np.int8)) | action | -128 | BOUNDS
+plain(["a"] * 4) | action | 'a' | must have shape
+plain(np.zeros(4, complex)) | action | 0 | must have shape
+choices(?) | action | ? | an integer in [0, 540) | -1; 540; 0.5; None; '3'; [1, 2]
+match(np.zeros(4)) | action | shape (4,) | must
+match(np.full(7, ?)) | action | ? | must | 1.1; NAN
+matches([[0.0] * 7, [?] * 7]) | actions[1] | ? | must be finite | 2.0
+matches(np.zeros((3, 7))) | actions | shape (3, 7) | must
+many([[0.0] * 4, [0.0] * 4, [0.0, ?, 0.0, 0.0]]) | actions[2] | ? | BOUNDS | NAN
+many([[0.0] * 4, [0.0, 0.0, 0.0, ?], [2.0] * 4]) | actions[1] | ? | BOUNDS | 1.0001; -INF
+many(np.zeros((2, 4))) | actions | shape (2, 4) | must have shape (3, 4)
+many(np.zeros((3, 5))) | actions | shape (3, 5) | must have shape (3, 4)
+many(np.zeros(4)) | actions | shape (4,) | must have shape
+many(?) | actions | ? | must have shape | None
+many([[0.0] * 4, [0.0]]) | actions | [0.0] | must have shape
+many([["a"] * 4] * 3) | actions | a | real numbers
+many(np.zeros((3, 4), bool)) | actions | False | real numbers
+many_choices(np.array([0, ?, 1])) | actions[1] | ? | must be in [0, 540) | 540
+many_choices(np.zeros((3, 4))) | actions | (3, 4) | must be 3 integers
+""".replace("BOUNDS", "must be finite and within [-1, 1]; gymnasium.wrappers.ClipAction clips")
 
 
-PLAYED = {
-    "plain": lambda: SnookerEnv(noise="club", layout="random:3"),
-    "long": lambda: SnookerEnv(noise="club", layout="break_off", elevation=True, placement=True),
-    "choices": lambda: SnookerEnv(action="discrete"),
-    "many": lambda: SnookerVectorEnv(3, noise="club"),
-    "many choices": lambda: SnookerVectorEnv(3, action="discrete"),
-    "match": lambda: sn.match_env(),
-    "matches": lambda: sn.MatchVectorEnv(2, threads=1),
-}
-BOUNDS = "must be finite and within [-1, 1]; gymnasium.wrappers.ClipAction clips"
+def test_wrong_actions_change_nothing():
+    envs = {
+        "plain": SnookerEnv(noise="club", layout="random:3"),
+        "long": SnookerEnv(noise="club", layout="break_off", elevation=True, placement=True),
+        "choices": SnookerEnv(action="discrete"),
+        "many": SnookerVectorEnv(3, noise="club"),
+        "many_choices": SnookerVectorEnv(3, action="discrete"),
+        "match": sn.match_env(),
+        "matches": sn.MatchVectorEnv(2, threads=1),
+    }
+    before = {name: json.dumps(begun(env).get_state()) for name, env in envs.items()}
+    refuse_each(ACTIONS, {"np": np, "NAN": NAN, "INF": INF} | {name: env.step for name, env in envs.items()})
+    assert before == {name: json.dumps(env.get_state()) for name, env in envs.items()}
 
 
-def wrong_actions(n):
-    """(action, what the message shows, what it allows) where n numbers are wanted."""
-    zeros, shape = [0.0] * (n - 1), f"must have shape ({n},)"
-    return [
-        ([0.0] * 3, "shape (3,)", shape),
-        ([0.0] * 8, "shape (8,)", shape),
-        (0.0, "shape ()", shape),
-        (None, "None", shape),
-        ([[0.0] * n], "shape (1, ", shape),
-        ([*zeros, 1.00000101], "1.00000101", BOUNDS),
-        ([-1.5, *zeros], "-1.5", BOUNDS),
-        ([NAN, *zeros], "nan", BOUNDS),
-        ([*zeros, INF], "inf", BOUNDS),
-        (np.array([-128] + [0] * (n - 1), np.int8), "-128", BOUNDS),
-        (["a"] * n, "'a'", "must have shape"),
-        (np.zeros(n, complex), "0", "must have shape"),
-    ]
+def _played(make, shaped=lambda action: action):
+    """One step of a new environment, and the state after it."""
 
+    def way(action):
+        env = begun(make())
+        env.step(shaped(action))
+        return env.get_state()
 
-WRONG_ACTIONS = [
-    *[("plain", action, "action", *says) for action, *says in wrong_actions(4)],
-    *[("long", action, "action", *says) for action, *says in wrong_actions(7)],
-    *[("choices", w, "action", "", "an integer in [0, 540)") for w in (-1, 540, 0.5, None, "3", [1, 2])],
-    *[("match", w, "action", "", "must") for w in (np.zeros(4), np.full(7, 1.1), np.full(7, NAN))],
-    ("matches", [[0.0] * 7, [2.0] * 7], "actions[1]", "2.0", "must be finite"),
-    ("many", [[0.0] * 4, [0.0] * 4, [0.0, NAN, 0.0, 0.0]], "actions[2]", "[0.0, nan, 0.0, 0.0]", BOUNDS),
-    ("many", [[0.0] * 4, [0.0, 0.0, 0.0, 1.0001], [0.0] * 4], "actions[1]", "1.0001", BOUNDS),
-    ("many", [[-INF, 0.0, 0.0, 0.0], [2.0] * 4, [0.0] * 4], "actions[0]", "-inf", BOUNDS),
-    ("many", np.zeros((2, 4)), "actions", "shape (2, 4)", "must have shape (3, 4)"),
-    ("many", np.zeros((3, 5)), "actions", "shape (3, 5)", "must have shape (3, 4)"),
-    *[("many", w, "actions", "", "must have shape") for w in (np.zeros(4), None, [[0.0] * 4, [0.0]])],
-    *[("many", w, "actions", "", "real numbers") for w in ([["a"] * 4] * 3, np.zeros((3, 4), bool))],
-    ("many choices", np.array([0, 540, 1]), "actions[1]", "540", "must be in [0, 540)"),
-    ("many choices", np.zeros((3, 4)), "actions", "", "must be 3 integers"),
-]
-
-
-@pytest.mark.parametrize(("kind", "action", "field", "value", "allowed"), WRONG_ACTIONS)
-def test_wrong_actions_change_nothing(kind, action, field, value, allowed):
-    if "match" in kind:
-        pytest.importorskip("pettingzoo")
-    env = PLAYED[kind]()
-    env.reset(seed=1)
-    before = json.dumps(env.get_state())
-    refused(lambda: env.step(action), field, value, allowed)
-    assert json.dumps(env.get_state()) == before
-
-
-def _vector_env(action):
-    envs = SnookerVectorEnv(2, threads=1)
-    envs.reset(seed=1)
-    envs.step([[0.0] * 4, action])
-    return envs.get_state()
+    return way
 
 
 def _sb3(action):
@@ -221,28 +183,6 @@ def _sb3(action):
     envs.reset()
     envs.step(np.array([[0.0] * 4, action]))
     return envs.tables.get_state()
-
-
-def _match(action):
-    pytest.importorskip("pettingzoo")
-    env = sn.match_env()
-    env.reset(seed=1)
-    env.step([*action, 0.0, 0.0, 0.0])
-    return env.get_state()
-
-
-def _matches(action):
-    envs = sn.MatchVectorEnv(2, threads=1)
-    envs.reset(seed=1)
-    envs.step([[*action, 0.0, 0.0, 0.0]] * 2)
-    return envs.get_state()
-
-
-def _one(action, **options):
-    env = SnookerEnv(**options)
-    env.reset(seed=1)
-    env.step(action)
-    return env.get_state()
 
 
 def _opponent(action):
@@ -264,27 +204,18 @@ class _Same:
         return [self.action] * len(seeds)
 
 
-def _player(action):
-    position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    return [part.tolist() for part in sn.player(_Same(action)).at({}).play(position, [7]).parts[:1]]
-
-
-def _planner(action):
-    position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    return sn.Planner({}).play(position, [0], [action]).afterstates.positions.tolist()
-
-
+AT = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
 WAYS = {
-    "one table": _one,
-    "target": lambda action: _one(action, aim="target"),
-    "long": lambda action: _one([*action, 0.0, 0.0], layout="break_off", placement=True),
-    "many": _vector_env,
+    "one table": _played(SnookerEnv),
+    "target": _played(partial(SnookerEnv, aim="target")),
+    "long": _played(partial(SnookerEnv, layout="break_off", placement=True), lambda a: [*a, 0.0, 0.0]),
+    "many": _played(partial(SnookerVectorEnv, 2, threads=1), lambda a: [[0.0] * 4, a]),
+    "match": _played(sn.match_env, lambda a: [*a, 0.0, 0.0, 0.0]),
+    "matches": _played(partial(sn.MatchVectorEnv, 2, threads=1), lambda a: [[*a, 0.0, 0.0, 0.0]] * 2),
     "SB3": _sb3,
-    "match": _match,
-    "matches": _matches,
     "opponent": _opponent,
-    "player": _player,
-    "planner": _planner,
+    "player": lambda a: sn.player(_Same(a)).at({}).play(AT, [7]).values.tolist(),
+    "planner": lambda a: sn.Planner({}).play(AT, [0], [a]).places.tolist(),
 }
 """Every way by which an action in [-1, 1] comes in, and what it leaves."""
 
@@ -310,66 +241,75 @@ def test_rounding_outside_the_bounds_is_clipped_and_more_is_refused(way, compone
             WAYS[way](action(wrong))
 
 
-@pytest.fixture(scope="module")
-def saved():
+STATES = """
+at(positions=was["positions"][:21]) | state.positions | shape (21, 2) | (22, 2)
+ball(3, (NAN, 0.0)) | state.positions[3, 0] | nan | must be finite
+at(on_table=[1] * 22) | state.on_table | int64 | must be bool of shape (22,)
+ball(3, (1.5, 0.0)) | state.positions[3] | (1.5, 0.0) | must be on the table
+ball(3, (0.889, 0.0)) | state.positions[3] | (0.889, 0.0) | is over a pocket
+ball(3, (0.88, 0.6)) | state.positions[3] | (0.88, 0.6) | overlaps the cushion
+ball(3, was["positions"][2]) | state.positions | balls 2 and 3 | overlap
+ball(9, (0.0, 1e300)) | state.positions[9] | 1e+300 | must be within 1000 m
+at(ball_on=8) | state.ball_on | 8 | must be
+at(ball_on=7) | state.ball_on | black | while reds are on the table
+at(ball_on=-1) | state.ball_on | nothing | must
+at(points=2.7) | state.points | 2.7 | must be an integer
+at(in_hand="no") | state.in_hand | 'no' | must be True or False
+at(over=2) | state.over | 2 | must be True or False
+at(stream=[1, 2, 3]) | state.stream | [1, 2, 3] | must be two integers
+at(stream=[1, -2]) | state.stream[1] | -2 | must be an integer in [0, 18446744073709551615]
+at(stream=[2**64, 0]) | state.stream[0] | 18446744073709551616 | must be an integer
+at(rng={}) | state.rng | {} | must be
+at(on_table=[False, *was["on_table"][1:]]) | state.on_table | False | cue ball
+at(spin=1) | state | 'spin' | must be
+"""
+RESETS = """
+reset(?) | options | 'sate' | must be one of 'state' | {"sate": 1}
+reset({3: 1}) | options | 3 | must be one of 'state'
+reset({"state": {}}) | state | a dict without ['ball_on', 'in_hand', 'on_table' | must be a state of get_state() here
+reset({"state": ?}) | state | ? | must be a state of get_state() | None; 3
+reset(["state"]) | options | ['state'] | must be
+reset({"breaker": 0}) | options["breaker"] | 0 | no opponent
+alone({"breaker": 0}) | options["breaker"] | 0 | no opponent
+many({"reset_mask": ?}) | options["reset_mask"] |  | must be | [True, False]; np.array([True]); np.array([1, 0]); np.zeros(2, bool)
+frame({"breaker": ?}) | options["breaker"] | ? | must be an integer | 2
+frame({"breaker": ?}) | options["breaker"] | ? | must be | '0'
+frame({"breaker": [0, 1]}) | options["breaker"] | 2 numbers | 1 of them
+"""
+
+
+def test_wrong_states_and_options_of_reset():
     env = begun(SnookerEnv(layout="random:5"), 5)
-    return env.get_state()
+    was = env.get_state()
 
+    def spoilt(how):
+        def ball(k, place):
+            how(was | {"positions": [*was["positions"][:k], list(place), *was["positions"][k + 1 :]]})
 
-def with_ball(k, state, place):
-    return {"positions": [*state["positions"][:k], list(place), *state["positions"][k + 1 :]]}
+        return {"at": lambda **fields: how(was | fields), "ball": ball, "was": was, "NAN": NAN}
 
-
-HERE = "must be a state of get_state() here"
-BALL = "state.positions[3]"
-STATES = [
-    case(lambda s: {"positions": s["positions"][:21]}, "state.positions", "shape (21, 2)", "(22, 2)"),
-    case(lambda s: with_ball(3, s, (NAN, 0.0)), "state.positions[3, 0]", "nan", "must be finite"),
-    case(lambda s: {"on_table": [1] * 22}, "state.on_table", "int64", "must be bool of shape (22,)"),
-    case(lambda s: with_ball(3, s, (1.5, 0.0)), BALL, "(1.5, 0.0)", "must be on the table"),
-    case(lambda s: with_ball(3, s, (0.889, 0.0)), BALL, "(0.889, 0.0)", "is over a pocket"),
-    case(lambda s: with_ball(3, s, (0.88, 0.6)), BALL, "(0.88, 0.6)", "overlaps the cushion"),
-    case(lambda s: with_ball(3, s, s["positions"][2]), "state.positions", "balls 2 and 3", "overlap"),
-    case(lambda s: with_ball(9, s, (0.0, 1e300)), "state.positions[9]", "1e+300", "must be within 1000 m"),
-    case(lambda s: {"ball_on": 8}, "state.ball_on", "8", "must be"),
-    case(lambda s: {"ball_on": 7}, "state.ball_on", "black", "while reds are on the table"),
-    case(lambda s: {"ball_on": -1}, "state.ball_on", "nothing", "must"),
-    case(lambda s: {"points": 2.7}, "state.points", "2.7", "must be an integer"),
-    case(lambda s: {"in_hand": "no"}, "state.in_hand", "'no'", "must be True or False"),
-    case(lambda s: {"over": 2}, "state.over", "2", "must be True or False"),
-    case(lambda s: {"stream": [1, 2, 3]}, "state.stream", "[1, 2, 3]", "must be two integers"),
-    case(lambda s: {"stream": [1, -2]}, "state.stream[1]", "-2", f"must be an integer in [0, {2**64 - 1}]"),
-    case(lambda s: {"stream": [2**64, 0]}, "state.stream[0]", str(2**64), "must be an integer"),
-    case(lambda s: {"rng": {}}, "state.rng", "{}", "must be"),
-    case(lambda s: {"on_table": [False, *s["on_table"][1:]]}, "state.on_table", "False", "cue ball"),
-    case(lambda s: {"spin": 1}, "state", "'spin'", "must be", "unknown key"),
-]
-
-
-@pytest.mark.parametrize("how", ["set_state", "reset"])
-@pytest.mark.parametrize(("change", "field", "value", "allowed"), STATES)
-def test_wrong_states(saved, how, change, field, value, allowed):
-    env, state = SnookerEnv(layout="random:5"), saved | change(saved)
-    call = {"set_state": lambda: env.set_state(state), "reset": lambda: env.reset(options={"state": state})}
-    refused(call[how], field, value, allowed)
-
-
-@pytest.mark.parametrize(
-    ("options", "field", "value", "allowed"),
-    [
-        case({"sate": 1}, "options", "'sate'", "must be one of 'state'"),
-        case({"state": {}}, "state", "a dict without ['ball_on', 'in_hand', 'on_table'", HERE, "empty state"),
-        case({3: 1}, "options", "3", "must be one of 'state'"),
-        case({"state": None}, "state", "None", "must be a state of get_state()"),
-        case({"state": 3}, "state", "3", "must be a state of get_state()"),
-        case(["state"], "options", "['state']", "must be"),
-    ],
-)
-def test_wrong_options(options, field, value, allowed):
-    refused(lambda: SnookerEnv().reset(options=options), field, value, allowed)
-
-
-@pytest.mark.parametrize("seed", [-1, "x", 1.5])
-def test_wrong_seeds_are_refused_by_gymnasium(seed):
-    with pytest.raises((gymnasium.error.Error, ValueError, TypeError)):
-        SnookerEnv().reset(seed=seed)
+    refuse_each(STATES, spoilt(env.set_state))
+    refuse_each(STATES, spoilt(lambda state: env.reset(options={"state": state})))
+    envs = {
+        "reset": env,
+        "alone": SnookerEnv(task="frame"),
+        "frame": SnookerEnv(task="frame", opponent="random"),
+        "many": begun(SnookerVectorEnv(2)),
+    }
+    refuse_each(
+        RESETS, {"np": np} | {name: (lambda o, one=one: one.reset(options=o)) for name, one in envs.items()}
+    )
+    assert env.get_state() == was
+    for seed in (-1, "x", 1.5):
+        with pytest.raises((gymnasium.error.Error, ValueError, TypeError)):
+            env.reset(seed=seed)
+    match = begun(sn.match_env(task="match", frames=5))
+    was = match.get_state()
+    table = """
+at(frames=[3, 0]) | state.frames[0] | 3 | must
+at(first_break=2) | state.first_break | 2 | must
+at(frames=1) | state.frames | 1 | must
+at(best_of=3) | state.best_of | 3 | must
+"""
+    refuse_each(table, {"at": lambda **fields: match.reset(options={"state": was | fields})})
+    assert match.get_state() == was

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import BLACK, CUE_BIT, YELLOW, BallOn, mask_of_present
-from snooker_env.game.referee import Stroke
+from snooker_env.game.balls import BallOn
 from snooker_env.planning import Positions
 from tests.refusals import refused
 from tests.tables import begun, plain
@@ -120,27 +119,6 @@ def test_many_tables_start_from_one_position_or_from_one_each():
         assert env.get_state() == [one.get_state() for one in singles]
 
 
-def test_a_mask_keeps_the_other_tables():
-    env = begun(sn.SnookerVectorEnv(3, threads=1, task="frame", opponent="ghost_ball", noise="club"), 2)
-    before = env.get_state()
-    mask = np.array([False, True, False])
-    env.reset(options={"reset_mask": mask, "positions": [MID_BREAK, IN_HAND, MID_BREAK]})
-    after = env.get_state()
-    assert after[0] == before[0] and after[2] == before[2] and after[1] != before[1]
-    assert Positions.of(env)[1] == IN_HAND and after[1]["stream"] == before[1]["stream"]
-
-
-def test_vectors_of_sb3_take_positions():
-    sb3 = pytest.importorskip("snooker_env.sb3")
-    env = sb3.SnookerVecEnv(2, seed=1, **OPTIONS)
-    env.set_options([{"position": MID_BREAK}, {"position": IN_HAND}])
-    env.reset()
-    assert list(Positions.of(env)) == [MID_BREAK, IN_HAND]
-    env.set_options([{"position": MID_BREAK}, {"state": {}}])
-    allowed = 'must be "state", "position" or "breaker" alone'
-    refused(env.reset, "keys of options[1]", "['state']", allowed)
-
-
 OFF = sn.Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], black=(0.0, 1.775), table=None)
 
 
@@ -203,25 +181,3 @@ def test_who_breaks_is_said_only_where_balls_are_dealt():
     ):
         allowed = f'must be left out with "{key}": it says who breaks where balls are dealt'
         refused(partial(env.reset, options={key: value, "breaker": 1}), 'options["breaker"]', "1", allowed)
-
-
-def test_the_position_is_checked_on_the_table_that_is_played_on():
-    """A red in the jaws of a corner pocket, where "match" has room for it and "tight" has not."""
-    position = sn.Position(cue=(0.0, 0.0), reds=[(0.8183, 1.7610)])
-    sn.SnookerEnv().reset(**start(position))
-    tight = sn.SnookerEnv(table="tight")
-    call = partial(tight.reset, **start(position))
-    refused(call, 'options["position"].reds[0]', "(0.8183, 1.761)", "overlaps jaw")
-
-
-def test_a_frame_has_the_balls_of_its_position_and_no_others():
-    """Without the yellow: it is never on, no point that is left, and does not come back."""
-    colours = {"green": (-0.292, -1.0475), "black": (0.0, 1.4605)}
-    env = sn.SnookerEnv(task="frame")
-    env.reset(seed=1, **start(sn.Position(cue=(0.1, -0.6), reds=[(0.3, 0.5)], **colours)))
-    frame = env.frame
-    assert frame.available == 8 + 3 + 7 and frame.rack | CUE_BIT == mask_of_present(env.on_table)
-    frame, _ = frame.play(Stroke(first=1 << 1, potted=1 << 1))
-    frame, verdict = frame.play(Stroke(first=1 << BLACK, potted=1 << BLACK))
-    assert verdict.points == 7 and frame.ball_on == BallOn.GREEN and not frame.on_table >> YELLOW & 1
-    assert frame.restart().on_table == frame.rack

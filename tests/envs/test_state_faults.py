@@ -2,7 +2,6 @@
 
 import copy
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.frame import Frame, Saved
 from snooker_env.game.referee import FULL_TABLE, Stroke
 from tests.mutations import at, frozen, kind_of, mutations, names_it
-from tests.refusals import refused
+from tests.refusals import refuse_each
 from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
 FRAME = {"opponent": "random", "miss": "clear_path", "noise": "club", "layout": "random:3", "aim": "target"}
@@ -103,7 +102,7 @@ def loader(env, seed):
     return load
 
 
-@pytest.mark.parametrize("layout", ["random:3", "break_off", "colours"])
+@pytest.mark.parametrize("layout", ["random:3", "break_off"])
 def test_every_fault_of_a_visit(layout):
     env = begun(SnookerEnv(layout=layout, noise="club", placement=layout == "break_off"), 3)
     refusals, taken = attack(plain(env.get_state()), loader(env, None), env.get_state, play=player(env))
@@ -118,14 +117,14 @@ def test_every_fault_of_a_visit_in_the_vector_environment():
         assert refusals > 500 and taken > 30
 
 
-@pytest.mark.parametrize("name", [*WANTED, "a re-spotted black"])
+@pytest.mark.parametrize("name", ["in_hand", "a choice", "replaced"])
 def test_every_fault_of_a_frame(name, frame_states):
     env = frame_env(**FRAME)
     refusals, taken = attack(frame_states[name], loader(env, None), env.get_state, play=player(env, 1))
     assert refusals > 800 and taken > 50
 
 
-@pytest.mark.parametrize("name", ["in_hand", "a miss", "replaced"])
+@pytest.mark.parametrize("name", ["a miss", "replaced"])
 def test_every_fault_of_a_match(name, frame_states):
     pytest.importorskip("pettingzoo")
     env = begun(sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")}))
@@ -133,7 +132,7 @@ def test_every_fault_of_a_match(name, frame_states):
     def play():
         spaces = env.observation_spaces
         assert all(spaces[player].contains(env.observe(player)) for player in env.possible_agents)
-        if not any((env.terminations | env.truncations).values()):
+        if not any([*env.terminations.values(), *env.truncations.values()]):
             env.step(np.zeros(7, np.float32))
             assert all(spaces[player].contains(env.observe(player)) for player in env.possible_agents)
 
@@ -147,7 +146,6 @@ def test_every_fault_of_a_match(name, frame_states):
     how = env.set_state if name == "a miss" else load
     refusals, taken = attack(frame_states[name], how, whole, play=play)
     assert refusals > 800 and taken > 50
-    refused(lambda: env.reset(options=[1]), "options", "[1]", "must be None")
 
 
 @pytest.mark.parametrize("name", [*WANTED, "a re-spotted black"])
@@ -182,46 +180,35 @@ def changed(state, **parts):
     return state
 
 
-SAVED = "state.frame.saved"
-LAID = "frame__saved__layout"
-OTHER_ON = {"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7}
-MISS = [
-    ({"frame__striker": 1}, "state.frame.striker", "1", "must be 0, the agent"),
-    ({LAID: None}, f"{SAVED}.layout", "None", "must be positions and on_table"),
-    ({LAID: [[[5, 5]] * 22, [True] * 22]}, f"{SAVED}.layout[0][0]", "(5.0, 5.0)", "must be on the table"),
-    ({LAID: [[[0, 0]] * 22, [True] * 22]}, f"{SAVED}.layout[0]", "balls 0 and 1", "overlap"),
-    (OTHER_ON, SAVED, "a position", "must have the balls on_table"),
-    ({"frame__saved": {}}, SAVED, "on_table", "must have exactly the fields"),
-    ({"frame__phase": "lot"}, "state.frame.phase", "lot", "must"),
-    ({"frame__scores": [0, 2**53]}, "state.frame.scores[1]", str(2**53), "must be an integer in [0, 900719"),
-    ({"frame__scores": [0, 1, 2]}, "state.frame.scores", "(0, 1, 2)", "must be a tuple of two integers"),
-    ({"frame__failures": 3}, "state.frame.failures", "3", "must be an integer in [0, 2]"),
-    ({"frame__break_points": 20}, "state.frame.break_points", "20", "must be"),
-    ({"frame__warned": True}, "state.frame.warned", "True", "must be False"),
-    ({"rng__state__state": 2**128}, "state.rng", str(2**128), "must be the state of a PCG64"),
-    ({"rng__state__inc": 1.0}, "state.rng.state.inc", "1.0", "must be of type int"),
-    ({"strokes": 1000}, "state.strokes", "1000", "must be below max_strokes = 1000: there is no shot left"),
-    ({"ball_on": 1}, "state", "'ball_on'", "of get_state() here, with the keys ['frame', 'positions',"),
-]
+MISS = """
+miss(frame__striker=1) | state.frame.striker | 1 | must be 0, the agent
+miss(frame__saved__layout=None) | state.frame.saved.layout | None | must be positions and on_table
+miss(frame__saved__layout=[[[5, 5]] * 22, ALL]) | state.frame.saved.layout[0][0] | (5.0, 5.0) | must be on the table
+miss(frame__saved__layout=[[[0, 0]] * 22, ALL]) | state.frame.saved.layout[0] | balls 0 and 1 | overlap
+miss(frame__saved__on_table=1 << 21, frame__saved__ball_on=7) | state.frame.saved | a position | must have the balls on_table
+miss(frame__saved={}) | state.frame.saved | on_table | must have exactly the fields
+miss(frame__phase="lot") | state.frame.phase | lot | must
+miss(frame__scores=[0, 2**53]) | state.frame.scores[1] | 9007199254740992 | must be an integer in [0, 900719
+miss(frame__scores=[0, 1, 2]) | state.frame.scores | (0, 1, 2) | must be a tuple of two integers
+miss(frame__failures=3) | state.frame.failures | 3 | must be an integer in [0, 2]
+miss(frame__break_points=20) | state.frame.break_points | 20 | must be
+miss(frame__warned=True) | state.frame.warned | True | must be False
+miss(rng__state__state=2**128) | state.rng | 340282366920938463463374607431768211456 | must be the state of a PCG64
+miss(rng__state__inc=1.0) | state.rng.state.inc | 1.0 | must be of type int
+miss(strokes=1000) | state.strokes | 1000 | must be below max_strokes = 1000: there is no shot left
+miss(ball_on=1) | state | 'ball_on' | of get_state() here, with the keys ['frame', 'positions',
+"""
 
 
-@pytest.mark.parametrize(("parts", "field", "value", "allowed"), MISS)
-def test_faults_of_a_frame_in_which_a_miss_was_called(parts, field, value, allowed, frame_states):
+def test_faults_of_a_frame_in_which_a_miss_was_called(frame_states):
     env = begun(frame_env(**FRAME))
     before = frozen(env.get_state())
-    state = changed(frame_states["a miss"], **parts)
-    refused(lambda: env.reset(seed=8, options={"state": state}), field, value, allowed)
+
+    def miss(**parts):
+        env.reset(seed=8, options={"state": changed(frame_states["a miss"], **parts)})
+
+    refuse_each(MISS, {"miss": miss, "ALL": [True] * 22})
     assert frozen(env.get_state()) == before and env.np_random_seed == 1
-
-
-def test_a_layout_is_kept_by_the_rule_of_the_miss_only():
-    env = begun(sn.match_env())
-    env.step(np.array([-0.8, 0, 0, -0.5, 0, 0, 0]))  # at the bottom cushion, hitting nothing
-    state = plain(env.get_state())
-    assert state["frame"]["phase"] == "choice" and state["frame"]["saved"]["layout"] is None
-    env.set_state(state)
-    state["frame"]["saved"]["layout"] = [state["positions"], state["on_table"]]
-    refused(lambda: env.set_state(state), f"{SAVED}.layout", "a layout", 'must be None with miss = "off"')
 
 
 PINK_LEFT, BLACK_LEFT = ({CUE: (0, 0), ball: SPOTS[ball]} for ball in (PINK, BLACK))
@@ -266,16 +253,6 @@ def test_parts_of_a_frame_that_do_not_fit_together_are_refused(fields, field):
         Frame.from_dict(wrong.to_dict())
 
 
-def test_the_highest_break_is_within_the_observation_space():
-    """A free ball and the colour after it, then 147: no state offers more, and that one is taken."""
-    env = begun(SnookerEnv())
-    state = env.get_state()
-    for ball_on, most in ((BallOn.RED, 8), (BallOn.ANY_COLOUR, 1)):
-        highest, more = (state | {"ball_on": int(ball_on), "points": points} for points in (most, most + 1))
-        env.reset(options={"state": highest})
-        refused(partial(env.set_state, more), "state.points", str(most + 1), f"must be at most {most}")
-
-
 def test_a_state_with_nothing_left_to_play_is_for_looking_only(frame_states):
     over = Frame.from_dict(frame_states["a break"]["frame"]).concede(0).to_dict()
     env = begun(frame_env(**FRAME))
@@ -287,14 +264,3 @@ def test_a_state_with_nothing_left_to_play_is_for_looking_only(frame_states):
         assert frozen(env.get_state()) == before
         env.set_state(state)
         assert env.over and frozen(env.get_state()) == frozen(state)
-
-
-def test_fields_of_a_frame_are_checked_when_it_is_made():
-    kinds = {"in_hand": 1, "free_ball": None, "warned": "no", "failures": True, "on_table": 3}
-    for wrong in (*({name: value} for name, value in kinds.items()), {"winner": True, "phase": "over"}):
-        with pytest.raises(ValueError, match=" = "):
-            Frame(**wrong)
-    frame = Frame(striker=np.int64(1), in_hand=np.bool_(False), scores=(np.int64(3), 4))
-    assert frozen(frame.to_dict()) and frame == Frame(striker=1, in_hand=False, scores=(3, 4))
-    with pytest.raises(ValueError, match="saved = 3"):
-        replace(frame, saved=3)

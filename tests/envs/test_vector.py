@@ -1,4 +1,4 @@
-"""Does the native vector environment play, bit for bit, what ``SyncVectorEnv`` plays, on any threads?"""
+"""Does the native vector environment keep Gymnasium's contract of many tables, on any threads?"""
 
 import os
 import signal
@@ -7,108 +7,13 @@ import warnings
 import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
 from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks import OBSERVATIONS, stroke
-from tests.tables import COPIES, begun, viewed
-
-MODES = list(AutoresetMode)
-
-
-def native(n, **options):
-    return gymnasium.make_vec("Snooker-v0", n, vectorization_mode="vector_entry_point", **options)
-
-
-def sync(n, mode, **options):
-    how = {"vectorization_mode": "sync", "vector_kwargs": {"autoreset_mode": mode}}
-    return gymnasium.make_vec("Snooker-v0", n, **how, **options)
-
-
-def same(a, b):
-    """Equal in every bit, type and key; arrays of objects element by element."""
-    if isinstance(a, dict):
-        return isinstance(b, dict) and set(a) == set(b) and all(same(a[key], b[key]) for key in a)
-    if isinstance(a, np.ndarray) and a.dtype == object:
-        return b.dtype == object and all(
-            (x is None) == (y is None) and (x is None or same(x, y)) for x, y in zip(a, b, strict=True)
-        )
-    if isinstance(a, tuple | list):
-        return len(a) == len(b) and all(map(same, a, b))
-    return data_equivalence(a, b, exact=True)
-
-
-def actions_of(env, rng):
-    """Random actions; with a target and in frames mostly such that some pots come."""
-    if env.options.action == "discrete":
-        return np.array([rng.choice(np.flatnonzero(mask)) for mask in env.action_masks()])
-    a = rng.uniform(-1.0, 1.0, env.action_space.shape).astype(np.float32)
-    if env.options.aim == "target" or env.options.task == "frame":
-        a[:, 1:4] *= 0.2 if env.options.task == "visit" else 0.3
-    return a
-
-
-def check_equal(n, mode, steps, *, threads=None, seed=3, **options):
-    """Play both side by side: episodes ended and truncated, what was scored, the infos of each step."""
-    ours, theirs = native(n, autoreset_mode=mode, threads=threads, **options), sync(n, mode, **options)
-    assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
-    assert ours.single_observation_space == theirs.single_observation_space
-    assert same(ours.reset(seed=seed), theirs.reset(seed=seed))
-    rng, done, ends, cut, scored, infos = np.random.default_rng(1), np.zeros(n, bool), 0, 0, 0.0, []
-    for step in range(steps):
-        if mode == AutoresetMode.DISABLED and done.any():
-            got = ours.reset(options={"reset_mask": done.copy()})
-            assert same(got, theirs.reset(options={"reset_mask": done.copy()})), step
-        if "action" in options:
-            assert np.array_equal(ours.action_masks(), np.array(theirs.call("action_masks")))
-        a = actions_of(ours, rng)
-        got, want = ours.step(a), theirs.step(a)
-        for k, (x, y) in enumerate(zip(got, want, strict=True)):
-            assert same(x, y), (step, k, x, y)
-        done = got[2] | got[3]
-        ends, cut, scored = ends + done.sum(), cut + got[3].sum(), scored + np.maximum(got[1], 0.0).sum()
-        infos.append(got[4])
-    ours.close(), theirs.close()
-    return ends, cut, scored, infos
-
-
-TARGET = {"aim": "target"}
-LONG = {"layout": "break_off", "placement": True, "elevation": True}
-LEVEL = {"noise": "olympiad", "layout": "pots:easy", "physics": "match", "table": "tight"}
-CHOICES = {"action": "discrete", "observation": "masked"}
-OPTIONS = {
-    "plain": {},
-    "noise": TARGET | {"noise": "club", "layout": "random:5", "reward": "points_and_fouls"},
-    "balls": TARGET | LONG | {"observation": "balls", "reward": "pots"},
-    "match": TARGET | LEVEL,
-    "limit": TARGET | {"max_episode_steps": 2, "layout": "random:3", "observation": "balls"},
-    "snookered": {"noise": {"aim_deg": 0.3}, "layout": "snookered", "fidelity": "fast"},
-    "masked": CHOICES | {"layout": "random:2", "noise": "club", "max_episode_steps": 2},
-}
-
-
-@pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
-def test_it_equals_sync_vector_env(mode, options, monkeypatch):
-    monkeypatch.setattr("snooker_env.tasks.threads.CHUNK", 4)
-    ends, cut, scored, _ = check_equal(9, mode, 60, threads=3, **options)
-    assert ends > 50 and (cut > 5) == ("max_episode_steps" in options)
-    assert scored > 0 or options.get("aim") != "target" or options["layout"] == "break_off"
-
-
-@pytest.mark.parametrize("layout", ["held_out", "line_up", "colours", "random:0", "pots:hard"])
-def test_every_layout_is_dealt_alike(layout):
-    options = TARGET | {"layout": layout, "noise": "professional"}
-    assert check_equal(5, AutoresetMode.SAME_STEP, 20, **options)[0] > 10
-
-
-@pytest.mark.parametrize(("threads", "chunk"), [(1, 128), (1, 7), (2, 128), (8, 3)])
-def test_hundreds_of_steps_for_any_number_of_threads_and_any_chunks(threads, chunk, monkeypatch):
-    monkeypatch.setattr("snooker_env.tasks.threads.CHUNK", chunk)
-    options = {"aim": "target", "noise": "amateur", "layout": "random:4", "threads": threads}
-    assert check_equal(33, AutoresetMode.SAME_STEP, 250, **options)[0] > 4000
+from tests.envs.one_by_one import MODES, native, same
+from tests.tables import acting, begun, viewed
 
 
 def test_seeds_none_int_and_list():
@@ -130,25 +35,6 @@ def test_seeds_none_int_and_list():
         assert len({row.tobytes() for row in env.reset()[0]}) == 50
     with pytest.raises(ValueError, match="seed = 3 seeds"):
         native(4).reset(seed=[1, 2, 3])
-
-
-def test_a_mask_resets_only_those():
-    for mode in MODES:
-        options = TARGET | {"layout": "random:6"}
-        env, other = native(6, autoreset_mode=mode, **options), sync(6, mode, **options)
-        assert same(env.reset(seed=1), other.reset(seed=1))
-        a = np.zeros((6, 4), np.float32)
-        assert same(env.step(a), other.step(a))
-        mask = np.array([True, False, True, False, False, True])
-        one, two = (each.reset(seed=20, options={"reset_mask": mask.copy()}) for each in (env, other))
-        assert same(one, two)
-
-
-@pytest.mark.parametrize("mask", [[True, False], np.array([True]), np.array([1, 0]), np.zeros(2, bool)])
-def test_wrong_masks_are_refused(mask):
-    env = begun(native(2))
-    with pytest.raises(ValueError, match="reset_mask"):
-        env.reset(options={"reset_mask": mask})
 
 
 @pytest.mark.parametrize("observation", OBSERVATIONS)
@@ -211,17 +97,6 @@ def test_it_must_be_reset_first():
         env.step(np.zeros((3, 4)))
 
 
-@pytest.mark.parametrize("copied", COPIES)
-def test_copies_play_on_alike(copied):
-    env = begun(native(20, noise="club", threads=2), 3)
-    a = np.random.default_rng(0).uniform(-1, 1, (20, 4))
-    env.step(a)
-    twin = copied(env)
-    assert twin.tables.rules.plan.tables is env.tables.rules.plan.tables  # the bank is not copied
-    for _ in range(3):
-        assert same(env.step(a), twin.step(a))
-
-
 def test_pictures_of_all_tables():
     pytest.importorskip("pygame")
     env = begun(native(2, render_mode="rgb_array"), 0)
@@ -259,25 +134,6 @@ def test_a_shot_that_cannot_be_computed_names_its_table(monkeypatch, threads):
     env.reset()
 
 
-@pytest.mark.parametrize("seed", [None, 40, [3, None, 8, None]])
-def test_a_state_with_seeds_is_what_single_tables_make_of_it(seed):
-    """Each seed draws the errors of its table anew; a table without one repeats those of the state."""
-    options = {"noise": "professional", "layout": "random:6", "aim": "target"}
-    env, other = native(4, **options), sync(4, AutoresetMode.NEXT_STEP, **options)
-    for one in (env, other):
-        one.reset(seed=1)
-    state, a = env.get_state()[2], np.zeros((4, 4), np.float32)
-    for _ in range(2):  # the second time from the middle of other visits
-        one, two = (each.reset(seed=seed, options={"state": state}) for each in (env, other))
-        assert same(one, two)
-        first = env.step(a)
-        assert same(first, other.step(a))
-        assert len({row.tobytes() for row in first[0]}) == (1 if seed is None else 4 if seed == 40 else 3)
-        assert all(same(env.step(a), other.step(a)) for _ in range(3))
-    assert env.get_state() == [one.unwrapped.get_state() for one in other.envs]
-    assert env.np_random_seed == other.np_random_seed
-
-
 def test_a_wrong_seed_or_state_changes_no_table():
     env = begun(native(3, noise="club"))
     before, seeds = env.get_state(), env.np_random_seed
@@ -290,22 +146,6 @@ def test_a_wrong_seed_or_state_changes_no_table():
 
 
 forks = pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on Windows")
-
-
-@forks
-def test_processes_forked_while_threads_are_kept_play_on():
-    """AsyncVectorEnv forks; the threads of a vector environment in the parent do no harm."""
-    env = begun(native(32, threads=2), 0)
-    a = np.zeros((32, 4), np.float32)
-    want = env.step(a)[0]
-    forked = gymnasium.vector.AsyncVectorEnv([lambda: gymnasium.make("Snooker-v0")] * 2, context="fork")
-    try:
-        forked.reset(seed=0)
-        assert np.array_equal(forked.step(a[:2])[0], want[:2])
-    finally:
-        forked.close()
-    env.step(a)
-    env.close()
 
 
 @forks
@@ -330,8 +170,12 @@ def test_an_environment_that_has_played_on_threads_plays_on_in_a_forked_process(
     env.close()
 
 
-def test_the_number_of_threads_is_fixed():
-    """Work space is made for it: a different number would write beyond its end."""
-    env = native(64, threads=2)
-    with pytest.raises(AttributeError):
-        env.threads = 1
+def test_an_error_of_an_opponent_asks_for_a_reset():
+    def failing(observation, rng):
+        raise KeyError("no turn")
+
+    env = SnookerVectorEnv(4, task="frame", opponent=acting(failing))
+    with pytest.raises(RuntimeError, match="no turn"):
+        env.reset(seed=3)
+    with pytest.raises(Exception, match=r"reset\(\) before step"):
+        env.step(np.zeros((4, 4)))

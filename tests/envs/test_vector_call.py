@@ -1,27 +1,19 @@
-"""Does ``call`` of the native vector environment give for each table what ``SyncVectorEnv`` gives?"""
+"""Does ``call`` of the native vector environment give for each table what a single environment gives?"""
 
 import inspect
 import pickle
 
 import numpy as np
 import pytest
-from gymnasium.vector import AutoresetMode
 
 import snooker_env  # noqa: F401 - registers the id
 from snooker_env import SnookerEnv
 from snooker_env.envs.vector import NOT_OF_A_TABLE, SnookerVectorEnv
-from tests.envs.test_vector import actions_of, native, same, sync
+from tests.envs.one_by_one import OneByOne, native, same
 from tests.refusals import refused
 from tests.tables import begun
 
 N = 4
-OPTIONS = {
-    "plain": {},
-    "discrete": {"action": "discrete", "layout": "random:3", "noise": "club"},
-    "masked": {"action": "discrete", "observation": "masked", "layout": "random:2", "task": "frame"},
-    "target": {"aim": "target", "placement": True, "observation": "balls", "table": "tight"}
-    | {"render_mode": "ansi", "layout": "break_off"},
-}
 METHODS = {"get_state", "action_masks", "has_wrapper_attr"}
 """What takes a call and changes nothing."""
 
@@ -29,10 +21,6 @@ METHODS = {"get_state", "action_masks", "has_wrapper_attr"}
 def public(env):
     """All names of a ``SnookerEnv`` that do not start with an underscore."""
     return sorted(name for name in {*dir(env), *vars(env)} if not name.startswith("_"))
-
-
-def both(mode=AutoresetMode.SAME_STEP, **options):
-    return native(N, autoreset_mode=mode, **options), sync(N, mode, **options)
 
 
 def alike(a, b):
@@ -48,39 +36,32 @@ def alike(a, b):
     return same(a, b)
 
 
-def differences(ours, theirs):
-    """Which public names of a table are not the same; shared state is ``Tables``, compared by its arrays."""
-    wrong = []
-    for name in public(SnookerEnv()):
-        if name in NOT_OF_A_TABLE:
-            continue
-        arguments = ("positions",) if name == "has_wrapper_attr" else ()
-        if name == "action_masks" and ours.options.action == "box":
-            for env in (ours, theirs):
-                with pytest.raises(ValueError, match="a Box has no masks"):
-                    env.call(name)
-            continue
-        got, want = ours.call(name, *arguments), theirs.call(name, *arguments)
-        assert isinstance(got, tuple) and len(got) == N
-        if name == "tables":
-            parts = ("positions", "on_table", "game", "streams", "begun", "n")
-            got, want = ([[getattr(v, part) for part in parts] for v in each] for each in (got, want))
-        if not all(map(alike, got, want)):
-            wrong.append(name)
-    return wrong
+MASKED = {"action": "discrete", "observation": "masked", "layout": "random:2", "task": "frame"}
+PLAIN = {"placement": True, "table": "tight", "render_mode": "ansi", "layout": "break_off"}
 
 
-@pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
-@pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
-def test_each_table_has_all_that_a_single_environment_has(mode, options):
-    ours, theirs = both(mode, **options)
+@pytest.mark.parametrize("options", [MASKED, PLAIN], ids=["masked", "plain"])
+def test_each_table_has_all_that_a_single_environment_has(options):
+    """Every public name; shared state is ``Tables``, compared by its arrays."""
+    ours, theirs = native(N, **options), OneByOne(N, **options)
     ours.reset(seed=3), theirs.reset(seed=3)
-    assert differences(ours, theirs) == []
-    rng = np.random.default_rng(0)
-    for _ in range(6):
-        a = actions_of(ours, rng)
+    for _ in range(2):
+        for name in set(public(SnookerEnv())) - set(NOT_OF_A_TABLE):
+            if name == "action_masks" and options is PLAIN:
+                with pytest.raises(ValueError, match="a Box has no masks"):
+                    ours.call(name)
+                continue
+            arguments = ("positions",) if name == "has_wrapper_attr" else ()
+            want = [getattr(one, name) for one in theirs.envs]
+            want = [one(*arguments) if callable(one) else one for one in want]
+            got = ours.call(name, *arguments)
+            assert isinstance(got, tuple) and len(got) == N
+            if name == "tables":
+                parts = ("positions", "on_table", "game", "streams", "begun", "n")
+                got, want = ([[getattr(v, part) for part in parts] for v in each] for each in (got, want))
+            assert all(map(alike, got, want)), name
+        a = np.full(N, 67) if options is MASKED else np.full((N, 6), 0.1)
         ours.step(a), theirs.step(a)
-    assert differences(ours, theirs) == []
 
 
 def test_every_method_is_served_or_refused_by_name():
@@ -89,34 +70,26 @@ def test_every_method_is_served_or_refused_by_name():
     assert set(NOT_OF_A_TABLE) <= set(public(SnookerEnv()))
 
 
-@pytest.mark.parametrize("name", sorted(NOT_OF_A_TABLE))
-def test_what_belongs_to_all_tables_is_refused(name):
+def test_what_belongs_to_all_tables_is_refused():
     env = begun(SnookerVectorEnv(2))
     before = pickle.dumps(env.get_state())
-    refused(lambda: env.call(name), "name", repr(name), f"; use {NOT_OF_A_TABLE[name]}")
-    refused(lambda: env.get_attr(name), "name", repr(name), "that a table has for itself")
+    for name, instead in NOT_OF_A_TABLE.items():
+        refused(lambda name=name: env.call(name), "name", repr(name), f"; use {instead}")
+        refused(lambda name=name: env.get_attr(name), "name", repr(name), "that a table has for itself")
+    for name in ("_work", "__class__", 3, None):
+        allowed = "must be something public that a table has for itself"
+        refused(lambda name=name: env.call(name), "name", repr(name), allowed)
     assert pickle.dumps(env.get_state()) == before
 
 
-@pytest.mark.parametrize("name", ["_work", "__class__", 3, None])
-def test_what_is_not_public_is_refused(name):
-    allowed = "must be something public that a table has for itself"
-    refused(lambda: SnookerVectorEnv(2).call(name), "name", repr(name), allowed)
-
-
-def test_what_is_not_there_is_not_there():
-    for env in both():
-        for look in (env.call, env.get_attr):
-            with pytest.raises(AttributeError, match="no_such"):
-                look("no_such")
-
-
-def test_nothing_can_be_set():
+def test_what_is_not_there_is_not_there_and_nothing_can_be_set():
     env = SnookerVectorEnv(2)
+    for look in (env.call, env.get_attr):
+        with pytest.raises(AttributeError, match="no_such"):
+            look("no_such")
     for name in ("reward", "no_such"):
         with pytest.raises(AttributeError, match=f"{name} cannot be set: the tables share everything"):
             env.set_attr(name, ["pots", "pots"])
-    assert [options.reward for options in env.get_attr("options")] == ["points", "points"]
 
 
 def test_what_is_given_is_the_callers_own():

@@ -9,7 +9,6 @@ from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH
 from tests.kernels import from_python
 
 bits, count = from_python(balls.bits), from_python(balls.count)
-next_on, balls_on = from_python(balls.next_on_kernel), from_python(balls.balls_on_kernel)
 
 
 def test_balls_are_where_the_rules_put_them_and_worth_what_they_say():
@@ -44,30 +43,3 @@ def test_masks_and_what_is_none():
     for function, value in (*wrong_masks, (balls.colour, "red"), (balls.ids_of, 1 << 22)):
         with pytest.raises(ValueError, match="must be"):
             function(value)
-
-
-def test_next_on():
-    for on_table, expected in (
-        (range(1, 22), BallOn.RED),
-        ([15, 21], BallOn.RED),
-        (range(16, 22), BallOn.YELLOW),
-        ([18, 21], BallOn.BROWN),
-        ([], BallOn.NOTHING),
-    ):
-        mask = balls.mask_of(on_table)
-        assert balls.next_on(mask) == next_on(mask) == expected
-
-
-def test_balls_on():
-    mask = balls.mask_of([1, 2, 16, 21])
-    expected = {
-        "RED": [1, 2],
-        "ANY_COLOUR": [16, 21],
-        "YELLOW": [16],
-        "BLACK": [21],
-        "GREEN": [],
-        "NOTHING": [],
-    }
-    for name, ids in expected.items():
-        ball_on = BallOn[name]
-        assert balls.balls_on(ball_on, mask) == balls_on(int(ball_on), mask) == balls.mask_of(ids)

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game import in_hand
-from snooker_env.game.balls import BROWN, CLEARANCE, GREEN, REFEREE_TOUCH, SPOTS, YELLOW
+from snooker_env.game.balls import CLEARANCE, SPOTS
 from snooker_env.game.in_hand import place_cue
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from snooker_env.physics.table import Table
@@ -21,56 +21,6 @@ def table(*places):
     for ball, place in enumerate(places, start=1):
         positions[ball], on_table[ball] = place, True
     return positions, on_table
-
-
-@pytest.mark.parametrize(
-    ("x", "y", "inside"),
-    [
-        (0.0, BAULK_Y, True),
-        (D_RADIUS, BAULK_Y, True),
-        (0.0, BAULK_Y - D_RADIUS, True),
-        (0.0, BAULK_Y + 1e-6, False),
-        (D_RADIUS + 1e-6, BAULK_Y, False),
-        (0.8 * D_RADIUS, BAULK_Y - 0.7 * D_RADIUS, False),
-    ],
-)
-def test_the_d(x, y, inside):
-    assert in_d(x, y) == inside
-
-
-@pytest.mark.parametrize(
-    ("wish", "place"),
-    [
-        ((0.1, -1.1), (0.1, -1.1)),
-        ((0.1, 0.5), (0.1, BAULK_Y)),
-        ((0.8, 0.5), (D_RADIUS, BAULK_Y)),
-        ((0.0, -1.7), (0.0, BAULK_Y - D_RADIUS)),
-        ((0.6, BAULK_Y - 0.6), (D_RADIUS * np.sqrt(0.5), BAULK_Y - D_RADIUS * np.sqrt(0.5))),
-    ],
-)
-def test_a_wish_outside_goes_to_the_nearest_point_of_the_d(wish, place):
-    assert place_cue(*table(), *wish) == pytest.approx(place, abs=1e-12)
-
-
-def test_the_place_is_beside_the_balls_in_the_way():
-    assert place_cue(*table((0.0, -1.2)), 0.01, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
-    touching = 2 * BALL_RADIUS + 0.9 * REFEREE_TOUCH  # a referee would call a touching ball there
-    assert place_cue(*table((0.0, -1.2)), touching, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
-    x, y = place_cue(*table((0.0, -1.2)), 0.0, -1.2)
-    assert np.hypot(x, y + 1.2) == pytest.approx(REACH, abs=1e-12)
-    # The nearest point of the circle lies beyond the line; the place is where circle and line meet.
-    half = np.sqrt(REACH**2 - 0.02**2)
-    place = place_cue(*table((0.0, BAULK_Y - 0.02)), 0.01, BAULK_Y)
-    assert place == pytest.approx((half, BAULK_Y), abs=1e-12)
-    x, y = place_cue(*table((0.0, BAULK_Y - D_RADIUS + 0.02)), 0.01, BAULK_Y - D_RADIUS)
-    assert np.hypot(x, y - BAULK_Y) == pytest.approx(D_RADIUS, abs=1e-12)
-    assert np.hypot(x, y - BAULK_Y + D_RADIUS - 0.02) == pytest.approx(REACH, abs=1e-12) and x > 0.0
-    for ball in (YELLOW, GREEN, BROWN):
-        x, y = place_cue(*table(SPOTS[ball]), *SPOTS[ball])
-        assert in_d(x, y) and np.hypot(*(SPOTS[ball] - [x, y])) == pytest.approx(REACH, abs=1e-12)
-    positions, on_table = table()
-    positions[0], on_table[0] = (0.0, -1.1), True
-    assert place_cue(positions, on_table, 0.0, -1.1) == (0.0, -1.1)
 
 
 def test_a_full_d_and_wrong_input_are_refused():
@@ -91,7 +41,7 @@ def strewn(rng, number, low, high):
 
 
 @pytest.mark.parametrize("anywhere", [False, True])
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), number=st.integers(0, 21))
 def test_no_place_drawn_at_random_is_nearer(anywhere, seed, number):
     rng = np.random.default_rng(seed)

@@ -62,7 +62,7 @@ def plainly(positions, on_table, on):
 def test_short_cuts_leave_no_pot_out():
     """Random layouts, a third with balls frozen to rails; the widest four, and their number alone."""
     rng, met = np.random.default_rng(5), 0
-    for trial in range(300):
+    for trial in range(120):
         reach = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS
         positions, on_table = rng.uniform(-1, 1, (22, 2)) * reach, rng.random(22) < rng.random()
         on_table[0] = True
@@ -81,4 +81,4 @@ def test_short_cuts_leave_no_pot_out():
         for most in (1, 4, 99):
             assert _counted(positions, on_table, on, most) == min(most, len(found))
         met += len(found)
-    assert met > 1000
+    assert met > 400

@@ -5,7 +5,7 @@ import pytest
 
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import touching_balls as touching_kernel
-from snooker_env.planning import FrameJudge, Position, Positions, Search, at_pots, prospects_of, spread_of
+from snooker_env.planning import FrameJudge, Position, Positions, Search, prospects_of, spread_of
 from snooker_env.planning.frame_judge import PLANS
 from snooker_env.planning.proposals import EDGE, safeties
 from snooker_env.planning.search import BUDGET
@@ -14,13 +14,10 @@ from snooker_env.planning.worth import (
     NARROWEST,
     WIDEST,
     Chance,
-    apply_decision,
-    best_places,
+    chosen,
     decide,
-    follows,
     lead_of,
     left_of,
-    pass_after_miss,
 )
 from snooker_env.planning.worth import SPREAD as MIDDLE
 from snooker_env.players.weights import learned_worth
@@ -133,14 +130,7 @@ def test_with_a_law_of_chances_a_lead_is_kept_and_a_deficit_gambled_away():
     assert np.array_equal(errs(now, ten, left, open_table, 0.0), errs(now, ten, left, open_table, NARROWEST))
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
-    one, every = judge(chance=LAW), np.arange(len(at))
-    both = one.gains(at, every, np.tile([2.0, 0, 0, 1.0, 0], (len(at), 1)), np.zeros((len(at), 5)))
-    assert ((both[:, 0] > 0.0) & (both[:, 0] < 1.0)).all()
-    one = judge(chance=errs, noise="professional")
-    ahead, none = one.value_of(np.full(len(at), 5.0), at), np.zeros(len(at), np.bool_)
-    rest = 5.0 + ahead[:, 1] - lead_of(at)
-    assert np.array_equal(ahead[:, 0], errs(lead_of(at), rest, left_of(at), none, one.spread))
-    assert not np.array_equal(ahead, judge(chance=errs).value_of(np.full(len(at), 5.0), at))
+    every = np.arange(len(at))
     far, sign = at.copy(), np.where(every % 2, 1, -1)
     # one of both needs snookers, whatever the stroke does
     far.game[:, columns.SCORE_0] += np.maximum(sign, 0) * 200
@@ -216,15 +206,15 @@ def test_after_a_foul_all_choices_are_compared():
     for k in range(len(at)):
         one = at[[k]]
         options = {
-            columns.PLAY: either_way(apply_decision(one, columns.PLAY))[0],
-            columns.PLAY_AGAIN: -either_way(apply_decision(one, columns.PLAY_AGAIN))[0],
-            columns.REPLACE: -either_way(apply_decision(one, columns.REPLACE))[0],
+            columns.PLAY: either_way(chosen(one, columns.PLAY))[0],
+            columns.PLAY_AGAIN: -either_way(chosen(one, columns.PLAY_AGAIN))[0],
+            columns.REPLACE: -either_way(chosen(one, columns.REPLACE))[0],
         }
         assert values[k] == pytest.approx(max(options.values())) and options[int(best[k])] == pytest.approx(
             values[k]
         )
     assert len(set(best.tolist())) > 1, "one choice is always the best here"
-    replaced = apply_decision(at, columns.REPLACE)
+    replaced = chosen(at, columns.REPLACE)
     assert np.array_equal(replaced.positions, at.saved.positions)
     assert np.array_equal(lead_of(replaced), -lead_of(at))
 
@@ -240,47 +230,8 @@ def test_who_leads_by_more_than_is_left_plays_on():
         assert np.all((decide(bad, at)[0] != columns.PLAY) == sent_back), lead
 
 
-def test_a_miss_leaves_the_other_the_same_balls():
-    at = frame_of(
-        Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], blue=(0.3, -0.3), black=(0.0, 1.4605), on="any_colour"),
-        (20, 5),
-    )
-    left = pass_after_miss(at)
-    assert left.ball_on.tolist() == [1] and left.scores.tolist() == [[5, 20]]
-    assert np.array_equal(left.positions, at.positions) and at.ball_on.tolist() != [1]
-    assert left_of(at).tolist() == [7 + 8 + 5 + 7]
-
-
-def test_a_cue_ball_in_hand_goes_where_it_is_worth_most():
-    at = frame_of(Position(cue=(0.1, -1.1), reds=[(0.5, 0.5)], on="red", in_hand=True))
-    placed, worth = best_places(lambda some: some.positions[:, 0, 0], at)
-    assert placed.positions[0, 0, 0] > 0.25 and worth[0] == placed.positions[0, 0, 0]
-    placed, _ = best_places(lambda some: -some.positions[:, 0, 0], at)
-    assert placed.positions[0, 0, 0] < -0.25
-
-
-def test_who_comes_next_decides_the_sign():
-    at = positions_of(frames_in_play(30, OPTIONS, strokes=3, seed=51))
-    at = at[np.flatnonzero(~at.over & ~at.choice)]
-    before = lead_of(at)
-    mine = follows(lambda some: np.full(len(some), 7.0), at, before)
-    assert mine.tolist() == [7.0] * len(at)
-    theirs = at.copy()
-    theirs.game[:, columns.STRIKER] = 1
-    assert follows(lambda some: np.full(len(some), 7.0), theirs, before).tolist() == [-7.0] * len(at)
-
-
 def test_a_lot_decides_who_begins_at_the_black_that_makes_it_level():
     at = frame_of(Position(cue=(0.377, 1.327), black=(0.0, 1.4605), on="black"), (53, 60))
     one = judge(OPTIONS | {"noise": "none"}, lambda some: np.full(len(some), 5.0), chance=LAW)
     (tried,) = Search(one).rank(at, [0])
     assert tried.kinds[0] == 0 and tried.scores[0] == 0.5 and tried.points[0] == 7.0
-
-
-def test_a_visit_is_not_judged_as_a_frame_nor_with_several_generators():
-    at, one = Position(cue=(0.377, 1.327), black=(0.0, 1.4605), on="black"), judge()
-    with pytest.raises(ValueError, match=r"^positions = those of visits: must be of frames"):
-        Search(one).rank(at, [0])
-    with pytest.raises(ValueError, match=r"^propose = 2 generators: must be one"):
-        Search(one, propose=(at_pots, at_pots)).rank(frame_of(at), [0])
-    assert one.shots == 0

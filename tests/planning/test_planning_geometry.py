@@ -1,33 +1,11 @@
 """Are the pots, the obstructions and the clear paths those of the geometry, recomputed one by one?"""
 
 import numpy as np
-import pytest
-from positions import tables
 
-from snooker_env.game import pots as one_by_one
 from snooker_env.game.balls import mask_of
-from snooker_env.planning import Position, Positions, clear_paths, obstructions, pots
+from snooker_env.planning import Position, Positions, clear_paths, obstructions
 from tests import miss_paths as miss_rule
-
-
-def test_pots_are_those_of_each_position():
-    at = Positions.of(tables(20, layout="random:5"))
-    at.ball_on[10:] = 0
-    direct = pots(at, most=6)
-    for k in range(20):
-        on = mask_of(np.flatnonzero(at.balls_on[k]).tolist())
-        each = one_by_one.pots(at.positions[k], at.on_table[k], on, most=6)
-        n = len(each)
-        assert direct.ball[k, :n].tolist() == each[:, 0].tolist()
-        assert direct.pocket[k, :n].tolist() == each[:, 1].tolist()
-        assert np.array_equal(direct.ghost[k, :n], each[:, 2:4])
-        assert np.array_equal(direct.tolerance[k, :n], each[:, 5])
-        assert np.cos(direct.cut[k, :n]) == pytest.approx(each[:, 4], abs=1e-12)
-        assert (direct.ball[k, n:] == -1).all() and (direct.pocket[k, n:] == -1).all()
-        assert not direct.tolerance[k, n:].any()
-    assert (direct.ball[:, 0] >= 16).sum() == 10 and np.array_equal(pots(at).ball, direct.ball[:, :4])
-    with pytest.raises(ValueError, match="most = 0"):
-        pots(at, most=0)
+from tests.positions import tables
 
 
 def test_what_is_in_the_way_is_nearer_than_two_radii_to_the_path():
@@ -43,16 +21,6 @@ def test_what_is_in_the_way_is_nearer_than_two_radii_to_the_path():
     ignored = obstructions(at, rows, starts, ends, ignore=np.stack([np.zeros(200, int), np.full(200, 5)], 1))
     assert not ignored[:, [0, 5]].any()
     assert np.array_equal(np.delete(ignored, [0, 5], 1), np.delete(direct, [0, 5], 1))
-
-
-def test_bad_paths_are_refused():
-    at = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)])
-    with pytest.raises(ValueError, match=r"rows\[0\] = 2"):
-        obstructions(at, [2], [(0.0, 0.0)], [(1.0, 0.0)])
-    with pytest.raises(ValueError, match="ends = array of shape"):
-        obstructions(at, [0], [(0.0, 0.0)], [1.0, 0.0])
-    with pytest.raises(ValueError, match="ignore = 22"):
-        obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)], ignore=[22])
 
 
 def test_clear_paths_are_those_of_the_miss_rule():

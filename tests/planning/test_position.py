@@ -21,17 +21,10 @@ from snooker_env.game.frame_columns import (
     SCORE_1,
     STRIKER,
 )
-from snooker_env.planning import Planner, Position, Positions, action_masks, clear_paths, pots, prospects_of
+from snooker_env.planning import Position, Positions
 from tests.refusals import refused
 
 FULL = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (-0.3, 0.7)], "pink": (0.2, 0.1), "black": (0.0, 1.4605)}
-
-
-def test_a_field_that_there_is_not_is_named_with_those_that_there_are():
-    with pytest.raises(TypeError, match=r"argument 'red'; the reds are one list, reds=\[\(x, y\), \.\.\.\]"):
-        Position(cue=(0.0, 0.2), red=(0.1, 0.3))
-    with pytest.raises(TypeError, match="'white'; the fields are cue, reds, yellow, green, brown, blue"):
-        Position(white=(0.0, 0.2))
 
 
 def test_words_and_arrays_say_the_same():
@@ -67,43 +60,6 @@ def test_a_cue_ball_in_hand_lies_in_the_d():
         Position(cue=(0.0, 0.0), reds=[(0.3, 0.3)], in_hand=True)
 
 
-@pytest.mark.parametrize(
-    ("words", "complaint"),
-    [
-        ({"reds": [(0.1, -1.21)]}, r"reds\[0\] = \(0.1, -1.21\): overlaps cue at \(0.1, -1.2\) by 0.0425 m"),
-        ({"pink": (0.0, 1.44)}, r"black = .*overlaps pink"),
-        ({"blue": (0.88, 0.5)}, r"blue = \(0.88, 0.5\): overlaps the cushion at x = 0.889"),
-        ({"yellow": (3.0, 0.0)}, r"yellow = \(3.0, 0.0\): must be on the table"),
-        ({"green": (-0.889, -1.7845)}, r"green = .* is over a pocket"),
-        ({"black": (np.nan, 0.0)}, r"black\[0\] = nan"),
-        ({"brown": 3.0}, "brown"),
-        ({"cue": "centre"}, "cue"),
-        ({"reds": [(0.04 * k - 0.5, 0.3) for k in range(16)]}, "reds = 16 places: must be at most 15"),
-        ({"on": "puce"}, "on = 'puce': must be one of"),
-        ({"on": "black"}, "on = 'black': must be 'red' or 'any_colour'"),
-        ({"on": "blue"}, "on = 'blue': must name balls of which one"),
-        ({"reds": [], "on": "black"}, "on = 'black': must be 'any_colour' or 'pink'"),
-        ({"cue": None}, "cue = None: must be on the table"),
-        ({"reds": [], "pink": None, "black": None}, "on = 'nothing': must name balls"),
-        ({"points": 156}, "points = 156"),
-        ({"in_hand": 1}, "in_hand = 1: must be True or False"),
-        ({"table": "oval"}, "table = 'oval'"),
-    ],
-)
-def test_a_position_that_cannot_be_is_refused(words, complaint):
-    with pytest.raises(ValueError, match=complaint):
-        Position(**FULL | words)
-
-
-def test_the_table_decides_what_fits():
-    mouth = (0.834, -1.766)  # in a corner's mouth, which is wider on the usual table
-    sn.Table.preset("match").check(np.array([mouth]), 0.02625)
-    assert Position(**FULL, yellow=mouth).yellow == mouth
-    with pytest.raises(ValueError, match=r"yellow = \(0.834, -1.766\): overlaps"):
-        Position(**FULL, yellow=mouth, table="tight")
-    assert Position(**FULL, yellow=(5.0, 5.0), table=None).yellow == (5.0, 5.0)
-
-
 def test_positions_of_states_and_of_environments_are_the_same():
     env = sn.SnookerVectorEnv(4, noise="club", layout="random:5")
     env.reset(seed=0)
@@ -130,24 +86,6 @@ def test_one_row_is_words_and_any_other_index_a_batch():
     assert batch.ball_on.tolist() == [1, 0, 0, 1, 1]
     with pytest.raises(IndexError):
         batch[5]
-
-
-@pytest.mark.parametrize(
-    ("change", "complaint"),
-    [
-        ({"positions": np.zeros((2, 21, 2))}, "positions = array of shape"),
-        ({"positions": np.full((2, 22, 2), np.nan)}, r"positions\[0, 0, 0\] = nan"),
-        ({"on_table": np.zeros((2, 22))}, "on_table = float64 array"),
-        ({"on_table": np.zeros((1, 22), bool)}, "on_table = bool array of shape"),
-        ({"game": np.zeros((2, 4), int)}, "game = int64 array of shape"),
-        ({"game": np.zeros((2, 5))}, "game = float64 array"),
-    ],
-)
-def test_arrays_of_the_wrong_shape_or_type_are_refused(change, complaint):
-    arrays = {"positions": np.zeros((2, 22, 2)), "on_table": np.zeros((2, 22), bool)}
-    arrays["game"] = np.zeros((2, 5), int)
-    with pytest.raises(ValueError, match=complaint):
-        Positions(*(arrays | change).values())
 
 
 def test_positions_of_frames_hold_what_the_striker_may_know():
@@ -177,37 +115,6 @@ def test_positions_of_frames_hold_what_the_striker_may_know():
     assert at[1].on == "any_colour" and at[0].on == "red"
 
 
-def test_planning_plays_the_strokes_of_frames_as_those_of_visits():
-    env = sn.SnookerVectorEnv(2, task="frame", layout="random:4")
-    env.reset(seed=3)
-    env.tables.game[1, FREE_BALL] = True
-    at = Positions.of(env)
-    visits, strokes = at.as_visits(), np.array([[2.0, 0.1, 0.2, 1.3, 0.0]] * 2)
-    planner = Planner({}, threads=1)
-    for plan in (
-        lambda at: planner.play_strokes(at, [0, 1], strokes).afterstates.positions,
-        lambda at: pots(at).ball,
-        action_masks,
-        lambda at: clear_paths(at).any_part,
-        Positions.observations,
-        lambda at: prospects_of(at, 1e-3)[0],
-    ):
-        assert np.array_equal(plan(at), plan(visits))
-
-
-def test_a_cue_ball_that_may_stand_anywhere_is_played_from_where_it_lies():
-    """It raised: a position in hand must lie in the D."""
-    env = sn.match_env(game="shoot_out")
-    env.reset(seed=0)
-    env.step(np.array([-0.3, 0, 0, -0.4, 0, -1, 0], np.float32))  # away from every ball: a foul
-    state = env.get_state()
-    assert state["frame"]["anywhere"] and state["frame"]["in_hand"]
-    (position,) = Positions.of(env)
-    assert not position.in_hand and position.cue == pytest.approx(state["positions"][0])
-    env.reset(options={"position": position})
-    assert np.array_equal(env.positions[1:], np.array(state["positions"])[1:]) and not env.frame.in_hand
-
-
 BALLS = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (1 / 3, -0.7)], "black": (0.0, 1.4605)}
 POSITION = Position(**BALLS, on="any_colour", points=9, in_hand=True)
 
@@ -227,64 +134,3 @@ def test_a_file_holds_the_position_to_the_last_bit_on_any_table(tmp_path):
         "3.0",
         "must be on the table",
     )
-
-
-def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
-    file = tmp_path / "one.json"
-    POSITION.save(file)
-    monkeypatch.setattr(Position, "to_dict", lambda self: {"cue": object()})
-    with pytest.raises(TypeError):
-        Position(cue=(0.0, 0.0), black=(0.0, 1.0)).save(file)
-    monkeypatch.undo()
-    assert Position.load(file) == POSITION and len(list(tmp_path.iterdir())) == 1
-    with pytest.raises(OSError, match="nowhere"):
-        POSITION.save(tmp_path / "nowhere" / "one.json")
-
-
-GOOD = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], black=(0.0, 1.4605)).to_dict()
-WRONG = [
-    ({"reds": [[0.5, 0.5], [0.52, 0.5]]}, "reds[1]", "overlaps reds[0]", "at most 1e-06"),
-    ({"whit": [0, 0]}, "key of position", "whit", "'cue'"),
-    ({"cue": [0.0, True]}, "cue", "True", "must be two real numbers"),
-    ({"reds": [[0.5, 0.5], [False, 1]]}, "reds", "False", "must be two real numbers for each ball"),
-    ({"cue": [0.0]}, "cue", "shape (1,)", "must have shape (2,)"),
-    ({"cue": "middle"}, "cue", "middle", "must be real numbers"),
-    ({"points": 1.5}, "points", "1.5", "must be an integer"),
-]
-
-
-@pytest.mark.parametrize(("change", "field", "value", "allowed"), WRONG, ids=[str(w[0]) for w in WRONG])
-def test_what_is_wrong_is_named(tmp_path, change, field, value, allowed):
-    refused(lambda: Position.from_dict(GOOD | change), field, value, allowed)
-    file = tmp_path / "wrong.json"
-    file.write_text(json.dumps(GOOD | change))
-    named = f"key of {file}" if "key" in field else f"{file}: {field}"
-    refused(lambda: Position.load(file), named, value, allowed)
-
-
-def test_what_is_no_json_is_refused(tmp_path):
-    file = tmp_path / "wrong.json"
-    for text in ("", "{", "\ud800".encode("utf-8", "surrogatepass"), "[" * 100_000):
-        file.write_bytes(text if isinstance(text, bytes) else text.encode())
-        with pytest.raises(ValueError, match=r"^path = .*wrong.json': must be JSON"):
-            Position.load(file)
-    for text in ("[]", "3", '"black"'):
-        file.write_text(text)
-        refused(lambda: Position.load(file), str(file), "a ", "must be a dict with keys of cue")
-    for text, why in (
-        ('{"cue": [0, 0], "cue": [0.1, 0]}', "key 'cue' stands there twice"),
-        ('{"cue": [0, NaN]}', "NaN"),
-    ):
-        file.write_text(text)
-        with pytest.raises(ValueError, match=f"must be JSON .*{why}"):
-            Position.load(file)
-    with pytest.raises(OSError):
-        Position.load(tmp_path / "none.json")
-
-
-def test_a_position_in_words_is_taken_wherever_a_state_is():
-    assert Positions.of(GOOD)[0] == Position.from_dict(GOOD) and len(Positions.of([GOOD, POSITION])) == 2
-    wrong = {"cue": (0.0, 0.0), "blak": (0.0, 1.0)}
-    refused(lambda: Positions.of(wrong), "key of position", "blak", "'black'")
-    missing = "a dict without ['positions'", "must be a state of get_state() of a visit"
-    refused(lambda: Positions.of({"on_table": []}), "state", *missing)

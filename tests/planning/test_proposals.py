@@ -1,13 +1,11 @@
 """Are the strokes proposed within their limits, aimed at real pots and shared among them by their chance?"""
 
-from dataclasses import replace
 from itertools import pairwise
 from math import floor
 from typing import NamedTuple
 
 import numpy as np
 import pytest
-from positions import chances_by_width, tables
 
 from snooker_env import planning
 from snooker_env.geometry import POCKET_AIMS
@@ -23,17 +21,15 @@ from snooker_env.planning.proposals import (
     ROLLING,
     SIDE,
     SLOWEST,
-    SOFTEST,
     SPEED,
     TOP,
     WIDEST,
     at_balls,
     at_pots,
     over_cushions,
-    strokes_at,
 )
 from snooker_env.tasks import LEVELS
-from snooker_env.tasks.box_actions import MAX_SPEED
+from tests.positions import chances_by_width, tables
 
 PLANNER = planning.Planner({"fidelity": "fast"}, threads=1)
 DYNAMICS = Dynamics.of(PLANNER.rules)
@@ -158,27 +154,6 @@ def test_where_there_is_no_pot_the_strokes_hit_the_balls_on_from_thin_to_full():
         assert len(mine) > 0.25 * m and (np.abs(mine) < 0.1).any()
 
 
-def test_without_a_pot_half_of_the_strokes_are_hard_and_the_others_of_any_speed():
-    """Hard strokes score more often by chance: the density of their speed grows with its square."""
-    strokes = at_balls(SEARCH, planning.Positions.of(NO_POT), 2000, [5]).strokes[0]
-    shares = [(strokes[1::2, SPEED] < v).mean() for v in (2.0, 4.0, 6.0)]
-    assert shares == pytest.approx([(v / MAX_SPEED) ** 3 for v in (2.0, 4.0, 6.0)], abs=0.01)
-    counts = np.histogram(np.log(strokes[::2, SPEED]), 4, np.log([SOFTEST, FASTEST]))[0]
-    assert counts == pytest.approx([250] * 4, abs=6)
-    assert strokes[:, SPEED].min() >= SOFTEST and 0.99 * MAX_SPEED < strokes[:, SPEED].max() <= MAX_SPEED
-
-
-def test_no_contact_is_tried_that_another_ball_hides():
-    """A colour before the reds: without it, some of the plain strokes would meet its place first."""
-    at = planning.Positions.of(replace(NO_POT, yellow=(0.4, 1.4)))
-    assert planning.pots(at).ball[0, 0] == -1
-    strokes = at_balls(SEARCH, at, 400, [3]).strokes[0]
-    straight = (strokes[:, SIDE] == 0.0) & (strokes[:, SPEED] > 2.0)
-    assert straight.sum() > 100 and set(first_struck(at, strokes[straight])) == {1, 2}
-    free = at_balls(SEARCH, planning.Positions.of(NO_POT), 400, [3]).strokes[0]
-    assert (first_struck(at, free[straight]) == 16).sum() > 5
-
-
 def test_away_from_a_ball_on_that_touches_the_cue_ball():
     """It counts as struck: every direction away from it is fair, none into it."""
     at = planning.Positions.of(planning.Position(cue=(0.0, 0.0), reds=[(0.0525, 0.0)], black=(0.0, -1.0)))
@@ -200,25 +175,6 @@ def test_hidden_balls_are_reached_over_cushions():
     assert len(np.unique(strokes[:, AIM].round(1))) > 6 and (strokes[aimed, TOP] == ROLLING).all()
 
 
-def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
-    at, rng = some(6), np.random.default_rng(1)
-    direct, chances = planning.pots(at, most=MOST_POTS), chances_by_width(at, SPREAD)
-    many = (direct.ball >= 0).sum(axis=1)
-    assert (many > 0).all()
-    which = rng.integers(0, 4, (6, 30))
-    passed = rng.uniform((1.0, -0.3, -0.3), (5.0, 0.3, 0.3), (6, 30, 3))
-    kept = which.copy(), passed.copy()
-    strokes, of = strokes_at(at, which, passed, SPREAD, DYNAMICS)
-    assert np.array_equal(strokes[..., :AIM], passed) and np.array_equal(which, kept[0])
-    assert np.array_equal(passed, kept[1])
-    for k in range(6):
-        for i in range(30):
-            j = min(which[k, i], many[k] - 1)  # beyond the last pot: the last one
-            assert of[k, i] == pytest.approx(chances[k, j], rel=1e-9)
-            pot = direct.ball[k, j], direct.pocket[k, j], direct.ghost[k, j]
-            assert strokes[k, i, AIM] == solved(at, k, strokes[k, i : i + 1], *pot)[0]
-
-
 @pytest.mark.parametrize("generate", [at_pots, at_balls, over_cushions])
 def test_a_position_is_proposed_for_by_itself(generate):
     """Its strokes depend on its own seed and layout alone, and nothing that is passed is changed."""
@@ -232,12 +188,3 @@ def test_a_position_is_proposed_for_by_itself(generate):
     assert all(not np.array_equal(other[k], made.strokes[k]) for k in some)
     names = "positions", "on_table", "game"
     assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in names)
-
-
-def test_a_wider_hand_spares_the_doubtful_pots():
-    """With larger errors every chance falls, and the likeliest pot's share of the strokes grows."""
-    at = planning.Positions.of(
-        planning.Position(cue=(0.0, 0.9), reds=[(0.5, 1.35), (-0.6, -0.9)], black=(0.0, 1.4605))
-    )
-    small, large = (at_pots(Hand(spread), at, 200, [3]).chances[0] for spread in (5e-4, 4e-3))
-    assert large.max() < small.max() and (large == large.max()).sum() > (small == small.max()).sum() > 0

@@ -1,16 +1,12 @@
 """Does the search play as the table would, within its budget, and rank by the scores of its docstring?"""
 
-from math import atan, sqrt
-
 import numpy as np
 import pytest
-from positions import tables
 
 from snooker_env.game.balls import SPOTS
 from snooker_env.game.frame_columns import FREE_BALL
 from snooker_env.planning import (
     RULE_OF_THUMB,
-    SURE,
     Planner,
     Position,
     Positions,
@@ -22,12 +18,12 @@ from snooker_env.planning import (
     pots,
     prospects_of,
 )
-from snooker_env.planning.proposals import Proposals
 from snooker_env.planning.search import PRIOR
 from snooker_env.planning.sobol import normal_points
 from snooker_env.planning.visit_judge import FOUL, LEFT, schedule
 from snooker_env.tasks.noise import errors_of
 from snooker_env.tasks.options import Options
+from tests.positions import tables
 
 OPTIONS = {"noise": "club", "fidelity": "fast"}
 LOUD = {"aim_deg": 0.3, "speed_rel": 0.05, "speed_abs": 0.05, "offset_mm": 5.0, "elevation_deg": 2.0}
@@ -78,7 +74,7 @@ def random_strokes(m, rng):
 EACH = {"offset_mm": 6.0}, {"elevation_deg": 4.0}, {"aim_deg": 2.0}, {"speed_abs": 0.1, "speed_rel": 0.03}
 
 
-@pytest.mark.parametrize("noise", ["professional", "club", "olympiad", LOUD, *EACH], ids=str)
+@pytest.mark.parametrize("noise", ["professional", LOUD, *EACH], ids=str)
 def test_strokes_under_errors_are_those_of_the_table_under_the_same_errors(noise):
     """The table draws its errors from a key's stream; given the same five numbers, the search plays the same
     shot, squirt and all.
@@ -106,25 +102,8 @@ def test_strokes_under_errors_are_those_of_the_table_under_the_same_errors(noise
     assert (np.abs(exact - table.afterstates.positions).max(axis=(1, 2)) > 1e-3).mean() > 0.3
 
 
-def test_a_tip_error_beyond_the_disc_is_drawn_in_along_its_radius():
-    """A tip sent beyond the rim: the ball leaves as from the rim, turned by the squirt of the stroke."""
-    at = Positions.of(Position(cue=(0.0, -1.2), black=(0.6, 1.6)))
-    noise = {"offset_mm": 0.02625e3 * 0.2}  # a fifth of R
-    tool = Planner({"noise": noise}, threads=1)
-    strokes, errors = [[0.9, 0.4, 0.0, 1.5, 0.0]] * 2, [[0, 2.0, 0, 0, 0], [0, 0.5, 0, 0, 0]]
-    left = tool.play_strokes(at, [0, 0], strokes, errors=errors)
-    ratio = tool.physics.end_mass_ratio
-    # squirt [Alciatore, TP A.31]
-    rim, meant = (atan(2.5 * b * sqrt(1 - b * b) / (1 + ratio + 2.5 * (1 - b * b))) for b in (0.5, 0.4))
-    turned = rim - meant
-    assert turned > 1e-3
-    for place in left.afterstates.positions[:, 0]:  # 0.8 and 0.5 both end on the rim
-        x, y = place - at.positions[0, 0]
-        assert np.arctan2(y, x) == pytest.approx(1.5 + turned, abs=1e-9)
-
-
 def test_no_budget_is_exceeded_nor_left_unused():
-    for budget in range(VisitJudge.least, 2501):
+    for budget in range(VisitJudge.least, 2501, 7):
         (looks,), rounds = schedule(budget)
         total = looks + sum(many * each for many, each in rounds)
         assert 0.8 * budget < total <= budget, budget
@@ -134,7 +113,7 @@ def test_no_budget_is_exceeded_nor_left_unused():
         assert bool(rounds) == (budget >= 30)
 
 
-@pytest.mark.parametrize("budget", [8, 29, 30, 77, 120, 333, 2000])
+@pytest.mark.parametrize("budget", [8, 29, 120, 333])
 @pytest.mark.parametrize("noise", ["club", "none"])
 def test_as_many_strokes_are_played_as_the_schedule_says(budget, noise):
     at = some(2)
@@ -161,7 +140,7 @@ def gains_by_hand(tool, at, strokes, errors, value):
     return (out.points + left).reshape(m, s)
 
 
-@pytest.mark.parametrize("budget", [30, 120])
+@pytest.mark.parametrize("budget", [30])
 @pytest.mark.parametrize("value", [by_place, None])
 def test_the_ranking_recomputed(budget, value):
     """Sequential halving in plain Python, by score = (2 look + sum) / (2 + samples), look = chance x gain."""
@@ -188,44 +167,6 @@ def test_the_ranking_recomputed(budget, value):
     assert PRIOR == 1.0 and max(one.scores.max() for one in ranked) > 3.0
 
 
-def test_for_pots_alone_a_score_is_a_rate_and_nothing_is_valued():
-    def never(_):
-        raise AssertionError("asked for a value")
-
-    at = some(5)
-    tool = search(60, pots_only=True, value=never)
-    ranked = tool.rank(at, np.arange(5))
-    assert all(one.scores.min() >= 0.0 and one.scores.max() <= 1.0 for one in ranked)
-    assert any(one.scores[0] > 0.3 for one in ranked)
-    for k, one in enumerate(ranked):
-        best, met = one.strokes.values[0], int(one.samples[0])
-        errors = np.concatenate([np.zeros((1, 5)), normal_points(met, k)])
-        again = np.tile(best, (met + 1, 1))
-        made = tool.judge.planner.play_strokes(at, np.full(met + 1, k), again, errors=errors).points > 0
-        proposed = at_pots(tool, at[k : k + 1], *schedule(60).looks, [k])
-        strokes, chances = (one[0] for one in proposed)
-        chance = chances[np.flatnonzero((strokes == best).all(axis=1))[0]]
-        assert one.scores[0] == pytest.approx((chance * made[0] + made[1:].sum()) / (1.0 + met))
-
-
-def test_without_errors_the_ranking_is_that_of_the_looks():
-    """With a chance of 1, scores are points and value, and the best scores what it says when played."""
-    at = some(6)
-
-    def sure(tool, here, m, seeds):
-        strokes, chances = at_pots(tool, here, m, seeds)
-        return Proposals(strokes, np.ones_like(chances))
-
-    tool = search(80, {"noise": "none", "fidelity": "fast"}, propose=sure)
-    ranked = tool.rank(at, np.arange(6))
-    for one in ranked:
-        assert not one.samples.any() and (np.diff(one.scores) <= 0.0).all() and len(one.scores) == 80
-    played = Planner({"fidelity": "fast"}).play_strokes(at, np.arange(6), first(ranked))
-    worth = played.points + played.goes_on * prospects_of(played.afterstates, tool.judge.spread, SURE)[0]
-    scores = [one.scores[0] for one in ranked]
-    assert scores == pytest.approx(worth, rel=1e-6) and (played.points > 0).sum() >= 4
-
-
 def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
     """Pots, balls that are seen, escapes, in visits and in frames: the position and its seed alone decide."""
     parts = [some(5), some(4, layout="break_off"), some(9, layout="snookered", seed=3)]
@@ -245,13 +186,12 @@ def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
         assert all(same(alone, [whole[mine]]) for mine in np.flatnonzero(order == k))
 
 
-@pytest.mark.parametrize("budget", [30, 120])
-@pytest.mark.parametrize("noise", ["none", "professional"])
+@pytest.mark.parametrize(("noise", "budget"), [("none", 30), ("professional", 120)])
 def test_a_fair_stroke_is_found_where_the_balls_on_are_hidden(noise, budget):
-    at = some(100, layout="snookered", seed=9)
+    at = some(50, layout="snookered", seed=9)
     assert clear_paths(at).any_part.mean() < 0.5
-    ranked = search(budget, {"noise": noise, "fidelity": "fast"}).rank(at, np.arange(100))
-    played = Planner({"fidelity": "fast"}, threads=1).play_strokes(at, np.arange(100), first(ranked))
+    ranked = search(budget, {"noise": noise, "fidelity": "fast"}).rank(at, np.arange(50))
+    played = Planner({"fidelity": "fast"}, threads=1).play_strokes(at, np.arange(50), first(ranked))
     assert (played.penalty == 0).mean() >= 0.98
 
 
@@ -289,94 +229,3 @@ def test_generators_that_have_strokes_share_the_looks():
     assert [int((one.strokes.speed == 1.0).sum()) for one in ranked] == [30, 0, 30] and calls == [3]
     assert [int(one.kinds.sum()) for one in ranked] == [30, 0, 30] and same(ranked[1:2], usual[1:2])
     assert not np.array_equal(ranked[0].scores, usual[0].scores)
-
-
-def test_the_low_32_bits_of_a_seed_decide_and_a_search_remembers_nothing():
-    at, seeds, tool = some(12), np.arange(12), search(60)
-    one = tool.rank(at, seeds)
-    assert same(one, tool.rank(at, seeds.tolist()))
-    assert same(one, tool.rank(at, (seeds + 2**32).astype(np.uint64)))
-    other = tool.rank(at, seeds + 50)
-    assert not any(same(one[k : k + 1], other[k : k + 1]) for k in range(12))
-
-
-def test_nothing_given_is_changed_and_nothing_returned_is_shared():
-    at, seeds = some(5), np.arange(5)
-    kept, proposed = at.copy(), []
-
-    def propose(tool, here, m, scrambles):
-        made = at_pots(tool, here, m, scrambles)
-        proposed.append((made, made.strokes.copy(), made.chances.copy()))
-        return made
-
-    tool = search(60, propose=propose)
-    ranked = tool.rank(at, seeds)
-    copies = [part.copy() for one in ranked for part in told(one)]
-    for made, strokes, chances in proposed:
-        assert np.array_equal(made.strokes, strokes) and np.array_equal(made.chances, chances)
-    names = "positions", "on_table", "game"
-    assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in names)
-    assert np.array_equal(seeds, np.arange(5))
-    for one in ranked:
-        for part in told(one):
-            part[:] = 0
-    again = [part for one in tool.rank(at, seeds) for part in told(one)]
-    assert all(map(np.array_equal, copies, again))
-
-
-def test_physics_and_fidelity_are_the_tables_and_noise_given_takes_its_place():
-    at = some(3)
-    exact = search(30, noise="none")
-    assert exact.judge.noise.silent and not exact.rank(at, [1, 2, 3])[0].samples.any()
-    loud = search(30, {"noise": "none", "fidelity": "fast"}, noise="club")
-    assert same(loud.rank(at, [1, 2, 3]), search(30).rank(at, [1, 2, 3]))
-    at = some(3)
-    usual = search(30).rank(at, [1, 2, 3])
-    for change in ({"physics": "match"}, {"fidelity": "standard"}, {"table": "tight"}):
-        other = search(30, OPTIONS | change).rank(at, [1, 2, 3])
-        assert not same(usual, other), change
-
-
-def test_no_position_is_no_decision():
-    assert search(30).rank(some(2)[np.zeros(0, int)], np.zeros(0, int)) == []
-
-
-@pytest.mark.parametrize(
-    "seeds", [[1], [1, 2, 3], 1, [[1, 2]], [1.0, 2.0], [True, False], ["1", "2"], [None, 1]], ids=str
-)
-def test_wrong_seeds_are_refused_before_anything_is_played(seeds):
-    tool = search()
-    with pytest.raises(ValueError, match=r"^seeds = .*: must be 2 integers, one for each position"):
-        tool.rank(some(2), seeds)
-    assert tool.judge.shots == 0
-
-
-SPOILT = {
-    "over": lambda at: at.game[1].__setitem__(3, 1),
-    "no cue ball": lambda at: at.on_table[1].__setitem__(0, False),
-    "no ball on": lambda at: at.on_table[1, 1:].fill(False),
-    "overlap": lambda at: np.copyto(at.positions[1, 0], at.positions[1, 1]),
-    "nan": lambda at: at.positions[1, 0].fill(np.nan),
-}
-
-
-@pytest.mark.parametrize("kind", SPOILT)
-def test_a_position_without_a_stroke_is_refused_by_its_row(kind):
-    at, tool = some(3), search()
-    SPOILT[kind](at)
-    with pytest.raises(ValueError, match=r"^positions\[1\]") as info:
-        tool.rank(at, [1, 2, 3])
-    assert type(info.value) is ValueError and tool.judge.shots == 0
-
-
-def test_other_wrong_arguments_are_refused():
-    for wrong, complaint in (
-        (lambda: search(threads=0), "threads = 0"),
-        (lambda: search(noise="loud"), "noise = 'loud'"),
-        (lambda: VisitJudge(3), "env_or_options = "),
-        (lambda: search().rank(3, [1]), "positions = "),
-        (lambda: Search(OPTIONS), "judge = a dict: must be a VisitJudge or a FrameJudge"),
-        *((lambda b=budget: search(b), f"budget = {budget!r}") for budget in (7, -1, 30.0, "30", None)),
-    ):
-        with pytest.raises(ValueError, match=f"^{complaint}"):
-            wrong()

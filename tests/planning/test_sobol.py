@@ -36,12 +36,6 @@ def test_unscrambled_they_are_the_sequence_of_joe_and_kuo():
             assert np.array_equal(shared_bits(direct[:, d]), expected), (seed, d)
 
 
-def test_the_first_points_of_many_are_those_of_few():
-    many = sobol_points(100, DIMENSIONS, 7)
-    assert np.array_equal(many[:13], sobol_points(13, DIMENSIONS, 7))
-    assert np.array_equal(many[:, :2], sobol_points(100, 2, 7))
-
-
 def test_scrambles_and_dimensions_differ():
     """The first point of each scramble differs in each dimension; only the low 32 bits of a seed count."""
     first = np.array([sobol_points(1, DIMENSIONS, seed)[0] for seed in range(2000)])

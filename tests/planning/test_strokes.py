@@ -2,32 +2,16 @@
 
 import numpy as np
 import pytest
-from positions import tables
 
 import snooker_env as sn
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import Planner, Position, Positions, Strokes, action_masks, pot_aim, pots
 from snooker_env.planning.strokes import decode
 from snooker_env.players import VISITS
-from snooker_env.tasks import choice_of
 from snooker_env.tasks.carry_out import sayings
+from tests.positions import tables
 
 DISCRETE = {"action": "discrete"}
-
-
-def test_choices_as_angles_are_the_same_shots():
-    """Said as a float32 angle, a choice's aim is rounded by 2e-7 rad."""
-    choices, angles = tables(40, layout="random:1", **DISCRETE), tables(40, layout="random:1", aim="absolute")
-    masks = choices.action_masks()
-    picks = np.where(masks[:, choice_of(0, 3, 2, 3)], choice_of(0, 3, 2, 3), 0)
-    strokes, _ = Planner(choices).strokes_of(choices, np.arange(40), picks)
-    actions = Strokes(strokes).actions(angles.options, Positions.of(angles)).astype(np.float32)
-    assert np.abs(actions).max() <= 1.0
-    _, first, _, _, _ = choices.step(picks)
-    _, second, _, _, _ = angles.step(actions)
-    assert np.mean(first == second) > 0.95 and first.sum() > 10
-    apart = np.abs(Positions.of(choices).positions[:, 0] - Positions.of(angles).positions[:, 0]).max(axis=1)
-    assert np.median(apart) < 1e-3
 
 
 def test_the_masks_are_those_of_the_environment():
@@ -51,7 +35,6 @@ def test_a_stroke_of_a_speed_and_a_direction_is_what_it_says():
     "options",
     [
         VISITS,
-        {"aim": "absolute"},
         {"aim": "absolute", "elevation": True, "layout": "break_off"},
         {"aim": "target", "placement": True, "elevation": True, "layout": "break_off"},
         {"aim": "target", "cue": "real", "layout": "random:6"},
@@ -91,25 +74,6 @@ def test_an_aim_from_a_target_line_is_that_of_the_nominated_ball():
     assert np.array_equal(sayings(options.rules, back, at.game)[0], nominated)
 
 
-def test_what_an_action_cannot_hold_is_refused():
-    at = Positions.of(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]))
-    for stroke, options, complaint in (
-        ([2.0, 0.0, 0.0, 0.3, 0.2], {}, r"elevation = 0\.2: must be left out"),
-        ([2.0, 0.0, 0.0, 0.3, 0.0], DISCRETE, "options.action = 'discrete'"),
-        (
-            [2.0, 0.0, 0.0, 0.3, 0.0],
-            {"aim": "target"},
-            r"aim\[0\] = 0.3: must be within 3 degrees of the target",
-        ),
-    ):
-        with pytest.raises(ValueError, match=f"^{complaint}"):
-            Strokes([stroke]).actions(sn.Options(**options), at)
-    with pytest.raises(ValueError, match=r"^positions = 2 positions: must be 1, one for each stroke"):
-        Strokes([stroke]).actions(sn.Options(), at[[0, 0]])
-    with pytest.raises(ValueError, match=r"^rows = 0: must be a slice, a mask or an array of rows"):
-        Strokes([stroke])[0]
-
-
 def test_a_solved_aim_pots_where_the_straight_line_misses():
     """Cuts with side, at which the ball is thrown."""
     env = tables(60, layout="pots:hard", aim="absolute")
@@ -123,31 +87,3 @@ def test_a_solved_aim_pots_where_the_straight_line_misses():
     for spun[:, 3] in solved, straight:
         made.append((planner.play_strokes(at, n, spun).points > 0).mean())
     assert made[0] > 0.8 and made[1] < 0.5
-
-
-POT = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)])
-
-
-@pytest.mark.parametrize(
-    ("changes", "complaint"),
-    [
-        ({"rows": [1]}, r"rows\[0\] = 1"),
-        ({"balls": [0]}, r"balls\[0\] = 0: must be an integer in \[1, 21\]"),
-        ({"balls": [22]}, r"balls\[0\] = 22"),
-        ({"balls": [2]}, r"balls\[0\] = 2: must be on the table"),
-        ({"balls": [1.0]}, "balls = float64 array"),
-        ({"targets": [0.8, 0.8]}, "targets = "),
-        ({"strokes": -1.0}, r"strokes\[0\], speed = -1.0"),
-        ({"strokes": [1.0, 2.0]}, "strokes = "),
-        ({"strokes": [[2.3, 0.6, 0.0, 0.0, 0.0]]}, r"strokes\[0\], side = 0.6"),
-        ({"strokes": [[2.3, 0.0, 0.0, 0.0, 2.0]]}, r"strokes\[0\], elevation = 2.0"),
-        ({"ghosts": [[np.nan, 0.0]]}, r"ghosts\[0, 0\] = nan"),
-        ({"physics": "moon"}, "physics"),
-        ({"fidelity": "coarse"}, "fidelity = 'coarse'"),
-    ],
-)
-def test_an_aim_that_cannot_be_solved_is_refused(changes, complaint):
-    arguments = {"positions": POT, "rows": [0], "balls": [1], "targets": [(0.8, 0.8)], "strokes": 2.3}
-    assert pot_aim(**arguments).shape == (1,)
-    with pytest.raises(ValueError, match=complaint):
-        pot_aim(**arguments | changes)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env.benchmark import count_shots
 from snooker_env.planning import Positions
 from snooker_env.players import VISITS, ChoicePlayer, SeenPlayer, Strokes, decision_seeds
 from snooker_env.players.degenerate import MODULE

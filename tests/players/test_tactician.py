@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position
-from snooker_env.planning.worth import last_of, lead_of, left_of
+from snooker_env.planning.worth import apply_decision, last_of, lead_of, left_of
 from snooker_env.players.tactician import Tactician
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from tests.planning.test_frame_judge import frame_of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from snooker_env import SnookerEnv
-from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, BallOn
+from snooker_env.game.balls import BLACK, CUE, SPOTS, BallOn
 from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import BAULK_Y, D_RADIUS, POCKET_AIMS
@@ -22,8 +22,7 @@ def standing(**options):
     return env
 
 
-@pytest.mark.parametrize("side", [0.0, 1.0, -1.0, 0.5])
-@pytest.mark.parametrize("aim", [-1.0, -0.75, -0.3, 0.0, 0.1, 0.5, 0.99])
+@pytest.mark.parametrize(("side", "aim"), [(0.0, -1.0), (1.0, -0.3), (-1.0, 0.1), (0.5, 0.99)])
 def test_absolute_aim_is_the_direction_in_which_the_ball_leaves(side, aim):
     """Also with side spin: the squirt is compensated, so the cue itself points elsewhere."""
     env = standing()
@@ -37,15 +36,6 @@ def test_absolute_aim_is_the_direction_in_which_the_ball_leaves(side, aim):
 
 def shot_of(env, *action_and_table):
     return shot(env.options.rules.actions, *action_and_table, env.physics)
-
-
-def test_squirt_is_what_is_compensated():
-    """The same action with hardly an end mass in the formula: the cue's own direction is another one."""
-    envs = (SnookerEnv(physics={"end_mass_ratio": ratio}) for ratio in (5.0, 1e9))
-    heavy, light = (shot_of(env, [0, 1, 0, 0.25], SPOTS, np.ones(N_BALLS, bool), 2)[3] for env in envs)
-    assert light == pytest.approx(math.pi / 4, abs=1e-8)
-    squirt = math.atan(2.5 * 0.5 * math.sqrt(0.75) / (1 + 5 + 2.5 * 0.75))
-    assert heavy - light == pytest.approx(-squirt, abs=1e-8)
 
 
 @pytest.mark.parametrize(("a", "speed"), [(-1.0, 0.2), (1.0, 7.0), (0.0, 3.6), (-0.5, 1.9)])
@@ -96,20 +86,9 @@ def test_elevation_lengthens_the_action_and_takes_speed(a, degrees, mu_s):
     assert R * w[:2] == pytest.approx([slip[1] + 2.5 * push[1], -2.5 * push[0]], rel=1e-6, abs=1e-6)
 
 
-def test_elevation_of_nothing_is_the_short_action():
-    long, short = SnookerEnv(elevation=True, layout="random:4"), SnookerEnv(layout="random:4")
-    for seed in range(5):
-        long.reset(seed=seed), short.reset(seed=seed)
-        a = np.random.default_rng(seed).uniform(-1, 1, 4)
-        assert np.array_equal(long.step([*a, -1.0])[0], short.step(a)[0])
-
-
-CORNERS = [(a, b) for a in (1.0, -1.0, 0.99, -0.99) for b in (-1.0, 0.0, 1.0)]
-
-
 @pytest.mark.parametrize("elevation", [False, True])
 @pytest.mark.parametrize(
-    ("a", "b"), [(0.0, -1.0), (0.0, 1.0), (-0.5, 0.0), (0.25, 0.5), (-0.8, -1.0), *CORNERS]
+    ("a", "b"), [(0.0, -1.0), (0.0, 1.0), (-0.5, 0.0), (0.25, 0.5), (1.0, 0.0), (-0.99, 1.0)]
 )
 def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
     """The yellow and the green stand on the D's corners, the brown between them: no place overlaps a ball."""

@@ -120,10 +120,10 @@ def first_met(positions, on_table, angles):
     return np.where(np.isfinite(runs.min(1)), runs.argmin(1), 0)
 
 
-@pytest.mark.parametrize("kind", ["break_off", "opened", "random:6", "line_up", "snookered"])
+@pytest.mark.parametrize("kind", ["break_off", "opened", "snookered"])
 def test_windows_are_the_directions_in_which_a_ball_on_is_met_first(kind):
     angles = np.linspace(-np.pi, np.pi, 20_000, endpoint=False)
-    for seed in range(12):
+    for seed in range(6):
         positions, on_table = layout(kind, np.random.default_rng(seed))
         on = mask_of(range(1, 16)) if seed % 3 else mask_of([BLUE, BROWN, 3])
         found = windows_of(positions, on_table, on)
@@ -146,37 +146,16 @@ def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
     assert found[:, 0] == pytest.approx([wide, wide - thin, wide + thin, 0.0], abs=1e-12)
 
 
-def test_reds_all_round_are_one_window():
-    positions, on_table = np.zeros((N_BALLS, 2)), np.arange(N_BALLS) < 16
-    angles = np.arange(15) * 2.0 * np.pi / 15.0
-    positions[1:16] = 8.0 * R * np.column_stack([np.cos(angles), np.sin(angles)])
-    ((low, high),) = windows_of(positions, on_table, mask_of(range(1, 16)))
-    assert high - low == pytest.approx(2.0 * np.pi)
-    aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
-    assert len(aims) and (first_met(positions, on_table, aims) > 0).all()
-
-
-def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
-    positions, on_table = layout("break_off", np.random.default_rng(0))
-    for x, ends in ((0.18, (15, 11)), (-0.18, (11, 15))):
-        positions[CUE] = x, -1.0475
-        aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
-        met = first_met(positions, on_table, aims)
-        assert met[0] == ends[0] and ((met >= 1) & (met <= 15)).all()
-    positions[CUE] = 0.0, -1.15  # behind the brown: what it sees of the pack, if anything
-    aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
-    assert len(aims) and BROWN not in first_met(positions, on_table, aims)
-
-
 @pytest.mark.parametrize(
     ("kind", "n", "least", "target"),
     [
-        ("break_off", 40, 1.0, 1.0),
-        ("break_off_six_red", 40, 1.0, 1.0),
-        ("break_off_shoot_out", 40, 1.0, 1.0),
+        ("break_off", 12, 1.0, 1.0),
+        pytest.param("break_off_six_red", 40, 1.0, 1.0, marks=pytest.mark.slow),
+        pytest.param("break_off_shoot_out", 40, 1.0, 1.0, marks=pytest.mark.slow),
         ("snookered", 10, 0.95, 0.95),
         pytest.param("snookered_match", 30, 0.95, 0.95, marks=pytest.mark.slow),
-        ("frames", 60, 0.99, 0.85),
+        ("frames", 20, 0.99, 0.75),
+        pytest.param("frames", 60, 0.99, 0.85, marks=pytest.mark.slow),
     ],
 )
 def test_there_is_a_fair_choice_and_a_fair_target(kind, n, least, target):
@@ -199,21 +178,6 @@ def test_an_escape_is_solved_for_the_stroke_that_is_played():
         v = env.last_shot.at(0.0)[1][CUE]
         aims.append(np.arctan2(v[1], v[0]))
     assert met >= 0.8 * len(picks) and np.ptp(aims) > 0.05
-
-
-def test_choices_over_cushions_are_the_same_strokes_as_actions():
-    env = sn.SnookerEnv(action="discrete", layout="snookered", render_mode="ansi")
-    for seed in range(6):
-        env.reset(seed=seed)
-        at = sn.planning.Positions.of(env)
-        picks = np.flatnonzero(env.action_masks())[::50]
-        aims = sn.Planner(env).strokes_of(at, np.zeros(len(picks), int), picks)[0][:, 3]
-        state = env.get_state()
-        for pick, aim in zip(picks, aims, strict=True):
-            env.set_state(state)
-            env.step(pick)
-            v = env.last_shot.at(0.0)[1][CUE]
-            assert np.exp(1j * aim) == pytest.approx(np.exp(1j * np.arctan2(v[1], v[0])), abs=1e-6)
 
 
 def touching(ball, others):

@@ -2,33 +2,17 @@
 
 import inspect
 
-import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env, data_equivalence
+from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
 from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import AUTO
-from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
-from snooker_env.tasks import observations
 from snooker_env.tasks.observations import FRAME_ENTRIES
 from snooker_env.tasks.options import NAMES
-from tests.tables import acting, begun, frame_env, frame_state, plain, viewed
-
-SOFT = [-1.0, 0, 0, 0.5, 0, 0, 0]
-"""A soft stroke up the table (with ``aim="absolute"``)."""
-
-
-@pytest.mark.parametrize("observation", observations.OBSERVATIONS)
-@pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
-def test_gymnasium_checks_it(observation, opponent):
-    says = ["decision"] * (observation != "masked")  # which is of discrete actions
-    options = {"opponent": opponent, **viewed(observation), "layout": "random:2", "says": says}
-    env = gymnasium.make("Snooker-v0", task="frame", **options)
-    check_env(env.unwrapped, skip_render_check=True)
-    assert gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())).spec == env.spec
+from tests.tables import begun, frame_env, frame_state, plain
 
 
 def test_gymnasium_checks_a_match():
@@ -50,21 +34,6 @@ def test_the_spaces_grow_and_those_of_a_visit_do_not():
     assert len(FRAME_ENTRIES) == 19
 
 
-def test_the_default_layout_is_that_of_the_task():
-    assert SnookerEnv().options.rules.plan.name == "opened"
-    assert frame_env().options.rules.plan.name == "break_off"
-    env = begun(frame_env(layout="colours"), 0)
-    assert env.ball_on == BallOn.YELLOW and not env.in_hand
-
-
-def test_who_breaks_is_drawn_from_the_seed():
-    env = frame_env(opponent="ghost_ball")
-    strokes = [env.reset(seed=seed)[1]["opponent_strokes"] for seed in range(30)]
-    assert 5 < sum(n > 0 for n in strokes) < 25
-    alone = frame_env()
-    assert not any(alone.reset(seed=seed)[1]["opponent_strokes"] for seed in range(10))
-
-
 def test_infos_have_the_same_keys_and_types_at_all_times():
     env, rng = frame_env(opponent="random", layout="random:4"), np.random.default_rng(3)
     infos = [env.reset(seed=3)[1]]
@@ -76,89 +45,11 @@ def test_infos_have_the_same_keys_and_types_at_all_times():
     assert {info["winner"] for info in infos} > {-1} and {info["choice"] for info in infos} == {True, False}
 
 
-CLUB = {"noise": "club", "miss": "clear_path", "layout": "random:6"}
-GAMES = [
-    CLUB | {"opponent": "none"},
-    CLUB | {"opponent": "random"},
-    CLUB | {"opponent": "ghost_ball"},
-    {"game": "six_red", "opponent": "random", "miss": "clear_path"},
-    {"game": "shoot_out", "opponent": "random", "time_to_play": 12.0},
-]
-
-
-@pytest.mark.parametrize("options", GAMES)
-def test_a_frame_goes_on_from_its_state_as_the_same(options):
-    env, twin, rng = frame_env(**options), frame_env(**options), np.random.default_rng(1)
-    seen, _ = env.reset(seed=3)
-    twin.reset(seed=8)
-    over = anywhere = 0
-    for _ in range(120):
-        state = plain(env.get_state())
-        again, _ = twin.reset(options={"state": state})
-        assert np.array_equal(again, seen) and plain(twin.get_state()) == state
-        action = rng.uniform(-1, 1, env.action_space.shape).astype(np.float32)
-        action[1:3] *= 0.4
-        one, two = env.step(action), twin.step(action)
-        assert data_equivalence(one, two, exact=True) and env.observation_space.contains(one[0])
-        assert env.get_state() == twin.get_state()
-        seen, ended = one[0], one[2] or one[3]
-        anywhere += env.get_state()["frame"]["anywhere"]
-        while ended:
-            over += 1
-            seen, _ = env.reset()
-            ended = env.over  # the opponent may have won it in his first visit
-    assert over >= (options.get("game") == "shoot_out")
-    assert (anywhere > 5) == ("time_to_play" in options)
-
-
-def test_six_reds_are_racked():
-    env, full = SnookerEnv(task="frame", game="six_red"), SnookerEnv(task="frame")
-    env.reset(seed=1), full.reset(seed=1)
-    assert env.on_table[1:7].all() and not env.on_table[7:16].any() and env.on_table[16:].all()
-    assert np.array_equal(env.positions[CUE], full.positions[CUE])
-
-
-def test_the_place_anywhere_is_a_share_of_the_table():
-    env = begun(SnookerEnv(task="frame", game="shoot_out", placement=True))
-    env.step(np.array([-1, 0, 0, -0.5, 0, 0], np.float32))  # softly away from the reds: a foul
-    assert env.frame.anywhere and env.frame.in_hand
-    env.keep_history = True
-    env.step(np.array([-1, 0, 0, 0.5, 0.5, 0.4], np.float32))
-    start = env.history[0].shot.segments[0]
-    assert start[:2] == pytest.approx([0.5 * HALF_WIDTH, 0.4 * HALF_LENGTH], abs=1e-6)
-
-
-@pytest.mark.parametrize("mode", ["rgb_array", "ansi"])
-def test_pictures(mode):
-    if mode == "rgb_array":
-        pytest.importorskip("pygame")
-    env, blind = frame_env(render_mode=mode, opponent="ghost_ball"), frame_env(opponent="ghost_ball")
-    env.reset(seed=1), blind.reset(seed=1)
-    first = env.render()
-    # looking changes nothing
-    assert data_equivalence(env.step(np.zeros(7)), blind.step(np.zeros(7)), exact=True)
-    assert not np.array_equal(first, env.render())
-    assert mode != "ansi" or " - " in env.render()
-
-
 def test_every_argument_is_documented():
     described = f"{sn.Options.__doc__}{SnookerEnv.__doc__}"
     assert all(name in described for name in (*NAMES, "render_mode", "render_size"))
     arguments = {"options", "render_mode", "render_size", "keywords"}
     assert set(inspect.signature(SnookerEnv).parameters) == arguments
-
-
-@pytest.mark.parametrize("observation", ["flat", "balls"])
-def test_the_layout_that_replace_restores_is_within_its_space(observation):
-    """A ball may rest in the mouth of a middle pocket, farther out than the cushions' noses."""
-    options = {"miss": "clear_path", "aim": "absolute", "observation": observation}
-    env = frame_env(opponent=acting(lambda seen, rng: SOFT, aim="absolute", miss="clear_path"), **options)
-    frame_state(env, {CUE: (0.0, 0.0), 1: (-0.3, -1.0), PINK: (0.3, 0.5), BLACK: (0.8993, -0.035)}, {})
-    seen, _, _, _, _ = env.step(SOFT)
-    assert env.frame.miss_called and env.positions[BLACK, 0] > 0.889
-    assert env.observation_space.contains(seen)
-    replaced = seen["replaced"] if observation == "balls" else seen[-66:].reshape(22, 3)
-    assert replaced[BLACK].tolist() == [pytest.approx(0.8993 / 0.889), pytest.approx(-0.035 / 1.7845), 1.0]
 
 
 @pytest.mark.parametrize("game", ["snooker", "six_red", "shoot_out"])
@@ -169,15 +60,6 @@ def test_the_state_before_the_first_reset_is_sound(game):
     assert env.get_state() == state
 
 
-@pytest.mark.parametrize("decision", [-1.0, 0.0, 1.0])
-def test_who_plays_alone_stays_at_the_table_after_a_decision(decision):
-    """The state comes from a frame of two players: a foul of the other one."""
-    places = {CUE: (0.0, 0.0), 1: (-0.3, -1.0), PINK: (0.3, 0.5)}
-    env = frame_state(frame_env(aim="absolute"), places, {"phase": "choice"})
-    env.step([*SOFT[:6], decision])
-    assert env.frame.striker == 0 and env.frame.phase == "stroke"
-
-
 def test_a_nomination_does_not_outlive_its_frame():
     """An error in a stroke, or in an opponent, may leave one behind."""
     env = begun(frame_env())
@@ -186,28 +68,6 @@ def test_a_nomination_does_not_outlive_its_frame():
         env.tables.nominated[0] = PINK
         env.reset(options=start)
         assert env.tables.nominated[0] == AUTO
-
-
-def test_the_break_at_the_end_of_a_frame_is_the_players_own():
-    """After the agent's miss the opponent pots pink and black: his 13 are none of the agent's."""
-    places = {CUE: (0.3, 1.1), PINK: (0.6, 1.4), BLACK: (-0.5, -1.0)}
-    env = frame_env(aim="target", opponent="ghost_ball")
-    frame = {"ball_on": BallOn.PINK, "striker": 0, "scores": (0, 30)}
-    state = frame_state(env, places, frame).get_state()
-    for seed in range(200):
-        env.reset(seed=seed, options={"state": state})
-        _, _, terminated, _, info = env.step([-0.95, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-        if terminated and info["opponent_score"] > 35:
-            break
-    assert terminated and info["winner"] == 1 and env.points > 0
-    assert info["break"] == 0.0
-    frame = {"ball_on": BallOn.BLACK, "scores": (20, 0), "break_points": 6}
-    for offset in np.linspace(-0.2, 0.2, 41):
-        frame_state(env, {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}, frame)
-        _, _, terminated, _, info = env.step([-0.4, 0.0, 0.0, offset, 0.0, 0.0, 0.0])
-        if terminated and info["points"]:
-            break
-    assert (info["winner"], info["break"]) == (0, 13.0)
 
 
 BETWEEN = {CUE: (0.0, -0.3), 1: (0.0, 1.2), BLUE: (0.0, 0.0), BLACK: (0.0, 0.2)}

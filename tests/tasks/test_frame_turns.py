@@ -6,29 +6,12 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
-from snooker_env.game.frame import Frame
-from snooker_env.game.referee import Stroke
-from snooker_env.game.ruling import Foul
 from snooker_env.geometry import D_RADIUS
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
-from snooker_env.tasks.options import MAX_STROKES
 from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
-TO_BLUE = 0.0
-"""Absolute aim along +x."""
 CHOICE_SEEN, FREE_BALL_SEEN = (SIZE + FRAME_ENTRIES.index(name) for name in ("choice", "free_ball"))
 """Where an observation says that a decision is open, and that there is a free ball."""
-
-
-def test_alone_a_miss_and_a_foul_give_the_table_back():
-    places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
-    env = frame_state(frame_env(aim="absolute"), places, {})
-    before = env.positions[BLUE].copy()
-    _, reward, terminated, _, info = env.step([-0.9, 0, 0, TO_BLUE, 0, 0, 0])
-    assert (reward, info["fouls"], info["opponent_score"]) == (-5.0, Foul.WRONG_FIRST, 5.0)
-    assert info["opponent_strokes"] == 0
-    assert not terminated and not env.frame.free_ball and env.frame.phase == "stroke"
-    assert not np.array_equal(env.positions[BLUE], before)  # from where the balls lie
 
 
 FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
@@ -44,11 +27,6 @@ def test_after_a_foul_the_action_decides(decision, own):
     _, _, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, decision])
     assert (info["events"] > 0) == own
     assert own or info["opponent_strokes"] > 0
-
-
-def test_without_the_option_the_agent_always_plays():
-    env = frame_state(frame_env(opponent="ghost_ball", says=[]), PLACES, FOULED)
-    assert env.step([-0.5, 0, 0, 0, -1.0, -1.0])[4]["events"] > 0
 
 
 def test_replacing_after_a_miss_brings_the_balls_back():
@@ -78,12 +56,13 @@ def test_a_free_ball_is_seen_and_scores():
     assert not other.on >> BLUE & 1
 
 
-@pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
-@pytest.mark.parametrize("layout", ["random:2", "pots:easy", "colours"])
+@pytest.mark.parametrize(
+    ("opponent", "layout"), [("none", "colours"), ("random", "random:2"), ("ghost_ball", "pots:easy")]
+)
 def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
     """From the first stroke, which may be the opponent's, to the last, which may be in his first visit."""
     broke, before = 0, 0
-    for seed in range(15):
+    for seed in range(8):
         totals = {}
         for reward in ("points", "win"):
             env = frame_env(opponent=opponent, reward=reward, layout=layout, noise="club")
@@ -105,7 +84,7 @@ def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
 def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost():
     """Nothing is dealt again: the reset shows that it is lost, the next step plays nothing and reports it."""
     env, won = frame_env(opponent="ghost_ball", layout="pots:easy", reward="win"), 0
-    for seed in range(60):
+    for seed in range(15):
         observation, info = env.reset(seed=seed)
         before = env.positions
         if info["winner"] < 0:
@@ -124,21 +103,7 @@ def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost(
             assert np.array_equal(before, env.positions)
             with pytest.raises(gymnasium.error.ResetNeeded):
                 env.step(env.action_space.sample())
-    assert won > 10
-
-
-@pytest.mark.parametrize("strokes", [5, 9])
-def test_a_frame_that_ends_by_the_rules_with_its_last_stroke_is_not_stopped(strokes):
-    places, frame = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}, {"ball_on": BallOn.BLACK, "scores": (20, 0)}
-    env = frame_env(aim="absolute", max_strokes=10)
-    for aim in 0.25 + np.random.default_rng(0).uniform(-0.01, 0.01, 40):  # to both sides of the pot
-        frame_state(env, places, frame, strokes=strokes)
-        _, _, terminated, truncated, info = env.step([-0.4, 0, 0, aim, 0, 0, 0])
-        if terminated:
-            assert not truncated and info["winner"] == 0 and info["strokes"] == strokes + 1
-            break
-        assert truncated == (strokes == 9) or info["foul"]
-    assert terminated
+    assert won > 2
 
 
 def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
@@ -153,39 +118,10 @@ def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
 # A frame that goes nowhere is stopped by the referee, and no score that play reaches breaks it
 
 
-FOUL = np.array([-1.0, 0, 0, -0.5, 0, 0, -1], np.float32)
-"""Straight down the table, as softly as can be, and the other is to play again after his foul."""
-
-
-def test_fouls_without_end_score_without_end():
-    """A rule has no ceiling: a hundred fouls around what the first version could count to, and beyond."""
-    for scores in ((9_980, 0), (0, 9_980), (9_800, 9_800), (2**53, 2**40)):
-        frame = Frame(scores=scores, miss="clear_path")
-        for _ in range(200):
-            frame, _ = frame.play(Stroke(), clear_path=True)
-            frame = Frame.from_dict(plain(frame.to_dict())).choose("play_again")
-        assert sum(frame.scores) == sum(scores) + 800
-
-
-def test_a_match_of_fouls_and_orders_to_play_again_ends_by_itself():
-    pytest.importorskip("pettingzoo")
-    env = begun(sn.match_env(layout="random:2"))
-    state = env.get_state()
-    env.reset(options={"state": state | {"frame": state["frame"] | {"scores": [9_990, 9_990]}}})
-    for _ in range(2000):  # a turn is a stroke, or gives the table over
-        env.step(FOUL)
-        assert not any(env.terminations.values())
-        if any(env.truncations.values()):
-            break
-    assert env.strokes == MAX_STROKES == 1000 and all(env.truncations.values())
-    assert sum(env.frame.scores) >= 19_980 + 4 * 900 and env.infos["player_0"]["strokes"] == 1000
-    assert all(env.observation_spaces[player].contains(env.observe(player)) for player in env.possible_agents)
-
-
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
 def test_the_referee_stops_the_frame_after_the_very_stroke(opponent):
     env, cut = frame_env(opponent=opponent, max_strokes=6), 0
-    for seed in range(12):
+    for seed in range(6):
         _, info = env.reset(seed=seed)
         played, rng = info["strokes"], np.random.default_rng(seed)
         assert played < 6
@@ -208,31 +144,3 @@ def test_the_referee_stops_the_frame_after_the_very_stroke(opponent):
         with pytest.raises(ValueError, match=r"state\.strokes = 6: must be below max_strokes = 6"):
             other.reset(options={"state": before})
     assert (cut > 0) == (opponent != "none")  # alone the agent is always to play
-
-
-def test_the_strokes_are_counted_on_from_a_state():
-    env, other = (frame_env(max_strokes=9) for _ in range(2))
-    env.reset(seed=1)
-    for _ in range(4):
-        env.step(FOUL)
-    state = plain(env.get_state())
-    assert state["strokes"] == 4
-    assert other.reset(options={"state": state})[1]["strokes"] == 4
-    assert [other.step(FOUL)[3] for _ in range(5)] == [False] * 4 + [True]
-    assert other.reset()[1]["strokes"] == 0
-    endless = frame_env(max_strokes=None)
-    endless.reset(options={"state": state | {"strokes": 10**6}})
-    assert not endless.step(FOUL)[3]
-
-
-def test_a_frame_that_is_stopped_in_the_opening_visit_is_reported_by_the_next_step():
-    """After the opponent's break-off the agent plays nothing, and is paid what the opponent scored."""
-    env, opened = frame_env(opponent="random", max_strokes=1), 0
-    for seed in range(10):
-        _, info = env.reset(seed=seed)
-        opened += info["strokes"]
-        _, reward, terminated, truncated, after = env.step(FOUL)
-        assert (terminated, truncated, after["strokes"]) == (False, True, 1) and after["winner"] == -1
-        assert reward == after["score"] - after["opponent_score"]
-        assert info["strokes"] == 0 or after["events"] == 0
-    assert 0 < opened < 10

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env import SnookerEnv
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
 from tests.tables import begun, frame_env
 
@@ -53,35 +52,10 @@ def test_rewards_add_up(reward):
             assert total == steps[-1][0] == (1.0 if last["winner"] == 0 else -1.0)
 
 
-def test_points_of_a_match_are_those_of_both_players_over_its_frames():
-    pytest.importorskip("pettingzoo")
-    env = sn.match_env(task="match", frames=3, layout="pots:easy", aim="target")
-    for seed in range(6):
-        env.reset(seed=seed)
-        rng, total, paid = np.random.default_rng(seed), np.zeros(2), np.zeros(2)
-        while not any(env.terminations.values()):
-            player = env.possible_agents.index(env.agent_selection)
-            env.step(rng.uniform(-1, 1, 7))
-            info = env.infos["player_0"]
-            total[player] += info["points"]
-            total[1 - player] += info["penalty"]
-            paid += [env.rewards["player_0"], env.rewards["player_1"]]
-        assert paid.tolist() == [total[0] - total[1], total[1] - total[0]]
-        assert env.infos["player_1"]["winner"] == env.frame.winner
-        assert env.infos["player_0"]["frames_won"] == env.infos["player_1"]["opponent_frames"]
-
-
 def test_a_frame_that_is_stopped_truncates_the_match():
     env = begun(frame_env(task="match", max_strokes=5))
     ends = [env.step([-1.0, 0, 0, 0.9, 0, 0, 0])[2:4] for _ in range(5)]
     assert ends == [(False, False)] * 4 + [(False, True)]
-
-
-def test_the_length_of_a_match_says_that_it_is_one():
-    pytest.importorskip("pettingzoo")
-    env = sn.match_env(frames=3)
-    assert env.options.task == "match" and env.options.rules.frames == 3
-    assert sn.match_env().options.task == "frame"
 
 
 def test_reset_says_who_breaks_and_the_errors_do_not_depend_on_it():
@@ -108,19 +82,3 @@ def test_reset_says_who_breaks_on_many_tables_and_in_a_match():
     for breaker in (0, 1):
         match.reset(seed=1, options={"breaker": breaker})
         assert match.agent_selection == f"player_{breaker}"
-
-
-@pytest.mark.parametrize(
-    ("task", "opponent", "breaker", "allowed"),
-    [
-        ("frame", "random", 2, "must be an integer"),
-        ("frame", "random", "0", "must be"),
-        ("frame", "random", [0, 1], "1 of them"),
-        ("frame", "none", 0, "no opponent"),
-        ("visit", "none", 0, "no opponent"),
-    ],
-)
-def test_who_breaks_is_checked(task, opponent, breaker, allowed):
-    env = SnookerEnv(task=task, opponent=opponent)
-    with pytest.raises(ValueError, match=r'options\["breaker"\].*' + allowed):
-        env.reset(seed=1, options={"breaker": breaker})

@@ -6,20 +6,18 @@ from typing import ClassVar
 import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import data_equivalence
 
 import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
 from snooker_env.game.frame_columns import PLAY_AGAIN, REPLACE, STRIKER
-from snooker_env.game.sides import swap_sides
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 from snooker_env.players import OpponentPool, SeenPlayer, Strokes
 from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.declarations import CONCEDES
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import Crew
-from tests.tables import COPIES, PLACES, begun, frame_env, frame_state, plain
+from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
 MISS = [-0.9, 0, 0, 1.0, 0, 0, 0]
 HIDDEN = {CUE: (0.3, 0.3), 1: (0.3, 1.2), GREEN: (0.3, 0.6), BLACK: SPOTS[BLACK]}
@@ -40,16 +38,6 @@ class Soft:
         n = len(positions)
         said = {k: np.full((n, *np.shape(v)), v) for k, v in self.said.items()}
         return Strokes(np.tile([0.5, 0.0, 0.0, np.pi / 2, 0.0], (n, 1)), **said)
-
-
-class Drawing(Soft):
-    """Random strokes, of the seeds that it is given."""
-
-    def play(self, positions, seeds):
-        drawn = np.array([np.random.default_rng(seed).random(2) for seed in seeds.tolist()])
-        strokes = np.zeros((len(seeds), 5))
-        strokes[:, 0], strokes[:, 3] = 0.5 + 3 * drawn[:, 0], 6 * drawn[:, 1]
-        return Strokes(strokes)
 
 
 class Sees:
@@ -80,25 +68,6 @@ def test_a_player_sees_the_frame_as_the_striker():
     at, seeds = player.calls[0]
     assert at.of_frames and at.game[0, STRIKER] == 0 and at.scores.tolist() == [[62, 31]]
     assert player.rules is env.options and 0 <= seeds[0] < 2**32
-
-
-def test_what_acts_on_observations_sees_them():
-    for options, size in (({}, 121), ({"task": "frame"}, 140), ({"action": "discrete"}, 121)):
-        one = Sees(**options)
-        env = frame_state(frame_env(opponent=SeenPlayer(one)), PLACES, {"scores": (31, 62)})
-        one.seen.clear()
-        assert env.step(MISS)[4]["opponent_strokes"] > 0 and one.seen[0].shape == (1, size)
-
-
-def test_to_change_sides_twice_changes_nothing():
-    rng = np.random.default_rng(0)
-    game = rng.integers(0, 2, (50, columns.COLUMNS))
-    game[:, columns.WINNER] = rng.integers(-1, 2, 50)
-    other = swap_sides(game)
-    assert np.array_equal(swap_sides(other), game)
-    assert np.array_equal(other[:, columns.SCORE_0], game[:, columns.SCORE_1])
-    assert (other[:, columns.BREAKER] == 1 - game[:, columns.BREAKER]).all()
-    assert ((other[:, columns.WINNER] < 0) == (game[:, columns.WINNER] < 0)).all()
 
 
 def test_one_call_serves_all_tables_that_wait():
@@ -143,14 +112,6 @@ def test_a_name_is_one_player(name, options, monkeypatch):
             tables.step(rng.uniform(-1.0, 1.0, shape) if masks is None else masks.argmax(axis=1))
         runs.append([plain(state) | {"rng": None} for state in tables.get_state()])
     assert runs[0] == runs[1] and sum(asked) > 60
-
-
-def test_its_stroke_is_played_as_it_is():
-    env = frame_state(frame_env(opponent=Soft()), PLACES, {})
-    env.tables.game[0, STRIKER] = 1
-    buffers, which = asked(env)
-    assert which == [0] and buffers.v[0, CUE] == pytest.approx((0.0, np.hypot(*buffers.v[0, CUE])), abs=1e-12)
-    assert np.array_equal(buffers.r[0, CUE], PLACES[CUE])
 
 
 def test_it_places_the_cue_ball_and_nominates():
@@ -205,9 +166,7 @@ def test_with_a_free_ball_any_colour_is_on_for_a_player_of_visits():
     assert buffers.v[0, CUE, 1] > 0
 
 
-@pytest.mark.parametrize(
-    "name", ["best_pot", "search_30", "planner_30", "tests.tasks.test_opponents_players:Soft"]
-)
+@pytest.mark.parametrize("name", ["search_30", "tests.tasks.test_opponents_players:Soft"])
 def test_a_name_may_play(name):
     options = {"layout": "pots:easy", "noise": "none", "max_strokes": 4, "aim": "target"}
     env = gymnasium.make("Snooker-v0", task="frame", opponent=name, **options)
@@ -217,24 +176,6 @@ def test_a_name_may_play(name):
         if not env.unwrapped.over:
             _, _, _, _, info = env.step(MISS[:4])
     assert env.unwrapped.tables.seats[1].player.name == name and info["strokes"] >= 2
-
-
-@pytest.mark.parametrize("n", [1, 5])
-def test_a_player_plays_alike_again_whatever_other_tables_do(n):
-    options = {"task": "frame", "layout": "random:2", "noise": "club", "aim": "target", "opponent": Drawing()}
-    env = sn.SnookerEnv(**options)
-    many = sn.SnookerVectorEnv(n, threads=2, **options)
-    env.reset(seed=3)
-    many.reset(seed=list(range(3, 3 + n)))
-    for _ in range(5):
-        state = env.get_state()
-        one, all_of_them = env.step(MISS[:4]), many.step(np.tile(MISS[:4], (n, 1)))
-        assert np.array_equal(one[0], all_of_them[0][0]) and one[1] == all_of_them[1][0]
-        if env.over:
-            break
-        again = begun(sn.SnookerEnv(**options), 99)
-        again.set_state(plain(state))
-        assert data_equivalence(again.step(MISS[:4])[:4], one[:4], exact=True)
 
 
 @pytest.mark.parametrize(
@@ -271,31 +212,6 @@ def test_an_error_of_a_player_names_it(error, kind):
     error = KeyboardInterrupt()  # the end of a program is no error of a player
     with pytest.raises(KeyboardInterrupt):
         [env.reset(seed=seed) for seed in range(10)]
-
-
-@pytest.mark.parametrize("name", ["best_pot", "search_30", "player", "pool"])
-def test_any_opponent_plays_matches_and_stable_baselines_tables(name):
-    pytest.importorskip("stable_baselines3")
-    from snooker_env.sb3 import SnookerVecEnv
-
-    opponent = {"player": Soft(), "pool": OpponentPool(["ghost_ball", Soft(), "best_pot"])}.get(name, name)
-    options = {"task": "match", "frames": 3, "layout": "pots:easy", "aim": "target", "max_strokes": 20}
-    options["opponent"] = opponent
-    env = begun(sn.SnookerEnv(**options))
-    over = strokes = steps = 0
-    while not over and steps < 100:
-        _, _, terminated, truncated, info = env.step(MISS[:4])
-        over, strokes, steps = terminated or truncated, strokes + info["opponent_strokes"], steps + 1
-    assert over and strokes > 0 and (truncated or max(info["frames_won"], info["opponent_frames"]) == 2)
-    tables = SnookerVecEnv(3, threads=1, info_keys=["opponent_strokes"], **options)
-    tables.seed(1)
-    tables.reset()
-    ended = strokes = 0
-    for _ in range(12):
-        _, _, dones, infos = tables.step(np.tile(np.array(MISS[:4], np.float32), (3, 1)))
-        ended, strokes = ended + dones.sum(), strokes + sum(info["opponent_strokes"] for info in infos)
-    tables.close()
-    assert ended > 0 and strokes > 0
 
 
 class SeesNothing(Sees):
@@ -337,13 +253,6 @@ def test_options_hold_text_and_objects_come_beside_them():
     again = sn.SnookerVectorEnv(2, env.options, opponent=Soft())
     assert again.options == env.options
     assert sn.SnookerEnv(sn.Options(task="frame"), opponent=Soft()).options.opponent == "object"
-
-
-@pytest.mark.parametrize("copied", COPIES)
-def test_copies_of_an_environment_play_on_alike(copied):
-    env = begun(frame_env(opponent=Soft(), layout="random:2", noise="club"), 2)
-    twin = copied(env)
-    assert data_equivalence(twin.step(MISS)[:4], env.step(MISS)[:4], exact=True)
 
 
 def test_groups_hold_every_option_once():
@@ -398,35 +307,6 @@ def test_he_plays_the_whole_frame():
         assert len(set(seen)) == 1
         by_frame |= set(seen)
     assert by_frame == {"a", "b"}
-
-
-def test_the_same_seed_meets_the_same_opponent_alone_and_among_others():
-    pool = ["random", "ghost_ball"]
-    many = frames(OpponentPool(pool), 6)
-    many.reset(seed=5)
-    out = [many.step(np.tile(DOWN, (6, 1))) for _ in range(3)]
-    for k in range(6):
-        env = begun(sn.SnookerEnv(opponent=OpponentPool(pool), **FRAME), 5 + k)
-        for observation, reward, terminated, _, _ in out:
-            one = env.step(DOWN)
-            assert np.array_equal(one[0], observation[k]) and one[1] == reward[k] and one[2] == terminated[k]
-            if one[2]:
-                break
-
-
-def test_a_saved_state_keeps_the_opponent():
-    pool = OpponentPool(["random", "ghost_ball"])
-    env, again = (sn.SnookerEnv(opponent=pool, **FRAME) for _ in range(2))
-    for seed in range(6):
-        env.reset(seed=seed)
-        env.step(DOWN)
-        if env.over:
-            continue
-        state = plain(env.get_state())
-        assert state["opponent"] in (0, 1, 2)
-        again.set_state(state)
-        first, second = env.step(DOWN), again.step(DOWN)
-        assert np.array_equal(first[0], second[0]) and env.get_state() == again.get_state()
 
 
 def test_members_may_be_added_while_frames_go_on():

@@ -5,10 +5,9 @@ import numpy as np
 import pytest
 
 from snooker_env import SnookerEnv
-from snooker_env.game.balls import BLACK, BLUE, CUE, N_BALLS, PINK, REFEREE_TOUCH, SPOTS, YELLOW, BallOn
+from snooker_env.game.balls import BLACK, BLUE, CUE, N_BALLS, REFEREE_TOUCH, SPOTS, YELLOW, BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS as R
-from snooker_env.geometry import HALF_WIDTH
 from snooker_env.tasks.rewards import REWARDS
 from tests.tables import table_state
 
@@ -68,92 +67,6 @@ def test_the_highest_break():
         env.step(STUN)
 
 
-@pytest.mark.parametrize("colour", range(YELLOW, BLACK + 1))
-def test_any_colour_after_a_red_is_worth_its_value_and_comes_back(colour):
-    env = racked()
-    pot(env, 1)
-    _, reward, terminated, _, _ = pot(env, colour)
-    assert reward == colour - 14 and not terminated and env.ball_on == BallOn.RED
-    assert env.on_table[colour] and np.allclose(env.positions[colour], SPOTS[colour], atol=1e-12)
-
-
-def test_the_last_colour_after_the_last_red_comes_back_before_the_sequence():
-    env = SnookerEnv()
-    table_state(
-        env, {ball: SPOTS[ball] for ball in range(YELLOW, N_BALLS)} | {1: BESIDE, CUE: (0.3, 0.0)}, BallOn.RED
-    )
-    pot(env, 1)
-    assert env.ball_on == BallOn.ANY_COLOUR
-    pot(env, YELLOW)
-    assert env.on_table[YELLOW] and env.ball_on == BallOn.YELLOW and not env.over and env.points == 3
-
-
-def test_a_miss_ends_the_visit_without_a_foul():
-    env = SnookerEnv()
-    table_state(env, {CUE: (0.0, -0.5), 2: (0.0, 0.6), BLACK: (0.6, 1.0)}, BallOn.RED, points=8)
-    _, reward, terminated, truncated, info = env.step([-0.8, 0.0, 0.0, 0.5])
-    assert (reward, terminated, truncated, info["foul"], info["penalty"]) == (0.0, True, False, False, 0)
-    assert info["first_ball"] == 2
-    assert info["break"] == 8.0 == env.points and info["fouls"] == 0 and env.on_table[[CUE, 2, BLACK]].all()
-
-
-FAR, STRAIGHT = (0.6, 0.6), [-0.6, 0, 0, 0.5]
-WRONG_BALL = [
-    ({CUE: (0.0, -0.5), 2: FAR, ball: (0.0, 0.3)}, BallOn.RED, STRAIGHT, Foul.WRONG_FIRST, value, ball)
-    for ball, value in ((16, 4), (17, 4), (18, 4), (19, 5), (20, 6), (21, 7))
-]
-NO_BALL = [
-    ({CUE: (0.0, -0.5), PINK: FAR}, BallOn.PINK, [-0.9, 0, 0, 1.0], Foul.NO_CONTACT, 6, -1),
-    ({CUE: (0.3, 0.0), BLACK: (-0.4, 1.0)}, BallOn.BLACK, [-0.9, 0, 0, -0.4], Foul.NO_CONTACT, 7, -1),
-]
-
-
-@pytest.mark.parametrize(("places", "on", "action", "foul", "penalty", "first"), WRONG_BALL + NO_BALL)
-def test_no_ball_and_a_wrong_ball_first_are_fouls_of_its_value(places, on, action, foul, penalty, first):
-    env = SnookerEnv(reward="points_and_fouls")
-    table_state(env, places, on, points=5)
-    _, reward, terminated, _, info = env.step(action)
-    assert (reward, terminated, info["foul"], info["penalty"]) == (-penalty, True, True, penalty) and env.over
-    assert (info["first_ball"], info["fouls"], info["points"], info["break"]) == (first, foul, 0.0, 5.0)
-
-
-def test_an_in_off_is_a_foul_though_a_red_went_too():
-    """A straight pot with top spin: the cue ball follows into the same pocket."""
-    env = SnookerEnv(reward="points_and_fouls")
-    table_state(env, {CUE: (0.5, 0.0), 1: (0.7, 0.0), 2: (-0.5, 0.5), BLACK: (0.0, 1.0)}, BallOn.RED)
-    obs, reward, terminated, _, info = env.step([-0.2, 0.0, 1.0, 0.0])
-    assert (reward, terminated, info["foul"], info["penalty"], info["pots"]) == (-4.0, True, True, 4, 1)
-    assert info["points"] == 0.0
-    assert info["fouls"] == Foul.CUE_POTTED and not env.on_table[CUE] and not env.on_table[1]
-    assert obs[-2] == 1.0 and env.in_hand and np.all(obs[:3] == 0.0)
-
-
-def test_two_balls_potted():
-    """Two reds count two; a colour that goes with a red is a foul and comes back."""
-    pair = {1: (0.83, 0.0), 2: (0.83 - 0.0526, 0.0), CUE: (0.3, 0.0)}
-    rest = {3: (-0.6, 0.9)} | {ball: SPOTS[ball] for ball in range(YELLOW, N_BALLS)}
-    env = SnookerEnv(reward="points_and_fouls")
-    table_state(env, pair | rest, BallOn.RED)
-    _, reward, terminated, _, info = env.step([0.3, 0.0, 0.0, 0.0])
-    assert (reward, terminated, info["points"], info["pots"]) == (2.0, False, 2.0, 2)
-    assert env.ball_on == BallOn.ANY_COLOUR
-    others = {2: pair[2], CUE: pair[CUE], PINK: pair[1]}
-    table_state(env, rest | others, BallOn.RED)
-    _, reward, terminated, _, info = env.step([-0.4, 0.0, 0.0, 0.0])
-    assert info["fouls"] & Foul.WRONG_POT and info["penalty"] == 6 and (reward, terminated) == (-6.0, True)
-    assert env.on_table[PINK] and np.array_equal(env.positions[PINK], SPOTS[PINK])
-
-
-@pytest.mark.parametrize("ball_on", [BallOn.BLACK, BallOn.RED])
-def test_clearing_the_table_ends_the_visit(ball_on):
-    env = SnookerEnv()
-    ball = BLACK if ball_on == BallOn.BLACK else 1
-    table_state(env, {CUE: (0.3, 0.0), ball: BESIDE}, ball_on, points=20)
-    _, reward, terminated, truncated, info = env.step(STUN)
-    assert (reward, terminated, truncated, info["foul"]) == (float(ball_on), True, False, False)
-    assert info["break"] == 20 + ball_on and not env.on_table[1:].any() and env.ball_on == BallOn.NOTHING
-
-
 @pytest.mark.parametrize(
     ("name", "rewards"),
     [("points", (7, 0, 0)), ("points_and_fouls", (7, 0, -7)), ("pots", (1, 0, 0)), ("legal", (1, 1, 0))],
@@ -179,9 +92,8 @@ def touching(gap):
     return env, env.positions[1].copy()
 
 
-@pytest.mark.parametrize("aim", [AWAY, GRAZE, 0.75])
-@pytest.mark.parametrize("gap", [0.0, 1e-12, 5e-7, -5e-7, 4e-5, 49.9e-6])
-def test_playing_away_from_a_touching_ball_on_is_fair_and_leaves_it(aim, gap):
+@pytest.mark.parametrize(("gap", "aim"), [(0.0, AWAY), (1e-12, GRAZE), (-5e-7, 0.75), (49.9e-6, GRAZE)])
+def test_playing_away_from_a_touching_ball_on_is_fair_and_leaves_it(gap, aim):
     env, before = touching(gap)
     _, reward, terminated, _, info = env.step([-0.9, 0.0, 0.0, aim])
     assert (reward, terminated, info["foul"], info["fouls"]) == (0.0, True, False, 0)
@@ -189,9 +101,10 @@ def test_playing_away_from_a_touching_ball_on_is_fair_and_leaves_it(aim, gap):
     assert info["first_ball"] == -1
 
 
-@pytest.mark.parametrize("speed", [-0.999, -0.6, 1.0])
-@pytest.mark.parametrize("aim", [INTO, 0.2, -0.3, 0.48])
-@pytest.mark.parametrize("gap", [0.0, 1e-12, -5e-7, 5e-7, 1e-5, 4e-5, 49.9e-6])
+@pytest.mark.parametrize("speed", [-0.999, 1.0])
+@pytest.mark.parametrize(
+    ("gap", "aim"), [(0.0, INTO), (1e-12, 0.48), (-5e-7, 0.2), (1e-5, 0.48), (49.9e-6, INTO)]
+)
 def test_playing_into_a_touching_ball_is_a_push(aim, gap, speed):
     """However small the unseen gap, however thin the contact and however slow the stroke."""
     env, before = touching(gap)
@@ -229,12 +142,3 @@ def test_what_a_touching_ball_allows(places, speed, aim, foul, worth, first):
     info = env.step([speed, 0.0, 0.0, aim])[4]
     assert info["penalty"] == worth and first in (None, info["first_ball"])
     assert info["fouls"] & Foul.PUSH if foul == Foul.PUSH else info["fouls"] == foul
-
-
-@pytest.mark.parametrize("gap", [0.0, 4e-5])
-def test_a_touching_ball_met_again_off_a_cushion_is_no_push(gap):
-    """Played away from the red straight onto the near cushion, from which the cue ball returns onto it."""
-    env, x = SnookerEnv(), R + 0.2 - HALF_WIDTH
-    table_state(env, {CUE: (x, 0.3), 1: (x + 2 * R + gap, 0.3), BLUE: (0.4, 1.2)}, BallOn.RED)
-    info = env.step([-0.5, 0.0, 0.0, AWAY])[4]
-    assert info["fouls"] == 0 and info["first_ball"] == 1

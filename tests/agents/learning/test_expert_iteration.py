@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import torch
-from positions import tables
 
 from agents.features.observed import training_tables
 from agents.learning import expert_iteration
@@ -15,6 +14,7 @@ from snooker_env.planning.learned.learned_value import LearnedValue
 from snooker_env.planning.learned.policy_proposals import PolicyProposals
 from snooker_env.planning.learned.value_features import value_features
 from snooker_env.tasks import LEVELS
+from tests.positions import tables
 
 OPTIONS = {"action": "discrete", "noise": "professional", "layout": "opened", "fidelity": "fast"}
 N, STATES = 8, 64

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import torch
-from positions import tables
 
 from agents.features.observed import training_tables
 from agents.learning import judged_choices
@@ -12,6 +11,7 @@ from agents.learning.judged_choices import RATE, JudgedChoices, to_try
 from snooker_env.planning import Planner, Positions, action_masks
 from snooker_env.planning.learned.pot_view import with_pots
 from snooker_env.tasks.discrete_actions import SIZE, STROKES
+from tests.positions import tables
 
 OPTIONS = {"noise": "professional", "fidelity": "fast"}
 N = 64

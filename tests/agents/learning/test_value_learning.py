@@ -6,13 +6,13 @@ from itertools import combinations
 import numpy as np
 import pytest
 import torch
-from positions import chances_by_width, tables
 
 from agents.learning.value_learning import LAMBDA, ValueLearning
 from agents.learning.value_network import MEMBERS, POINTS, ValueNetwork, value_of
 from snooker_env.planning import Positions, Search, VisitJudge, spread_of
 from snooker_env.planning.learned.value_features import LOGIT, SIZE, value_features
 from snooker_env.tasks import LEVELS
+from tests.positions import chances_by_width, tables
 
 SPREAD, SAMPLES = 1e-3, 3
 

@@ -90,13 +90,6 @@ def test_which_ball_is_on_next(position, after, on):
     assert out[0, cue_ball_path.MISSED] == 2.0 and out[0, cue_ball_path.NOSES] == 0.0
 
 
-def test_a_cue_ball_that_stops_short_is_told():
-    at, strokes = Positions.of(Position(cue=(0.0, -1.0), black=(0.4, 1.3))), np.zeros((1, 5))
-    strokes[0, 0], strokes[0, AIM] = 0.3, np.arctan2(2.3, 0.4)
-    out, _ = predicted(at, np.array([0]), strokes, {})
-    assert out[0, cue_ball_path.MISSED] == 1.0 and -1.0 < out[0, cue_ball_path.Y] < 1.0
-
-
 def test_balls_that_were_met_and_the_potted_one_are_met_no_more():
     """It pots the black, comes back off the cushion through its place, and meets a red
     that it follows once."""

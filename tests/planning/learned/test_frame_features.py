@@ -10,7 +10,6 @@ from snooker_env.geometry import BALL_RADIUS
 from snooker_env.planning import Position
 from snooker_env.planning.learned.frame_features import (
     HIDDEN,
-    LIKELY,
     NARROWEST,
     NEAREST,
     RED_ENTRIES,
@@ -78,9 +77,3 @@ def test_the_state_of_the_frame_and_the_size_of_the_errors_are_told():
     for spread, shown in ((1e-3, 1e-3), (1e-5, NARROWEST), (0.1, WIDEST)):
         assert seen(at, spread)[SHARED + 17] == pytest.approx(log(shown / 1.2e-3), rel=1e-5)
         assert read_errors(frame_features(at, spread)) == pytest.approx([shown], rel=1e-5)
-
-
-def test_the_likeliest_pot_is_the_one_that_a_straight_line_makes():
-    easy = frame_of(Position(cue=(0.0, 1.0), reds=[(0.3, 1.4)], black=(0.0, 1.4605), on="red"))
-    none = frame_of(Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red"))
-    assert seen(easy, 3e-4)[LIKELY] > 0.95 and seen(easy, 2e-2)[LIKELY] < 0.9 and seen(none)[LIKELY] == 0.0

@@ -130,12 +130,3 @@ def test_a_touching_ball_that_is_on_counts_as_struck_and_a_push_is_a_foul():
     apart = Position(cue=(0.0, 0.0), reds=[(0.0, 0.2), (0.0, -0.8)], black=(0.5, 0.0), on="red")
     for turn, fair in ((0.5, True), (-0.5, True), (0.0, False)):
         assert contacts(frame, apart, [[1.5, 0.0, 0.0, turn * np.pi, 0.0]])[2][1][0] == fair
-
-
-def test_a_stroke_that_meets_a_ball_that_is_not_on_is_told():
-    frame = sn.SnookerVectorEnv(1, **OPTIONS)
-    frame.reset(seed=0)
-    at = Position(cue=(0.0, -0.5), reds=[(0.0, 0.5)], black=(0.3, 0.0), on="red")
-    aims = 0.5 * np.pi, np.arctan2(0.5, 0.3), 0.0
-    _, _, (met, legal) = contacts(frame, at, [[2.0, 0.0, 0.0, aim, 0.0] for aim in aims])
-    assert legal.tolist() == [True, False, False] and met.tolist() == [1, 21, 0]

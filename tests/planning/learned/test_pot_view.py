@@ -4,7 +4,6 @@ from math import hypot, log10
 
 import numpy as np
 import pytest
-from positions import tables
 
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, BallOn, mask_of
@@ -15,7 +14,8 @@ from snooker_env.planning.learned import pot_view
 from snooker_env.tasks.discrete_actions import POTS
 from snooker_env.tasks.observations import SIZE
 from snooker_env.tasks.visit import BALL_ON
-from tests.shots import line
+from tests.positions import tables
+from tests.shots import shot
 
 VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 
@@ -61,7 +61,9 @@ def test_pot_view_shows_the_line_that_the_aim_is_read_against():
         observation = pot_view.with_pots(table.reset(seed=seed)[0][None])[0]
         rows = observation[SIZE:].reshape(-1, pot_view.POT_ENTRIES)
         assert np.array_equal(observation[:SIZE], Positions.of(table).observations()[0])
-        direction = line(table.positions, table.on_table, table.on)
+        direction = shot(table.options.rules.actions, np.zeros(4), table.positions, table.on_table, table.on)[
+            3
+        ]
         assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=5e-6)
         shown = rows[rows[:, 0] == 1]
         # sine and cosine of one angle

@@ -4,7 +4,6 @@ from math import erf, exp, hypot, log, sqrt
 
 import numpy as np
 import pytest
-from positions import chances_by_width, tables
 
 from snooker_env.game import COLOUR_NAMES, VALUES
 from snooker_env.geometry import SIDES
@@ -14,15 +13,13 @@ from snooker_env.planning.learned.value_features import (
     LOGIT,
     POT_ENTRIES,
     POTS_SEEN,
-    SHARED,
     SIZE,
     value_features,
 )
 from snooker_env.tasks import LEVELS
+from tests.positions import chances_by_width, tables
 
 SPREAD = spread_of(LEVELS["professional"])
-LAYOUTS = ["opened", "held_out", "break_off", "line_up", "colours"]
-LAYOUTS += [f"random:{n}" for n in (0, 1, 3, 9, 15)]
 OF_ALL = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES
 """The first entry of the whole position."""
 LIKELIEST, BALL_ON, LEFT, SIDE, COUNT = OF_ALL + 10, OF_ALL + 14, OF_ALL + 22, OF_ALL + 25, OF_ALL + 26
@@ -34,14 +31,6 @@ def some(n, layout="random:5", seed=0):
 
 def seen(*positions, spread=SPREAD):
     return value_features(Positions.of(list(positions)), spread)
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_they_are_numbers_of_a_moderate_size(layout):
-    rows = value_features(some(150, layout), SPREAD)
-    assert rows.shape == (150, SIZE) and rows.dtype == np.float32 and np.isfinite(rows).all()
-    assert np.abs(rows).max() <= 8.0
-    assert OF_ALL + SHARED == SIZE and LOGIT == SIZE - 1 and len(np.unique(rows, axis=0)) > 1
 
 
 def test_a_table_and_its_mirror_image_differ_by_the_side_alone():
@@ -112,23 +101,6 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on, spread):
     assert rows[:, LIKELIEST] == pytest.approx(chances.max(axis=1), rel=1e-5) and several > 5
 
 
-def test_a_blocker_takes_a_pot_away():
-    """A red in the way of the cue ball, of the object ball, and beside both."""
-    pot = {"cue": (0.0, 0.9), "black": (0.4, 1.3)}
-    free, chance = seen(Position(**pot))[0], slice(0, POT_ENTRIES)
-    assert free[0] == 1.0 and free[1] > 0.8
-    on = {"on": "any_colour"}
-    places = (0.2, 1.08), (0.62, 1.53), (-0.4, 1.2), (0.1, 1.3)
-    for red, blocked in zip(places, (True, True, False, False), strict=True):
-        row = seen(Position(**pot, reds=[red], **on))[0]
-        assert np.array_equal(row[chance], free[chance]) != blocked, red
-        assert row[LIKELIEST] <= free[LIKELIEST] + 1e-7
-        assert (row[LIKELIEST] < 0.9 * free[LIKELIEST]) == blocked
-    open_to = POTS_SEEN * POT_ENTRIES + 5 * COLOUR_ENTRIES + 1  # how open the black is for a pocket
-    near, far = (seen(Position(**pot, reds=[red], **on))[0, open_to] for red in ((0.2, 1.08), (0.62, 1.53)))
-    assert near == free[open_to] > far  # wherever the cue ball lies
-
-
 def test_the_ball_on_is_one_of_eight():
     spots = [(0.3, -1.0), (-0.3, -1.0), (0.0, -1.0), (0.0, 0.0), (0.0, 0.9), (0.0, 1.4)]
     colours = dict(zip(COLOUR_NAMES, spots, strict=True))
@@ -143,28 +115,3 @@ def test_the_ball_on_is_one_of_eight():
     assert value_features(some(1, "break_off"), SPREAD)[0, LEFT] == 1.0
     assert rows[:, OF_ALL + 23].tolist() == [1, 0, 1, 1, 1, 1, 1, 1]
     assert rows[:, OF_ALL + 24].tolist() == [0, 1, 0, 0, 0, 0, 0, 0]
-
-
-def test_what_is_said_of_the_reds():
-    """Two reds at a cushion, two in a cluster; three of the four at the black end."""
-    reds = [(0.86, 0.5), (0.3, 1.74), (0.1, 0.6), (0.1, -0.6)]
-    at = Position(cue=(0.4, 0.2), reds=[*reds, (0.156, -0.6)], black=(0.0, 1.4605), on="red")
-    row = seen(at)[0, OF_ALL:]
-    assert row[0] == pytest.approx(5 / 15) and row[3] == pytest.approx(2 / 8)
-    assert row[4] == pytest.approx(2 / 8)
-    assert row[5] == pytest.approx(3 / 8)
-    away = [hypot(x - 0.4, y - 0.2) for x, y in [*reds, (0.156, -0.6)]]
-    assert row[6] == pytest.approx(np.mean(away) - 1.0, abs=1e-6)
-    assert row[11] == pytest.approx(0.4 / 0.889) and row[12] == pytest.approx(0.2 / 1.7845)
-    assert row[13] == pytest.approx(0.889 - 0.4)
-
-
-def test_any_number_of_threads_and_any_rows_give_the_same():
-    at = some(300, "random:6")
-    kept = at.copy()
-    one = value_features(at, SPREAD)
-    assert np.array_equal(one, value_features(at, SPREAD, threads=2))
-    assert np.array_equal(one, value_features(at, SPREAD, threads=5))
-    assert np.array_equal(one[[7, 250, 3]], value_features(at[[7, 250, 3]], SPREAD))
-    assert len(value_features(at[[]], SPREAD)) == 0
-    assert np.array_equal(at.positions, kept.positions) and np.array_equal(at.game, kept.game)
