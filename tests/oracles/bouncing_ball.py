@@ -66,15 +66,6 @@ def rest(v, w, e_t, cloth):
     return end[0]
 
 
-def pressed(speed, way, side, top, elevation, cloth, parts):
-    """Velocity and spin after the same strike in equal parts, the bed taking the downward speed of each at once."""
-    v, w = np.zeros(3), np.zeros(3)
-    part, spin = off_the_tip(speed / parts, way, side, top, elevation, cloth)
-    for _ in range(parts):
-        v, w = bounce(v + part, w + spin, 0.0, cloth)
-    return v, w
-
-
 def flown(speed, elevation, e_t, cloth):
     """For how long the ball bounces [s]: hops of 2 v / g, each e_t of the one before."""
     return 2.0 * e_t * speed * math.sin(elevation) / (cloth.g * (1.0 - e_t))

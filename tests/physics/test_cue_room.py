@@ -94,29 +94,6 @@ def test_a_frozen_ball_needs_what_players_say_and_one_in_the_open_nothing():
     assert least((0.0, 0.0), 0.0, [(x, 0.9)], elevation=0.4) == 0.4
 
 
-@pytest.mark.parametrize("axis", [0, 1])
-def test_mirrored_tables_need_the_same(axis):
-    rng = np.random.default_rng(2 + axis)
-    for _ in range(300):
-        positions = rng.uniform((-0.86, -1.75), (0.86, 1.75), (6, 2))
-        (side, top), aim = tip_of(rng), rng.uniform(-np.pi, np.pi)
-        mirrored = positions * (np.array([-1, 1]) if axis == 0 else np.array([1, -1]))
-        turned = np.pi - aim if axis == 0 else -aim
-        one, other = least((side, top), aim, positions), least((-side, top), turned, mirrored)
-        assert one == pytest.approx(other, abs=1e-9)
-
-
-def test_it_goes_on_without_a_jump_and_rises_towards_the_rail():
-    places = np.linspace(0.889 - R - 0.7, 0.889 - R, 4000)
-    for tip in ((0.0, 0.0), (0.3, -0.3), (-0.2, 0.4)):
-        for aim in (np.pi, 2.6, -2.4):
-            found = np.array([least(tip, aim, [(x, 0.9)]) for x in places])
-            assert (np.diff(found) > -1e-9).all() and np.diff(found).max() < 0.01
-    heights = np.linspace(-0.45, 0.45, 500)
-    found = np.array([least((0.1, top), np.pi, [(0.85, 0.9)]) for top in heights])
-    assert (np.diff(found) <= 1e-9).all() and found[0] > found[-1] + 0.3
-
-
 def test_what_is_done_to_a_stroke_is_what_is_said():
     rng, seen, fits = np.random.default_rng(5), dict.fromkeys(range(8), 0), []
     for _ in range(4000):

@@ -72,16 +72,6 @@ def test_a_free_fall_ends_when_the_ball_is_below_the_noses():
     )
 
 
-def test_the_way_to_the_first_jaw_is_a_free_fall():
-    fly, physics, jaw = from_python(pocket.fly), sn.Physics(), np.array([[0.03, 0.0, 0.02, -1.0, 0.0, -1.0]])
-    end, k, flown, r, v = fly((-0.1, 0.0, 0.0), (3.0, 0.0, 0.0), (-0.1, 0.0), FALL, 0, jaw, physics.pack())
-    time = (0.13 - 0.02 - R) / 3.0
-    assert (end, k) == (pocket.JAW, 0)
-    assert (flown, *r, *v) == pytest.approx(
-        (time, 3.0 * time - 0.1, 0.0, 0.5 * G * time**2, 3.0, 0.0, G * time), abs=1e-12
-    )
-
-
 IN_THE_AIR = (
     [(-0.5424572365214919, -0.1470004012755446), (0.5350227790240875, -0.19510341525335928)],
     [(-1.307665153016971, 0.6983324381859458), (-5.4520706255184015, 0.8684297421029781)],
@@ -102,21 +92,6 @@ def test_what_a_ball_is_given_in_the_air_counts_as_no_gain():
     table, fidelity = sn.Table.preset("match"), contact.parse_fidelity("standard")
     found = invariants.play((p, v, w, np.ones((1, 2), bool)), physics, table, fidelity)
     assert found.worst[0, invariants.ENERGY] < 1e-12
-
-
-FROM_NOTHING = (
-    [(0.84710353135693, -0.10921281685196961), (0.8229077045477607, 0.0445875871039423)],
-    [(0.5194258654983255, 0.9285623682746166), (2.646667837326085, -0.9057727354293397)],
-    [(-35.37380450569968, 19.787652018983827, 0.0), (34.5056280163558, 100.8254414219461, 0.0)],
-)
-"""Two balls meet at the edge of a middle pocket: they once came to three times the energy of the shot."""
-
-
-def test_two_balls_at_an_edge_keep_the_energy_of_their_shot():
-    p, v, w = (np.array([a]) for a in FROM_NOTHING)
-    start, table = (p, v, w, np.ones((1, 2), bool)), sn.Table.preset("match")
-    found = invariants.play(start, sn.Physics(), table, contact.parse_fidelity("standard"))
-    assert found.worst[0, invariants.ALL] < 1e-12
 
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9"])

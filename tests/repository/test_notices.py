@@ -65,30 +65,12 @@ def test_one_line_before_each_long_compile_and_none_when_it_is_loaded(toys):
     assert toys(code) == ""
 
 
-def test_it_is_said_before_the_compile(toys):
-    err = toys(
-        "import sys\ndef compile(*args): sys.exit(3)\ntype(one._compiler).compile = compile\ntry: one(1.0)\nexcept SystemExit: pass"
-    )
-    assert err.startswith("snooker_env: compiling one toy, once, about 9 s ")
-
-
 def test_it_can_be_silenced_and_says_that_it_is_not_kept(toys):
     for quiet in ("1", "yes"):
         assert toys("one(1.0)", SNOOKER_ENV_QUIET=quiet) == ""
     hidden = "(for this process only; SNOOKER_ENV_QUIET=1 hides this)\n"
     line = toys("one(1.0)", NUMBA_CACHE_DIR="/dev/null", warn="ignore")
     assert line == f"snooker_env: compiling one toy, about 9 s {hidden}"
-
-
-def test_on_a_full_disk_nothing_is_said_to_be_kept(toys):
-    """A process that may write 1 kB a file, as on a disk with so much left: an empty file can still be made."""
-    resource = pytest.importorskip("resource")
-    full = "import resource, warnings\nwarnings.simplefilter('ignore')\n"
-    full += f"resource.setrlimit(resource.RLIMIT_FSIZE, (1000, {resource.RLIM_INFINITY}))\n"
-    hidden = "(for this process only; SNOOKER_ENV_QUIET=1 hides this)\n"
-    lines = [f"compiling {what}, about {s} s {hidden}" for what, s in (("one toy", 9), ("another toy", 3))]
-    assert toys(full + "one(1.0); another(1.0)") == "".join(f"snooker_env: {line}" for line in lines)
-    assert toys("one(1.0)") == f"snooker_env: compiling one toy, once, about 9 s {toys.kept}\n"
 
 
 @pytest.mark.parametrize("without", ["sys.stderr = None", "sys.stderr.close()"])

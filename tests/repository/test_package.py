@@ -5,7 +5,6 @@ import json
 import os
 import shutil
 
-import numpy as np
 import pytest
 
 import snooker_env as sn
@@ -161,18 +160,6 @@ def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() == runs[1]
 
 
-@pytest.mark.parametrize("where", ["NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME"])
-def test_without_a_place_for_the_cache_it_works_from_memory(tmp_path, where):
-    """A file stands where the folder should be (tests may run as root, whom no access bits stop)."""
-    (tmp_path / "file").write_text("")
-    variables = dict.fromkeys(CACHE) | {where: str(tmp_path / "file")}
-    out, err = python(SPOT, warn="error,default::RuntimeWarning", **variables)
-    assert out.split() == ["1.4605", "-1", "None"]
-    assert err.count("Warning") == 1
-    assert "is not writable: every process compiles for itself; set NUMBA_CACHE_DIR" in err
-    assert (tmp_path / "file").read_text() == ""
-
-
 # The same bits everywhere
 
 GOLDEN = """
@@ -226,18 +213,6 @@ def test_the_same_bits_in_every_process_and_for_any_number_of_threads(golden, op
     assert batch.event_count.min() >= 1 and batch.event_count.max() > 100 and (batch.potted >= 0).any()
 
 
-def test_one_shot_is_the_same_alone_and_in_a_batch(golden):
-    r, v, w, here = golden["shots"](40)
-    batch = golden["run"](events=True)
-    assert golden["digest"](batch) == golden["digest"](golden["run"]())  # asking for the log changes nothing
-    for k in range(0, 40, 3):
-        shot = sn.simulate(r[k], v[k], w[k], on_table=here[k])
-        assert shot.positions.tobytes() == batch.positions[k].tobytes() and shot.duration == batch.duration[k]
-        assert np.array_equal(shot.potted, batch.potted[k])
-        assert np.array_equal(shot.on_table, batch.on_table[k])
-        assert shot.events.tobytes() == batch.events[k].tobytes() and len(shot.events) == batch.event_count[k]
-
-
 @pytest.mark.slow
 def test_fresh_and_cached_machine_code_give_the_same_bits(golden, tmp_path):
     code = GOLDEN + "print(digest(run()))"
@@ -245,17 +220,6 @@ def test_fresh_and_cached_machine_code_give_the_same_bits(golden, tmp_path):
     (tmp_path / "file").write_text("")
     for place in (tmp_path / "cache", tmp_path / "cache", tmp_path / "file"):
         assert python(code, NUMBA_CACHE_DIR=str(place))[0].split() == [want]
-
-
-def test_a_pickled_shot_and_physics_stay_what_they_are():
-    import pickle
-
-    shot = sn.simulate([(0.0, 0.0), (0.3, 0.0)], [(1.0, 0.0), (0.0, 0.0)], np.zeros((2, 3)), physics="match")
-    again = pickle.loads(pickle.dumps(shot))
-    assert again.physics == shot.physics == sn.Physics.preset("match") != sn.Physics()
-    assert np.array_equal(again.positions, shot.positions)
-    assert all(map(np.array_equal, again.at(0.3), shot.at(0.3)))
-    assert pickle.loads(pickle.dumps(sn.Table.preset("tight"))) is sn.Table.preset("tight")
 
 
 def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(tmp_path):

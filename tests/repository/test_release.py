@@ -85,28 +85,3 @@ def test_one_line_sets_the_address_everywhere(tmp_path):
 def test_what_is_cited_is_what_is_released():
     assert str(CITATION["version"]) == sn.__version__
     assert CITATION.get("repository-code", "") == ADDRESS
-
-
-def test_an_image_holds_the_clone_and_kernels_of_who_runs_them():
-    recipe = (ROOT / "Dockerfile").read_text(encoding="utf-8")
-    (version,) = re.findall(r"^FROM python:(\S+)-slim$", recipe, re.MULTILINE)
-    assert f"Python :: {version}" in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    assert recipe.index("\nUSER ") < recipe.index("\nENV PATH=") < recipe.index("warmup()")
-    left_out = (ROOT / ".dockerignore").read_text(encoding="utf-8").split("\n")[1:-1]
-    assert {".git", ".venv", "runs"} <= set(left_out)
-    command = ["git", "ls-files", "-ci", *(f"--exclude={pattern}" for pattern in left_out)]
-    if (ROOT / ".git").exists():
-        assert not subprocess.check_output(command, cwd=ROOT, text=True)  # nothing that belongs to the clone
-
-
-def test_the_workflow_publishes_what_it_has_tested_and_built_once():
-    jobs = yaml.safe_load((ROOT / ".github/workflows/release.yml").read_text(encoding="utf-8"))["jobs"]
-    assert list(jobs) == ["test", "build", "publish"]
-    assert jobs["build"]["needs"] == "test" and jobs["publish"]["needs"] == "build"
-    assert jobs["publish"]["permissions"] == {"id-token": "write"} and jobs["publish"]["environment"]
-    uses = [step.get("uses", "") for step in jobs["publish"]["steps"]]
-    assert [one.partition("@")[0] for one in uses] == [
-        "actions/download-artifact",
-        "pypa/gh-action-pypi-publish",
-    ]
-    assert all(name in RELEASE for name in ("release.yml", jobs["publish"]["environment"]))
