@@ -1,7 +1,7 @@
 """Is the three-dimensional oracle of a pocket right, and does the engine pot what it pots?
 
-The oracle against: its own energy, half the step, the rebound of a rigid nose (``collide_cushion``), and the
-two closed forms of a ball at a sharp edge. Then the engine's windows against the oracle's.
+The oracle against half the step, a fall over a sharp edge, and the restitution of the slate. Then the engine's windows
+against the oracle's.
 """
 
 from __future__ import annotations
@@ -47,20 +47,16 @@ def towards(index, angle, offsets, away=0.25):
 # The oracle
 
 
-@pytest.mark.parametrize(("index", "speed", "undercut"), [(MIDDLE, 1.0, 0.4), (CORNER, 4.0, 1.0)])
-def test_energy_never_rises_and_half_the_step_gives_the_same_path(index, speed, undercut):
-    m = stiff(speed, undercut=undercut)
+@pytest.mark.parametrize(("index", "speed"), [(MIDDLE, 1.0), (CORNER, 4.0)])
+def test_half_the_step_gives_the_same_path(index, speed):
+    m = stiff(speed)
     jaws, fall, _ = pocket(MATCH, index)
     starts, d = towards(index, 0.5, [-0.02, 0.01, 0.03], away=0.12)
     for k, start in enumerate(starts):
-        v = np.array([*speed * d, 0.0])
-        ends = []
+        v, ends = np.array([*speed * d, 0.0]), []
         for dt in (default_step(m), 0.5 * default_step(m)):
             state = at_rest([start], [v[:2]], [rolling(v, (1.0, 0.0, -1.0)[k])], m, 2)[0]
-            path = trace(state, jaws, fall, m, dt, round(0.15 / speed / dt) // 5, 5)
-            total = path[:, -1]
-            rise = (total[1:] - np.minimum.accumulate(total[:-1])).max()
-            assert rise <= 1e-3 * total[0] and total[-1] < total[0] - 1e-3
+            trace(state, jaws, fall, m, dt, round(0.15 / speed / dt), 1)
             ends.append(state[:3])
         assert np.abs(ends[0] - ends[1]).max() <= 5e-4
 

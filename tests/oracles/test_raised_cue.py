@@ -98,36 +98,3 @@ def test_a_steep_cue_makes_the_ball_roll(mu_s):
     assert np.hypot(*slip(v, w)) == pytest.approx(0.05 * 2.0 * math.cos(flatter), rel=1e-9)
     level, raised = (sn.strike(2.0, 0.3, 0.3, 0.1, one, physics)[1][2] for one in (0.0, edge + 0.1))
     assert raised == pytest.approx(level * math.cos(edge + 0.1), rel=1e-12)
-
-
-def both_ends(speed, top, elevation, gap):
-    """How far behind (< 0) or beyond (> 0) the place of contact the cue ball of a full contact comes to rest."""
-    v, w = sn.strike(speed, 0.0, 0.0, top, elevation)
-    balls = [(0.0, 0.0), (gap, 0.0)]
-    shot = sn.simulate(balls, [v[:2], (0, 0)], [w, (0, 0, 0)], table=None)
-    return shot.positions[0, 0] - (gap - 2 * R)
-
-
-def test_a_draw_loses_backspin_and_a_stun_runs_on():
-    level, raised = (both_ends(3.0, -0.4, math.radians(e), 0.8) for e in (0, 4))
-    assert level < -0.25 and 0.05 < raised - level < 0.2
-    level, raised = (both_ends(3.0, 0.0, math.radians(e), 0.8) for e in (0, 4))
-    assert level > 0.5 and 0.05 < raised - level < 0.3
-    # each degree takes more
-    draws = [both_ends(3.0, -0.4, math.radians(e), 0.8) for e in range(0, 10)]
-    assert (np.diff(draws) > 0.01).all()
-
-
-@pytest.mark.parametrize("degrees", DEGREES)
-@pytest.mark.parametrize("tip", TIPS)
-def test_it_is_the_same_in_a_mirror_and_in_every_direction(tip, degrees):
-    elevation, turn = math.radians(degrees), 2.1
-    v, w = sn.strike(2.2, 0.6, *tip, elevation)
-    v2, w2 = sn.strike(2.2, -0.6, -tip[0], tip[1], elevation)
-    assert np.allclose(v2, v * (1, -1, 1), atol=1e-12) and np.allclose(w2, w * (-1, 1, -1), atol=1e-9)
-    c, s = math.cos(turn), math.sin(turn)
-    q = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    v3, w3 = sn.strike(2.2, 0.6 + turn, *tip, elevation)
-    assert np.allclose(v3, q @ v, atol=1e-12) and np.allclose(w3, q @ w, atol=1e-9)
-    v4, w4 = sn.strike(4.4, 0.6, *tip, elevation)  # twice as hard is twice of all
-    assert np.allclose(v4, 2 * v, atol=1e-12) and np.allclose(w4, 2 * w, atol=1e-9)

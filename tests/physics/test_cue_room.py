@@ -10,7 +10,6 @@ from snooker_env.physics.cue import MAX_ELEVATION
 from snooker_env.physics.cue_room import (
     FREE,
     MOVED,
-    NO_RAILS,
     OVER_NOTHING,
     OVER_RAIL,
     RAISED,
@@ -121,16 +120,6 @@ def test_what_is_done_to_a_stroke_is_what_is_said():
             assert elevation <= STEEPEST + 1e-9 and top > stroke[2]
         seen[done] += 1
     assert np.mean(fits) > 0.95 and seen[FREE] > 100 and seen[RAISED] > 100 and seen[RAISED | MOVED] > 100
-
-
-def test_a_ball_that_nobody_can_play_is_played_with_a_cue_that_nearly_stands():
-    behind = [(-0.0527, 0.0), (-0.04, -0.0345), (-0.04, 0.0345), (-0.0925, -0.02), (-0.0925, 0.02)]
-    played, done = in_room((2.0, 0.0, 0.5, 0.0, 0.0), [(0.0, 0.0), *behind, (-0.13, 0.0)])
-    assert played[4] <= MAX_ELEVATION
-    assert in_room((2.0, 0.0, -0.4, 0.0, 0.0), [(0.0, 0.0), *behind])[1] & MOVED
-    free = (2.0, 0.1, -0.4, 0.3, 0.0)
-    assert in_room(free, [(0.0, 0.0), *behind], np.array(NO_RAILS)) == (free, FREE)
-    assert done & RAISED
 
 
 def test_what_the_cue_passes_over_is_what_lets_it_down_when_it_is_gone():

@@ -193,20 +193,6 @@ def test_rolling_ball_straight_into_a_cushion(mu_s, ratio, speed, fidelity):
     assert v[0] == 0.0
 
 
-def test_a_slip_at_the_nose_that_all_but_dies():
-    """Friction and drive nearly balance while the slip is 2e-8 of the speed, then it grows again: this impact
-    once did not end."""
-    v, w = (
-        (1.0759713279651137, -1.4959097348741595, 0),
-        (-22.56663782046656, 27.344353647657716, 30.45180306810722),
-    )
-    normal = (0.9481813328601938, -0.3177296964645681, 0)
-    reference, standard = (
-        sn.collide_cushion(v, w, normal, "paper", fidelity) for fidelity in ("reference", "standard")
-    )
-    assert worst(standard, reference, np.linalg.norm(v)) < 1e-5
-
-
 def test_match_cushion_follows_the_measured_rebounds():
     """Fig. 7a of Mathavan 2010: 0.89 to 0.95 below 2 m/s, 0.80 at 3.4 m/s."""
     ratio = [
@@ -219,22 +205,6 @@ def test_match_cushion_follows_the_measured_rebounds():
 
 # closed forms
 # ------------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("fidelity", FIDELITIES)
-def test_gearing_side_throws_nothing(fidelity):
-    """R w_z = v sin(cut), no other spin: the surfaces do not slip, and the object ball leaves along the line
-    of centres."""
-    c = np.radians(35)
-    normal = (np.cos(c), np.sin(c), 0)
-    _, _, v2, w2 = sn.collide_balls(
-        (1.5, 0, 0), (0, 0, 1.5 * np.sin(c) / R), (0, 0, 0), (0, 0, 0), normal, "paper", fidelity
-    )
-    assert np.degrees(np.arctan2(v2[1], v2[0])) == pytest.approx(
-        35, abs=0.02 if fidelity.startswith("euler") else 1e-6
-    )
-    # Euler chatters about zero slip by one step
-    assert np.abs(w2).max() * R < (2e-3 if fidelity.startswith("euler") else 1e-6)
 
 
 # invariants
@@ -254,13 +224,12 @@ def test_no_closing_speed_changes_nothing(fidelity, closing):
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
-@pytest.mark.parametrize("closing", [1e-300, 1e-30, 1e-13, 1e-9, 1e-4, 50.0])
-@pytest.mark.parametrize("preset", ["paper", "match"])
-def test_any_closing_speed_ends(fidelity, closing, preset):
-    out = sn.collide_balls((closing, 1.0, 0), (0, 0, 30), (0, 0, 0), (0, 0, 0), (1, 0, 0), preset, fidelity)
-    assert np.isfinite(out).all()
-    out = sn.collide_cushion((closing, 1.0, 0), (0, 0, 30), (1, 0, 0), preset, fidelity)
-    assert np.isfinite(out).all()
+def test_any_closing_speed_ends(fidelity):
+    for closing in (1e-300, 1e-30, 1e-13, 1e-9, 1e-4, 50.0):
+        for preset in ("paper", "match"):
+            v, w, n, z = (closing, 1.0, 0), (0, 0, 30), (1, 0, 0), (0, 0, 0)
+            assert np.isfinite(sn.collide_balls(v, w, z, z, n, preset, fidelity)).all()
+            assert np.isfinite(sn.collide_cushion(v, w, n, preset, fidelity)).all()
 
 
 def test_extreme_constants_end():

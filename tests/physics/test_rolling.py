@@ -126,26 +126,21 @@ def test_cells_with_a_kink_are_empty_and_their_impacts_solved():
         assert difference(with_table, without, physics) < 2e-6 * max(1.0, x)
 
 
-def test_no_table_where_the_cloth_may_hold_the_ball():
-    assert make(Rolling(0.4, 0.3, 0.3, 0.9)) is None
-    assert len(sn.Physics(mu_c=0.3, mu_s=0.3).packed_for((1, 0))) == CONSTANTS + tables.SIZE  # of the balls
-    assert len(sn.Physics(mu_c=0.3, mu_s=0.4, mu_bb=0.9).packed_for((1, 0))) == CONSTANTS
-
-
-def test_a_physics_is_sent_without_its_tables():
+def test_which_tables_a_physics_has_and_that_none_is_sent():
+    rolls, slides = (1, 0), (2, 0)  # "standard" and "reference"
+    for fields, fidelity, n in (
+        ({}, rolls, 2),  # rails and jaws have the same
+        ({"e_j": 0.5}, rolls, 3),
+        ({"tables": False}, rolls, 0),
+        ({}, slides, 0),
+        ({"mu_c": 0.3, "mu_s": 0.3}, rolls, 1),  # of the balls: the cloth may hold one at a cushion
+        ({"mu_c": 0.3, "mu_s": 0.4, "mu_bb": 0.9}, rolls, 0),
+        ({"mu_bb": "marlow"}, rolls, 1),  # friction between balls varies
+    ):
+        assert len(sn.Physics(**fields).packed_for(fidelity)) == CONSTANTS + n * tables.SIZE, fields
     physics = sn.Physics(e_b=0.9)
-    physics.packed_for((1, 0))
-    assert len(pickle.dumps(physics)) < 2000
+    packed = physics.packed_for(rolls)
+    assert packed is physics.packed_for(rolls) and len(pickle.dumps(physics)) < 2000
     assert pickle.loads(pickle.dumps(physics)) == physics
-    assert physics.packed_for((1, 0)) is physics.packed_for((1, 0))
     physics.pack()[:] = 0.0  # a copy
-    assert physics.pack()[0] == physics.packed_for((1, 0))[0] == physics.R
-
-
-def test_no_tables_where_none_are_wanted():
-    assert len(SOLVED.packed_for((1, 0))) == len(PAPER.pack()) == len(PAPER.packed_for((2, 0))) == CONSTANTS
-    assert len(PAPER.packed_for((1, 0))) == CONSTANTS + 2 * tables.SIZE  # rails and jaws have the same
-    assert len(sn.Physics(e_j=0.5).packed_for((1, 0))) == CONSTANTS + 3 * tables.SIZE
-    assert (
-        len(sn.Physics.preset("match").packed_for((1, 0))) == CONSTANTS + tables.SIZE
-    )  # friction between balls varies
+    assert physics.pack()[0] == packed[0] == physics.R

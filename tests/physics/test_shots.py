@@ -131,39 +131,6 @@ def test_a_long_log_is_complete_in_both_calls():
     check_shot(shot)
 
 
-def test_on_table_leaves_balls_out():
-    p = np.array([(0.0, 0.0), (0.2, 0.0), (0.5, 0.0)])
-    v, w = struck(3, 2.0, 0.0)
-    shot = sn.simulate(p, v, w, on_table=np.array([True, False, True]))
-    assert (shot.positions[1] == p[1]).all()
-    assert not shot.on_table[1]
-    assert shot.events["j"][shot.events["kind"] == EventKind.BALL_BALL].tolist()[0] == 2
-
-
-# straight shots, exactly along the axes
-# ------------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("axis", [(1, 0), (0, 1), (-1, 0), (0, -1)])
-@pytest.mark.parametrize(("top", "sign"), [(0.4, 1), (0.0, 0), (-0.45, -1)])
-def test_straight_follow_stun_and_draw(axis, top, sign):
-    """Exactly axis-aligned: one collision, nothing leaves the line; follow goes on, stun creeps a little,
-    draw comes back."""
-    axis = np.array(axis, float)
-    p = np.array([(0.1 - D - 0.005) * axis, 0.1 * axis])
-    v, w = np.zeros((2, 2)), np.zeros((2, 3))
-    v[0] = 2.0 * axis
-    w[0, :2] = np.array([-axis[1], axis[0]]) * 2.5 * 2.0 * top / R
-    shot = sn.simulate(p, v, w, table=None)
-    assert (shot.events["kind"] == EventKind.BALL_BALL).sum() == 1
-    across = np.array([-axis[1], axis[0]])
-    assert np.abs(shot.positions @ across).max() == 0.0
-    contact = (0.1 - D) * axis
-    after = (shot.positions[0] - contact) @ axis
-    assert {1: after > 0.2, 0: -0.25 < after < 0.15, -1: after < -0.2}[sign], after
-    check_shot(shot)
-
-
 # contacts at gap zero
 # ------------------------------------------------------------------------------------------------------------
 
@@ -182,14 +149,6 @@ def test_a_touching_ball_played_away_from_stays(gap, away):
                 continue
             assert (shot.positions[1] == p[1]).all()
             assert not (shot.events["kind"] == EventKind.BALL_BALL).any()
-
-
-def test_a_touching_ball_played_into_moves():
-    p = np.array([(0.0, 0.0), (EXACT, 0.0)])
-    shot = sn.simulate(p, *struck(2, 2.0, 0.5), table=None)
-    assert shot.events["time"][0] == 0.0
-    assert shot.positions[1, 0] > 0.5
-    check_shot(shot)
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-15, 1e-12, 1e-9])

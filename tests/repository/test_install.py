@@ -93,48 +93,6 @@ def test_an_installation_changes_no_other_program(installed):
     assert installed.run(code) == ("[] False\n", "")
 
 
-WORKERS = """
-import functools, sys
-import gymnasium
-from gymnasium.vector import AsyncVectorEnv
-
-def main(method):
-    from stable_baselines3.common.env_util import make_vec_env  # not in the workers: torch is slow to import
-    from stable_baselines3.common.vec_env import SubprocVecEnv
-
-    name, options = "snooker_env:Snooker-v0", {"layout": "random:2"}
-    make = functools.partial(gymnasium.make, name, **options)
-    wanted = make().reset(seed=5)[0]
-    spec = {"vectorization_mode": "async", "vector_kwargs": {"context": method}}
-    for envs in (
-        gymnasium.make_vec(name, 1, **spec, **options),
-        gymnasium.make_vec("Snooker-v0", 1, **spec, **options),  # imported here, and its spec is sent
-        AsyncVectorEnv([make], context=method),
-        AsyncVectorEnv([lambda: gymnasium.make(name, **options)], context=method),
-    ):
-        print((envs.reset(seed=5)[0][0] == wanted).all())
-        envs.close()
-    vec_env = {"vec_env_cls": SubprocVecEnv, "vec_env_kwargs": {"start_method": method}}
-    envs = make_vec_env(name, 1, seed=5, env_kwargs=options, **vec_env)
-    print((envs.reset()[0] == wanted).all())
-    envs.close()
-
-if __name__ == "__main__":
-    main(sys.argv[1])
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("installed", ["wheel"], indirect=True)
-def test_workers_make_it_from_the_name_with_its_module(installed):
-    (installed.cwd / "workers.py").write_text(WORKERS)
-    code = (
-        "import subprocess, sys; sys.exit(subprocess.run([sys.executable, 'workers.py', 'spawn']).returncode)"
-    )
-    out, err = installed.run(code)
-    assert out.split() == ["True"] * 5, err
-
-
 @pytest.mark.skipif(not (ROOT / ".git").exists(), reason="only a clone can say what belongs to it")
 def test_the_source_distribution_is_the_package_alone_and_gives_the_same_wheel(tmp_path, monkeypatch):
     """No pictures, results or agents; nor what git ignores."""

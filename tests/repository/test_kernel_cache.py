@@ -100,12 +100,11 @@ def test_a_folder_that_others_can_write_to_is_not_used(folders, monkeypatch, whi
 
 
 @root_only
-@pytest.mark.parametrize("which", ["home", "snooker_env", "hash"])
-def test_a_folder_of_another_user_is_not_used(folders, monkeypatch, which):
-    os.chown(folders[which], 12345, -1)
-    assert f"{folders[which]} belongs to another user (uid 12345)" in unsafe(
-        monkeypatch, folders["home"], "belongs to"
-    )
+def test_a_folder_of_another_user_is_not_used(folders, monkeypatch):
+    for folder in reversed(folders.values()):
+        os.chown(folder, 12345, -1)
+        said = unsafe(monkeypatch, folders["home"], "belongs to")
+        assert f"{folder} belongs to another user (uid 12345)" in said
 
 
 def test_a_shared_home_is_good_and_without_owners_none_are_checked(folders, monkeypatch):
@@ -115,19 +114,6 @@ def test_a_shared_home_is_good_and_without_owners_none_are_checked(folders, monk
     folders["snooker_env"].chmod(0o777)
     monkeypatch.delattr(os, "geteuid")
     assert cache.cache_folder() == folders["hash"]
-
-
-def test_links_are_followed(folders, monkeypatch, tmp_path):
-    """What counts is where they lead."""
-    elsewhere = tmp_path / "elsewhere"
-    folders["hash"].rmdir(), folders["snooker_env"].rmdir()
-    elsewhere.mkdir(mode=0o700)
-    folders["snooker_env"].symlink_to(elsewhere)
-    assert cache.cache_folder() == folders["hash"] and (elsewhere / folders["hash"].name).is_dir()
-    elsewhere.chmod(0o777)
-    assert f"others can write to {folders['snooker_env']}" in unsafe(
-        monkeypatch, folders["home"], "others can write to"
-    )
 
 
 def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
@@ -153,18 +139,14 @@ class Planted:
         return Path.touch, (self.mark,)
 
 
-@pytest.mark.parametrize("which", [pytest.param("top", marks=pytest.mark.slow), "inner"])
-def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
+def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path):
     """Where the folders are the user's own it would be: so this test can fail."""
     assert toy() == (FRESH, "")
     mark, (index, *_) = tmp_path / "mark", files(toy, "*.nbi")
     planted = pickle.dumps("another version") + pickle.dumps(0)
-    folder = toy.folder if which == "top" else index.parent
 
-    def plant():
-        index.write_bytes(seal(pickle.dumps(Planted(mark)) + planted, name_of(toy, index)))
-
-    plant()
+    folder = index.parent
+    index.write_bytes(seal(pickle.dumps(Planted(mark)) + planted, name_of(toy, index)))
     folder.chmod(0o777)
     out, err = toy()
     assert out == FRESH and not mark.exists()
@@ -179,35 +161,24 @@ def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
 
 DAMAGED = {
     "empty": lambda data: b"",
-    "short": lambda data: data[:10],
     "cut": lambda data: data[: len(data) // 2],
     "garbage": lambda data: b"garbage" * 99,
-    "zeros": lambda data: bytes(len(data)),
     "one bit": lambda data: data[:40] + bytes([data[40] ^ 4]) + data[41:],
-    "another numba's": lambda data: OTHER,
 }
-OTHER = pickle.dumps(("something", "else"))
-"""Whole, but not what this numba makes."""
-
-
 OFTEN = ("*double*.nbi", "garbage"), ("*double*.nbc", "one bit")
 CASES = [(what, how) for what in ("*double*.nbi", "*double*.nbc") for how in DAMAGED]
-CASES.remove(("*double*.nbi", "another numba's"))
 
 
 @pytest.mark.parametrize(
-    ("what", "how"),
-    [pytest.param(*case, marks=[] if case in OFTEN else pytest.mark.slow) for case in CASES],
+    ("what", "how"), [pytest.param(*case, marks=[] if case in OFTEN else pytest.mark.slow) for case in CASES]
 )
 def test_a_damaged_file_is_compiled_and_kept_anew(toy, what, how):
-    """An index of another numba is no damage."""
     toy()
     (path,) = files(toy, what)
-    data = DAMAGED[how](path.read_bytes())
-    path.write_bytes(seal(data, name_of(toy, path)) if how == "another numba's" else data)
+    path.write_bytes(DAMAGED[how](path.read_bytes()))
     out, err = toy()
     assert out == MIXED and err.count("RuntimeWarning") == 1
-    assert how == "another numba's" or f"machine code kept in {path.parent} cannot be used" in err
+    assert f"machine code kept in {path.parent} cannot be used" in err
     assert toy() == (LOADED, "")
 
 

@@ -93,48 +93,25 @@ def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
     assert toys(code, NUMBA_CACHE_DIR="/dev/null", SNOOKER_ENV_QUIET="1", warn="ignore") == ""
 
 
-LONG = {
-    "snooker_env.physics.engine": ["run_batch"],
-    "snooker_env.simulation.impacts": ["_collide_balls", "_collide_cushion"],
-    "snooker_env.tasks.stroke": ["address"],
-    "snooker_env.tasks.visit": ["_conclude", "_begin"],
-    "snooker_env.tasks.frame_kernels": [
-        "decide",
-        "conclude",
-        "observe",
-        "finish",
-        "begin",
-        "show",
-        "remember",
-    ],
-    "snooker_env.planning.ghost_ball": ["geometric_strokes"],
-    "snooker_env.game.layouts": ["deal_tables"],
-    "snooker_env.game.apply_ruling": ["settle_one"],
-    "snooker_env.game.paths": ["best_paths"],
-    "snooker_env.game.snookered": ["_snookered"],
-    "snooker_env.planning.learned.pot_view": ["_add_pots"],
-    "snooker_env.planning.aims": ["_pot_aim"],
-    "snooker_env.planning.trials": ["_strike"],
-    "snooker_env.planning.geometry": ["_pots", "_clear_paths"],
-}
+LONG = """
+physics.engine run_batch; simulation.impacts _collide_balls _collide_cushion; tasks.stroke address; planning.aims _pot_aim
+tasks.visit _conclude _begin; tasks.frame_kernels decide conclude observe finish begin show remember; game.layouts deal_tables
+planning.ghost_ball geometric_strokes; game.apply_ruling settle_one; game.paths best_paths; game.snookered _snookered
+planning.learned.pot_view _add_pots; planning.trials _strike; planning.geometry _pots _clear_paths
+"""
 """The kernels that were seen to take over a second, each compiled first in a fresh process."""
 
 
-@pytest.mark.parametrize(
-    ("module", "name"), [(module, name) for module, names in LONG.items() for name in names]
-)
-def test_each_long_kernel_announces_itself(module, name, capsys, monkeypatch):
+def test_each_long_kernel_announces_itself_and_what_others_compile_is_not_told(capsys, monkeypatch):
     monkeypatch.delenv("SNOOKER_ENV_QUIET")
-    kernel = getattr(importlib.import_module(module), name)
     # as if nothing had been compiled yet
     monkeypatch.setattr(notices.Cost, "_missing", lambda self: set(self.uses))
-    event.start_event("numba:compile", data={"dispatcher": kernel})
-    err = capsys.readouterr().err
-    assert err.count("\n") == 1 and f"compiling {kernel.cost.what}, " in err and kernel in jit.ENTRIES
-
-
-def test_what_others_compile_is_none_of_our_business(capsys, monkeypatch):
-    monkeypatch.delenv("SNOOKER_ENV_QUIET")
-    event.start_event("numba:compile", data={"dispatcher": test_without_stderr_it_works_all_the_same})
+    for module, *names in (line.split() for line in LONG.replace("\n", ";").split(";") if line):
+        for name in names:
+            kernel = getattr(importlib.import_module(f"snooker_env.{module}"), name)
+            event.start_event("numba:compile", data={"dispatcher": kernel})
+            err = capsys.readouterr().err
+            assert err.count("\n") == 1 and f"compiling {kernel.cost.what}, " in err and kernel in jit.ENTRIES
+    event.start_event("numba:compile", data={"dispatcher": sorted})
     event.start_event("numba:compile")
     assert capsys.readouterr().err == ""
