@@ -33,11 +33,13 @@ SHORT = {
 }
 """Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
 
-SLOW = {"docs/pictures/make.py", "tests/advice/coach.py"} | {
+SLOW = {"docs/pictures/make.py", "docs/films/make.py", "tests/advice/coach.py"} | {
     f"benchmarks.{name}"
     for name in [
         "coach",
         "fit_cushion",
+        "make_escape",
+        "make_opened",
         "make_safety",
         "pockets",
         "scene",

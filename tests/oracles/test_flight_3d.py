@@ -165,7 +165,7 @@ def test_a_ball_off_the_rail_bounces_there_or_is_off():
 
 def test_a_rolling_ball_meets_one_at_rest_and_both_come_to_rest_as_known():
     """Without flight; a ball from any state stops at v T - mu_s g T^2 u / 2 + |v_r| v_r / (2 mu_r g)."""
-    v = np.array([1.3, 0.4, 0.0])
+    v = np.array([1.3, 0.9, 0.0])
     target = 0.4 * np.array([0.8, 0.6])
     end, _, log, states = shot([[0.0, 0.0], target], [v, STILL], [rolling(v), STILL], flight=False)
     assert [entry[1] for entry in log] == ["ball"]

@@ -65,20 +65,6 @@ def test_it_comes_to_rest_where_a_bouncing_ball_does(degrees, e_t):
     assert exact >= (20 if math.tan(elevation) * (1 + e_t) / (1 - e_t) < 1.0 else 0)
 
 
-@pytest.mark.parametrize("tip", TIPS)
-def test_a_level_cue_feels_no_friction(tip):
-    """The formulas of TP A.30 and A.31 alone, to the last bit; with any friction."""
-    (side, top), speed, aim = tip, 2.7, 1.1
-    way = aim + squirt(side)
-    c, s, q = math.cos(way), math.sin(way), 2.5 * speed / R
-    for mu_s in (0.1, 0.21, 1.0):
-        v, w = sn.strike(speed, aim, side, top, physics={"mu_s": mu_s})
-        assert v.tolist() == [speed * c, speed * s, 0.0]
-        assert w.tolist() == [q * (0.0 - top * s), q * (0.0 + top * c), q * side]
-    v, w = sn.strike(speed, aim, side, top, 1e-9)
-    assert np.allclose(v, [speed * c, speed * s, 0.0], atol=1e-8)
-
-
 @pytest.mark.parametrize("mu_s", [0.1, 0.21, 0.6])
 def test_a_steep_cue_makes_the_ball_roll(mu_s):
     """Stun: the slip V cos(elevation) is gone where mu_s tan(elevation) = 2/7; at 5/7 of the speed, with the side

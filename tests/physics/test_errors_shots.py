@@ -40,12 +40,10 @@ NAMES |= {"own": own, "ODD": ODD, "WIDE": WIDE, "BARE": BARE}
 
 VECTORS = """
 call(field=(1.0, 0.0)) | field | shape (2,) | must have shape (3,)
-call(field=[(1.0, 0.0, 0.0)]) | field | shape (1, 3) | must have shape (3,)
 call(field=1.0) | field | shape () | must have shape (3,)
 call(field=(1.0, NAN, 0.0)) | field | nan | must be finite
 call(field=(-INF, 0.0, 0.0)) | field | -inf | must be finite
 call(field=?) | field | ? | must be real numbers of shape (3,) | None; "abc"; [(1.0, 2.0), 0.0, 0.0]; np.array([1.0, 0.0, 0.0], object)
-call(field=(1j, 0.0, 0.0)) | field | 1j | must be real numbers of shape (3,)
 call(field=np.ma.array([1.0, 0.0, 0.0], mask=[False, True, False])) | field | masked | must be real numbers of shape (3,)
 """
 NORMALS = """
@@ -55,17 +53,12 @@ call(normal=?) | normal | ? | must be a horizontal unit vector | (0.6, 0.8, 0.00
 SHOTS = """
 shot(positions=[(0.0, 0.0)]) | velocities | shape (2, 2) | must have shape (1, 2)
 shot(velocities=[(1.0, 0.0)]) | velocities | shape (1, 2) | must have shape (2, 2)
-shot(velocities=np.zeros((2, 3))) | velocities | shape (2, 3) | must have shape (2, 2)
 shot(spins=np.zeros((2, 2))) | spins | shape (2, 2) | must have shape (2, 3)
-shot(spins=np.zeros((3, 3))) | spins | shape (3, 3) | must have shape (2, 3)
 shot(positions=np.zeros((2, 3))) | positions | shape (2, 3) | must have shape (n, 2)
-shot(positions=np.zeros((1, 2, 2))) | positions | shape (1, 2, 2) | must have shape (n, 2)
-shot(positions=0.0) | positions | shape () | must have shape (n, 2)
 shot(positions=[]) | positions | shape (0,) | must have shape (n, 2)
 shot(**{name: np.zeros((0, n)) for name, n in WIDTHS.items()}) | positions | shape (0, 2) | at least one ball
 shot(**{name: np.zeros((4097, n)) for name, n in WIDTHS.items()}) | positions | shape (4097, 2) | at most 4096
 shot(positions=put(NAN, 0.0)) | positions[1, 0] | nan | must be finite
-shot(positions=put(0.3, INF)) | positions[1, 1] | inf | must be finite
 shot(positions=put(1e300, 0.3)) | positions[1, 0] | 1e+300 | must be finite, within 1e+06 m of zero
 shot(positions=put(1e7, 0.0), table=None) | positions[1, 0] | 10000000.0 | must be finite, within 1e+06 m of zero
 shot(velocities=[(1.0, 0.0), (0.0, -INF)]) | velocities[1, 1] | -inf | must be finite
@@ -74,13 +67,10 @@ shot(velocities=[(?, 0.0), (0.0, 0.0)]) | velocities[0, 0] | ? | must be finite,
 shot(spins=[(0.0, 0.0, NAN), Z]) | spins[0, 2] | nan | must be finite
 shot(spins=[(0.0, 0.0, ?), Z]) | spins[0, 2] | ? | must be finite, within 100,000 rad/s of zero | 1e25; -100001.0
 shot(positions=put(0.05, 0.0)) | positions | balls 0 and 1 | overlap by 0.0025 m, at most 1e-06 is allowed
-shot(positions=put(0.0, 0.0)) | positions | balls 0 and 1 | overlap by 0.0525 m
 shot(positions=put(0.0525 - 1.1e-6, 0.0)) | positions | balls 0 and 1 | overlap by 1.1e-06 m, at most 1e-06 is allowed
 shot(positions=put(1.5, 0.0)) | positions | (1.5, 0.0) | must be on the table, |x| <= 0.86275, |y| <= 1.75825
 shot(positions=put(0.0, -2.0)) | positions | (0.0, -2.0) | must be on the table
-shot(positions=put(1e5, 0.3)) | positions | (100000.0, 0.3) | must be on the table
 shot(positions=put(0.87, 0.5)) | positions | (0.87, 0.5) | overlaps the cushion at x = 0.889
-shot(positions=put(-0.862752, 0.5)) | positions | (-0.862752, 0.5) | overlaps the cushion at x = -0.889
 shot(positions=put(0.2, 1.77)) | positions | (0.2, 1.77) | overlaps the cushion at y = 1.7845
 shot(positions=put(0.2, -1.77)) | positions | (0.2, -1.77) | overlaps the cushion at y = -1.7845
 shot(positions=put(0.889, 1.7845)) | positions | (0.889, 1.7845) | is over a pocket
@@ -100,11 +90,9 @@ sn.Table.preset(?) | table | ? | must be one of 'match', 'tight' | ""; "Match"; 
 sn.Table("x", np.zeros((1, 2)), np.zeros((0, 6)), np.zeros((0, 3))) | table.noses | shape (1, 2) | must have shape (n, 5)
 shot(physics={"mu_s": 0.0}) | physics.mu_s | 0.0 | must be > 0 to simulate a shot
 shot(physics={"mu_r": 0.0}) | physics.mu_r | 0.0 | must be > 0 to simulate a shot
-shot(physics={"mu_s": 5e-324}) | physics.mu_s | 5e-324 | times g = 9.81 in [1e-06, 1e+06] m/s^2
 shot(physics={"mu_r": 1e-8}) | physics.mu_r | 1e-08 | times g = 9.81 in [1e-06, 1e+06] m/s^2
 shot(physics={"spin_decel": 5e-324}) | physics.spin_decel | 5e-324 | must be 0 (a spin about the vertical stays) or at least 1e-06 rad/s^2
 shot(physics={"g": 1e308}) | physics.mu_s | 0.21 | times g = 1e+308 in [1e-06, 1e+06]
-shot(physics={"g": 1e-300}) | physics.mu_s | 0.21 | times g = 1e-300 in [1e-06, 1e+06]
 shot(fidelity="euler:" + "9" * 5000) | fidelity | 'euler:9999 | must be "fast", "standard"
 moved(-0.5) | t | -0.5 | must not be negative
 moved([0.1, -1e-12]) | t | -1e-12 | must not be negative
@@ -119,16 +107,13 @@ own(name=?) | table.name | ? | must be a str | None; 3
 sn.Table.rectangular(2.0, 1.0, pockets=False) | table.pockets | False | must be 6, 4 or 0
 own(noses=[(2, 1, 1, -1, 1)]) | table.noses[0] | (2.0, 1.0, 1.0, -1.0, 1.0) | must be axis 0 or 1, side -1 or 1
 own(noses=[(0, 1, 1, -1, 1), (0, 0, 1, -1, 1)]) | table.noses[1] | (0.0, 0.0, 1.0, -1.0, 1.0) | side -1 or 1, level, and lo <= hi
-own(noses=[(0, 1, 1, 1, -1)]) | table.noses[0] | (0.0, 1.0, 1.0, 1.0, -1.0) | lo <= hi
 own(noses=[(0, 1, NAN, -1, 1)]) | table.noses[0, 2] | nan | must be finite
 own(jaws=[(0, 0, -0.1, 1, 0, 0)]) | table.jaws[0] | -0.1 | must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine
-own(jaws=[(0, 0, 0.1, 0, 0, 0)]) | table.jaws[0] | (0.0, 0.0, 0.1, 0.0, 0.0, 0.0) | a unit vector
 own(jaws=[(0, 0, 0.1, 1, 0, 1.5)]) | table.jaws[0] | 1.5 | and a cosine
 own(falls=[(0, 0, 0.1), (0, 0, -0.1)]) | table.falls[1] | -0.1 | must be x, y, and a radius > 0
 shot(table="match", physics={"R": 0.02}) | physics.R | 0.02 | which is made for it: write physics={"R": 0.02625}
 shot(table="uk8") | physics.R | 0.02625 | on table "uk8", which is made for it
 batch(table="carom", physics="match") | physics.R | 0.02625 | must be 0.03075 on table "carom", which is made for it
-shot(positions=put(0.2, 2.5), table=WIDE) | positions[1] | (0.2, 2.5) | must be on the table, |x| <= 1.04075, |y| <= 1.97375 away
 shot(positions=put(1.05, 0.3), table=WIDE) | positions[1] | (1.05, 0.3) | overlaps the cushion at x = 1.067
 shot(positions=put(-0.4, 1.0), table=ODD) | positions[1] | (-0.4, 1.0) | must be on the table, -0.27375 <= x <= 0.97375 away
 shot(positions=put(0.895, 0.0), table=BARE) | positions[1] | (0.895, 0.0) | is over a pocket
@@ -151,7 +136,6 @@ sn.Physics(e_j=?) | physics.e_j | ? | must be a finite number in [0, 1] | -0.1; 
 sn.Physics(e_t=1.0) | physics.e_t | 1.0 | must be a finite number in
 sn.Physics(flight=1) | physics.flight | 1 | must be True or False
 sn.Physics(tables=1) | physics.tables | 1 | must be True or False
-sn.Physics(e_c_knee=-1) | physics.e_c_knee | -1 | must be a finite number in [0, inf)
 sn.Physics(e_c_power=?) | physics.e_c_power | ? | must be a finite number in [0, 0.8] | -0.1; 0.81
 sn.Physics(mu_c=?) | physics.mu_c | ? | must be a finite number in [0, 1] | -0.1; 2
 sn.Physics(sin_theta=?) | physics.sin_theta | ? | must be a finite number in [0, 0.95] | -0.1; 0.96
@@ -171,20 +155,16 @@ SnookerEnv(physics={"mu_r": ?}) | physics.mu_r | ? | must be a finite number in 
 sn.Physics.preset(?) | physics | ? | must be one of 'paper', 'match' | ""; "Paper"; "real"
 strike(physics=?) | physics | ? | must be one of 'paper', 'match' | ""; "Paper"
 shot(physics="real") | physics | 'real' | must be one of 'paper', 'match'
-impact(physics="real") | physics | 'real' | must be one of 'paper', 'match'
-cushion(physics="real") | physics | 'real' | must be one of 'paper', 'match'
 batch(physics="real") | physics | 'real' | must be one of 'paper', 'match'
 SnookerEnv(physics="real") | physics | 'real' | must be one of 'paper', 'match'
 sn.Physics.of({"preset": "real"}) | physics | 'real' | must be one of 'paper', 'match'
 sn.Physics.of(?) | physics | ? | must be None, a preset's name, a dict of overrides, or a Physics | 3; ["paper"]; True; 0.5; b"paper"
 sn.Physics.of({?: 1}) | physics field | ? | must be one of 'R', 'M', 'g', 'mu_s' | "mu"; "name"; "cls"; 1
-sn.Physics.preset("paper", mu=0.1) | physics field | 'mu' | must be one of 'R'
 SnookerEnv(physics={"mu": 0.1}) | physics field | 'mu' | must be one of 'R'
 """
 BATCHES = """
 batch(positions=[(0.0, 0.0), (0.3, 0.0)]) | positions | shape (2, 2) | must have shape (b, n, 2)
 batch(velocities=np.zeros((2, 2, 2))) | velocities | shape (2, 2, 2) | must have shape (3, 2, 2)
-batch(spins=np.zeros((3, 2))) | spins | shape (3, 2) | must have shape (3, 2, 3)
 three(positions=put(0.02, 0.0)) | positions[1] | balls 0 and 1 | overlap by 0.0325 m
 three(positions=put(0.905, 0.5)) | positions[1][1] | (0.905, 0.5) | must be on the table
 three(positions=put(0.3, NAN)) | positions[1, 1, 1] | nan | must be finite
@@ -195,9 +175,6 @@ batch(**{name: np.zeros((2, 0, n)) for name, n in WIDTHS.items()}) | positions |
 batch(threads=?) | threads | ? | must be an integer in [1, 1024] | 0; -2; 1.0; "2"; True; 1025
 batch(events=?) | events | ? | must be True or False | "x"; 1; None; [True]
 batch(max_events=0) | max_events | 0 | must be an integer in [1, 2147483648]
-batch(table=?) | table | ? | must be one of 'match', 'tight' | "Match"
-batch(physics={"mu_s": 0.0}) | physics.mu_s | 0.0 | must be > 0 to simulate a shot
-batch(physics={"spin_decel": 5e-324}) | physics.spin_decel | 5e-324 | must be 0 (a spin about the vertical stays)
 """
 STRIKES = """
 strike(speed=?) | speed | ? | must be a finite number in [0, 1000] | -1.0; -1e-300; 1000.1; 1e25; NAN; INF
@@ -207,7 +184,6 @@ strike(elevation=?) | elevation | ? | must be a finite number in [0, 1.5] | -0.0
 strike(aim=?) | aim | ? | must be in radians, within a turn of 0; from degrees: np.radians(degrees) | 90.0; -180.0; 6.3
 strike(side=0.6) | (side, top) | (0.6, 0.0) | 0.6 R is a miscue, must be within 0.5 R of the ball's centre
 strike(side=-0.4, top=0.4) | (side, top) | (-0.4, 0.4) | miscue, must be within 0.5 R
-strike(top=-0.5001) | (side, top) | (0.0, -0.5001) | miscue, must be within 0.5 R
 strike(side=0.4, physics={"max_offset": 0.3}) | (side, top) | (0.4, 0.0) | within 0.3 R
 """
 NO_NUMBER = """

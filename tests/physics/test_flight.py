@@ -160,16 +160,6 @@ def test_balls_that_meet_in_the_air_keep_momentum_and_part_at_e():
         np.testing.assert_allclose(turned, 0.0, atol=1e-12)
 
 
-def test_a_shot_in_space_is_the_same_in_the_mirror():
-    places = np.array([(0.1, -0.5, 0.0), (0.13, 0.1, 0.0), (-0.2, 0.6, 0.0)])
-    v, w = np.zeros((3, 3)), np.zeros((3, 3))
-    v[0], w[0] = (0.3, 4.0, 1.2), (-40.0, 20.0, 60.0)
-    shot = sn.simulate(places, v, w, physics=FLYING)
-    mirrored = sn.simulate(places * (-1, 1, 1), v * (-1, 1, 1), w * (1, -1, -1), physics=FLYING)
-    assert "LAND" in kinds(shot) and len(shot.events) == len(mirrored.events)
-    np.testing.assert_allclose(shot.positions * (-1, 1), mirrored.positions, atol=1e-9)
-
-
 def past_the_edges(places, table, physics):
     """How deep balls at ``places`` (m, 3) are in the edges of the noses and jaws [m], from the table's geometry alone."""
     R, (x, y, z) = physics.R, places.T

@@ -158,17 +158,6 @@ def test_an_impact_scales_with_its_speed(case, physics, fidelity, k):
 
 
 @many
-@given(ball_impacts(), st.floats(0, 0.5), st.floats(0, 1), angles, st.floats(0, 5))
-def test_of_free_balls_only_the_relative_motion_matters(case, mu, e, direction, speed):
-    """Seen from a moving train: "fast" has no cloth, so a common velocity changes nothing but itself."""
-    v = speed * horizontal(direction)
-    physics = {"mu_bb": mu, "e_b": e}
-    out = sn.collide_balls(*case, physics, "fast")
-    train = sn.collide_balls(case[0] + v, case[1], case[2] + v, *case[3:], physics, "fast")
-    assert far(train, (out[0] + v, out[1], out[2] + v, out[3])) <= 1e-11 * (size_of(case) + speed)
-
-
-@many
 @given(ball_impacts(), constants)
 def test_the_three_fidelities_agree_as_far_as_they_promise(case, physics):
     """standard and reference solve the same equations; fast leaves out the cloth, whose friction is at most
@@ -245,18 +234,6 @@ def test_cloth_friction_brakes_along_the_slip_and_turns_the_ball_about_its_conta
     if rolls < shot.duration:
         _, (v,), (w,) = shot.at(rolls + 0.5 * (shot.duration - rolls))
         assert v + R * np.array([-w[1], w[0]]) == pytest.approx([0, 0], abs=1e-13 * size)
-
-
-@many
-@given(lone_balls(), st.floats(0.01, 0.99))
-def test_a_ball_stopped_and_started_again_goes_on_as_before(ball, at):
-    """Time may be cut anywhere: the state at any time, played on, comes to rest in the same place at the same
-    time."""
-    whole = sn.simulate([(0, 0)], [ball[0]], [ball[1]], None)
-    t = at * whole.duration
-    rest = sn.simulate(*whole.at(t), None)
-    assert rest.positions == pytest.approx(whole.positions, abs=1e-10)
-    assert t + rest.duration == pytest.approx(whole.duration, abs=1e-10)
 
 
 # whole shots

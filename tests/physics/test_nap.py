@@ -116,26 +116,6 @@ def test_without_a_nap_nothing_changes_and_a_tiny_one_changes_little():
     assert rolled((1.0, 1.0), 5e-324).positions == pytest.approx(rolled((1.0, 1.0), 0.0).positions, abs=1e-14)
 
 
-def test_a_ball_at_rest_in_the_way_of_a_bent_path_is_met_where_the_path_is():
-    """At the last, almost straight piece and before: the contact is that of the integrated path."""
-    rng = np.random.default_rng(4)
-    for v, nap in rolls(40, 5, 0.3):
-        _, stop, _, _ = integrated(v, nap, np.linspace(0, 1e3, 2))
-        t = rng.uniform(0.1, 1.0) * stop
-        there = integrated(v, nap, np.array([t]))[0][0]
-        side = rng.uniform(-1.2, 1.2) + np.arctan2(there[3], there[2])
-        other = there[:2] + 2 * R * np.array([np.cos(side), np.sin(side)])
-        if np.hypot(*other) < 2.1 * R:
-            continue
-        shot = sn.simulate(
-            [(0, 0), other], [v, (0, 0)], [(-v[1] / R, v[0] / R, 0), (0, 0, 0)], None, {"nap": nap}
-        )
-        hits = shot.events["time"][shot.events["kind"] == EventKind.BALL_BALL]
-        speed = np.hypot(*there[2:]) * np.cos(side - np.arctan2(there[3], there[2]))
-        if speed > 0.01:  # at a creep a micrometre decides when, or whether
-            assert hits[0] == pytest.approx(t, abs=5e-6 / speed)
-
-
 def test_a_ball_that_the_nap_presses_along_a_cushion_stays_within_a_millimetre_of_it():
     """Not nearer: the engine's slowest parting, 2 mm/s, is much beside a nap of 0.001 m/s^2."""
     rail = 1.7845 - R

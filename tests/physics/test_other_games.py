@@ -7,11 +7,10 @@ import pytest
 import snooker_env as sn
 from benchmarks._common import invariants
 from benchmarks.fuzz import allowed
-from snooker_env import EventKind, Pocket, Table
+from snooker_env import Pocket, Table
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.physics.impact import contact
 from snooker_env.physics.table import MOUTH
-from tests.refusals import Z
 
 POOL_POCKETS = {
     "corner": Pocket.corner(mouth=0.12, shelf=0.02, fall_radius=0.065, cut=140, jaw_radius=0.004),
@@ -123,22 +122,6 @@ def test_wherever_balls_come_to_rest_they_may_lie_and_be_struck_again(name):
     assert depth.max() > -physics.R  # some lie in a mouth
     if name == "rounded, with facings":  # deeper than on any snooker table
         assert depth.max() > 2 * MOUTH
-
-
-def test_a_three_cushion_shot_on_the_carom_table():
-    """The cue ball meets one ball, at least three cushions, and then the other; nothing is potted on a table
-    without pockets."""
-    table = Table.preset("carom")
-    physics = physics_of(table)
-    v, w = sn.strike(3.5, 2.84, side=0.3, top=0.2, physics=physics)
-    balls = [(0.25, -0.9), (0.45, 0.35), (-0.4, -0.75)]
-    shot = sn.simulate(balls, [v[:2], (0, 0), (0, 0)], [w, Z, Z], "carom", physics)
-    kinds = shot.events[(shot.events["i"] == 0) & (shot.events["kind"] <= EventKind.JAW)]
-    met = kinds["j"][kinds["kind"] == EventKind.BALL_BALL]
-    last = np.flatnonzero((kinds["kind"] == EventKind.BALL_BALL) & (kinds["j"] != met[0]))[0]
-    assert (kinds["kind"][:last] == EventKind.CUSHION).sum() >= 3
-    assert (shot.potted == -1).all() and shot.on_table.all()
-    assert (np.abs(shot.positions) <= table.bounds[:, 1] - physics.R + 1e-9).all()
 
 
 def test_snooker_is_played_on_a_rectangular_table_of_its_size():

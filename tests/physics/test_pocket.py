@@ -5,11 +5,10 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from benchmarks._common import invariants
 from snooker_env import EventKind
 from snooker_env.physics import pocket
 from snooker_env.physics.columns import P_E_J, P_MU_C
-from snooker_env.physics.impact import contact, free
+from snooker_env.physics.impact import free
 from tests.kernels import from_python
 
 R, G, SIN = 0.02625, 9.81, 0.4
@@ -70,28 +69,6 @@ def test_a_free_fall_ends_when_the_ball_is_below_the_noses():
     assert r + v == pytest.approx(
         (0.3 * time, 0.01 + 0.1 * time, 0.5 * G * time**2, 0.3, 0.1, G * time), abs=1e-12
     )
-
-
-IN_THE_AIR = (
-    [(-0.5424572365214919, -0.1470004012755446), (0.5350227790240875, -0.19510341525335928)],
-    [(-1.307665153016971, 0.6983324381859458), (-5.4520706255184015, 0.8684297421029781)],
-    [
-        (104.83410450393391, -78.27540493207012, -30.73312740757775),
-        (-33.08303779439917, -207.6979285911772, 0.0),
-    ],
-)
-"""A fast ball meets a slow one over a middle pocket, which so comes back with more energy than it brought."""
-
-
-def test_what_a_ball_is_given_in_the_air_counts_as_no_gain():
-    physics = sn.Physics.preset("match", nap=-0.05)
-    shot = sn.simulate(*IN_THE_AIR, physics=physics)
-    kinds = shot.events["kind"].tolist()
-    assert kinds.index(EventKind.DROP) < kinds.index(EventKind.BALL_BALL) < kinds.index(EventKind.RETURN)
-    p, v, w = (np.array([a]) for a in IN_THE_AIR)
-    table, fidelity = sn.Table.preset("match"), contact.parse_fidelity("standard")
-    found = invariants.play((p, v, w, np.ones((1, 2), bool)), physics, table, fidelity)
-    assert found.worst[0, invariants.ENERGY] < 1e-12
 
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9"])

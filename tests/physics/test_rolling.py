@@ -90,27 +90,6 @@ def test_other_constants_have_their_own(constants):
         assert difference(impact(physics, "standard"), impact(physics, "reference"), physics) < 1e-8 * speed
 
 
-def test_a_jaw_has_its_own_table():
-    """Balls that roll on to jaws of little restitution: where they stop."""
-    physics = sn.Physics(e_j=0.5)
-    aims = np.arctan2(1.76, 0.86) + np.linspace(-0.03, 0.03, 40)
-    velocities = 1.5 * np.stack([np.cos(aims), np.sin(aims)], -1)[:, None]
-    spins = np.zeros((40, 1, 3))
-    spins[..., 0], spins[..., 1] = -velocities[..., 1] / physics.R, velocities[..., 0] / physics.R
-    ends = []
-    for fidelity in ("standard", "reference"):
-        batch = sn.simulate_batch(
-            np.zeros((40, 1, 2)), velocities, spins, "match", physics, fidelity, events=True
-        )
-        ends.append(batch.positions)
-    assert batch.events is not None
-    met = [sn.EventKind.JAW in log["kind"] for log in batch.events]
-    assert sum(met) > 5
-    assert (
-        np.abs(ends[0] - ends[1]).max() < 2e-5
-    )  # a later impact slides: 1e-6 of its speed, over some metres
-
-
 def test_cells_with_a_kink_are_empty_and_their_impacts_solved():
     table = make(KINKED)
     assert table is not None

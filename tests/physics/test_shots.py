@@ -214,19 +214,6 @@ def test_a_ball_frozen_to_a_jaw(k):
     assert struck_there.events["kind"][0] == EventKind.BALL_BALL
 
 
-def test_frozen_pairs_lines_and_wedges():
-    line = np.column_stack([np.arange(5) * EXACT, np.zeros(5)])
-    shot = sn.simulate(line - [0.2, 0], *struck(5, 3.0, 0.0), table=None)
-    check_shot(shot)
-    assert shot.positions[-1, 0] > 1.0
-    wedge = np.array(
-        [(-0.3, 0.0), (0.0, R), (0.0, -np.nextafter(R, 1)), (np.sqrt(3) * R * 1.0000000001, 0.0)]
-    )
-    shot = sn.simulate(wedge, *struck(4, 3.0, 0.0), table=None)
-    check_shot(shot)
-    assert (shot.events["kind"] == EventKind.BALL_BALL).sum() >= 2
-
-
 def test_two_balls_at_once_follow_the_written_rule():
     """Ties: the lower ball first. Mirrored, the other one is first; both orders give nearly the mirrored
     result."""
@@ -253,16 +240,3 @@ def test_a_ball_may_lie_still_in_the_mouth_of_a_pocket():
             ValueError, match=r"positions\[0\] = .*(must be on the table|over a pocket|overlaps)"
         ):
             sn.simulate([wrong, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))
-
-
-def test_a_ball_that_glides_along_a_nose_passes_its_end_without_an_impact():
-    """The jaw's arc begins there with the nose's tangent: touching it is no fall through it."""
-    rng = np.random.default_rng(0)
-    n = 200
-    positions = np.stack([np.full(n, -(0.889 - R)), rng.uniform(0.2, 1.5, n)], 1)[:, None]
-    velocities = np.stack([np.zeros(n), rng.uniform(0.8, 3, n)], 1)[:, None]
-    batch = sn.simulate_batch(positions, velocities, np.zeros((n, 1, 3)), events=True)
-    assert batch.events is not None
-    met = [log["kind"][~np.isin(log["kind"], (EventKind.ROLL, EventKind.STOP))] for log in batch.events]
-    first = [log[0] for log in met if len(log)]
-    assert set(first) == {EventKind.POT, EventKind.DROP}  # a fast one drops towards the pocket's other jaw

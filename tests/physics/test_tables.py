@@ -47,12 +47,6 @@ def test_a_copy_of_an_own_table_keeps_its_content_whatever_it_is_called(name, ho
     assert sn.simulate(*start, other).positions.tolist() == sn.simulate(*start, mine).positions.tolist()
 
 
-@pytest.mark.parametrize("how", COPIES)
-def test_a_copy_of_a_preset_is_the_preset(how):
-    for preset in (MATCH, Table.preset("tight"), UNBOUNDED):
-        assert COPIES[how](preset) is preset
-
-
 def test_other_balls_may_be_played_on_other_tables():
     preset = Table.preset("match")
     mine = Table("match", preset.noses, preset.jaws, preset.falls)

@@ -214,13 +214,6 @@ def test_on_a_full_disk_it_works_from_memory(toy):
     assert toy() == (FRESH, "") and toy() == (LOADED, "")
 
 
-def test_a_folder_that_is_gone_is_made_again(toy):
-    gone = (
-        "import toy, shutil; from snooker_env._lib import cache; shutil.rmtree(cache.CACHE_FOLDER.parent)\n"
-    )
-    assert toy(gone) == (FRESH, "") and toy() == (LOADED, "")
-
-
 def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(toy):
     with ThreadPoolExecutor(4) as pool:
         for out, err in pool.map(lambda _: toy(), range(4)):

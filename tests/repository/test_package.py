@@ -8,7 +8,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env._lib import cache
-from tests.processes import CACHE, ROOT, copy_of_package, python, replace
+from tests.processes import CACHE, ROOT, copy_of_package, python
 
 # Imports and names
 
@@ -133,78 +133,3 @@ def test_the_cache_is_where_it_is_said_to_be(tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
     with pytest.warns(RuntimeWarning, match="is not writable"):
         assert cache.cache_folder() is None
-
-
-SPOT = """
-import numpy as np
-from snooker_env._lib import jit
-from snooker_env.game import balls, spotting
-positions, on_table = spotting.spot_colours(np.zeros((22, 2)), np.zeros(22, bool), 1 << balls.BLACK)
-hits = sum(spotting._spot.stats.cache_hits.values()) if jit.CACHE_FOLDER else -1
-print(positions[balls.BLACK, 1], hits, jit.CACHE_FOLDER)
-"""
-
-
-def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
-    """numba checks only spotting.py, the entry kernel's file; the black's place comes from geometry.py."""
-    at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
-    runs = [python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() for _ in range(2)]
-    assert [run[:2] for run in runs] == [["1.4605", "0"], ["1.4605", "1"]]  # compiled once, then loaded
-    assert runs[0][2].startswith(cache)
-    replace(at / "snooker_env/geometry.py", "HALF_LENGTH / 2, 1.4605)", "HALF_LENGTH / 2, 1.4005)")
-    run = python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()
-    assert run[:2] == ["1.4005", "0"] and run[2] != runs[0][2]
-    replace(at / "snooker_env/geometry.py", "HALF_LENGTH / 2, 1.4005)", "HALF_LENGTH / 2, 1.4605)")
-    # and the old code's cache is good again
-    assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() == runs[1]
-
-
-# The same bits everywhere
-
-GOLDEN = """
-import hashlib, json, sys
-import numpy as np, snooker_env as sn
-from snooker_env.game import layouts
-
-def shots(count):
-    rng = np.random.default_rng(2014)
-    r, v, w, here = np.zeros((count, 22, 2)), np.zeros((count, 22, 2)), np.zeros((count, 22, 3)), np.zeros((count, 22), bool)
-    for k in range(count):
-        r[k], here[k] = layouts.layout(("break_off", "opened", "line_up", "random:9", "colours")[k % 5], rng)
-        speed, aim, side, top = rng.uniform((0.5, -np.pi, -0.3, -0.3), (7.0, np.pi, 0.3, 0.3))
-        velocity, w[k, 0] = sn.strike(speed, aim, side, top)
-        v[k, 0] = velocity[:2]
-    return r, v, w, here
-
-def digest(batch):
-    h = hashlib.sha256()
-    for a in (batch.positions, batch.potted, batch.on_table, batch.duration, batch.event_count):
-        h.update(np.ascontiguousarray(a).tobytes())
-    return h.hexdigest()
-
-def run(count=40, threads=1, **options):
-    r, v, w, here = shots(count)
-    return sn.simulate_batch(r, v, w, on_table=here, threads=threads, **options)
-"""
-
-
-@pytest.fixture(scope="module")
-def golden():
-    space = {}
-    exec(GOLDEN, space)  # the very text that the other processes run
-    return space
-
-
-def test_the_same_bits_in_every_process_and_for_any_number_of_threads(golden):
-    options = {"physics": "match", "table": "tight"}
-    batch = golden["run"](**options)
-    want = golden["digest"](batch)
-    for threads in (2, 7):
-        assert golden["digest"](golden["run"](threads=threads, **options)) == want
-    code = GOLDEN + f"options = {options!r}\nprint(digest(run(**options)), digest(run(threads=2, **options)))"
-    assert python(code)[0].split() == [want, want]
-    assert (
-        golden["digest"](golden["run"](table="tight", physics={"preset": "match", "mu_s": 0.2100000001}))
-        != want
-    )
-    assert batch.event_count.min() >= 1 and batch.event_count.max() > 100 and (batch.potted >= 0).any()

@@ -43,14 +43,6 @@ def test_links_of_the_package_page_lead_to_files_of_the_release():
     assert "/raw/v9/agents/pictures/break.gif)" in page and "/blob/v9/docs/index.md)" in page
 
 
-def test_without_an_address_the_page_has_no_link_that_leads_nowhere():
-    page = hatch_build.page(README, "", "v9")
-    assert not links(page) and "![" not in page and "][" not in page
-    assert "[Gymnasium](https://gymnasium.farama.org)" in page
-    for kind in ("python", "bash"):
-        assert blocks(page, kind) == blocks(README, kind)
-
-
 def metadata(folder):
     """The text of METADATA in the wheel that the folder makes."""
     command = [sys.executable, "-c", "import hatchling.build as b; print(b.build_wheel('.'))"]
