@@ -31,13 +31,6 @@ def test_files_that_pages_name_exist():
     assert not [(name, path) for name, path in named if not any(ROOT.glob(path))]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=NAMES)
-def test_pictures_and_films_are_no_stubs(page):
-    for link in links(page.read_text(encoding="utf-8")):
-        if link.endswith((".png", ".jpg", ".gif", ".mp4")):
-            assert (page.parent / link).stat().st_size > 10_000, link
-
-
 SOURCE = "\n".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "api").glob("*.md")))
 
 

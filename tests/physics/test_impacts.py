@@ -146,13 +146,8 @@ def test_cushion_agrees_with_the_oracle():
             c["v"], c["w"], c["normal"], R=R, M=M, e=c["e"], mu_w=c["mu_w"], mu_s=c["mu_s"], sin_theta=0.4
         )
         for fidelity, found in errors.items():
-            found.append(
-                worst(
-                    sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity),
-                    truth,
-                    np.linalg.norm(c["v"]),
-                )
-            )
+            out = sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity)
+            found.append(worst(out, truth, np.linalg.norm(c["v"])))
     assert max(errors["reference"]) < 1e-9
     assert max(errors["standard"]) < 1e-5
 
@@ -203,11 +198,7 @@ def test_match_cushion_follows_the_measured_rebounds():
     assert ratio[2] == pytest.approx(0.80, abs=0.02)
 
 
-# closed forms
-# ------------------------------------------------------------------------------------------------------------
-
-
-# invariants
+# ends
 # ------------------------------------------------------------------------------------------------------------
 
 

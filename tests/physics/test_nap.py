@@ -6,7 +6,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import snooker_env as sn
-from snooker_env import EventKind, Table
+from snooker_env import EventKind
 from snooker_env.physics import cloth
 from snooker_env.physics.impact import contact
 from snooker_env.tasks.arrays import CueLaw
@@ -87,18 +87,6 @@ def test_along_the_nap_is_one_piece_in_closed_form():
             sn.simulate([(0, 0)], [(2.0, 0)], np.zeros((1, 3)), None, {"nap": n}).at(0.1) for n in (0.0, nap)
         ]
         assert np.array_equal(slid[0][0], slid[1][0])  # while it slides it does not feel it
-
-
-def test_left_is_the_mirror_of_right_to_the_bit():
-    table = Table.preset("match")
-    for v, nap in rolls(10, 2, 0.05):
-        one, two = (rolled(v * (s, 1), nap, (0.1 * s, 0.2), table) for s in (1, -1))
-        assert np.array_equal(one.events["time"], two.events["time"]) and np.array_equal(
-            one.events["kind"], two.events["kind"]
-        )
-        assert np.array_equal(one.positions * (-1, 1), two.positions)
-    up, down = (rolled(np.array([0.6, 0.4 * s]), 0.003 * s) for s in (1, -1))
-    assert up.positions * (1, -1) == pytest.approx(down.positions, abs=1e-14)
 
 
 def test_without_a_nap_nothing_changes_and_a_tiny_one_changes_little():
