@@ -108,7 +108,9 @@ sn.Table.rectangular(2.0, 1.0, pockets=False) | table.pockets | False | must be 
 own(noses=[(2, 1, 1, -1, 1)]) | table.noses[0] | (2.0, 1.0, 1.0, -1.0, 1.0) | must be axis 0 or 1, side -1 or 1
 own(noses=[(0, 1, 1, -1, 1), (0, 0, 1, -1, 1)]) | table.noses[1] | (0.0, 0.0, 1.0, -1.0, 1.0) | side -1 or 1, level, and lo <= hi
 own(noses=[(0, 1, NAN, -1, 1)]) | table.noses[0, 2] | nan | must be finite
+own(noses=[(0, 1, 1, 1, -1)]) | table.noses[0] | (0.0, 1.0, 1.0, 1.0, -1.0) | lo <= hi
 own(jaws=[(0, 0, -0.1, 1, 0, 0)]) | table.jaws[0] | -0.1 | must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine
+own(jaws=[(0, 0, 0.1, 0, 0, 0)]) | table.jaws[0] | (0.0, 0.0, 0.1, 0.0, 0.0, 0.0) | a unit vector
 own(jaws=[(0, 0, 0.1, 1, 0, 1.5)]) | table.jaws[0] | 1.5 | and a cosine
 own(falls=[(0, 0, 0.1), (0, 0, -0.1)]) | table.falls[1] | -0.1 | must be x, y, and a radius > 0
 shot(table="match", physics={"R": 0.02}) | physics.R | 0.02 | which is made for it: write physics={"R": 0.02625}
@@ -136,6 +138,7 @@ sn.Physics(e_j=?) | physics.e_j | ? | must be a finite number in [0, 1] | -0.1; 
 sn.Physics(e_t=1.0) | physics.e_t | 1.0 | must be a finite number in
 sn.Physics(flight=1) | physics.flight | 1 | must be True or False
 sn.Physics(tables=1) | physics.tables | 1 | must be True or False
+sn.Physics(e_c_knee=-1) | physics.e_c_knee | -1 | must be a finite number in [0, inf)
 sn.Physics(e_c_power=?) | physics.e_c_power | ? | must be a finite number in [0, 0.8] | -0.1; 0.81
 sn.Physics(mu_c=?) | physics.mu_c | ? | must be a finite number in [0, 1] | -0.1; 2
 sn.Physics(sin_theta=?) | physics.sin_theta | ? | must be a finite number in [0, 0.95] | -0.1; 0.96

@@ -16,7 +16,7 @@ from tests.kernels import from_python
 R, g = 0.02625, 9.81
 D = 2 * R
 FIDELITIES = ("fast", "standard", "reference")
-many = settings(max_examples=500, deadline=None, derandomize=True, database=None)
+many = settings(max_examples=250, deadline=None, derandomize=True, database=None)
 some = settings(max_examples=100, deadline=None, derandomize=True, database=None)
 
 part = st.floats(-1, 1).map(lambda x: 0.0 if abs(x) < 1e-6 else x)
