@@ -73,17 +73,6 @@ def test_over_a_ball_as_spheres():
     assert worst < 1e-5 and steep > 5
 
 
-def test_rails_are_those_of_the_noses_and_begin_later_behind_pockets():
-    rows = RAILS.reshape(-1, cue_room.EDGE)
-    assert sorted(map(tuple, rows[:, :5])) == sorted(map(tuple, TABLE.noses))
-    assert len({tuple(row[:2]) for row in rows}) == 4
-    assert (np.diff([(4 * row[0] + row[1]) for row in rows]) >= 0.0).all()  # those of one side stand together
-    assert (rows[:, 5] > 0.05).all() and (rows[:, 5] < 0.2).all()
-    x = 0.889 - R
-    beside, through = least((0, 0), np.pi, [(x, 0.9)]), least((0, 0), np.pi, [(x, 0.0)])
-    assert through < 0.5 * beside  # from the middle of the pocket's mouth the cue lies lower
-
-
 def test_a_frozen_ball_needs_what_players_say_and_one_in_the_open_nothing():
     x = 0.889 - R
     centre, screw, follow = (np.degrees(least((0.0, top), np.pi, [(x, 0.9)])) for top in (0.0, -0.4, 0.5))
