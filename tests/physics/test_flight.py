@@ -57,12 +57,12 @@ def test_a_dropped_ball_bounces_until_it_is_slower_than_it_settles():
 
 
 def test_the_bed_rubs_by_its_impulse_or_until_the_ball_rolls():
-    for w_y, grips in ((400.0, False), (10.0, True)):
-        v, w, up = from_python(flight.thrown)((0.0, 0.0), (0.0, w_y, 7.0), 1.0, FLYING.pack())
-        slip = -R * w_y
-        push = min(FLYING.mu_s * (1.0 + E_T), abs(slip) * 2 / 7)
-        assert (v[0], up, w[2]) == (pytest.approx(push), E_T, 7.0)
-        assert R * w[1] == pytest.approx(R * w_y - 2.5 * push)
+    for spin, grips in ((60.0, False), (40.0, True)):
+        w0 = np.array([0.6 * spin, 0.8 * spin, 7.0])
+        v, w, up = from_python(flight.thrown)((0.0, 0.0), tuple(w0), 1.0, FLYING.pack())
+        push = min(FLYING.mu_s * (1.0 + E_T), R * spin * 2 / 7) * np.array([0.8, -0.6])
+        assert (*v, up) == pytest.approx((*push, E_T))
+        assert R * np.array(w) == pytest.approx(R * w0 + 2.5 * np.array([push[1], -push[0], 0.0]))
         assert (abs(v[0] - R * w[1]) < 1e-12) == grips
 
 
