@@ -29,7 +29,7 @@ SHORT = {
 }
 """Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
 
-SLOW = {"tests/advice/coach.py"} | {
+SLOW = {"results/make_pictures.py", "tests/advice/coach.py"} | {
     f"benchmarks.{name}"
     for name in [
         "coach",

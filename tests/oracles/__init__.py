@@ -2,12 +2,11 @@
 imports them.
 
 ``ball_ball``        one frictional impact of two balls, to about 1e-12 of the incoming speed.
-``paper_equations``  the same by the paper's own equations, in multi-precision arithmetic.
 ``ball_cushion``     one frictional impact of a ball on a cushion, to about 1e-12.
 ``march``            how the float oracles pass an impact's changes of slip and stick; ``vectors`` is their arithmetic.
+``moreau``           the same impacts by another method, to about 1e-9; and of a ball that comes down on another.
 ``paper_tables``     the rows of the paper's tables.
-``tiny_steps``       a whole shot on an unbounded cloth by small fixed steps of the forces.
-``flight_3d``        a whole shot in three dimensions, on a table, by small fixed steps of the forces.
+``flight_3d``        a whole shot, with balls that fly or do not, on a table or unbounded cloth, by small fixed steps of the forces.
 ``cue_clearance``    how near a cue comes to rails and balls, by spheres along its axis.
 ``bouncing_ball``    one ball that a raised cue drives into the bed: its bounces, to rest.
 ``pocket_3d``        one ball in a pocket in three dimensions, by small fixed steps of the forces.

@@ -1,5 +1,4 @@
-"""What do the velocities of two balls become in one frictional impact? Two oracles: this file's, in floats,
-and ``paper_equations``.
+"""What do the velocities of two balls become in one frictional impact?
 
 Source: Mathavan, Jackson & Parkin (2014), *Sports Engineering* 17, 227-237, as corrected in
 ``shared/reference/physics.md``; model and units: ``tests/oracles/__init__.py``; method: ``march``.
@@ -12,7 +11,6 @@ from collections.abc import Callable
 import numpy as np
 
 from .march import AT_ZERO, Regime, march
-from .paper_equations import multiprecision
 from .vectors import Vector, Z, add, cross, dot, norm, normalized, on_the_cloth, scale, unit_horizontal
 
 Friction = float | Callable[[float], float]
@@ -116,7 +114,6 @@ def ball_ball(
     e: float,
     mu_bb: Friction,
     mu_s: float,
-    digits: int | None = None,
 ):
     """Velocities and spins after the frictional impact of two equal balls on a rough cloth.
 
@@ -129,12 +126,7 @@ def ball_ball(
     must be 0.
     normal : horizontal unit vector from the centre of ball 1 to that of ball 2.
     R, M : radius [m] and mass [kg]. ``e`` : restitution, 0..1. ``mu_s`` : ball-cloth friction.
-    mu_bb : ball-ball friction, a number or a callable of the slip speed [m/s] (with ``digits`` it is called
-    with an mpmath number, and
-        its own precision limits the result).
-    digits : None for the float oracle (within 1e-13 of the incoming speed); a number of decimal digits (20 or
-    more) for the second,
-        multi-precision one (steps and stops to 1e-16 of it, a second or so).
+    mu_bb : ball-ball friction, a number or a callable of the slip speed [m/s].
 
     Returns (v1, w1, v2, w2) as float64 arrays. The vertical velocity of the lifted ball is part of the
     result. If the balls do not approach (normal closing speed <= 0) the inputs come back unchanged.
@@ -144,8 +136,6 @@ def ball_ball(
     n = unit_horizontal(normal)
     if (v1 - v2) @ np.array(n) <= 0.0:
         return v1, w1, v2, w2
-    if digits is not None:
-        return multiprecision(v1, w1, v2, w2, n, R, e, mu_bb, mu_s, digits)
     unit = max(float(np.linalg.norm(a)) for a in (v1, R * w1, v2, R * w2))
     state = [float(c) / unit for a in (v1, R * w1, v2, R * w2) for c in a]
     law = (lambda s: mu_bb(s * unit)) if callable(mu_bb) else mu_bb

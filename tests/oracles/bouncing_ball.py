@@ -8,7 +8,8 @@ The tip gives the impulse V per unit of mass along the cue, at a place that is o
 the ball takes V along the cue and the spin r x J / (2/5 R^2). It then moves downwards at V sin(elevation). A
 bounce (``shared/reference/real.md`` 3) returns e_t of the downward speed, and Coulomb friction acts against the
 slip of the lowest point, ``s = v + w x (-R z)``, at most mu_s times the bounce's normal impulse, at most 2/7 of
-the slip. In the air gravity alone acts. When the ball bounces no more, ``tiny_steps`` moves it to rest.
+the slip. In the air gravity alone acts. When the ball bounces no more, it slides on a
+parabola and rolls on a line.
 
 SI units; table frame, right-handed, z up.
 """
@@ -19,8 +20,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-
-from . import tiny_steps
 
 STILL = 1e-9  # [m/s] a ball that bounces more slowly lies on the bed
 UP = np.array([0.0, 0.0, 1.0])
@@ -33,7 +32,6 @@ class Cloth(NamedTuple):
     g: float = 9.81
     mu_s: float = 0.21
     mu_r: float = 0.0127
-    spin_decel: float = 22.0
 
 
 def off_the_tip(speed, way, side, top, elevation, cloth):
@@ -62,17 +60,11 @@ def rest(v, w, e_t, cloth):
         v, w = bounce(v, w, e_t, cloth)
         place = place + v[:2] * 2.0 * v[2] / cloth.g
         v = v * (1.0, 1.0, -1.0)  # it comes down as fast as it went up
-    end = tiny_steps.simulate([place], [v[:2]], [w], M=1.0, e=1.0, mu_bb=0.0, **cloth._asdict())
-    return end[0]
-
-
-def pressed(speed, way, side, top, elevation, cloth, parts):
-    """Velocity and spin after the same strike in equal parts, the bed taking the downward speed of each at once."""
-    v, w = np.zeros(3), np.zeros(3)
-    part, spin = off_the_tip(speed / parts, way, side, top, elevation, cloth)
-    for _ in range(parts):
-        v, w = bounce(v + part, w + spin, 0.0, cloth)
-    return v, w
+    slip = v[:2] + cloth.R * np.array([-w[1], w[0]])
+    size, rolls = max(np.hypot(*slip), 1e-300), v[:2] - 2.0 / 7.0 * slip
+    t = 2.0 * size / (7.0 * cloth.mu_s * cloth.g)
+    place = place + v[:2] * t - 0.5 * cloth.mu_s * cloth.g * t * t * slip / size
+    return place + rolls * np.hypot(*rolls) / (2.0 * cloth.mu_r * cloth.g)
 
 
 def flown(speed, elevation, e_t, cloth):

@@ -1,11 +1,14 @@
-"""Where does a shot end whose balls may leave the bed? An integrator with small fixed steps in three dimensions.
+"""Where does a shot end, whose balls may leave the bed? An integrator with small fixed steps in three dimensions.
 
-An oracle for the engine's flight. As in ``tiny_steps`` each step moves every ball under the forces of the moment,
-nothing is predicted, and a contact is found in the step in which it happens, by bisection of the motion itself.
+An oracle for the engine. Each step of length ``dt`` moves every ball under the forces of the moment. Nothing is predicted
+beyond a step; a step in which a slip, a roll or a spin would reverse is cut there; a contact is found in the step in which
+it happens, by bisection of the motion itself.
 
-State of a ball: centre (x, y, z), z above its height on the bed; velocity v; spin w. It is on the bed (z = 0,
-v_z = 0: ``tiny_steps`` moves it), in the air, or gone.
+State of a ball: centre (x, y, z), z above its height on the bed; velocity v; spin w. It is on the bed (z = 0, v_z = 0),
+in the air, or gone.
 
+* Cloth (at -R z): slip u = v + w x (-R z). Friction mu_s g against the slip; when rolling (u = 0), a deceleration
+  mu_r g + roll_drag v^2, of the step's middle; w_z falls at ``spin_decel`` in every state.
 * Air: dv_z/dt = -g; v_x, v_y and w are constant.
 * Bed (z = 0): from the downward speed d the normal impulse is p = (1 + e_t) d, and v_z = e_t d; below ``SETTLE``
   p = d, v_z = 0. The impulse rubs: at most mu_s p against the slip u = v + w x (-R z), at most what ends it (2/7).
@@ -13,7 +16,7 @@ v_z = 0: ``tiny_steps`` moves it), in the air, or gone.
   at height H = R sin_theta, R cos_theta in front of the centre of a ball on the bed that touches: a free sphere
   meets a fixed body, e from the speed along the normal.
 * Two balls: both on the bed, ``ball_ball``, and the bed throws the pressed one up with e_t; both in the air, free
-  spheres; one on the bed, ``tilted`` (below).
+  spheres; one on the bed, ``moreau_tilted``. Without flight (``physics.flight`` False) no ball leaves the bed.
 * The rail's top, beyond an edge line, is a bed at the height H + R. A ball ``RAIL`` beyond an edge line is off.
   A ball that comes to z = 0 in a fall circle is potted, and one that flies out of it at the back at z <= H; higher, but
   below the rail's top, it is off.
@@ -50,19 +53,22 @@ from snooker_env.physics.columns import (
     NOSE_SIDE,
 )
 
-from . import tiny_steps
 from .ball_ball import ball_ball
 from .ball_cushion import ball_cushion
+from .moreau import moreau_tilted
 
 SETTLE = 0.03  # [m/s] a ball that would leave the bed more slowly stays on it
 RAIL = 0.127  # [m] how far beyond a nose's edge a ball is off the table
 PART = 2e-3  # [m/s] bodies on the bed part at least so fast
+ZERO_SLIP = 1e-12  # [m/s] a slip below this is rolling; a real slip ends by a cut step, exactly
+APPROACH = 1e-10  # [m/s] touching bodies that approach more slowly than this are left alone
+TOUCH = 1e-12  # [m] bodies this close touch: contacts are located to this distance
 DEEP = 1e-6  # [m] a ball so far past a nose, jaw or plane did not come to it from the front
 MARLOW = (9.951e-3, 0.108, 1.088)  # the law of friction between balls called "marlow"
 Law = tuple[float, float, float]  # (a, b, c) of the friction between balls, mu = a + b exp(-c s), s [m/s]
 UP = np.array([0.0, 0.0, 1.0])
 
-X, Y, VX, VY, WX, WY, WZ, Z, VZ, MODE = range(10)  # the first seven as in ``tiny_steps``
+X, Y, VX, VY, WX, WY, WZ, Z, VZ, MODE = range(10)
 BED, AIR, POTTED, OFF_TABLE = range(4)
 BALL, CUSHION, JAW, LAND, RAIL_TOP, POT, OFF = range(7)
 KINDS = ("ball", "cushion", "jaw", "land", "rail", "pot", "off")
@@ -88,6 +94,45 @@ class Model(NamedTuple):
 
 
 @numba.njit
+def _move(ball, h, radius, mu_s_g, mu_r_g, spin_decel, drag):
+    """Advance one ball on the bed by h under the forces of the moment, in place."""
+    turn = spin_decel * h
+    ball[6] = 0.0 if abs(ball[6]) <= turn else ball[6] - math.copysign(turn, ball[6])
+    left = h
+    while left > 0.0:
+        ux, uy = ball[2] - radius * ball[5], ball[3] + radius * ball[4]
+        slip = math.sqrt(ux * ux + uy * uy)
+        if slip > ZERO_SLIP:  # sliding: the slip loses 7/2 of the friction's acceleration
+            t = min(left, slip / (3.5 * mu_s_g))
+            ax, ay = -mu_s_g * ux / slip, -mu_s_g * uy / slip
+            ball[0] += ball[2] * t + 0.5 * ax * t * t
+            ball[1] += ball[3] * t + 0.5 * ay * t * t
+            ball[2] += ax * t
+            ball[3] += ay * t
+            ball[4] += 2.5 / radius * ay * t  # (-R z) x (M a) / (2/5 M R^2)
+            ball[5] -= 2.5 / radius * ax * t
+            if t < left:  # the slip has ended in this step
+                ball[4], ball[5] = -ball[3] / radius, ball[2] / radius
+        else:
+            speed = math.sqrt(ball[2] * ball[2] + ball[3] * ball[3])
+            if speed == 0.0:
+                return
+            middle = max(0.0, speed - 0.5 * left * (mu_r_g + drag * speed * speed))
+            slows = mu_r_g + drag * middle * middle
+            t = left if slows * left < speed else speed / slows
+            ax, ay = -slows * ball[2] / speed, -slows * ball[3] / speed
+            ball[0] += ball[2] * t + 0.5 * ax * t * t
+            ball[1] += ball[3] * t + 0.5 * ay * t * t
+            if t < left:
+                ball[2] = ball[3] = 0.0
+            else:
+                ball[2] += ax * t
+                ball[3] += ay * t
+            ball[4], ball[5] = -ball[3] / radius, ball[2] / radius
+        left -= t
+
+
+@numba.njit
 def _advance(ball, t, m):
     """Move one ball by t under the forces of the moment, in place."""
     if ball[MODE] == AIR:
@@ -96,7 +141,7 @@ def _advance(ball, t, m):
         ball[Z] += ball[VZ] * t - 0.5 * m.g * t * t
         ball[VZ] -= m.g * t
     elif ball[MODE] == BED:
-        tiny_steps._move(ball[:7], t, m.R, m.slides, m.rolls, m.spin, m.drag)
+        _move(ball, t, m.R, m.slides, m.rolls, m.spin, m.drag)
 
 
 @numba.njit
@@ -220,7 +265,7 @@ def _contact(kind, a, b, part, h, m):
     gap0, rate0 = _gap(kind, a, b, part, m)
     if kind != BALL and gap0 < -DEEP:
         return np.inf
-    if gap0 <= tiny_steps.TOUCH and rate0 < -tiny_steps.APPROACH:
+    if gap0 <= TOUCH and rate0 < -APPROACH:
         return 0.0
     gap1, rate1 = _gap_after(kind, a, b, part, h, m)
     lo, hi = 0.0, h
@@ -229,7 +274,7 @@ def _contact(kind, a, b, part, h, m):
             hi = _turn(kind, a, b, part, h, m, -1.0)[0]
             gap1 = _gap_after(kind, a, b, part, hi, m)[0]
     else:
-        if rate1 >= -tiny_steps.APPROACH:
+        if rate1 >= -APPROACH:
             return np.inf
         lo = _turn(kind, a, b, part, h, m, 1.0)[1]  # it went and came back
         if gap1 <= 0.0 and _gap_after(kind, a, b, part, lo, m)[0] <= 0.0:
@@ -299,7 +344,7 @@ def _run_to_contact(balls, time, into_step, dt, max_time, noses, jaws, falls, m)
             speed = math.sqrt(ball[VX] ** 2 + ball[VY] ** 2 + ball[VZ] ** 2)
             slip = math.hypot(ball[VX] - m.R * ball[WY], ball[VY] + m.R * ball[WX])
             fastest = max(fastest, speed)
-            moving = moving or ball[MODE] == AIR or speed > 0.0 or slip > tiny_steps.ZERO_SLIP
+            moving = moving or ball[MODE] == AIR or speed > 0.0 or slip > ZERO_SLIP
         if not moving:
             return time, 0.0, -1, -1, -1
         reach = 2.0 * (fastest + (m.slides + m.g) * h) * h + 1e-9
@@ -373,98 +418,6 @@ def hop(closing, spin_energy, mass):
     return math.sqrt(closing**2 + 2.0 * gain / mass), math.sqrt(max(0.0, 1.0 - gain / spin_energy))
 
 
-# ---------------------------------------------------------------- one ball in the air, one on the bed
-
-
-@numba.njit(error_model="numpy")
-def _in_disc(x, y, radius):
-    """The nearest point of a disc."""
-    size = math.hypot(x, y)
-    return (x, y) if size <= radius else (x * radius / size, y * radius / size)
-
-
-@numba.njit(error_model="numpy")
-def _impulses(u, D, law, mu_s, e, steps):
-    """The six impulses of an impact, by steps of p (``tilted``). u: the six velocities at the contacts; D: their
-    changes per unit of each impulse; ``law``: (a, b, c) of mu = a + b exp(-c s).
-
-    Coulomb's law holds at the end of each step, and N >= 0, v_z >= 0, N v_z = 0 (Moreau): slips end, hold and start
-    by themselves. The impulses of a step are found by projection, one contact after the other.
-    """
-    total, J, u = np.zeros(6), np.zeros(6), u.copy()
-    h = J[5] = u[5] / steps
-    rate_a, rate_b = 1.0 / max(D[0, 0], D[1, 1]), 1.0 / D[2, 2]
-    work, taken = 0.0, -1.0  # of the normal impulse; taken in compression, once that is over
-    for _ in range(1000 * steps):
-        for _trial in range(5000):
-            f1, f2, g1, g2, n = J[0], J[1], J[2], J[3], J[4]
-            a1, a2 = u[0] + D[0] @ J, u[1] + D[1] @ J
-            mu = law[0] + law[1] * math.exp(-law[2] * math.hypot(a1, a2))
-            J[0], J[1] = _in_disc(f1 - rate_a * a1, f2 - rate_a * a2, mu * h)
-            J[4] = max(0.0, n - (u[4] + D[4] @ J) / D[4, 4])
-            b1, b2 = u[2] + D[2] @ J, u[3] + D[3] @ J
-            J[2], J[3] = _in_disc(g1 - rate_b * b1, g2 - rate_b * b2, mu_s * J[4])
-            moved = abs(J[0] - f1) + abs(J[1] - f2) + abs(J[2] - g1) + abs(J[3] - g2) + abs(J[4] - n)
-            if moved < 1e-15 * h:
-                break
-        before, bend = u[5], D[5] @ J
-        after = before + bend
-        if taken < 0.0 and after <= 0.0:
-            taken = work - 0.5 * before * before / bend * h
-        gained = 0.5 * (before + after) * h
-        left = ((1.0 - e * e) * taken - work) / h  # to the end of restitution
-        if taken >= 0.0 and gained <= left * h:
-            # the last step is a part of one: before t + bend t^2 / 2 = left
-            part = (-before - math.sqrt(max(before * before + 2.0 * bend * left, 0.0))) / bend
-            return total + part * J
-        work += gained
-        total += J
-        u += D @ J
-    return total * np.nan
-
-
-def _row(direction, arm):
-    """direction . (velocity of a ball's surface at R arm), as a row on (v, R w): d . (v + R w x arm)."""
-    return np.concatenate([direction, np.cross(arm, direction)])
-
-
-def tilted(v1, w1, v2, w2, n, *, e, mu: Law, mu_s, R, steps=20_000):
-    """Ball C (1), free, meets ball O (2), on the bed; n: the unit vector from C to O, not upwards.
-
-    Routh's method: impulses grow with the normal impulse p, every contact obeys Coulomb's law, restitution is
-    energetic (Stronge). Six impulses act: friction F1, F2 on C from O, along X (horizontal) and Z' = X x n (upwards);
-    friction G_x, G_y of the bed on O; its reaction N; and p, from C to O. Each acts on the balls as the transpose of
-    the row of the velocity that it changes (Newton, and Euler with 1 / (2/5 R^2)): ``effect`` = M^-1 rows^T. The
-    velocities at the contacts so change by D = rows effect.
-
-    The error of ``steps`` is of first order; that of half as many is taken out.
-
-    Returns v1, w1, v2, w2 and the impulse by which friction pressed O down. O's vertical velocity is its lift, the
-    bed's restitution not yet in it.
-    """
-    none, x, y = np.zeros(6), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
-    across = np.cross(n, UP)
-    size = math.sqrt(across @ across)
-    across = across / size if size > 0.0 else x
-    up = np.cross(across, n)
-    rows = np.array(
-        [np.concatenate([_row(d, n), -_row(d, -n)]) for d in (across, up)]
-        + [np.concatenate([none, _row(d, -UP)]) for d in (x, y, UP)]
-        + [np.concatenate([_row(n, n), -_row(n, -n)])]
-    )
-    effect = (np.tile([1.0, 1.0, 1.0, 2.5, 2.5, 2.5], 2) * rows).T
-    effect[:, 5] *= -1.0  # p pushes C backwards
-    state = np.concatenate([v1, R * w1, v2, R * w2])
-    coarse, fine = (_impulses(rows @ state, rows @ effect, mu, mu_s, e, k) for k in (steps, 2 * steps))
-    J = 2.0 * fine - coarse
-    if not np.isfinite(J).all():
-        raise RuntimeError("the impact did not end")
-    out = state + effect @ J
-    # N held v_z at zero, or the ball has a lift
-    out[8] = max(0.0, out[8]) if out[8] > 1e-9 * abs(state).max() else 0.0
-    return out[0:3], out[3:6] / R, out[6:9], out[9:12] / R, float(J[1] * up[2])
-
-
 # ---------------------------------------------------------------- a shot
 
 
@@ -475,6 +428,7 @@ class _Shot:
         if getattr(physics, "nap", 0.0):
             raise ValueError("the oracle has no nap")
         self.p, self.e_t = physics, getattr(physics, "e_t", 0.5)
+        self.flies = getattr(physics, "flight", True)
         self.noses, self.jaws, self.falls = noses, jaws, falls
         mu = MARLOW if physics.mu_bb == "marlow" else physics.mu_bb
         self.mu_bb: Law = tuple(mu) if isinstance(mu, (tuple, list)) else (float(mu), 0.0, 0.0)
@@ -515,6 +469,8 @@ class _Shot:
 
     def lifted(self, v, w, press=0.0):
         """A ball on the bed after an impact: up with its v_z, or thrown up, or it stays."""
+        if not self.flies:
+            return v * (1.0, 1.0, 0.0), w
         return (v, w) if v[2] >= SETTLE else self.thrown(v, w, press)
 
     def meet(self, a, b):
@@ -529,7 +485,7 @@ class _Shot:
         if b[MODE] == AIR:
             v1, w1, v2, w2 = free(v1, w1, v2, w2, n, e=p.e_b, mu=self.mu_bb, R=R)
         elif a[MODE] == AIR:
-            v1, w1, v2, w2, press = tilted(v1, w1, v2, w2, n, e=p.e_b, mu=self.mu_bb, mu_s=p.mu_s, R=R)
+            v1, w1, v2, w2, press = moreau_tilted(v1, w1, v2, w2, n, e=p.e_b, mu=self.mu_bb, mu_s=p.mu_s, R=R)
             v2, w2 = self.lifted(v2, w2, press)
         elif closing <= PART:
             parting, k = hop(closing, 0.2 * R * R * float(w1 @ w1 + w2 @ w2), 0.5)

@@ -1,6 +1,7 @@
-"""What do velocities and spins become in one frictional impact? By Moreau's implicit steps: a third method.
+"""What do velocities and spins become in one frictional impact? By Moreau's implicit steps: a second method.
 
-The impact of ``ball_ball`` and ``ball_cushion`` (sources and corrections there), stepped in the normal impulse p. In a
+The impact of ``ball_ball`` and ``ball_cushion`` (sources and corrections there), and of a ball in the air with one on the
+bed (``moreau_tilted``), stepped in the normal impulse p. In a
 step of length h the friction at the contact A, the cloth's reaction N and its friction satisfy Coulomb's law and
 N >= 0, v_z >= 0, N v_z = 0 with the velocities at the step's *end* (J. J. Moreau, "Unilateral contact and dry friction
 in finite freedom dynamics", 1988): so slips stop, hold and start by themselves, without a state that says which. The law
@@ -35,8 +36,9 @@ def _after(u, D, k, J):
 
 
 @numba.njit(error_model="numpy")
-def _march(slips, D, mu, mu_s, e, h, most):
-    """Slips u = (a1, a2, b1, b2, v_z, closing); D: their rates per impulse (F1, F2, G1, G2, N, p) -> impulses."""
+def _march(slips, D, law, mu_s, e, h, most):
+    """Slips u = (a1, a2, b1, b2, v_z, closing); D: their rates per impulse (F1, F2, G1, G2, N, p) -> impulses. ``law``:
+    (a, b, c) of the friction at A, a + b exp(-c slip)."""
     u, new, total, J = slips.copy(), np.zeros(6), np.zeros(6), np.zeros(6)
     rate_a, rate_b = 1.0 / max(D[0, 0], D[1, 1]), 1.0 / D[2, 2]
     work = top = 0.0
@@ -47,6 +49,7 @@ def _march(slips, D, mu, mu_s, e, h, most):
             moved = 0.0
             a1 = _after(u, D, 0, J)
             a2 = _after(u, D, 1, J)
+            mu = law[0] + law[1] * math.exp(-law[2] * math.hypot(a1, a2))
             f1, f2 = _disc(J[0] - rate_a * a1, J[1] - rate_a * a2, mu * h)
             moved += abs(f1 - J[0]) + abs(f2 - J[1])
             J[0], J[1] = f1, f2
@@ -106,29 +109,51 @@ def moreau_cushion(v, w, normal, *, R, e, mu_w, mu_s, sin_theta, steps=20_000):
 def moreau_balls(v1, w1, v2, w2, normal, *, R, e, mu, mu_s, pressed, steps=20_000):
     """As ``ball_ball`` at constant friction; ``pressed``: 1 or 2, the ball that friction presses into the cloth."""
     n, z = np.array(normal, float), np.array([0.0, 0.0, 1.0])
-    along, none = np.cross(n, z), np.zeros(6)
-    x, y = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
-
-    def both(d):
-        return np.concatenate([_row(d, n), -_row(d, -n)])
-
-    def cloth(d):
-        return np.concatenate([_row(d, -z), none] if pressed == 1 else [none, _row(d, -z)])
-
-    rows = np.array([both(along), both(z), cloth(x), cloth(y), cloth(z), -both(n)])
+    rows = _two_balls(np.cross(n, z), z, n, pressed)
     state = np.concatenate([np.array(q, float) for q in (v1, R * np.array(w1), v2, R * np.array(w2))])
     return _finish(rows, state, mu, mu_s, e, R, steps)
 
 
-def _finish(rows, state, mu, mu_s, e, R, steps):
-    D, effect = _rates(rows)
+def _two_balls(along, across, n, pressed):
+    """The rows of two balls, of which the bed holds the pressed one; along, across: the tangents of their contact."""
+    x, y, z = np.eye(3)
+    held = [np.concatenate([_row(d, -z), np.zeros(6)][:: 1 if pressed == 1 else -1]) for d in (x, y, z)]
+    both = [np.concatenate([_row(d, n), -_row(d, -n)]) for d in (along, across, -n)]
+    return np.array([*both[:2], *held, both[2]])
+
+
+def moreau_tilted(v1, w1, v2, w2, n, *, e, mu, mu_s, R, steps=20_000):
+    """A free ball (1) meets one on the bed (2); n: the unit vector between them, not upwards; ``mu``: as ``law`` of
+    ``_march``. The error of first order is taken out.
+
+    Returns v1, w1, v2, w2 and the impulse by which friction pressed ball 2 down. Ball 2's vertical velocity is its lift,
+    the bed's restitution not yet in it.
+    """
+    level = math.hypot(n[0], n[1])
+    across = np.array([n[1], -n[0], 0.0]) / level if level > 0.0 else np.array([1.0, 0.0, 0.0])
+    up = np.cross(across, n)
+    rows, state = _two_balls(across, up, n, 2), np.concatenate([v1, R * w1, v2, R * w2])
+    J = 2.0 * _impulses(rows, state, mu, mu_s, e, 2 * steps) - _impulses(rows, state, mu, mu_s, e, steps)
+    if not np.isfinite(J).all():
+        raise RuntimeError("the impact did not end")
+    out = state + _rates(rows)[1] @ J
+    # the bed held its height, or the ball has a lift
+    out[8] = max(0.0, out[8]) if out[8] > 1e-9 * abs(state).max() else 0.0
+    return out[0:3], out[3:6] / R, out[6:9], out[9:12] / R, float(J[1] * up[2])
+
+
+def _impulses(rows, state, law, mu_s, e, steps):
+    """The six impulses of an impact."""
+    D, _ = _rates(rows)
     u = rows @ state
-    u[5] = -u[5]
-    D[5] = -D[5]
-    closing = u[5]
-    if closing <= 0.0:
-        return state
-    J = _march(u / closing, D, mu, mu_s, e, 1.0 / steps, 200 * steps) * closing
-    after = state + effect @ J
+    u[5], D[5] = -u[5], -D[5]
+    if u[5] <= 0.0:
+        return np.zeros(6)
+    scaled = (law[0], law[1], law[2] * u[5])
+    return _march(u / u[5], D, scaled, mu_s, e, 1.0 / steps, 200 * steps) * u[5]
+
+
+def _finish(rows, state, mu, mu_s, e, R, steps):
+    after = state + _rates(rows)[1] @ _impulses(rows, state, (mu, 0.0, 0.0), mu_s, e, steps)
     out = after.reshape(-1, 2, 3) / np.array([1.0, R])[None, :, None]
     return tuple(part for ball in out for part in ball)

@@ -22,19 +22,6 @@ def rolling(v, share=1.0, side=0.0):
     return np.array([-share / R * v[1], share / R * v[0], side])
 
 
-def energy(*velocities_and_spins):
-    """Kinetic energy over M; ``v, w`` alternate."""
-    return sum(
-        (0.5 if k % 2 == 0 else 0.2 * R * R) * float(a @ a) for k, a in enumerate(velocities_and_spins)
-    )
-
-
 def in_speeds(state):
     """v and R w of a result, one array."""
     return np.concatenate([np.asarray(a) * (R if k % 2 else 1.0) for k, a in enumerate(state)])
-
-
-def turned(angle, *vectors):
-    c, s = math.cos(angle), math.sin(angle)
-    q = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return [q @ a for a in vectors]

@@ -26,9 +26,8 @@ Forces per unit of mass, on a sphere of radius R whose centre is at ``r`` (momen
   spin: it slows a rolling ball by ``mu_r g``. Where the slate touches the ball, the spin about its normal
   decays at ``spin_decel``.
 
-Left out is the leather: the back of the pocket keeps what reaches it. Below its nose the cushion recedes: by
-default so far that nothing but the nose can be touched (``undercut`` 1), else as a plane face whose normal
-points down by the angle of that sine.
+Left out is the leather: the back of the pocket keeps what reaches it. Below its nose the cushion recedes so
+far that nothing but the nose can be touched.
 
 Units are SI, spins in rad/s. Table frame: right-handed, z up, the slate's top at z = 0; the centre of a ball
 at rest is at z = R, less the 40 nm by which its weight presses it into the slate.
@@ -79,7 +78,6 @@ class Model(NamedTuple):
     mu_r: float = 0.0127
     spin_decel: float = 22.0  # [rad/s^2]
     edge: float = 5e-4  # [m]
-    undercut: float = 1.0  # sine of the downward angle of the normal of the cushion's face below the nose
 
 
 def stiff(speed: float, **fields) -> Model:
@@ -149,17 +147,6 @@ def _push(v, w, n, p, mu):
 
 
 @numba.njit
-def _touch(z, gap, undercut):
-    """Distance from the centre to the cushion whose nose is ``gap`` away, and the horizontal and vertical
-    share of its direction."""
-    rise, level = HEIGHT - z, math.sqrt(1.0 - undercut * undercut)
-    if rise * level > gap * undercut:
-        return gap * level + rise * undercut, level, undercut
-    d = math.sqrt(gap * gap + rise * rise)
-    return d, gap / d, rise / d
-
-
-@numba.njit
 def step(s, jaws, fall, m, dt):
     """Advance the state by dt, in place. s: r (3), v (3), w (3), then for each jaw the largest compression
     and the restitution."""
@@ -173,7 +160,9 @@ def step(s, jaws, fall, m, dt):
         if gap >= R:
             s[9 + 2 * j] = 0.0
             continue
-        d, level, rise = _touch(s[2], gap, m.undercut)
+        rise = HEIGHT - s[2]
+        d = math.sqrt(gap * gap + rise * rise)
+        level, rise = gap / d, rise / d
         x = R - d
         if x <= 0.0:
             s[9 + 2 * j] = 0.0
@@ -205,32 +194,13 @@ def step(s, jaws, fall, m, dt):
 
 
 @numba.njit
-def energy(s, jaws, fall, m):
-    """Kinetic, potential and elastic energy per unit of mass [J/kg], over that of a ball's centre at the
-    slate's level."""
-    total = G * s[2]
-    for c in range(3):
-        total += 0.5 * s[3 + c] ** 2 + 0.2 * R * R * s[6 + c] ** 2
-    for j in range(jaws.shape[0]):
-        gap = _nose(s[0], s[1], jaws[j])[0]
-        x = R - _touch(s[2], gap, m.undercut)[0] if gap < R else 0.0
-        most, e2 = max(x, s[9 + 2 * j]), s[10 + 2 * j] ** 2
-        if x > 0.0:
-            stored = x * x if x == most else max(0.0, x - (1.0 - e2) * most) ** 2 / e2
-            total += 0.5 * (math.pi / m.nose_time) ** 2 * stored
-    x = max(0.0, R - _slate(s[0], s[1], s[2], fall, m.edge)[0])
-    return total + 0.5 * (math.pi / m.slate_time * x) ** 2
-
-
-@numba.njit
 def trace(s, jaws, fall, m, dt, n, every):
-    """n records, ``every`` steps apart, of the state and the energy; ``s`` is advanced in place."""
-    out = np.empty((n, s.size + 1))
+    """n records of the state, ``every`` steps apart; ``s`` is advanced in place."""
+    out = np.empty((n, s.size))
     for i in range(n):
         for _ in range(every):
             step(s, jaws, fall, m, dt)
-        out[i, :-1] = s
-        out[i, -1] = energy(s, jaws, fall, m)
+        out[i] = s
     return out
 
 

@@ -10,7 +10,6 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.execution import pot_shots
-from snooker_env.geometry import POCKET_AIMS
 from snooker_env.tasks.noise import LEVELS
 
 R, END_MASS_RATIO, MU_SLIDE, MU_ROLL, G = 0.02625, 30.0, 0.21, 0.0127, 9.81
@@ -69,39 +68,3 @@ def test_the_same_pots_by_strokes_typed_anew(name, level):
     made = (end.potted[:, 1] == 3) & (end.potted[:, 0] < 0)
     found = pot_shots.rolls(shot, level, N, 5, sn.Physics(), "match")
     assert close(made.mean(), found.rate, N), (made.mean(), found.rate)
-
-
-def window(ball, speed):
-    """Directions [rad] between which one ball, struck from there at that speed, falls into the top right
-    corner pocket."""
-    middle = math.atan2(*(POCKET_AIMS[3, :2] - ball)[::-1])
-    fan = middle + np.linspace(-0.06, 0.06, 2401)
-    velocities = speed * np.column_stack([np.cos(fan), np.sin(fan)])
-    end = sn.simulate_batch(np.tile(ball, (len(fan), 1, 1)), velocities[:, None], np.zeros((len(fan), 1, 3)))
-    falls = np.flatnonzero(end.potted[:, 0] == 3)
-    runs = np.split(falls, np.flatnonzero(np.diff(falls) > 1) + 1)
-    longest = max(runs, key=len)
-    return fan[longest[0]], fan[longest[-1]]
-
-
-@pytest.mark.parametrize(("name", "level"), CASES)
-def test_the_same_pots_by_two_circles(name, level):
-    """No shot is played: the direction of the cue ball errs, the line of centres at contact is the object
-    ball's path, and the window is that of a ball alone. Left out: what a stroke's spin and speed do to the
-    throw and to the window, less than 4 % of the pots."""
-    shot = pot_shots.aimed(POTS[name], sn.Physics(), "match")
-    cue, ball = shot.pot.positions
-    path = math.dist(cue, ball) - 2 * R
-    arrives = math.sqrt((5 / 7 * shot.stroke[0]) ** 2 - 2 * MU_ROLL * G * path)
-    low, high = window(ball, 0.5 * (1 + 0.89) * arrives * math.cos(math.radians(shot.pot.cut)))
-    middle = 0.5 * (low + high)
-    ghost = ball - 2 * R * np.array([math.cos(middle), math.sin(middle)])
-    _, aim, side, _, _ = errors(level, shot.stroke[0], 200_000, 12)
-    way = math.atan2(*(ghost - cue)[::-1]) + aim + squirt(side)
-    to = ball - cue
-    along, across = to[0] * np.cos(way) + to[1] * np.sin(way), to[1] * np.cos(way) - to[0] * np.sin(way)
-    hits = np.abs(across) < 2 * R
-    line = way + np.arctan2(across, np.sqrt(np.maximum(4 * R * R - across**2, 0.0)))
-    made = hits & (along > 0) & (low <= line) & (line <= high)
-    found = pot_shots.rolls(shot, level, N, 5, sn.Physics(), "match")
-    assert close(made.mean(), found.rate, N, 0.04), (made.mean(), found.rate)

@@ -1,7 +1,7 @@
 """Is the three-dimensional oracle of a pocket right, and does the engine pot what it pots?
 
-The oracle against: its own energy, half the step, the rebound of a rigid nose (``collide_cushion``), and the
-two closed forms of a ball at a sharp edge. Then the engine's windows against the oracle's.
+The oracle against half the step and a fall over a sharp edge. Then the engine's windows
+against the oracle's.
 """
 
 from __future__ import annotations
@@ -11,22 +11,17 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 import snooker_env as sn
 
 from .motions import rolling
 from .pocket_3d import (
     BACK,
-    HEIGHT,
     POTTED,
-    PROUD,
     UNDECIDED,
     G,
-    Model,
     R,
     at_rest,
-    damping,
     default_step,
     fates,
     pocket,
@@ -51,44 +46,18 @@ def towards(index, angle, offsets, away=0.25):
 # The oracle
 
 
-@pytest.mark.parametrize("undercut", [1.0, 0.4])
-@pytest.mark.parametrize("index", [MIDDLE, CORNER])
-@pytest.mark.parametrize("speed", [1.0, 4.0])
-def test_energy_never_rises_and_half_the_step_gives_the_same_path(index, speed, undercut):
-    m = stiff(speed, undercut=undercut)
+@pytest.mark.parametrize(("index", "speed"), [(MIDDLE, 1.0), (CORNER, 4.0)])
+def test_half_the_step_gives_the_same_path(index, speed):
+    m = stiff(speed)
     jaws, fall, _ = pocket(MATCH, index)
     starts, d = towards(index, 0.5, [-0.02, 0.01, 0.03], away=0.12)
     for k, start in enumerate(starts):
-        v = np.array([*speed * d, 0.0])
-        ends = []
+        v, ends = np.array([*speed * d, 0.0]), []
         for dt in (default_step(m), 0.5 * default_step(m)):
             state = at_rest([start], [v[:2]], [rolling(v, (1.0, 0.0, -1.0)[k])], m, 2)[0]
-            path = trace(state, jaws, fall, m, dt, round(0.15 / speed / dt) // 5, 5)
-            total = path[:, -1]
-            rise = (total[1:] - np.minimum.accumulate(total[:-1])).max()
-            assert rise <= 1e-3 * total[0] and total[-1] < total[0] - 1e-3
+            trace(state, jaws, fall, m, dt, round(0.15 / speed / dt), 1)
             ends.append(state[:3])
         assert np.abs(ends[0] - ends[1]).max() <= 5e-4
-
-
-@pytest.mark.parametrize("share", [1.0, 0.0, -0.5])
-@pytest.mark.parametrize("angle", [0.0, 0.8, 1.2])
-def test_a_rail_throws_a_ball_back_as_a_rigid_one_does(angle, share):
-    """In the limit of a short contact on a far stiffer slate. What is left: the slate's give, of the order of
-    slate_time / nose_time."""
-    m = Model(nose_time=1e-5, slate_time=4e-7, slate_damping=damping(0.5, 4e-7), mu_r=0.0)
-    # an arc and its facing far below: here it is straight
-    rail = np.array([[10.0 + R, -50.0, 10.0 + PROUD, -1.0, 0.0, 0.0, -1.0]])
-    fall = np.array([-50.0, -50.0, 0.01])
-    for speed in (0.5, 4.0):
-        v = speed * np.array([math.cos(angle), math.sin(angle), 0.0])
-        w = rolling(v, share)
-        state = at_rest([[-1e-6, 0.0]], [v[:2]], [w], m, 1)[0]
-        while state[0] > -2e-6 or state[3] > 0.0:
-            trace(state, rail, fall, m, m.slate_time / 20.0, 1, 10)
-        want_v, want_w = sn.collide_cushion(v, w, [1.0, 0.0, 0.0], fidelity="reference")
-        assert np.abs(state[3:6] - want_v).max() <= 1e-3 * speed
-        assert np.abs(state[6:9] - want_w).max() * R <= 5e-3 * speed
 
 
 EDGE = np.array([1e3, 0.0, 1e3])  # a circle so large that its edge is straight: x = 0, the slate at x < 0
@@ -104,35 +73,6 @@ def over_the_edge(speed, m):
     return (np.arange(first, len(x)) - first) * dt + x[first] / speed, x[first:], z[first:]
 
 
-@pytest.mark.parametrize("speed", [0.1, 0.3])
-@pytest.mark.parametrize("mu", [0.21, 5.0])
-def test_a_slow_ball_turns_about_the_edge(speed, mu):
-    """theta'' = 5/7 g/L sin(theta), L = R + edge, as long as the friction 2/7 g sin(theta) is within mu (g
-    cos(theta) - L theta'^2)."""
-    m = stiff(1.0, slate_mu=mu, mu_r=0.0)
-    length = R + m.edge
-
-    def slips(_t, y):
-        return mu * (G * math.cos(y[0]) - length * y[1] ** 2) - 2.0 / 7.0 * G * math.sin(y[0])
-
-    slips.terminal = True
-    turn = solve_ivp(
-        lambda _t, y: [y[1], 5.0 / 7.0 * G / length * math.sin(y[0])],
-        (0, 1),
-        [0.0, speed / length],
-        events=slips,
-        rtol=1e-9,
-        atol=1e-12,
-        dense_output=True,
-    )
-    t, x, z = over_the_edge(speed, m)
-    held = t < turn.t[-1]
-    theta = turn.sol(t[held])[0]
-    assert theta[-1] > (0.3 if mu < 1.0 else 0.7)
-    assert np.abs(x[held] - length * np.sin(theta)).max() <= 1e-5
-    assert np.abs(z[held] - length * np.cos(theta) + m.edge).max() <= 1e-5
-
-
 @pytest.mark.parametrize("speed", [0.6, 1.0])
 def test_a_ball_faster_than_the_root_of_g_r_flies_from_the_edge(speed):
     assert speed > math.sqrt(G * R)
@@ -140,26 +80,6 @@ def test_a_ball_faster_than_the_root_of_g_r_flies_from_the_edge(speed):
     above = z > 0.0
     assert np.abs(x - speed * t)[above].max() <= 3e-5
     assert np.abs(z - R + 0.5 * G * t * t)[above].max() <= 3e-5
-
-
-@pytest.mark.parametrize(("e", "time"), [(0.05, 2e-4), (0.5, 2e-4), (0.9, 1e-3)])
-def test_the_slate_gives_back_the_restitution_asked_for(e, time):
-    m = stiff(1.0, slate_time=time, slate_damping=damping(e, time))
-    state = at_rest([[-1.0, 0.0]], [[0.0, 0.0]], [[0.0, 0.0, 0.0]], m, 0)[0]
-    state[2], state[5] = R, -5.0
-    fastest = trace(state, NO_JAWS, EDGE, m, time / 1000.0, 5000, 1)[:, 5].max()
-    assert abs(fastest / 5.0 - e) <= 2e-3
-
-
-@pytest.mark.parametrize("e", [0.5, 0.98])
-def test_the_nose_gives_back_the_restitution_asked_for(e):
-    """At the height of the centre, without friction: a head-on impact."""
-    m = stiff(3.0, nose_e=e, nose_mu=0.0, slate_mu=0.0)
-    rail = np.array([[10.0, -50.0, 10.0, -1.0, 0.0, 0.0, -1.0]])
-    state = at_rest([[-R, 0.0]], [[3.0, 0.0]], [[0.0, 0.0, 0.0]], m, 1)[0]
-    state[2] = HEIGHT
-    trace(state, rail, np.array([-50.0, 0.0, 100.0]), m, 1e-6, 1, 1000)
-    assert abs(state[3] / -3.0 - e) <= 2e-3
 
 
 # The engine
@@ -233,20 +153,16 @@ some that have struck a jaw bounce out of the hole off the slate's edge (the eng
 at most 4 mm elsewhere."""
 
 
-@pytest.mark.parametrize("rolls", [True, False], ids=["rolling", "sliding"])
 @pytest.mark.parametrize(("index", "angle"), PATHS)
-def test_the_engines_windows_are_those_of_the_oracle(index, angle, rolls):
-    speeds = SPEEDS if rolls else (2.0, 6.0)
+def test_the_engines_windows_are_those_of_the_oracle(index, angle):
+    """Of rolling balls, and of one that slides; a window that is much wider at one speed is wider in both."""
+    balls = [(2.0, False), *((speed, True) for speed in SPEEDS)]
     oracle, engine = (
-        np.array([window(fate, index, angle, s, rolls) for s in speeds]) for fate in (by_oracle, by_engine)
+        np.array([window(fate, index, angle, *ball) for ball in balls]) for fate in (by_oracle, by_engine)
     )
     np.testing.assert_allclose(engine, oracle, rtol=0, atol=TOLERANCE)
-    for a in range(len(speeds)):
-        for b in range(a):
-            if abs(oracle[a] - oracle[b]) > TOLERANCE:
-                assert (engine[a] - engine[b]) * (oracle[a] - oracle[b]) > 0.0, (
-                    f"{speeds[b]} to {speeds[a]} m/s"
-                )
+    wider = oracle[1:, None] - oracle[1:] > TOLERANCE
+    assert (engine[1:, None] - engine[1:])[wider].min(initial=1.0) > 0.0
 
 
 def test_a_middle_pocket_s_window_hangs_on_what_stands_behind_its_jaws():

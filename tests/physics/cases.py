@@ -37,18 +37,8 @@ def impacts(n, seed):
             continue
         e = (0.0, 1.0, 0.89, rng.random())[k % 4]
         mu_bb = (0.05, rng.uniform(0, 0.3), 0.3, 0.0, rng.uniform(0, 0.3))[(k // 4) % 5]
-        out.append(
-            {
-                "v1": v1,
-                "w1": w1,
-                "v2": v2,
-                "w2": w2,
-                "normal": normal,
-                "e": e,
-                "mu_bb": mu_bb,
-                "mu_s": rng.uniform(0.1, 0.4),
-            }
-        )
+        case = {"v1": v1, "w1": w1, "v2": v2, "w2": w2, "normal": normal}
+        out.append(case | {"e": e, "mu_bb": mu_bb, "mu_s": rng.uniform(0.1, 0.4)})
     return out
 
 
@@ -66,14 +56,6 @@ def cushion_impacts(n, seed):
         w = rng.normal(size=3) * speed / R * rng.choice([0.0, 0.3, 1.0])
         if k % 2:
             w[:2] = -v[1] / R, v[0] / R
-        out.append(
-            {
-                "v": v,
-                "w": w,
-                "normal": normal,
-                "e": rng.uniform(0.5, 1.0),
-                "mu_w": rng.uniform(0, 0.3),
-                "mu_s": rng.uniform(0, 0.4),
-            }
-        )
+        frictions = {"e": rng.uniform(0.5, 1.0), "mu_w": rng.uniform(0, 0.3), "mu_s": rng.uniform(0, 0.4)}
+        out.append({"v": v, "w": w, "normal": normal} | frictions)
     return out

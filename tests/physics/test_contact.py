@@ -7,8 +7,7 @@ import pytest
 import snooker_env as sn
 from benchmarks import fuzz
 from benchmarks._common import invariants
-from snooker_env import Pocket, Table, simulation
-from snooker_env.physics.detection import HELD
+from snooker_env import Table, simulation
 from snooker_env.physics.engine import Status
 from snooker_env.physics.impact import contact
 
@@ -60,9 +59,9 @@ def test_a_ball_in_contact_is_handed_from_one_piece_of_the_cushion_to_the_next(c
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9", "carom", "rectangle"])
 def test_balls_held_at_the_boundary_keep_every_law(name):
-    """At noses, arcs, facings and their seams, at rest or slow, with any spin: 10 batches of the fuzz's
-    scene, 2,000 shots a table."""
-    for k in range(10):
+    """At noses, arcs, facings and their seams, at rest or slow, with any spin: four batches of the fuzz's scene, 800 shots
+    a table."""
+    for k in range(4):
         rng = np.random.default_rng([77, k])
         table = fuzz.rectangle(rng) if name == "rectangle" else Table.preset(name)
         physics = sn.Physics.preset("match", **{"R": 0.02625} | table.ball)
@@ -73,19 +72,6 @@ def test_balls_held_at_the_boundary_keep_every_law(name):
         )
         assert (found.status == Status.OK).all()
         assert (found.worst <= fuzz.allowed("standard")).all()
-
-
-@pytest.mark.parametrize("way", [-1.0, 1.0])
-@pytest.mark.parametrize("off", [0.0, 1e-17, 1e-12, 1e-9])
-def test_there_is_no_crack_where_a_nose_meets_its_arc(way, off):
-    """Straight at the seam, from either side of it by less than rounding and more."""
-    table = Table.preset("match")
-    for _, side, _, low, high in table.noses[:4]:
-        for y in (low, high):
-            start = [(side * 0.8, y + way * off)]
-            shot = sn.simulate(start, [(side * 2.0, 0.0)], [(0.0, side * 2.0 / 0.02625, 0.0)])
-            x = shot.at(np.linspace(0, shot.duration, 200))[0][:, 0, 0]
-            assert np.abs(x).max() < 0.889 - 0.02625 + 1e-9
 
 
 OPEN = Table(
@@ -122,23 +108,3 @@ def test_wherever_a_ball_has_gone_astray_the_next_event_finds_it(name, place):
     state = [np.array([a]) for a in ([place], [(1e-3, 1e-3)], [(0.0, 0.0, 0.0)], [True])]
     out = simulation._run(state, physics, table, contact.parse_fidelity("standard"), 1000)
     assert out.status.tolist() == [Status.ASTRAY]
-
-
-def test_a_place_in_a_mouth_is_not_in_the_facing_of_another_pocket():
-    """Far behind a middle pocket's facing lies a corner pocket's mouth: a ball there was once said to be deep
-    in that facing."""
-    table = Table.rectangular(
-        2.0,
-        1.0,
-        corner=Pocket.corner(mouth=0.15, shelf=0.05, fall_radius=0.07, jaw_radius=0.03),
-        middle=Pocket.middle(mouth=0.15, shelf=0.05, fall_radius=0.08),
-    )
-    R, found = 0.02625, 0
-    rng = np.random.default_rng(0)
-    for place in rng.uniform((0.5 - R, 0.85), (0.53, 1.0), (600, 2)):
-        clear = np.hypot(*(table.falls[:, :2] - place).T) > table.falls[:, 2] + 1e-3
-        if clear.all() and depth(table, place, R) < -1e-4 and place[0] - 0.5 < 0.011:
-            found += place[0] > 0.5
-            table.check([place], R)
-    assert found > 5
-    assert HELD > 1e-6  # what a layout may overlap by is no error

@@ -10,7 +10,6 @@ from snooker_env.physics.cue import MAX_ELEVATION
 from snooker_env.physics.cue_room import (
     FREE,
     MOVED,
-    NO_RAILS,
     OVER_NOTHING,
     OVER_RAIL,
     RAISED,
@@ -74,17 +73,6 @@ def test_over_a_ball_as_spheres():
     assert worst < 1e-5 and steep > 5
 
 
-def test_rails_are_those_of_the_noses_and_begin_later_behind_pockets():
-    rows = RAILS.reshape(-1, cue_room.EDGE)
-    assert sorted(map(tuple, rows[:, :5])) == sorted(map(tuple, TABLE.noses))
-    assert len({tuple(row[:2]) for row in rows}) == 4
-    assert (np.diff([(4 * row[0] + row[1]) for row in rows]) >= 0.0).all()  # those of one side stand together
-    assert (rows[:, 5] > 0.05).all() and (rows[:, 5] < 0.2).all()
-    x = 0.889 - R
-    beside, through = least((0, 0), np.pi, [(x, 0.9)]), least((0, 0), np.pi, [(x, 0.0)])
-    assert through < 0.5 * beside  # from the middle of the pocket's mouth the cue lies lower
-
-
 def test_a_frozen_ball_needs_what_players_say_and_one_in_the_open_nothing():
     x = 0.889 - R
     centre, screw, follow = (np.degrees(least((0.0, top), np.pi, [(x, 0.9)])) for top in (0.0, -0.4, 0.5))
@@ -92,29 +80,6 @@ def test_a_frozen_ball_needs_what_players_say_and_one_in_the_open_nothing():
     assert least((0.0, 0.0), np.pi, [(x - 1.48, 0.9)]) == 0.0  # all of the cue lies over the bed
     assert least((0.0, 0.0), 0.0, [(x, 0.9)]) < 0.05  # away from the table: the other rail is 1.7 m behind
     assert least((0.0, 0.0), 0.0, [(x, 0.9)], elevation=0.4) == 0.4
-
-
-@pytest.mark.parametrize("axis", [0, 1])
-def test_mirrored_tables_need_the_same(axis):
-    rng = np.random.default_rng(2 + axis)
-    for _ in range(300):
-        positions = rng.uniform((-0.86, -1.75), (0.86, 1.75), (6, 2))
-        (side, top), aim = tip_of(rng), rng.uniform(-np.pi, np.pi)
-        mirrored = positions * (np.array([-1, 1]) if axis == 0 else np.array([1, -1]))
-        turned = np.pi - aim if axis == 0 else -aim
-        one, other = least((side, top), aim, positions), least((-side, top), turned, mirrored)
-        assert one == pytest.approx(other, abs=1e-9)
-
-
-def test_it_goes_on_without_a_jump_and_rises_towards_the_rail():
-    places = np.linspace(0.889 - R - 0.7, 0.889 - R, 4000)
-    for tip in ((0.0, 0.0), (0.3, -0.3), (-0.2, 0.4)):
-        for aim in (np.pi, 2.6, -2.4):
-            found = np.array([least(tip, aim, [(x, 0.9)]) for x in places])
-            assert (np.diff(found) > -1e-9).all() and np.diff(found).max() < 0.01
-    heights = np.linspace(-0.45, 0.45, 500)
-    found = np.array([least((0.1, top), np.pi, [(0.85, 0.9)]) for top in heights])
-    assert (np.diff(found) <= 1e-9).all() and found[0] > found[-1] + 0.3
 
 
 def test_what_is_done_to_a_stroke_is_what_is_said():
@@ -144,16 +109,6 @@ def test_what_is_done_to_a_stroke_is_what_is_said():
             assert elevation <= STEEPEST + 1e-9 and top > stroke[2]
         seen[done] += 1
     assert np.mean(fits) > 0.95 and seen[FREE] > 100 and seen[RAISED] > 100 and seen[RAISED | MOVED] > 100
-
-
-def test_a_ball_that_nobody_can_play_is_played_with_a_cue_that_nearly_stands():
-    behind = [(-0.0527, 0.0), (-0.04, -0.0345), (-0.04, 0.0345), (-0.0925, -0.02), (-0.0925, 0.02)]
-    played, done = in_room((2.0, 0.0, 0.5, 0.0, 0.0), [(0.0, 0.0), *behind, (-0.13, 0.0)])
-    assert played[4] <= MAX_ELEVATION
-    assert in_room((2.0, 0.0, -0.4, 0.0, 0.0), [(0.0, 0.0), *behind])[1] & MOVED
-    free = (2.0, 0.1, -0.4, 0.3, 0.0)
-    assert in_room(free, [(0.0, 0.0), *behind], np.array(NO_RAILS)) == (free, FREE)
-    assert done & RAISED
 
 
 def test_what_the_cue_passes_over_is_what_lets_it_down_when_it_is_gone():

@@ -60,10 +60,6 @@ def test_euler_10000_gives_the_printed_tables(row):
     got = predicted(row, "euler:10000")
     assert np.round(got[:2], 3).tolist() == [row.v_c, row.v_o]
     assert np.round(got[2:], 2).tolist() == [row.angle_c, row.angle_o]
-
-
-@pytest.mark.parametrize("row", PAPER_ROWS, ids=lambda row: f"V0={row.v0}")
-def test_reference_is_close_to_the_printed_tables(row):
     got = predicted(row, "reference")
     assert np.abs(got[:2] - [row.v_c, row.v_o]).max() < 0.001
     assert np.abs(got[2:] - [row.angle_c, row.angle_o]).max() < 0.02
@@ -93,22 +89,14 @@ def truth_of(case, mu_bb):
     )
 
 
-@pytest.fixture(scope="module")
-def judged():
-    """120 impacts with what the oracle says of each."""
-    cases = impacts(120, seed=7)
-    return cases, [truth_of(c, c["mu_bb"]) for c in cases]
-
-
-def test_reference_agrees_with_the_oracle(judged):
-    errors = [worst(play(c, "reference"), truth, speed_of(c)) for c, truth in zip(*judged, strict=True)]
-    assert max(errors) < 1e-9
-
-
-def test_standard_keeps_its_promise_against_the_oracle(judged):
-    errors = [worst(play(c, "standard"), truth, speed_of(c)) for c, truth in zip(*judged, strict=True)]
-    assert np.quantile(errors, 0.99) < 1e-6
-    assert max(errors) < 1e-5
+def test_two_balls_part_as_the_oracle_says():
+    cases = impacts(40, seed=7)
+    truths = [truth_of(c, c["mu_bb"]) for c in cases]
+    for fidelity, most in (("reference", 1e-9), ("standard", 1e-5)):
+        errors = [
+            worst(play(c, fidelity), truth, speed_of(c)) for c, truth in zip(cases, truths, strict=True)
+        ]
+        assert max(errors) < most
 
 
 @pytest.mark.parametrize("preset", ["paper", "match"])
@@ -124,7 +112,7 @@ def test_standard_keeps_its_promise_on_many_impacts(preset):
     assert max(errors) < 1e-5
 
 
-@pytest.mark.parametrize("preset", ["paper", "match", None])
+@pytest.mark.parametrize("preset", ["paper", "match", pytest.param(None, marks=pytest.mark.slow)])
 def test_standard_keeps_its_promise_at_cushions(preset):
     """Against ``reference``: with the constants of play, and (None) with any, for which docs/physics/model.md
     promises less; each of these makes its tables."""
@@ -144,7 +132,7 @@ def test_standard_keeps_its_promise_at_cushions(preset):
 
 def test_marlow_law_agrees_with_the_oracle():
     a, b, c_ = 9.951e-3, 0.108, 1.088
-    for c in impacts(40, seed=5):
+    for c in impacts(20, seed=5):
         physics = sn.Physics(e_b=c["e"], mu_bb="marlow", mu_s=c["mu_s"])
         law = lambda s: a + b * np.exp(-c_ * s)  # noqa: E731
         assert worst(play(c, "reference", physics), truth_of(c, law), speed_of(c)) < 1e-9
@@ -152,19 +140,14 @@ def test_marlow_law_agrees_with_the_oracle():
 
 def test_cushion_agrees_with_the_oracle():
     errors = {"reference": [], "standard": []}
-    for c in cushion_impacts(40, seed=7):
+    for c in cushion_impacts(20, seed=7):
         physics = sn.Physics(e_c=c["e"], mu_c=c["mu_w"], mu_s=c["mu_s"])
         truth = ball_cushion(
             c["v"], c["w"], c["normal"], R=R, M=M, e=c["e"], mu_w=c["mu_w"], mu_s=c["mu_s"], sin_theta=0.4
         )
         for fidelity, found in errors.items():
-            found.append(
-                worst(
-                    sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity),
-                    truth,
-                    np.linalg.norm(c["v"]),
-                )
-            )
+            out = sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity)
+            found.append(worst(out, truth, np.linalg.norm(c["v"])))
     assert max(errors["reference"]) < 1e-9
     assert max(errors["standard"]) < 1e-5
 
@@ -205,20 +188,6 @@ def test_rolling_ball_straight_into_a_cushion(mu_s, ratio, speed, fidelity):
     assert v[0] == 0.0
 
 
-def test_a_slip_at_the_nose_that_all_but_dies():
-    """Friction and drive nearly balance while the slip is 2e-8 of the speed, then it grows again: this impact
-    once did not end."""
-    v, w = (
-        (1.0759713279651137, -1.4959097348741595, 0),
-        (-22.56663782046656, 27.344353647657716, 30.45180306810722),
-    )
-    normal = (0.9481813328601938, -0.3177296964645681, 0)
-    reference, standard = (
-        sn.collide_cushion(v, w, normal, "paper", fidelity) for fidelity in ("reference", "standard")
-    )
-    assert worst(standard, reference, np.linalg.norm(v)) < 1e-5
-
-
 def test_match_cushion_follows_the_measured_rebounds():
     """Fig. 7a of Mathavan 2010: 0.89 to 0.95 below 2 m/s, 0.80 at 3.4 m/s."""
     ratio = [
@@ -229,107 +198,8 @@ def test_match_cushion_follows_the_measured_rebounds():
     assert ratio[2] == pytest.approx(0.80, abs=0.02)
 
 
-# closed forms
+# ends
 # ------------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("fidelity", ["fast", "standard", "reference"])
-@pytest.mark.parametrize("cut", [5, 30, 60, 85])
-@pytest.mark.parametrize("e", [0.3, 0.89, 1.0])
-def test_frictionless_stun(fidelity, cut, e):
-    """tan(angle of the cue ball from the line of centres) = 2 tan(cut) / (1 - e): the 90 degree rule at e =
-    1."""
-    c = np.radians(cut)
-    v1, _, v2, _ = sn.collide_balls(
-        (0, 2, 0),
-        (0, 0, 0),
-        (0, 0, 0),
-        (0, 0, 0),
-        (np.sin(c), np.cos(c), 0),
-        {"mu_bb": 0, "e_b": e},
-        fidelity,
-    )
-    along, across = v1 @ (np.sin(c), np.cos(c), 0), v1 @ (np.cos(c), -np.sin(c), 0)
-    assert along == pytest.approx((1 - e) / 2 * 2 * np.cos(c), abs=1e-6)
-    assert abs(across) == pytest.approx(2 * np.sin(c), abs=1e-9)
-    assert np.linalg.norm(v2) == pytest.approx((1 + e) / 2 * 2 * np.cos(c), abs=1e-6)
-
-
-@pytest.mark.parametrize("fidelity", FIDELITIES)
-def test_gearing_side_throws_nothing(fidelity):
-    """R w_z = v sin(cut), no other spin: the surfaces do not slip, and the object ball leaves along the line
-    of centres."""
-    c = np.radians(35)
-    normal = (np.cos(c), np.sin(c), 0)
-    _, _, v2, w2 = sn.collide_balls(
-        (1.5, 0, 0), (0, 0, 1.5 * np.sin(c) / R), (0, 0, 0), (0, 0, 0), normal, "paper", fidelity
-    )
-    assert np.degrees(np.arctan2(v2[1], v2[0])) == pytest.approx(
-        35, abs=0.02 if fidelity.startswith("euler") else 1e-6
-    )
-    # Euler chatters about zero slip by one step
-    assert np.abs(w2).max() * R < (2e-3 if fidelity.startswith("euler") else 1e-6)
-
-
-@pytest.mark.parametrize("side", [-1, 1])
-def test_draw_follow_and_side_throw_the_right_way(side):
-    """A draw shot lifts the cue ball's front: the object ball gets top spin, a follow shot gives it back
-    spin; right side (anticlockwise) drives the object ball's contact point to the right and spins it
-    clockwise."""
-    v2, w2 = sn.collide_balls((2, 0, 0), (0, side * 2 / R, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))[2:]
-    assert np.sign(w2[1]) == -side
-    assert abs(v2[1]) < 1e-12
-    v2, w2 = sn.collide_balls((2, 0, 0), (0, 0, side * 1 / R), (0, 0, 0), (0, 0, 0), (1, 0, 0))[2:]
-    assert np.sign(w2[2]) == -side
-    assert np.sign(v2[1]) == side
-
-
-# invariants
-# ------------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("fidelity", FIDELITIES)
-def test_invariants(fidelity):
-    """Momentum along the normal (less the cloth's share), energy never up, the balls part, definition of e
-    without friction."""
-    slack = 0.02 if fidelity.startswith("euler") else 1e-6  # its end is not located: one step in 400 and more
-    for c in impacts(90, seed=23):
-        v1, w1, v2, w2 = play(c, fidelity)
-        speed = speed_of(c)
-        assert np.isfinite([v1, w1, v2, w2]).all()
-        assert (v2 - v1) @ c["normal"] > -slack * speed
-        before = energy(c["v1"], c["w1"]) + energy(c["v2"], c["w2"])
-        assert energy(v1, w1) + energy(v2, w2) <= before * (1 + slack)
-        # only the cloth takes momentum, at most mu_s mu_bb of the impulse
-        push = np.linalg.norm((v1 + v2 - c["v1"] - c["v2"])[:2])
-        impulse = np.linalg.norm(v2 - c["v2"])
-        assert push <= c["mu_s"] * c["mu_bb"] * impulse * 1.2 + 1e-12
-        assert fidelity != "fast" or push < 1e-12 * speed
-
-
-@pytest.mark.parametrize("fidelity", FIDELITIES)
-def test_everything_may_be_turned_mirrored_or_renamed(fidelity):
-    def turn(a, x):
-        return np.array([np.cos(a) * x[0] - np.sin(a) * x[1], np.sin(a) * x[0] + np.cos(a) * x[1], x[2]])
-
-    tol = 0.02 if fidelity.startswith("euler") else 1e-6  # rounding may move its last step
-    for c in impacts(30, seed=29):
-        got, speed = play(c, fidelity), speed_of(c)
-        turned = {k: turn(0.7, x) if np.ndim(x) else x for k, x in c.items()}
-        assert worst(play(turned, fidelity), [turn(0.7, x) for x in got], speed) < tol
-        flip_v, flip_w = np.array([-1, 1, 1]), np.array([1, -1, -1])  # mirror x -> -x: spins are axial
-        flips = {"v1": flip_v, "v2": flip_v, "normal": flip_v, "w1": flip_w, "w2": flip_w}
-        mirrored = {k: x * flips[k] if k in flips else x for k, x in c.items()}
-        assert (
-            worst(
-                play(mirrored, fidelity),
-                [x * f for x, f in zip(got, (flip_v, flip_w, flip_v, flip_w), strict=True)],
-                speed,
-            )
-            < tol
-        )
-        renamed = c | {"v1": c["v2"], "w1": c["w2"], "v2": c["v1"], "w2": c["w1"], "normal": -c["normal"]}
-        assert worst(play(renamed, fidelity), [got[k] for k in (2, 3, 0, 1)], speed) < tol
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
@@ -345,36 +215,24 @@ def test_no_closing_speed_changes_nothing(fidelity, closing):
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
-@pytest.mark.parametrize("closing", [1e-300, 1e-30, 1e-13, 1e-9, 1e-4, 50.0])
-@pytest.mark.parametrize("preset", ["paper", "match"])
-def test_any_closing_speed_ends(fidelity, closing, preset):
-    out = sn.collide_balls((closing, 1.0, 0), (0, 0, 30), (0, 0, 0), (0, 0, 0), (1, 0, 0), preset, fidelity)
-    assert np.isfinite(out).all()
-    out = sn.collide_cushion((closing, 1.0, 0), (0, 0, 30), (1, 0, 0), preset, fidelity)
-    assert np.isfinite(out).all()
+def test_any_closing_speed_ends(fidelity):
+    for closing in (1e-300, 1e-30, 1e-13, 1e-9, 1e-4, 50.0):
+        for preset in ("paper", "match"):
+            v, w, n, z = (closing, 1.0, 0), (0, 0, 30), (1, 0, 0), (0, 0, 0)
+            assert np.isfinite(sn.collide_balls(v, w, z, z, n, preset, fidelity)).all()
+            assert np.isfinite(sn.collide_cushion(v, w, n, preset, fidelity)).all()
 
 
-@pytest.mark.parametrize("mu_bb", [0.0, 1.0])
-@pytest.mark.parametrize("mu_s", [0.0, 0.9])
-@pytest.mark.parametrize("e", [0.0, 1.0])
-def test_extreme_constants_end(mu_bb, mu_s, e):
-    for c in impacts(60, seed=31):
+def test_extreme_constants_end():
+    for low, c, at_nose in zip(range(60), impacts(60, seed=31), cushion_impacts(60, seed=37), strict=True):
+        physics = sn.Physics(mu_bb=low % 2, mu_s=0.9 * (low // 2 % 2), e_b=low // 4 % 2, mu_c=0.5 * (low % 3))
         for fidelity in ("standard", "reference"):
-            v1, w1, v2, w2 = play(c, fidelity, sn.Physics(mu_bb=mu_bb, mu_s=mu_s, e_b=e))
-            assert np.isfinite([v1, w1, v2, w2]).all()
-            assert energy(v1, w1) + energy(v2, w2) <= (
-                energy(c["v1"], c["w1"]) + energy(c["v2"], c["w2"])
-            ) * (1 + 1e-6)
-
-
-@pytest.mark.parametrize("mu_c", [0.0, 0.5, 1.0])
-@pytest.mark.parametrize("mu_s", [0.0, 0.21, 0.5])
-def test_extreme_cushions_end(mu_c, mu_s):
-    for c in cushion_impacts(60, seed=37):
-        for fidelity in ("fast", "standard", "reference"):
-            v, w = sn.collide_cushion(c["v"], c["w"], c["normal"], {"mu_c": mu_c, "mu_s": mu_s}, fidelity)
-            assert v @ c["normal"] < 0
-            assert energy(v, w) <= energy(c["v"], c["w"]) * (1 + (0.2 if fidelity == "fast" else 1e-6))
+            v1, w1, v2, w2 = play(c, fidelity, physics)
+            had = energy(c["v1"], c["w1"]) + energy(c["v2"], c["w2"])
+            assert energy(v1, w1) + energy(v2, w2) <= had * (1 + 1e-6)
+            v, w = sn.collide_cushion(at_nose["v"], at_nose["w"], at_nose["normal"], physics, fidelity)
+            assert v @ at_nose["normal"] < 1e-3
+            assert energy(v, w) <= energy(at_nose["v"], at_nose["w"]) * (1 + 1e-6)
 
 
 @pytest.mark.parametrize("fidelity", ["fast", "standard", "reference"])
@@ -412,14 +270,3 @@ def test_without_restitution_the_balls_close_no_more():
         v, w = (speed * np.sin(cut), speed * np.cos(cut), 0.0), rng.normal(0.0, size, 3)
         v1, _, v2, _ = sn.collide_balls(v, w, (0, 0, 0), (0, 0, 0), normal=(0, 1.0, 0), physics=physics)
         assert abs(v1[1] - v2[1]) < 1e-11 * v[1]
-
-
-def test_a_very_thin_impact_of_a_ball_that_all_but_rolls_is_solved():
-    """Its slip is 30,000 times the closing speed: high terms of a series in it overflow."""
-    args = (
-        (0.08358090371814696, 0.37146166544987175, 0),
-        (-14.150920588566544, 3.1840344273579793, 71.65426314348102),
-    )
-    normal = (0.9756088862876504, -0.2195160609080128, 0)
-    one, two = (np.array(sn.collide_cushion(*args, normal, "paper", f)) for f in ("standard", "reference"))
-    assert np.isfinite(two).all() and one == pytest.approx(two, abs=1e-6)

@@ -16,7 +16,7 @@ from tests.kernels import from_python
 R, g = 0.02625, 9.81
 D = 2 * R
 FIDELITIES = ("fast", "standard", "reference")
-many = settings(max_examples=500, deadline=None, derandomize=True, database=None)
+many = settings(max_examples=250, deadline=None, derandomize=True, database=None)
 some = settings(max_examples=100, deadline=None, derandomize=True, database=None)
 
 part = st.floats(-1, 1).map(lambda x: 0.0 if abs(x) < 1e-6 else x)
@@ -158,17 +158,6 @@ def test_an_impact_scales_with_its_speed(case, physics, fidelity, k):
 
 
 @many
-@given(ball_impacts(), st.floats(0, 0.5), st.floats(0, 1), angles, st.floats(0, 5))
-def test_of_free_balls_only_the_relative_motion_matters(case, mu, e, direction, speed):
-    """Seen from a moving train: "fast" has no cloth, so a common velocity changes nothing but itself."""
-    v = speed * horizontal(direction)
-    physics = {"mu_bb": mu, "e_b": e}
-    out = sn.collide_balls(*case, physics, "fast")
-    train = sn.collide_balls(case[0] + v, case[1], case[2] + v, *case[3:], physics, "fast")
-    assert far(train, (out[0] + v, out[1], out[2] + v, out[3])) <= 1e-11 * (size_of(case) + speed)
-
-
-@many
 @given(ball_impacts(), constants)
 def test_the_three_fidelities_agree_as_far_as_they_promise(case, physics):
     """standard and reference solve the same equations; fast leaves out the cloth, whose friction is at most
@@ -245,18 +234,6 @@ def test_cloth_friction_brakes_along_the_slip_and_turns_the_ball_about_its_conta
     if rolls < shot.duration:
         _, (v,), (w,) = shot.at(rolls + 0.5 * (shot.duration - rolls))
         assert v + R * np.array([-w[1], w[0]]) == pytest.approx([0, 0], abs=1e-13 * size)
-
-
-@many
-@given(lone_balls(), st.floats(0.01, 0.99))
-def test_a_ball_stopped_and_started_again_goes_on_as_before(ball, at):
-    """Time may be cut anywhere: the state at any time, played on, comes to rest in the same place at the same
-    time."""
-    whole = sn.simulate([(0, 0)], [ball[0]], [ball[1]], None)
-    t = at * whole.duration
-    rest = sn.simulate(*whole.at(t), None)
-    assert rest.positions == pytest.approx(whole.positions, abs=1e-10)
-    assert t + rest.duration == pytest.approx(whole.duration, abs=1e-10)
 
 
 # whole shots
@@ -421,59 +398,24 @@ def test_a_shot_stopped_and_started_again_goes_on_as_before(shot, at):
 # what the fuzz found
 # ------------------------------------------------------------------------------------------------------------
 
-UNSOLVED = (  # v, w, normal, mu_s, mu_c, sin_theta, e_c
-    (
-        (-0.0037727559465330724, 0.33474473152165324),
-        (15.946283824890289, -3.103489430192995, -4.040993500703731),
-        (0, 1),
-        0.7,
-        0.14,
-        0.4,
-        0.98,
-    ),
-    (
-        (-0.03150012916185054, 0.16182982301995855),
-        (-5.631742292193911, -0.9135289056240937, 9.235027324826552),
-        (0, 1),
-        0.3,
-        0.3,
-        0.6,
-        0.98,
-    ),
-    (
-        (0.1892598335095641, -0.022659902199318786),
-        (0.8632343694978586, 7.209898419411966, 4.553909051496761),
-        (0, -1),
-        0.37435603872240425,
-        0.0960303469577783,
-        0.5986740392033739,
-        0.45095779299471095,
-    ),
-    (
-        (0.6852182528384435, 0.3014285607836339),
-        (-11.482992791757482, 26.10355248908356, -45.77952915771147),
-        (1, 0),
-        0.371821773133134,
-        0.2176661633068515,
-        0.5294182367993291,
-        0.4692885555332693,
-    ),
-    (
-        (1.7571646438865136, -0.4642600144717246),
-        (17.686095789399033, 66.939605481391, 45.636404073107386),
-        (1, 0),
-        0.24694609284162072,
-        0.39121172612894456,
-        0.5299161939002829,
-        0.027594006678478555,
-    ),
-)
-"""Cushion impacts that "standard" or "reference" once did not end."""
+UNSOLVED = """
+-0.0037727559465330724 0.33474473152165324 15.946283824890289 -3.103489430192995 -4.040993500703731 0 1 0.7
+0.14 0.4 0.98
+-0.03150012916185054 0.16182982301995855 -5.631742292193911 -0.9135289056240937 9.235027324826552 0 1 0.3
+0.3 0.6 0.98
+0.1892598335095641 -0.022659902199318786 0.8632343694978586 7.209898419411966 4.553909051496761 0 -1
+0.37435603872240425 0.0960303469577783 0.5986740392033739 0.45095779299471095
+0.6852182528384435 0.3014285607836339 -11.482992791757482 26.10355248908356 -45.77952915771147 1 0
+0.371821773133134 0.2176661633068515 0.5294182367993291 0.4692885555332693
+1.7571646438865136 -0.4642600144717246 17.686095789399033 66.939605481391 45.636404073107386 1 0
+0.24694609284162072 0.39121172612894456 0.5299161939002829 0.027594006678478555
+"""
+"""Cushion impacts that "standard" or "reference" once did not end: v (2), w (3), normal (2), mu_s, mu_c, sin_theta, e_c."""
 
 
-@pytest.mark.parametrize("case", UNSOLVED)
-def test_cushion_impacts_that_once_did_not_end(case):
-    v, w, n, mu_s, mu_c, sin_theta, e_c = case
+@pytest.mark.parametrize("numbers", np.array(UNSOLVED.split(), float).reshape(-1, 11))
+def test_cushion_impacts_that_once_did_not_end(numbers):
+    v, w, n, (mu_s, mu_c, sin_theta, e_c) = numbers[:2], numbers[2:5], numbers[5:7], numbers[7:]
     physics = sn.Physics(mu_s=mu_s, mu_c=mu_c, sin_theta=sin_theta, e_c=e_c)
     standard, reference = (sn.collide_cushion((*v, 0), w, (*n, 0), physics, f) for f in FIDELITIES[1:])
     # (Moreau's steps agree with reference: where friction and drive almost balance, standard is less exact)

@@ -5,11 +5,10 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from benchmarks._common import invariants
 from snooker_env import EventKind
 from snooker_env.physics import pocket
 from snooker_env.physics.columns import P_E_J, P_MU_C
-from snooker_env.physics.impact import contact, free
+from snooker_env.physics.impact import free
 from tests.kernels import from_python
 
 R, G, SIN = 0.02625, 9.81, 0.4
@@ -70,53 +69,6 @@ def test_a_free_fall_ends_when_the_ball_is_below_the_noses():
     assert r + v == pytest.approx(
         (0.3 * time, 0.01 + 0.1 * time, 0.5 * G * time**2, 0.3, 0.1, G * time), abs=1e-12
     )
-
-
-def test_the_way_to_the_first_jaw_is_a_free_fall():
-    fly, physics, jaw = from_python(pocket.fly), sn.Physics(), np.array([[0.03, 0.0, 0.02, -1.0, 0.0, -1.0]])
-    end, k, flown, r, v = fly((-0.1, 0.0, 0.0), (3.0, 0.0, 0.0), (-0.1, 0.0), FALL, 0, jaw, physics.pack())
-    time = (0.13 - 0.02 - R) / 3.0
-    assert (end, k) == (pocket.JAW, 0)
-    assert (flown, *r, *v) == pytest.approx(
-        (time, 3.0 * time - 0.1, 0.0, 0.5 * G * time**2, 3.0, 0.0, G * time), abs=1e-12
-    )
-
-
-IN_THE_AIR = (
-    [(-0.5424572365214919, -0.1470004012755446), (0.5350227790240875, -0.19510341525335928)],
-    [(-1.307665153016971, 0.6983324381859458), (-5.4520706255184015, 0.8684297421029781)],
-    [
-        (104.83410450393391, -78.27540493207012, -30.73312740757775),
-        (-33.08303779439917, -207.6979285911772, 0.0),
-    ],
-)
-"""A fast ball meets a slow one over a middle pocket, which so comes back with more energy than it brought."""
-
-
-def test_what_a_ball_is_given_in_the_air_counts_as_no_gain():
-    physics = sn.Physics.preset("match", nap=-0.05)
-    shot = sn.simulate(*IN_THE_AIR, physics=physics)
-    kinds = shot.events["kind"].tolist()
-    assert kinds.index(EventKind.DROP) < kinds.index(EventKind.BALL_BALL) < kinds.index(EventKind.RETURN)
-    p, v, w = (np.array([a]) for a in IN_THE_AIR)
-    table, fidelity = sn.Table.preset("match"), contact.parse_fidelity("standard")
-    found = invariants.play((p, v, w, np.ones((1, 2), bool)), physics, table, fidelity)
-    assert found.worst[0, invariants.ENERGY] < 1e-12
-
-
-FROM_NOTHING = (
-    [(0.84710353135693, -0.10921281685196961), (0.8229077045477607, 0.0445875871039423)],
-    [(0.5194258654983255, 0.9285623682746166), (2.646667837326085, -0.9057727354293397)],
-    [(-35.37380450569968, 19.787652018983827, 0.0), (34.5056280163558, 100.8254414219461, 0.0)],
-)
-"""Two balls meet at the edge of a middle pocket: they once came to three times the energy of the shot."""
-
-
-def test_two_balls_at_an_edge_keep_the_energy_of_their_shot():
-    p, v, w = (np.array([a]) for a in FROM_NOTHING)
-    start, table = (p, v, w, np.ones((1, 2), bool)), sn.Table.preset("match")
-    found = invariants.play(start, sn.Physics(), table, contact.parse_fidelity("standard"))
-    assert found.worst[0, invariants.ALL] < 1e-12
 
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9"])

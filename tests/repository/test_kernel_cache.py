@@ -3,8 +3,6 @@
 import os
 import pickle
 import stat
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -88,33 +86,25 @@ def folders(tmp_path, monkeypatch):
     return {"home": folder.parents[1], "snooker_env": folder.parent, "hash": folder}
 
 
-@pytest.mark.parametrize(
-    ("which", "mode"),
-    [
-        ("home", 0o777),
-        ("home", 0o702),
-        ("snooker_env", 0o777),
-        ("snooker_env", 0o1777),
-        ("snooker_env", 0o720),
-        ("hash", 0o702),
-        ("hash", 0o770),
-    ],
-)
-def test_a_folder_that_others_can_write_to_is_not_used(folders, monkeypatch, which, mode):
-    folders[which].chmod(mode)
-    message = unsafe(monkeypatch, folders["home"], "others can write to")
-    assert f"others can write to {folders[which]} (mode {mode:04o}): no machine code is loaded" in message
+MODES = {"home": (0o777, 0o702), "snooker_env": (0o777, 0o1777, 0o720), "hash": (0o702, 0o770)}
+
+
+@pytest.mark.parametrize("which", MODES)
+def test_a_folder_that_others_can_write_to_is_not_used(folders, monkeypatch, which):
+    for mode in MODES[which]:
+        folders[which].chmod(mode)
+        message = unsafe(monkeypatch, folders["home"], "others can write to")
+        assert f"others can write to {folders[which]} (mode {mode:04o}): no machine code is loaded" in message
     folders[which].chmod(0o700)
     assert cache.cache_folder() == folders["hash"]
 
 
 @root_only
-@pytest.mark.parametrize("which", ["home", "snooker_env", "hash"])
-def test_a_folder_of_another_user_is_not_used(folders, monkeypatch, which):
-    os.chown(folders[which], 12345, -1)
-    assert f"{folders[which]} belongs to another user (uid 12345)" in unsafe(
-        monkeypatch, folders["home"], "belongs to"
-    )
+def test_a_folder_of_another_user_is_not_used(folders, monkeypatch):
+    for folder in reversed(folders.values()):
+        os.chown(folder, 12345, -1)
+        said = unsafe(monkeypatch, folders["home"], "belongs to")
+        assert f"{folder} belongs to another user (uid 12345)" in said
 
 
 def test_a_shared_home_is_good_and_without_owners_none_are_checked(folders, monkeypatch):
@@ -124,19 +114,6 @@ def test_a_shared_home_is_good_and_without_owners_none_are_checked(folders, monk
     folders["snooker_env"].chmod(0o777)
     monkeypatch.delattr(os, "geteuid")
     assert cache.cache_folder() == folders["hash"]
-
-
-def test_links_are_followed(folders, monkeypatch, tmp_path):
-    """What counts is where they lead."""
-    elsewhere = tmp_path / "elsewhere"
-    folders["hash"].rmdir(), folders["snooker_env"].rmdir()
-    elsewhere.mkdir(mode=0o700)
-    folders["snooker_env"].symlink_to(elsewhere)
-    assert cache.cache_folder() == folders["hash"] and (elsewhere / folders["hash"].name).is_dir()
-    elsewhere.chmod(0o777)
-    assert f"others can write to {folders['snooker_env']}" in unsafe(
-        monkeypatch, folders["home"], "others can write to"
-    )
 
 
 def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
@@ -162,18 +139,14 @@ class Planted:
         return Path.touch, (self.mark,)
 
 
-@pytest.mark.parametrize("which", [pytest.param("top", marks=pytest.mark.slow), "inner"])
-def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
+def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path):
     """Where the folders are the user's own it would be: so this test can fail."""
     assert toy() == (FRESH, "")
     mark, (index, *_) = tmp_path / "mark", files(toy, "*.nbi")
     planted = pickle.dumps("another version") + pickle.dumps(0)
-    folder = toy.folder if which == "top" else index.parent
 
-    def plant():
-        index.write_bytes(seal(pickle.dumps(Planted(mark)) + planted, name_of(toy, index)))
-
-    plant()
+    folder = index.parent
+    index.write_bytes(seal(pickle.dumps(Planted(mark)) + planted, name_of(toy, index)))
     folder.chmod(0o777)
     out, err = toy()
     assert out == FRESH and not mark.exists()
@@ -188,35 +161,24 @@ def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
 
 DAMAGED = {
     "empty": lambda data: b"",
-    "short": lambda data: data[:10],
     "cut": lambda data: data[: len(data) // 2],
     "garbage": lambda data: b"garbage" * 99,
-    "zeros": lambda data: bytes(len(data)),
     "one bit": lambda data: data[:40] + bytes([data[40] ^ 4]) + data[41:],
-    "another numba's": lambda data: OTHER,
 }
-OTHER = pickle.dumps(("something", "else"))
-"""Whole, but not what this numba makes."""
-
-
 OFTEN = ("*double*.nbi", "garbage"), ("*double*.nbc", "one bit")
 CASES = [(what, how) for what in ("*double*.nbi", "*double*.nbc") for how in DAMAGED]
-CASES.remove(("*double*.nbi", "another numba's"))
 
 
 @pytest.mark.parametrize(
-    ("what", "how"),
-    [pytest.param(*case, marks=[] if case in OFTEN else pytest.mark.slow) for case in CASES],
+    ("what", "how"), [pytest.param(*case, marks=[] if case in OFTEN else pytest.mark.slow) for case in CASES]
 )
 def test_a_damaged_file_is_compiled_and_kept_anew(toy, what, how):
-    """An index of another numba is no damage."""
     toy()
     (path,) = files(toy, what)
-    data = DAMAGED[how](path.read_bytes())
-    path.write_bytes(seal(data, name_of(toy, path)) if how == "another numba's" else data)
+    path.write_bytes(DAMAGED[how](path.read_bytes()))
     out, err = toy()
     assert out == MIXED and err.count("RuntimeWarning") == 1
-    assert how == "another numba's" or f"machine code kept in {path.parent} cannot be used" in err
+    assert f"machine code kept in {path.parent} cannot be used" in err
     assert toy() == (LOADED, "")
 
 
@@ -229,19 +191,6 @@ def test_another_kernels_machine_code_is_not_run_under_this_ones_name(toy):
     out, err = toy()
     assert out == FRESH and "or was written under another name" in err
     assert toy() == (LOADED, "")
-
-
-def test_one_damaged_entry_costs_no_other(toy):
-    """Of a kernel for floats and for integers, each with machine code of its own."""
-    both = "import toy; toy.double(1), toy.double(True)\n"
-    toy(both)
-    one, other = files(toy, "*double*.1.nbc")[0], files(toy, "*double*.2.nbc")[0]
-    one.write_bytes(b"garbage")
-    before = other.stat().st_mtime_ns
-    out, _ = toy(both)
-    assert out == "3.0 1.5 2 1"
-    assert other.stat().st_mtime_ns == before
-    assert toy(both) == ("3.0 1.5 3 1", "")
 
 
 FULL = """
@@ -265,20 +214,6 @@ def test_on_a_full_disk_it_works_from_memory(toy):
     assert toy() == (FRESH, "") and toy() == (LOADED, "")
 
 
-@pytest.mark.parametrize("instead", ["nothing", "a file"])
-def test_a_folder_that_is_gone_does_no_harm(toy, instead):
-    gone = (
-        "import toy, shutil; from snooker_env._lib import cache; shutil.rmtree(cache.CACHE_FOLDER.parent)\n"
-    )
-    out, err = toy(gone + ("cache.CACHE_FOLDER.parent.write_text('')\n" if instead == "a file" else ""))
-    assert out == FRESH
-    if instead == "nothing":
-        assert err == "" and toy() == (LOADED, "")  # made again
-    else:
-        assert err.count("RuntimeWarning") == 1 and "is not read from" in err
-        assert "every process compiles for itself" in err
-
-
 def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(toy):
     with ThreadPoolExecutor(4) as pool:
         for out, err in pool.map(lambda _: toy(), range(4)):
@@ -286,23 +221,9 @@ def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(toy):
     assert toy() == (LOADED, "")
 
 
-def test_equal_sources_share_their_machine_code_wherever_they_lie(toy, tmp_path):
-    assert toy() == (FRESH, "")
-    (tmp_path / "moved").mkdir()
-    path = os.pathsep.join([str(tmp_path / "moved"), str(ROOT)])
-    for more, result in (("", LOADED), ("\n# changed\n", FRESH)):
-        (tmp_path / "moved/toy.py").write_text(TOY + more)
-        assert toy(PYTHONPATH=path) == (result, "")
-
-
-@pytest.mark.parametrize("way", ["-c", pytest.param("-", marks=pytest.mark.slow)])
-def test_a_kernel_that_is_in_no_file_is_not_kept(tmp_path, way):
+def test_a_kernel_that_is_in_no_file_is_not_kept(tmp_path):
     """Two versions have the same bytecode and place: the second would run the code of the first."""
-    here = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "0"}
-    options = {"env": os.environ | here, "cwd": tmp_path, "capture_output": True, "text": True, "check": True}
     for factor in ("2.0", "3.0"):
         code = TOY.replace("2.0", factor) + "print(double(1.0))"
-        command = [sys.executable, way, *([code] if way == "-c" else [])]
-        done = subprocess.run(command, input=None if way == "-c" else code, timeout=120, **options)
-        assert done.stdout.strip() == factor
-        assert "compiling a toy, about 3 s (for this process only;" in done.stderr
+        out, err = python(code, NUMBA_CACHE_DIR=str(tmp_path / "cache"), SNOOKER_ENV_QUIET="0")
+        assert out.strip() == factor and "compiling a toy, about 3 s (for this process only;" in err

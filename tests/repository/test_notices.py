@@ -65,30 +65,12 @@ def test_one_line_before_each_long_compile_and_none_when_it_is_loaded(toys):
     assert toys(code) == ""
 
 
-def test_it_is_said_before_the_compile(toys):
-    err = toys(
-        "import sys\ndef compile(*args): sys.exit(3)\ntype(one._compiler).compile = compile\ntry: one(1.0)\nexcept SystemExit: pass"
-    )
-    assert err.startswith("snooker_env: compiling one toy, once, about 9 s ")
-
-
 def test_it_can_be_silenced_and_says_that_it_is_not_kept(toys):
     for quiet in ("1", "yes"):
         assert toys("one(1.0)", SNOOKER_ENV_QUIET=quiet) == ""
     hidden = "(for this process only; SNOOKER_ENV_QUIET=1 hides this)\n"
     line = toys("one(1.0)", NUMBA_CACHE_DIR="/dev/null", warn="ignore")
     assert line == f"snooker_env: compiling one toy, about 9 s {hidden}"
-
-
-def test_on_a_full_disk_nothing_is_said_to_be_kept(toys):
-    """A process that may write 1 kB a file, as on a disk with so much left: an empty file can still be made."""
-    resource = pytest.importorskip("resource")
-    full = "import resource, warnings\nwarnings.simplefilter('ignore')\n"
-    full += f"resource.setrlimit(resource.RLIMIT_FSIZE, (1000, {resource.RLIM_INFINITY}))\n"
-    hidden = "(for this process only; SNOOKER_ENV_QUIET=1 hides this)\n"
-    lines = [f"compiling {what}, about {s} s {hidden}" for what, s in (("one toy", 9), ("another toy", 3))]
-    assert toys(full + "one(1.0); another(1.0)") == "".join(f"snooker_env: {line}" for line in lines)
-    assert toys("one(1.0)") == f"snooker_env: compiling one toy, once, about 9 s {toys.kept}\n"
 
 
 @pytest.mark.parametrize("without", ["sys.stderr = None", "sys.stderr.close()"])
@@ -111,48 +93,25 @@ def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
     assert toys(code, NUMBA_CACHE_DIR="/dev/null", SNOOKER_ENV_QUIET="1", warn="ignore") == ""
 
 
-LONG = {
-    "snooker_env.physics.engine": ["run_batch"],
-    "snooker_env.simulation.impacts": ["_collide_balls", "_collide_cushion"],
-    "snooker_env.tasks.stroke": ["address"],
-    "snooker_env.tasks.visit": ["_conclude", "_begin"],
-    "snooker_env.tasks.frame_kernels": [
-        "decide",
-        "conclude",
-        "observe",
-        "finish",
-        "begin",
-        "show",
-        "remember",
-    ],
-    "snooker_env.planning.ghost_ball": ["geometric_strokes"],
-    "snooker_env.game.layouts": ["deal_tables"],
-    "snooker_env.game.apply_ruling": ["settle_one"],
-    "snooker_env.game.paths": ["best_paths"],
-    "snooker_env.game.snookered": ["_find_snooker"],
-    "snooker_env.planning.learned.pot_view": ["_add_pots"],
-    "snooker_env.planning.aims": ["_pot_aim"],
-    "snooker_env.planning.trials": ["_strike"],
-    "snooker_env.planning.pot_geometry": ["_pots", "_clear_paths"],
-}
+LONG = """
+physics.engine run_batch; simulation.impacts _collide_balls _collide_cushion; tasks.stroke address; planning.aims _pot_aim
+tasks.visit _conclude _begin; tasks.frame_kernels decide conclude observe finish begin show remember; game.layouts deal_tables
+planning.ghost_ball geometric_strokes; game.apply_ruling settle_one; game.paths best_paths; game.snookered _find_snooker
+planning.learned.pot_view _add_pots; planning.trials _strike; planning.pot_geometry _pots _clear_paths
+"""
 """The kernels that were seen to take over a second, each compiled first in a fresh process."""
 
 
-@pytest.mark.parametrize(
-    ("module", "name"), [(module, name) for module, names in LONG.items() for name in names]
-)
-def test_each_long_kernel_announces_itself(module, name, capsys, monkeypatch):
+def test_each_long_kernel_announces_itself_and_what_others_compile_is_not_told(capsys, monkeypatch):
     monkeypatch.delenv("SNOOKER_ENV_QUIET")
-    kernel = getattr(importlib.import_module(module), name)
     # as if nothing had been compiled yet
     monkeypatch.setattr(notices.Cost, "_missing", lambda self: set(self.uses))
-    event.start_event("numba:compile", data={"dispatcher": kernel})
-    err = capsys.readouterr().err
-    assert err.count("\n") == 1 and f"compiling {kernel.cost.what}, " in err and kernel in jit.ENTRIES
-
-
-def test_what_others_compile_is_none_of_our_business(capsys, monkeypatch):
-    monkeypatch.delenv("SNOOKER_ENV_QUIET")
-    event.start_event("numba:compile", data={"dispatcher": test_without_stderr_it_works_all_the_same})
+    for module, *names in (line.split() for line in LONG.replace("\n", ";").split(";") if line):
+        for name in names:
+            kernel = getattr(importlib.import_module(f"snooker_env.{module}"), name)
+            event.start_event("numba:compile", data={"dispatcher": kernel})
+            err = capsys.readouterr().err
+            assert err.count("\n") == 1 and f"compiling {kernel.cost.what}, " in err and kernel in jit.ENTRIES
+    event.start_event("numba:compile", data={"dispatcher": sorted})
     event.start_event("numba:compile")
     assert capsys.readouterr().err == ""

@@ -3,14 +3,12 @@
 import inspect
 import json
 import os
-import shutil
 
-import numpy as np
 import pytest
 
 import snooker_env as sn
 from snooker_env._lib import cache
-from tests.processes import CACHE, ROOT, copy_of_package, python, replace
+from tests.processes import CACHE, ROOT, copy_of_package, python
 
 # Imports and names
 
@@ -135,143 +133,3 @@ def test_the_cache_is_where_it_is_said_to_be(tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
     with pytest.warns(RuntimeWarning, match="is not writable"):
         assert cache.cache_folder() is None
-
-
-SPOT = """
-import numpy as np
-from snooker_env._lib import jit
-from snooker_env.game import balls, spotting
-positions, on_table = spotting.spot_colours(np.zeros((22, 2)), np.zeros(22, bool), 1 << balls.BLACK)
-hits = sum(spotting._spot.stats.cache_hits.values()) if jit.CACHE_FOLDER else -1
-print(positions[balls.BLACK, 1], hits, jit.CACHE_FOLDER)
-"""
-
-
-def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
-    """numba checks only spotting.py, the entry kernel's file; the black's place comes from geometry.py."""
-    at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
-    runs = [python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() for _ in range(2)]
-    assert [run[:2] for run in runs] == [["1.4605", "0"], ["1.4605", "1"]]  # compiled once, then loaded
-    assert runs[0][2].startswith(cache)
-    replace(at / "snooker_env/geometry.py", "HALF_LENGTH / 2, 1.4605)", "HALF_LENGTH / 2, 1.4005)")
-    run = python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()
-    assert run[:2] == ["1.4005", "0"] and run[2] != runs[0][2]
-    replace(at / "snooker_env/geometry.py", "HALF_LENGTH / 2, 1.4005)", "HALF_LENGTH / 2, 1.4605)")
-    # and the old code's cache is good again
-    assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() == runs[1]
-
-
-@pytest.mark.parametrize("where", ["NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME"])
-def test_without_a_place_for_the_cache_it_works_from_memory(tmp_path, where):
-    """A file stands where the folder should be (tests may run as root, whom no access bits stop)."""
-    (tmp_path / "file").write_text("")
-    variables = dict.fromkeys(CACHE) | {where: str(tmp_path / "file")}
-    out, err = python(SPOT, warn="error,default::RuntimeWarning", **variables)
-    assert out.split() == ["1.4605", "-1", "None"]
-    assert err.count("Warning") == 1
-    assert "is not writable: every process compiles for itself; set NUMBA_CACHE_DIR" in err
-    assert (tmp_path / "file").read_text() == ""
-
-
-# The same bits everywhere
-
-GOLDEN = """
-import hashlib, json, sys
-import numpy as np, snooker_env as sn
-from snooker_env.game import layouts
-
-def shots(count):
-    rng = np.random.default_rng(2014)
-    r, v, w, here = np.zeros((count, 22, 2)), np.zeros((count, 22, 2)), np.zeros((count, 22, 3)), np.zeros((count, 22), bool)
-    for k in range(count):
-        r[k], here[k] = layouts.layout(("break_off", "opened", "line_up", "random:9", "colours")[k % 5], rng)
-        speed, aim, side, top = rng.uniform((0.5, -np.pi, -0.3, -0.3), (7.0, np.pi, 0.3, 0.3))
-        velocity, w[k, 0] = sn.strike(speed, aim, side, top)
-        v[k, 0] = velocity[:2]
-    return r, v, w, here
-
-def digest(batch):
-    h = hashlib.sha256()
-    for a in (batch.positions, batch.potted, batch.on_table, batch.duration, batch.event_count):
-        h.update(np.ascontiguousarray(a).tobytes())
-    return h.hexdigest()
-
-def run(count=40, threads=1, **options):
-    r, v, w, here = shots(count)
-    return sn.simulate_batch(r, v, w, on_table=here, threads=threads, **options)
-"""
-
-
-@pytest.fixture(scope="module")
-def golden():
-    space = {}
-    exec(GOLDEN, space)  # the very text that the other processes run
-    return space
-
-
-@pytest.mark.parametrize(
-    "options",
-    [pytest.param({}, marks=pytest.mark.slow), {"physics": "match", "table": "tight"}, {"fidelity": "fast"}],
-    ids=["paper", "match", "fast"],
-)
-def test_the_same_bits_in_every_process_and_for_any_number_of_threads(golden, options):
-    batch = golden["run"](**options)
-    want = golden["digest"](batch)
-    for threads in (2, 7):
-        assert golden["digest"](golden["run"](threads=threads, **options)) == want
-    code = GOLDEN + f"options = {options!r}\nprint(digest(run(**options)), digest(run(threads=2, **options)))"
-    for _ in range(2):
-        assert python(code)[0].split() == [want, want]
-    assert golden["digest"](golden["run"](physics={"mu_s": 0.2100000001})) != want
-    assert batch.event_count.min() >= 1 and batch.event_count.max() > 100 and (batch.potted >= 0).any()
-
-
-def test_one_shot_is_the_same_alone_and_in_a_batch(golden):
-    r, v, w, here = golden["shots"](40)
-    batch = golden["run"](events=True)
-    assert golden["digest"](batch) == golden["digest"](golden["run"]())  # asking for the log changes nothing
-    for k in range(0, 40, 3):
-        shot = sn.simulate(r[k], v[k], w[k], on_table=here[k])
-        assert shot.positions.tobytes() == batch.positions[k].tobytes() and shot.duration == batch.duration[k]
-        assert np.array_equal(shot.potted, batch.potted[k])
-        assert np.array_equal(shot.on_table, batch.on_table[k])
-        assert shot.events.tobytes() == batch.events[k].tobytes() and len(shot.events) == batch.event_count[k]
-
-
-@pytest.mark.slow
-def test_fresh_and_cached_machine_code_give_the_same_bits(golden, tmp_path):
-    code = GOLDEN + "print(digest(run()))"
-    want = golden["digest"](golden["run"]())
-    (tmp_path / "file").write_text("")
-    for place in (tmp_path / "cache", tmp_path / "cache", tmp_path / "file"):
-        assert python(code, NUMBA_CACHE_DIR=str(place))[0].split() == [want]
-
-
-def test_a_pickled_shot_and_physics_stay_what_they_are():
-    import pickle
-
-    shot = sn.simulate([(0.0, 0.0), (0.3, 0.0)], [(1.0, 0.0), (0.0, 0.0)], np.zeros((2, 3)), physics="match")
-    again = pickle.loads(pickle.dumps(shot))
-    assert again.physics == shot.physics == sn.Physics.preset("match") != sn.Physics()
-    assert np.array_equal(again.positions, shot.positions)
-    assert all(map(np.array_equal, again.at(0.3), shot.at(0.3)))
-    assert pickle.loads(pickle.dumps(sn.Table.preset("tight"))) is sn.Table.preset("tight")
-
-
-def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(tmp_path):
-    """A column number baked into a kernel of agents/ comes from another folder of agents/."""
-    code = (
-        "from agents.learning.fused_kernels import spread_to_balls as k\nfrom snooker_env._lib import jit\n"
-    )
-    code += "print(jit.CACHE_FOLDER, k._cache.cache_path)"
-    copy_of_package(tmp_path)
-    shutil.copytree(
-        ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip")
-    )
-    seen = []
-    for change in ("", "\n# other columns"):
-        with (tmp_path / "agents/learning/fused_kernels.py").open("a") as file:
-            file.write(change)
-        seen.append(python(code, at=tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache"))[0].split())
-    assert seen[0][0] == seen[1][0] and seen[0][1] != seen[1][1]
-    assert all(path.startswith(folder) for folder, path in seen)

@@ -2,7 +2,7 @@
 
 import json
 
-from tests.repository.weight import files_of, table, weigh
+from tests.repository.weight import weigh
 
 LONG = "def run(a, b, c, d, e, f, g, h, *, self_):\n" + "    a = a\n" * 79 + "    return a\n"
 FILES = {
@@ -37,12 +37,3 @@ def test_figures():
     assert weight["agents + train.py"]["command-line arguments"] == 3
     assert (package["commands"], package["command-line arguments"]) == (["snooker_env/b/__main__.py"], 1)
     assert rest["words of documents"] == 6
-
-
-def test_table_of_two():
-    then = weigh({**FILES, "snooker_env/c.py": "\n" * 1000})
-    assert "1,088 -> 88" in table(weigh(FILES), then)
-
-
-def test_knows_the_repository():
-    assert {"train.py", "snooker_env/__init__.py"} <= files_of().keys()
