@@ -110,7 +110,7 @@ def play_visits(
     rekey: int | None = None,
     threads: int | None = None,
     each: Callable[[int], None] | None = None,
-    **options: Any,
+    **options: object,
 ) -> PlayedStrokes:
     """Play visits side by side and record every stroke.
 
