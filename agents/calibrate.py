@@ -25,7 +25,7 @@ with needs("agents.calibrate"):
     from agents._lib.files import writable, write_json
     from agents._lib.provenance import provenance
     from agents._lib.tables import TextTable, show
-    from snooker_env.checks import choice, integer, number, refuse
+    from snooker_env.checks import integer, number, refuse
     from snooker_env.planning import FrameJudge
     from snooker_env.planning.learned.dense_layers import Layers
     from snooker_env.planning.learned.frame_features import HIDDEN, LIKELY, read_errors
@@ -35,7 +35,6 @@ with needs("agents.calibrate"):
     from .learning.frame_self_play import FRAME, TABLES, frames
     from .learning.frame_worth import by_stage, calibration
 
-CONDITIONS = "fixed", "drawn"
 FIRST_SEED = 900_000_000  # of frames that no training has played
 FIGURES = {
     "visits": "scoring visits a frame",
@@ -171,10 +170,10 @@ def figures_of(frames):
     return {name: out[name] for name in FIGURES}
 
 
-def play_frames(scales, many, budget, conditions):
+def play_frames(scales, many, budget):
     """What two copies of the ``tactician`` play under each scale: a list of the rows of its parts for each."""
     layers, chance = learned_worth()
-    options = FRAME | {"says": ["decision", "concede"], "conditions": conditions}
+    options = FRAME | {"says": ["decision", "concede"]}
     shared = {"options": options, "layers": layers, "chance": chance}
     shared |= {"budget": budget, "explore": 0.0, "replies": False}
     return [
@@ -234,15 +233,12 @@ def main(argv=None):
     p.add_argument("--scales", type=float, nargs="+", default=[0.9, 1.0, 1.1], help="[0.9 1.0 1.1]")
     p.add_argument("--frames", type=int, default=400, help="frames of each scale [400]")
     p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
-    what = "fixed, or drawn: each frame on a table whose constants the players do not know [fixed]"
-    p.add_argument("--conditions", default="fixed", help=what)
     p.add_argument("--picture", type=Path, metavar="FILE", help="draw the chance to win and who won here")
     p.add_argument("--json", type=Path, metavar="FILE", help="write every figure here")
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
         integer("frames", args.frames, 2, 10**6)
         integer("budget", args.budget, FrameJudge.least, 10**6)
-        choice("conditions", args.conditions, CONDITIONS)
         for scale in args.scales:
             number("scales", scale, 0.01, 10.0)
         for name in ("picture", "json"):
@@ -251,7 +247,7 @@ def main(argv=None):
     except (ValueError, OSError) as error:
         p.error(str(error))
     snooker_env.warmup()
-    played = play_frames(args.scales, args.frames, args.budget, args.conditions)
+    played = play_frames(args.scales, args.frames, args.budget)
     names = [f"scale {scale:g}" for scale in args.scales]
     columns = {"professionals": figures_of(real)}
     for name, parts in zip(names, played, strict=True):

@@ -61,17 +61,17 @@ NOISES = ("none", "professional", "amateur", "club")
 REFERENCE = "ghost_ball"
 
 
-def parts_of_agent(agent, condition, seeds, rekey):
+def parts_of_agent(agent, condition, seeds):
     """The parts of an agent under a condition, a list for each of its runs."""
-    return [parts_of(pack(agent, k), k, condition, seeds, rekey) for k in range(len(agent.runs))]
+    return [parts_of(pack(agent, k), k, condition, seeds) for k in range(len(agent.runs))]
 
 
-def play_agent(agent, condition, seeds, resamples, rekey=False, results=None):
+def play_agent(agent, condition, seeds, resamples, results=None):
     """``EntrantMetrics`` by every run of the agent on the tables with these seeds.
 
     ``results``: those of its parts, the next of an iterator; by default they are played here.
     """
-    each = parts_of_agent(agent, condition, seeds, rekey)
+    each = parts_of_agent(agent, condition, seeds)
     if results is None:
         results = in_order(Here().played(play, [part for run in each for part in run]))
     runs = [joined(list(islice(results, len(run))), len(seeds)) for run in each]
@@ -88,12 +88,11 @@ def _conditions(report, seeds):
 
 def all_parts(report, agents, seeds):
     """The parts of all that the report's protocol says, in the order in which ``evaluate`` takes them."""
-    p = report["protocol"]
     return [
         part
         for condition in _conditions(report, seeds)
         for agent in agents
-        for run in parts_of_agent(agent, condition, seeds[condition["layout"]], p["rekey"])
+        for run in parts_of_agent(agent, condition, seeds[condition["layout"]])
         for part in run
     ]
 
@@ -122,8 +121,6 @@ def parser():
         choices=("free", "real"),
         help="whether rails and balls are in its way [real]",
     )
-    what = "new execution errors after every decision: a control that no agent has seen them beforehand"
-    add("--rekey", action="store_true", help=what)
     add_ray(p)
     add("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     add("--json", type=Path, help="write every figure here")
@@ -167,7 +164,7 @@ def evaluate(report, agents, seeds, results):
     for condition in _conditions(report, seeds):
         layout, metrics = condition["layout"], {}
         for agent in agents:
-            played = play_agent(agent, condition, seeds[layout], p["resamples"], p["rekey"], results)
+            played = play_agent(agent, condition, seeds[layout], p["resamples"], results)
             metrics[agent.label] = played
         rows = []
         for agent in agents:
@@ -194,7 +191,7 @@ def main(argv=None):
     protocol = {"layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED}
     protocol |= {"against": references} | {axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}
     report = {"command": f"python -m agents.evaluate {shlex.join(argv)}", **provenance()}
-    report |= {"protocol": protocol | {"resamples": args.resamples, "rekey": args.rekey}}
+    report |= {"protocol": protocol | {"resamples": args.resamples}}
     report |= {"agents": [{"label": agent.label, "runs": agent.origins()} for agent in agents], "results": []}
     why, code = "", 0
     job = all_parts(report, agents, seeds)

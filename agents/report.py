@@ -15,7 +15,7 @@ from agents._lib.lifecycle import command, needs, parser_of
 
 with needs("agents.report"):
     from agents._lib.files import read_json, write_atomic
-    from agents._lib.tables import TextTable, format_figure, page, show
+    from agents._lib.tables import WIDTH, TextTable, format_figure, page, show
     from snooker_env.benchmark import CENTURY, FIGURES, MAXIMUM
     from snooker_env.benchmark.tasks import most_points
     from snooker_env.checks import refuse
@@ -89,27 +89,22 @@ def title(report):
     return f"How {_list(agent['label'] for agent in report['agents'])} play on {layouts}{under}"
 
 
-def agents_tables(report):
-    """Who plays, how each was trained, and how long."""
-    trained, long = [], []
+def agents_table(report):
+    """How each agent was trained and how long, and a sentence on those that were not."""
+    rows, known = [], {"Pre-trained, by the noise played": [], "Not trained": []}
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
             by_noise = re.fullmatch(r"(planner|tactician)(_\d+)?|stroke_value", runs[0]["from"])
-            how = "pre-trained, by the noise played" if by_noise else "not trained"
-            trained.append([label, how, *[""] * (len(AXES) + 1)])
+            known["Pre-trained, by the noise played" if by_noise else "Not trained"].append(label)
             continue
-        keys = ("recipe", *AXES)
-        words = [", ".join(sorted({str(run[key]) for run in runs})) for key in keys]
-        rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]
+        words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", *AXES)]
         numbers = [_between([run[key] for run in runs]) for key in ("imitated", "shots", "seconds")]
         gammas = ", ".join(sorted({f"{run['gamma']:g}" for run in runs}))
-        trained.append([label, *words, gammas])
-        long.append([label, str(_seeds(runs)), *numbers, _between(rates)])
-    how = ["agent", "recipe", "trained: noise", *AXES[1:], "gamma"]
-    how_long = ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
-    long_table = TextTable("How long they were trained", how_long, long, 1, 1)
-    return [TextTable("The agents", how, trained, 1, len(how) - 1), long_table]
+        rows.append([label, *words, gammas, str(_seeds(runs)), *numbers])
+    how = ["agent", "recipe", "trained: noise", *AXES[1:], "gamma", "seeds", "imitated", "shots", "seconds"]
+    table = TextTable("The agents that were trained", how, rows, 1, 2 + len(AXES))
+    return [table, *(f"{how}: {', '.join(labels)}." for how, labels in known.items() if labels)]
 
 
 def _seeds(runs):
@@ -147,37 +142,6 @@ def fairness(report):
     return sentences
 
 
-AGAIN = {
-    "next_pot_after_a_pot": "after a pot it pots again:",
-    "easy_pot_left_by_a_pot": "an easy pot is left:",
-    "high_colour_after_a_red": "after a red it pots pink or black:",
-}
-
-
-def comparison(report):
-    """Sentences: each agent against those it is compared with."""
-    at, sentences, done = main_condition(report), [], set()
-    rows = {r["agent"]: r for r in _pick(report, **at)}
-    for name, row in rows.items():
-        for other, ratios in row["ratios"].items():
-            if (other, name) in done:  # the other way round
-                continue
-            done.add((name, other))
-            ratio, mine, its = ratios["points_a_visit"], row["figures"], rows[other]["figures"]
-            if ratio["value"] is None or ratio["low"] is None:
-                continue
-            clauses = [f"{name} makes {_pm(ratio)} times the points of {other}"]
-            if ratio["low"] <= 1 <= ratio["high"]:
-                clauses[0] += f", a difference that {row['visits']:,} visits do not show"
-            for key, words in AGAIN.items():
-                one, two = mine[key]["value"], its[key]["value"]
-                if one is not None and two is not None:
-                    clauses.append(f"{words} {100 * one:.1f} against {100 * two:.1f} %")
-            sentences.append(f"{'; '.join(clauses)}.")
-    where = ", ".join(f"{key} {value}" for key, value in at.items())
-    return [f"On {where}:", *sentences] if sentences else []
-
-
 def cross(report):
     """Points a visit of every agent under every value of an axis that has more than one."""
     p, tables = report["protocol"], []
@@ -200,20 +164,22 @@ def cross(report):
 
 
 def conditions(report):
-    """Tables of every layout and condition: what was scored, and how the cue ball was placed."""
+    """A table for each layout and condition: what was scored, and how the cue ball was placed."""
     p, tables = report["protocol"], []
+    keys = ["noise", "agent"] if len(p["noise"]) > 1 else ["agent"]
+    under = "" if len(p["noise"]) > 1 else f"noise {p['noise'][0]}, "
     for layout, visits in p["layouts"].items():
         for physics, fidelity, cue in product(p["physics"], p["fidelity"], p["cue"]):
             rows = _pick(report, layout=layout, physics=physics, fidelity=fidelity, cue=cue)
-            where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}, {cue} cue"
-            for name, columns in _columns(p["against"], most_points(layout)).items():
-                cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
-                tables.append(TextTable(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True))
+            where = f"{layout}, {visits:,} visits, {under}physics {physics}, fidelity {fidelity}, {cue} cue"
+            columns = _columns(p["against"], most_points(layout))
+            cells = [[*(r[key] for key in keys), *(cell(r) for cell in columns.values())] for r in rows]
+            tables.append(TextTable(where, [*keys, *columns], cells, len(keys), len(keys), len(keys) > 1))
     return tables
 
 
 def _columns(against, most):
-    """The tables of a condition: name -> {heading: cell of a result}; no breaks above ``most`` points."""
+    """The columns of a condition's table: heading -> cell of a result; no breaks above ``most`` points."""
 
     def figure(name):
         return lambda r: _pm(r["figures"][name])
@@ -226,50 +192,39 @@ def _columns(against, most):
 
     breaks = {"centuries %": ("centuries", CENTURY), "147s %": ("maximums", MAXIMUM)}
     breaks["clearances %"] = ("clearances", 0)
-    points = {"points a visit": figure("points_a_visit"), "IQM": figure("points_a_visit_iqm")}
     return {
-        "points": points | {"best": lambda r: str(r["longest_break"])},
-        "points against others": {f"times {other}": times(other) for other in against},
-        "pots": {"pots a visit": figure("pots_a_visit"), "IQM": figure("pots_a_visit_iqm")},
-        "breaks": {heading: share(name) for heading, (name, least) in breaks.items() if least <= most},
-        "potting and position": {
-            "pot rate %": share("pot_rate"),
-            "next pot %": share("next_pot_after_a_pot"),
-            "easy left %": share("easy_pot_left_by_a_pot"),
-        },
-        "fouls and time": {
-            "fouls a visit": share("fouls_a_visit", "{:.2f}", 1.0),
-            "ms": lambda r: f"{r['ms_a_decision']:.2f}",
-        },
-        "colours": {
-            "colour's value": figure("colour_value"),
-            "high colours %": share("high_colours"),
-            "high after red %": share("high_colour_after_a_red"),
-        },
+        "points a visit": figure("points_a_visit"),
+        "IQM": lambda r: _between([r["figures"]["points_a_visit_iqm"]["value"]], "{:.2f}"),
+        **{f"times {other}": times(other) for other in against},
+        **{heading: share(name) for heading, (name, least) in breaks.items() if least <= most},
+        "best": lambda r: str(r["longest_break"]),
+        "pot rate %": share("pot_rate"),
+        "next pot %": share("next_pot_after_a_pot"),
+        "easy left %": share("easy_pot_left_by_a_pot"),
+        "high after red %": share("high_colour_after_a_red"),
+        "fouls a visit": share("fouls_a_visit", "{:.2f}", 1.0),
+        "ms": lambda r: f"{r['ms_a_decision']:.2f}",
     }
 
 
 LEGEND = (
-    "[low, high]: 95 % bootstrap interval over training seeds and visits. Where a thing was never seen, or always, it is the exact "
-    "one-sided 95 % bound instead (0 of 30 visits: at most 9.5 %): over tables and execution errors, for equally likely trials; "
-    "runs of several seeds on the same tables count once, and other seeds may differ. IQM: inter-quartile mean, that of the middle "
-    "half of all visits. times X: points over those of X on the same tables, paired. next pot: pots that left a ball and were "
-    'followed by another. easy left: of these, those that left a pot whose line may err by 4 mrad, as on "pots:easy". high: pink or '
-    "black, of all colours potted, and after all reds potted. ms: a decision's time, all tables played at once. What cannot occur "
-    "on a layout, and rows and columns without a figure, are left out."
+    "[low, high]: 95 % bootstrap interval over training seeds and visits; for what was never or always seen, the exact one-sided bound. "
+    "IQM: mean of the middle half. times X: points over those of X on the same tables, paired. next pot: pots that left a ball and that "
+    "another pot followed. easy left: of these, those that left a pot whose line may err by 4 mrad. high after red: potted reds that a "
+    "potted pink or black followed. ms: a decision's time, all tables played at once."
 )
 
 
-def parts(report):
-    """Everything in order: ``TextTable`` (none wider than ``WIDTH``) or str."""
+def parts(report, width=WIDTH):
+    """Everything in order: ``TextTable`` (none wider than ``width``) or str."""
     if tournament_report.is_tournament(report):
         yield from tournament_report.parts(report)
         return
     if "incomplete" in report:
         yield f"INCOMPLETE: {report['incomplete']}."
-    for made in (agents_tables, fairness, comparison, cross, conditions):
+    for made in (agents_table, fairness, cross, conditions):
         for part in made(report):
-            yield from [part] if isinstance(part, str) else part.tidy().narrow()
+            yield from [part] if isinstance(part, str) else part.tidy().narrow(width)
     yield LEGEND
 
 
@@ -280,7 +235,7 @@ def markdown(report):
     version = report.get("version", "of an unknown version")
     where = f"commit {report['commit']} on {report['machine']}, Python {report['python']}"
     made = f"snooker_env {version}, at {where}"
-    return page(title(report), report["command"], made, parts(report))
+    return page(title(report), report["command"], made, parts(report, 160))
 
 
 def read(file):

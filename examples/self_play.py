@@ -56,6 +56,8 @@ LEARNING: dict[str, Any] = {
     "ent_coef": 0.003,
 }
 """As ``agents/hyperparams/ppo_mask.yml``, which gives the reasons."""
+RATE = 2e-3
+"""Learning rate at the beginning; it falls to nearly 0."""
 SELVES = 20
 """Size of the pool at the end: one more past self for every twentieth of the shots."""
 MODEL, CHECKPOINT = Path(__file__).with_suffix(".pt"), "checkpoint.pkl"
@@ -226,7 +228,7 @@ class Run(BaseCallback):
             if self.curve:
                 add(self.pool, weights(policy))
             won = {
-                name: judge(policy, name, args.checked, args.threads)["won"]
+                name: judge(policy, name, max(2, args.frames // 5), args.threads)["won"]
                 for name in ("random", "ghost_ball")
             }
             self.curve.append({"shots": shots, "seconds": round(time.perf_counter() - self.began), **won})
@@ -269,7 +271,7 @@ def train(args):
     pool = OpponentPool()
     tables = SnookerVecEnv(args.tables, opponent=pool, threads=args.threads, **GAME)
     rollout = args.tables * LEARNING["n_steps"]
-    rate = LinearSchedule(args.rate, 1e-5, 1.0)
+    rate = LinearSchedule(RATE, 1e-5, 1.0)
     model = MaskablePPO(
         FramePolicy,
         tables,
@@ -310,16 +312,7 @@ def main(argv=None):
     parser.add_argument(
         "--frames", type=int, default=1000, help="frames to judge against each opponent [1000]"
     )
-    parser.add_argument(
-        "--checked", type=int, default=200, help="frames for each point of the learning curve [200]"
-    )
     parser.add_argument("--tables", type=int, default=256, help="tables side by side [256]")
-    parser.add_argument(
-        "--rate",
-        type=float,
-        default=2e-3,
-        help="learning rate at the beginning; it falls to nearly 0 [0.002]",
-    )
     parser.add_argument("--threads", type=int, help="threads of the tables [all processors]")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument(
@@ -350,8 +343,7 @@ def main(argv=None):
         "judged": judged,
         "curve": curve,
         "game": GAME,
-        "learning": LEARNING
-        | {"rate": args.rate, "tables": args.tables, "selves": SELVES, "seed": args.seed},
+        "learning": LEARNING | {"rate": RATE, "tables": args.tables, "selves": SELVES, "seed": args.seed},
         "versions": {
             "snooker_env": snooker_env.__version__,
             "torch": torch.__version__,

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Makes anew what results/ keeps. In a clone with the extras train, test, render and data, on a quiet machine:
 #
-#     bash results/make.sh PART        physics: charts of benchmarks and their figures, some minutes
+#     bash results/make.sh PART        physics: charts of benchmarks and their figures, some minutes;
+#                                      with TRACKED=FILE the real shots of that file, too
 #                                      pictures: films, screenshots, README's break, some minutes
 #                                      agents: trains the models of results/weights, compares all players, hours
 #                                      weights: those of results/weights for the planners, into the package
@@ -25,7 +26,8 @@ physics() {
     for name in paper scene tradeoff; do
         module "benchmarks.$name" --json "results/physics/$name.json" --out results/pictures
     done
-    module benchmarks.real_shots --json results/physics/real_shots.json
+    # the tracked shots are not in the clone, see docs/validation/real_shots.md
+    [[ -z ${TRACKED:-} ]] || module benchmarks.real_shots "$TRACKED" --json results/physics/real_shots.json
 }
 
 pictures() {

@@ -31,15 +31,14 @@ class TextTable:
         left = sum(k < self.left for k in columns)
         return replace(self, header=[self.header[k] for k in columns], rows=rows, left=left)
 
-    def narrow(self):
-        """The same as tables that are no wider than ``WIDTH``, each with the key columns; none if it is
-        empty."""
+    def narrow(self, width=WIDTH):
+        """The same as tables that are no wider than that, each with the key columns; none if it is empty."""
         widths = [2 + max(len(row[k]) for row in (self.header, *self.rows)) for k in range(len(self.header))]
         groups, room = [], 0
         for k in range(self.keys, len(widths)):
             if not groups or widths[k] > room:
                 groups.append([])
-                room = WIDTH - sum(widths[: self.keys])
+                room = width - sum(widths[: self.keys])
             groups[-1].append(k)
             room -= widths[k]
         for n, group in enumerate(groups, 1):

@@ -25,23 +25,24 @@ def tables_of(content):
     won = "matches" if best_of > 1 else "frames"
     spent = {player["label"]: player for player in content["players"]}
     standing, play = [], []
-    for rank, label in enumerate(order, 1):
+    for label in order:
         p, one = figures["players"][label], spent[label]
         elo = format_figure(p["elo"], form="{:.0f}") + (" *" if p["elo_by_prior"] else "")
         shares = [
             format_figure(p[name], 100.0) for name in ("win_rate", "frame_rate")[: 2 if best_of > 1 else 1]
         ]
-        standing.append([str(rank), label, elo, *shares, f"{p['matches']:,}", f"{p['drawn']:,}"])
+        standing.append([label, elo, *shares, f"{p['drawn']:,}" if p["drawn"] else ""])
         average, fouls = (
             format_figure(p[name], form="{:.2f}") for name in ("average_break", "fouls_a_frame")
         )
         asked = one["decisions"]
         took = [f"{1e3 * one['seconds'] / asked:.3g}", f"{one['shots'] / asked:.0f}"] if asked else ["", ""]
-        points, strokes = format_figure(p["points_a_frame"]), format_figure(p["strokes_a_frame"])
-        play.append([label, points, average, str(p["highest_break"]), fouls, strokes, *took])
+        play.append(
+            [label, format_figure(p["points_a_frame"]), average, str(p["highest_break"]), fouls, *took]
+        )
     more = ["frames won [%]"] if best_of > 1 else []
-    wins = ["", "player", "Elo", f"{won} won [%]", *more, won, "draws"]
-    does = ["points a frame", "average break", "highest", "fouls a frame", "strokes a frame"]
+    wins = ["player", "Elo", f"{won} won [%]", *more, "draws"]
+    does = ["points a frame", "average break", "highest", "fouls a frame"]
     does += ["ms a decision", "shots a decision"]
     won_of = {}
     for pair in figures["pairs"]:
@@ -50,7 +51,7 @@ def tables_of(content):
     cross = [[label, *(won_of.get((label, other), "") for other in order)] for label in order]
     of_each = f"Share of the {won} that a player (row) won against another (column) [%]"
     return [
-        TextTable("Who wins", wins, standing, 2, 2),
+        TextTable("Who wins", wins, standing, 1, 1).tidy(),
         TextTable("How they play", ["player", *does], play, 1, 1),
         TextTable(of_each, [_unit(content), *order], cross, 1, 1),
     ]
@@ -64,11 +65,10 @@ def sentences(content):
     notes = [
         f"Each pair plays {p['matches']:,} {plural}: two on each seed, each player breaking first in one.",
         "Options: " + ", ".join(f"{name}={value}" for name, value in game.items()) + ".",
-        f"Who breaks first wins {format_figure(figures['opener'], 100.0)} %. Frames that were stopped, half for each: "
-        f"{figures['stopped']:,}.",
-        "An average break is the points of a player's own pots, for each visit to the table. Intervals are 95 % bootstrap intervals over "
-        "seeds; a share of 0 % or 100 % has the exact bound. They say nothing about other training seeds of the same recipe.",
-        f"Elo: Bradley and Terry's model, {p['anchor']} at {p['anchor_elo']:.0f}; to each pair {PRIOR:g} drawn {unit} is added.",
+        f"Who breaks first wins {format_figure(figures['opener'], 100.0)} %. "
+        f"Frames that were stopped, half for each: {figures['stopped']:,}.",
+        "What the figures mean: docs/agents/tournament.md. "
+        f"Elo: {p['anchor']} at {p['anchor_elo']:.0f}; to each pair {PRIOR:g} drawn {unit} is added.",
     ]
     if any(one is not None and one["elo_by_prior"] for one in figures["players"].values()):
         notes.append(

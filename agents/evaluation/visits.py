@@ -18,9 +18,9 @@ SIZE = 100
 COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance")
 
 
-def parts_of(sent, k, condition, seeds, rekey) -> list[tuple[dict, dict[str, Any]]]:
+def parts_of(sent, k, condition, seeds) -> list[tuple[dict, dict[str, Any]]]:
     """The parts of the run ``k`` of an agent, of ``travel.pack``, under a condition."""
-    same = {"k": k, "condition": condition, "rekey": rekey}
+    same = {"k": k, "condition": condition}
     return [(sent, same | {"seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]
 
 
@@ -28,9 +28,8 @@ def play(shared, args, threads):
     """The task: the strokes of some visits, a dict of arrays."""
     k, seeds = args["k"], args["seeds"]
     options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
-    one, rekey = unpack(shared), k if args["rekey"] else None
-    options |= {"first_seed": seeds, "seed": k, "threads": threads, "rekey": rekey}
-    strokes = play_visits(one, len(seeds), **options)
+    options |= {"first_seed": seeds, "seed": k, "threads": threads}
+    strokes = play_visits(unpack(shared), len(seeds), **options)
     columns = {name: getattr(strokes, name) for name in COLUMNS}
     more = {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
     return columns | more

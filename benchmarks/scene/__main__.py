@@ -1,7 +1,7 @@
 """Which models of the physics does a scene require? Each is left out in turn: where balls stop, whether they
 drop, the cost.
 
-    python -m benchmarks.scene [--shots 600] [--repeats 5] [--physics match] [--models NAME ...] [--seed 0]
+    python -m benchmarks.scene [--shots 600] [--repeats 5] [--models NAME ...] [--seed 0]
     [--json FILE]
         [--out FOLDER]
 
@@ -38,7 +38,7 @@ from .models import MODELS, SCENES, STANDARD, head_on_stun
 from .picture import draw
 from .verdicts import CHAOS, ERRORS, FULL, reasons, verdict
 
-FILE = "scene.png"
+FILE, PHYSICS = "scene.png", "match"
 
 
 def played(way, start):
@@ -137,9 +137,6 @@ def main():
     parser.add_argument(
         "--repeats", type=at_least(1), default=5, help="timed runs of every shot; the best counts"
     )
-    parser.add_argument(
-        "--physics", default="match", help="the constants with every model: match or paper [match]"
-    )
     parser.add_argument("--models", nargs="+", choices=list(MODELS), default=list(MODELS), help="only these")
     options = parser.options()
     figures = measure(options) if options.figures is None else options.figures
@@ -151,11 +148,11 @@ def main():
 def measure(options):
     """Measure and print everything; the figures."""
     print(
-        f"{provenance.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters"
+        f"{provenance.line()}\n{options.shots} shots a scene, physics {PHYSICS!r}, fidelity 'standard'; * where it matters"
     )
     scenes, starts = {}, []
     for scene, make in SCENES.items():
-        s, start = study(make, options.shots, options.repeats, options.physics, options.models, options.seed)
+        s, start = study(make, options.shots, options.repeats, PHYSICS, options.models, options.seed)
         scenes[scene] = s
         starts.append(start)
         print(f"\n{scene}: {s['us']:.1f} us a shot")
@@ -171,7 +168,7 @@ def measure(options):
             changed = f"{row['changed']:9.1%}" if "changed" in row else f"{'-':>9s}"
             cost = f"{row['cost']:.2f} x" if "cost" in row else "-"
             print(f"{star} {name:30s}     {mm}     {changed}      {cost:>7s}")
-    for s, counted in zip(scenes.values(), counts(starts, options.physics), strict=True):
+    for s, counted in zip(scenes.values(), counts(starts, PHYSICS), strict=True):
         s["ran"].update(counted)
     print("\nWhat ran, per shot (integrations and jaw arcs: counted in the first 40 shots)")
     print(" " * 26 + "".join(f"{scene:>16s}" for scene in scenes))
@@ -189,7 +186,7 @@ def measure(options):
         print(f"* {sentence}")
     figures = {
         "machine": provenance.machine(),
-        "physics": options.physics,
+        "physics": PHYSICS,
         "shots": options.shots,
         "scenes": scenes,
         "says": lines,

@@ -1,7 +1,7 @@
 """What breaks at the extremes? Impacts and shots at the edge of what can be asked for, each with its
 invariants; then a fuzz of a million.
 
-    python -m benchmarks.stability [--fuzz 1000000] [--seed 0] [--threads 2] [--json FILE] [--out FOLDER]
+    python -m benchmarks.stability [--fuzz 1000000] [--seed 0] [--json FILE] [--out FOLDER]
     python -m benchmarks.stability --replay SEED BATCH INDEX
 
 Exit code 1 if an invariant fails. ``--fuzz 0`` plays the extremes alone (10 s). Impacts are played at "fast",
@@ -42,7 +42,6 @@ def main():
     """Command line; the exit code."""
     parser = Command("stability", __doc__, seed=0)
     parser.add_argument("--fuzz", type=at_least(0), default=1_000_000, help="random shots; 0 for none")
-    parser.add_argument("--threads", type=at_least(1), default=2, help="of the fuzz [2]")
     parser.add_argument(
         "--replay",
         type=int,
@@ -69,7 +68,7 @@ def measure(options):
     )
     found = None
     if options.fuzz:
-        found = fuzz.fuzz(options.fuzz, options.seed, options.threads)
+        found = fuzz.fuzz(options.fuzz, options.seed, 2)
         print("\n".join(fuzz.lines(found, options.seed)))
     failed = [
         f"{name}: {bad}"

@@ -6,7 +6,6 @@ from textwrap import wrap
 from typing import Any
 
 from .._lib.text_tables import format_figure, markdown_table, text_table
-from .playing import STROKES
 from .tasks import TASKS, Task
 
 WIDTH = 100
@@ -21,19 +20,16 @@ TRAINED = {"none": "0", "50k": "50 k", "1M": "1 M", "5M": "5 M", "open": "open",
 Table = tuple[list[str], list[list[str]]]  # heading and rows
 
 LEGEND = (
-    "score: mean of all episodes with its 95 % bootstrap interval over training seeds and episodes; a share that was "
-    "never or always seen has the exact one-sided 95 % bound. IQM: mean of the middle half. training: the budget of "
-    "simulated shots. seeds: training seeds. shots: simulated shots a decision (d: declared). ms: time of a decision, "
-    "100 tables at once; ms 1: one table. *: not official."
+    "score: mean of all episodes with its 95 % bootstrap interval over training seeds and episodes; a share that was never or always "
+    "seen has the exact one-sided 95 % bound. IQM: mean of the middle half. training: the budget of simulated shots. seeds: training "
+    "seeds. shots: simulated shots a decision (d: declared). ms: time of a decision on one table. *: not official. Left out: "
+    "thresholds that no agent reached and, on the page, all but the best degenerate agent."
 )
 PROVED = (
-    "A result is its strokes: its file holds every one, and check plays each episode again from its seed and computes "
-    "all figures anew. Players that are known by name are asked again for their strokes. What strokes cannot prove "
-    "is who chose them: that no held-out seed was peeked at, the class and its simulated shots, the budget of training, "
-    "times and machines are the word of whoever made the file. To doubt a row, let its agent play on fresh seeds: "
-    "`check FILE --agent AGENT --fresh 500`."
+    "A result is its strokes: check plays each episode again from its seed and computes all figures anew. "
+    "[What a file cannot prove](benchmark.md#what-a-file-cannot-prove) is the word of its author; to doubt a row, let its agent play on "
+    "fresh seeds."
 )
-AWAITED = "Agents whose results are not there yet stand as missing."
 
 
 def plain(text: str) -> str:
@@ -50,7 +46,7 @@ def board(results: Iterable[dict[str, Any]], task: Task) -> Table:
         return list(CLASSES).index(agent["class"]), list(TRAINED).index(agent["budget"])
 
     score = "score" if task.counts else "share %"
-    head = ["class, training", "agent", score, "IQM", "seeds", "shots", "ms", "ms 1"]
+    head = ["class, training", "agent", score, "IQM", "seeds", "shots", "ms"]
     rows = [_row(result, task) for result in sorted(_of(results, task), key=order)]
     keep = [c for c, name in enumerate(head) if task.counts or name != "IQM"]
     return [head[c] for c in keep], [[row[c] for c in keep] for row in rows]
@@ -64,9 +60,8 @@ def _of(results: Iterable[dict[str, Any]], task: Task) -> list[dict[str, Any]]:
 
 def _row(result: dict[str, Any], task: Task) -> list[str]:
     """The row of a result."""
-    agent, timing, figures = result["agent"], result["timing"], result["figures"]
-    shots, alone, middle = agent["simulated_shots"], timing["one_table_ms"], figures["iqm"]
-    strokes = sum(row[STROKES] for row in result["rows"])
+    agent, figures, alone = result["agent"], result["figures"], result["timing"]["one_table_ms"]
+    shots, middle = agent["simulated_shots"], figures["iqm"]
     return [
         f"{CLASSES[agent['class']]}, {TRAINED[agent['budget']]}",
         agent["label"] + ("" if result["protocol"]["official"] else " *"),
@@ -74,7 +69,6 @@ def _row(result: dict[str, Any], task: Task) -> list[str]:
         "" if middle is None else f"{middle['value']:.1f}",
         str(len(agent["sources"])),
         "?" if shots is None else f"{shots:,.0f}{' d' if agent['declared'] else ''}",
-        _ms(1e3 * timing["seconds"] / max(1, strokes)),
         "" if alone is None else _ms(alone),
     ]
 
@@ -101,6 +95,13 @@ def _share(figure: dict[str, Any]) -> str:
     return f"{sign}{100 * figure[name]:.1f}"
 
 
+def _reached(table: Table) -> Table:
+    """A profile without the thresholds that no agent reached."""
+    head, rows = table
+    keep = [c for c in range(len(head)) if not all(row[c].startswith("<=") for row in rows)]
+    return [head[c] for c in keep], [[row[c] for c in keep] for row in rows]
+
+
 def lines(
     results: Sequence[dict[str, Any]], *, markdown: bool = False, awaited: Sequence[str] = ()
 ) -> list[str]:
@@ -115,7 +116,9 @@ def lines(
 
     made: list[str] = []
     for task in TASKS.values():
-        head, rows = board(results, task)
+        seeing = [one for one in results if one["agent"]["class"] != "degenerate"]
+        blind = _of((one for one in results if one["agent"]["class"] == "degenerate"), task)
+        head, rows = board([*seeing, *(blind[:1] if markdown else blind)], task)
         labels = {one["agent"]["label"] for one in results if one["task"] == task.id}
         lacking = [label for label in awaited if label not in labels]
         if not rows and not lacking:
@@ -124,9 +127,10 @@ def lines(
         made += [f"{'## ' if markdown else ''}{task.id}: {task.title}", "", *wrap(judged, WIDTH), ""]
         made += [*table(head, rows, 1, 2), ""] if rows else []
         made += [*wrap(f"Missing: {', '.join(lacking)}.", WIDTH), ""] if lacking else []
-        if task.counts and rows:
-            title = "Share of episodes [%] with at least so many points:"
-            made += [title, "", *table(*profile(results, task), 0), ""]
+        shares = profile(seeing, task)
+        if task.counts and shares[1]:
+            title = "Share of episodes [%] with at least so many points, of agents that look at the table:"
+            made += [title, "", *table(*_reached(shares), 0), ""]
     return [*made, *wrap(LEGEND, WIDTH)]
 
 
@@ -159,6 +163,5 @@ def page(results: Sequence[dict[str, Any]], awaited: Sequence[str] = ()) -> str:
         made_on = "; ".join(map(plain, machines))
         words[0] += f" snooker_env {', '.join(map(plain, versions))}; machine: {made_on}."
     tables = lines(results, markdown=True, awaited=awaited)
-    words += [PROVED, *([AWAITED] if any(line.startswith("Missing: ") for line in tables) else [])]
-    head = [line for text in words for line in (*wrap(text, WIDTH), "")]
+    head = [line for text in (*words, PROVED) for line in (*wrap(text, WIDTH), "")]
     return "\n".join(["# Leaderboard", "", *head, *tables]) + "\n"

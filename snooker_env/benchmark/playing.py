@@ -92,18 +92,14 @@ Decide = Callable[[Bools, int], NDArray[np.float32]]
 Round = tuple[Bools, dict[str, Any], Bools, Bools]  # asked for a stroke; the info after it; done; terminated
 
 
-def rounds(
-    tables: SnookerVectorEnv, seeds: list[int], decide: Decide, rekey: int | None = None
-) -> Iterator[Round]:
-    """Play every table to its end; seed ``rekey`` draws new execution errors after each decision."""
+def rounds(tables: SnookerVectorEnv, seeds: list[int], decide: Decide) -> Iterator[Round]:
+    """Play every table to its end."""
     tables.reset(seed=[*seeds])
     going, number = np.ones(tables.num_envs, np.bool_), 0
     while going.any():
         # a frame that the opponent has won already only needs its last step
         asked = going & ~tables.tables.are_over()
         actions = decide(asked, number) if asked.any() else np.zeros(tables.action_space.shape, np.float32)
-        if rekey is not None:
-            tables.tables.streams[:, 0] = decision_seeds(~rekey, np.asarray(seeds), number)
         _, _, terminated, truncated, info = tables.step(actions)
         done = going & (terminated | truncated)
         yield asked, info, done, terminated

@@ -107,7 +107,6 @@ def play_visits(
     *,
     first_seed: int | Sequence[int] = HELD_OUT_SEED,
     seed: int = 0,
-    rekey: int | None = None,
     threads: int | None = None,
     each: Callable[[int], None] | None = None,
     **options: object,
@@ -120,9 +119,8 @@ def play_visits(
         A player, or the name of one, and the number of its visits.
     first_seed : int or sequence of int
         Seed of the first table, the others have the seeds after it; or the seed of each table.
-    seed, rekey : int, int or None
-        Of what the player draws, alike on each table beside any others. Of new execution errors after every
-        decision: a control that nobody saw them beforehand.
+    seed : int
+        Of what the player draws, the same on each table beside any others.
     threads : int, optional
         As in ``SnookerVectorEnv``.
     each : callable, optional
@@ -150,7 +148,7 @@ def play_visits(
         ball_on = Positions.of(tables).ball_on[asked]
         return decide(asked, number)
 
-    for number, (asked, info, done, _) in enumerate(rounds(tables, seeds, note_ball_on, rekey)):
+    for number, (asked, info, done, _) in enumerate(rounds(tables, seeds, note_ball_on)):
         here = np.flatnonzero(asked)
         left = Positions.of(tables)[here]
         cue = np.where(left.on_table[:, :1], left.positions[:, 0], np.nan)

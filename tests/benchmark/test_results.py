@@ -251,3 +251,27 @@ def test_the_order_of_the_table_is_class_budget_score(made):
         one["figures"]["score"]["value"] = value
         rows.append(one)
     assert [row[1][0] for row in board(rows, TASKS["SnookerBreak-v0"])[1]] == list("abcde")
+
+
+def test_the_page_shows_the_best_agent_that_looks_at_nothing_and_thresholds_that_were_reached(made):
+    rows = []
+    for label, kind, value in (
+        ("seeing", "model_free", 1.0),
+        ("softest", "degenerate", 2.0),
+        ("hardest", "degenerate", 3.0),
+    ):
+        one = result(made)
+        one["agent"] |= {"label": label, "class": kind}
+        one["figures"]["score"]["value"] = value
+        one["figures"]["profile"] = [
+            {"at_least": 1, "value": 0.5, "low": 0.4, "high": 0.6, "exact": False},
+            *(
+                {"at_least": t, "value": 0.0, "low": 0.0, "high": 0.1, "exact": True}
+                for t in (10, 25, 50, 75, 100, 147)
+            ),
+        ]
+        rows.append(one)
+    shown = page(rows).splitlines()
+    assert [sum(label in line for line in shown) for label in ("seeing", "softest", "hardest")] == [2, 0, 1]
+    assert [line for line in shown if line.startswith("| agent")] == ["| agent | >= 1 | best |"]
+    assert all(any(label in line for line in lines(rows)) for label in ("seeing", "softest", "hardest"))

@@ -134,14 +134,6 @@ def test_an_agent_is_played_under_its_condition(change):
     assert np.array_equal(strokes.cue, usual.cue, equal_nan=True) == (not change)
 
 
-def test_a_control_has_other_errors_and_the_same_first_strokes():
-    """Drawn anew after each decision; equal seeds, equal errors."""
-    plain, one, same, other = (play_visits("search_30", 20, rekey=rekey) for rekey in (None, 1, 1, 2))
-    assert np.array_equal(one.cue, same.cue, equal_nan=True)
-    for two in (plain, other):
-        assert not np.array_equal(one.cue[:20], two.cue[:20], equal_nan=True)
-
-
 @pytest.mark.parametrize("layout", ["held_out", "line_up", "colours"])
 def test_everyone_starts_from_the_same_tables(layout):
     seeds, starts = tables_of(layout, 12), []

@@ -70,7 +70,7 @@ def where(nodes):
 
 def parts_of(name, many, size, monkeypatch):
     monkeypatch.setattr(visits, "SIZE", size)
-    return visits.parts_of(pack(Entrant.of(name), 0), 0, AT, tables_of("held_out", many), False)
+    return visits.parts_of(pack(Entrant.of(name), 0), 0, AT, tables_of("held_out", many))
 
 
 def alike(one, other):
@@ -108,7 +108,7 @@ def test_two_nodes_play_every_kind_of_player(where, folder, monkeypatch):
     for name in names:
         parts, agent = parts_of(name, 24, 12, monkeypatch), Entrant.of(name)
         far = in_order(where.played(visits.play, parts))
-        one, other = (evaluate.play_agent(agent, AT, seeds, 100, False, r).strokes[0] for r in (far, None))
+        one, other = (evaluate.play_agent(agent, AT, seeds, 100, r).strokes[0] for r in (far, None))
         assert same(one, other), name
     processes = {line.split()[0] for line in (folder / "noted").read_text().splitlines()}
     assert len(processes - {str(os.getpid())}) == 2

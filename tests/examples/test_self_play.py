@@ -12,7 +12,7 @@ from snooker_env import SnookerVectorEnv
 from snooker_env.players import SeenPlayer
 from tests.flips import flipped
 
-SHORT = ("--shots", "640", "--tables", "4", "--frames", "6", "--checked", "2", "--threads", "1")
+SHORT = ("--shots", "640", "--tables", "4", "--frames", "6", "--threads", "1")
 """Three rollouts of 256 shots."""
 
 

@@ -138,15 +138,6 @@ def test_a_post_without_a_body_has_no_fields_and_a_second_slash_does_no_harm(lin
     refused(line("/etc/passwd"), 404, "nothing")
 
 
-@pytest.mark.parametrize(
-    "address, words", [("http://127.0.0.1:9/x/", "no answer"), ("nonsense", "no address")]
-)
-def test_the_client_says_in_one_line_that_nobody_answers(address, words):
-    command = [sys.executable, ROOT / "examples" / "play_client.py", address]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1
-
-
 def test_heads_and_bodies_are_bounded_and_typed(line):
     refused(line("api/state", headers={"X-Long": "x" * 70_000}), 431, "")
     refused(line("api/state", headers={f"X-{k}": "x" * 100 for k in range(200)}), 431, "")

@@ -65,7 +65,7 @@ def test_copies_of_one_model_are_one_seed():
     alone = "a has 1 training seed: its intervals say nothing about other seeds."
     assert said(agent("a", (0, 0, 0, 0, 0))) == [alone]
     assert said(agent("a", (0, 1, 1, 1, 1))) == ["a has 2 training seeds, fewer than 5."]
-    assert report.agents_tables(report_of(agent("a", (0, 1, 1))))[1].rows[0][1] == "2"
+    assert report.agents_table(report_of(agent("a", (0, 1, 1))))[0].rows[0][7] == "2"
 
 
 def test_who_was_trained_on_what_is_played_is_named():
@@ -76,22 +76,15 @@ def test_who_was_trained_on_what_is_played_is_named():
 
 
 def test_the_agents():
-    ghost = {"label": "ghost_ball", "runs": [GHOST]}
-    trained, long = report.agents_tables(report_of(agent("a", imitated=300, seconds=None), ghost))
-    assert trained.header == ["agent", "recipe", "trained: noise", "fidelity", "physics", "cue", "gamma"]
-    assert trained.rows == [
-        ["a", "r", "none", "fast", "paper", "real", "0.95"],
-        ["ghost_ball", "not trained", "", "", "", "", ""],
-    ]
-    assert long.header == ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
-    assert long.rows == [["a", "5", "300", "1,000", "", ""]]
-    assert report.agents_tables(report_of(agent("a")))[1].rows[0][-3:] == ["1,000", "10", "100"]
-    for name, recipe in (
-        ("planner_500", "pre-trained, by the noise played"),  # its weights are known only when it plays
-        ("planner_mine:Mine", "not trained"),
-    ):
-        played = report_of({"label": "p", "runs": [{"from": name}]})
-        assert report.agents_tables(played)[0].rows == [["p", recipe, "", "", "", "", ""]]
+    names = {"g": "ghost_ball", "s": "stroke_value", "p": "planner_500", "m": "planner_mine:Mine"}
+    others = [{"label": label, "runs": [{"from": name}]} for label, name in names.items()]
+    trained, *said = report.agents_table(report_of(agent("a", imitated=300, seconds=None), *others))
+    amounts = ["gamma", "seeds", "imitated", "shots", "seconds"]
+    assert trained.header == ["agent", "recipe", "trained: noise", "fidelity", "physics", "cue", *amounts]
+    assert trained.rows == [["a", "r", "none", "fast", "paper", "real", "0.95", "5", "300", "1,000", ""]]
+    assert said == ["Pre-trained, by the noise played: s, p.", "Not trained: g, m."]
+    (table,) = report.agents_table(report_of(agent("a")))
+    assert table.rows[0][-2:] == ["1,000", "10"]
 
 
 PLAYED = {
@@ -108,39 +101,15 @@ def figure(value, low=None, high=None):
     return {"value": value, "low": low, "high": high}
 
 
-def row(label, noise, points, shares, ratios):
-    """What an agent did: points a visit, three shares, ratios of points."""
-    names = ("next_pot_after_a_pot", "easy_pot_left_by_a_pot", "high_colour_after_a_red")
-    figures = dict(zip(names, map(figure, shares), strict=True)) | {"points_a_visit": figure(points)}
-    more = {other: {"points_a_visit": ratio} for other, ratio in ratios.items()}
-    return PLAYED | {"agent": label, "noise": noise, "visits": 2000, "figures": figures, "ratios": more}
-
-
-@pytest.mark.parametrize(
-    ("ratio", "words", "more"),
-    [
-        ((2.0, 1.8, 2.2), "2.00 [1.80, 2.20]", ""),
-        ((0.5, 0.4, 0.6), "0.50 [0.40, 0.60]", ""),
-        ((1.1, 0.9, 1.3), "1.10 [0.90, 1.30]", ", a difference that 2,000 visits do not show"),
-    ],
-)
-def test_the_comparison_says_whose_is_which(ratio, words, more):
-    made = report_of(agent("a"), agent("b"))
-    made["results"] = [
-        row("a", "none", 20.0, (0.9, 0.5, 0.4), {"b": figure(*ratio)}),
-        row("b", "none", 10.0, (0.6, 0.2, None), {"a": figure(9.0, 8.0, 10.0)}),
-    ]
-    shares = "after a pot it pots again: 90.0 against 60.0 %; an easy pot is left: 50.0 against 20.0 %"
-    assert report.comparison(made) == [  # the other way round is not given again
-        "On layout held_out, noise none, fidelity standard, physics paper, cue real:",
-        f"a makes {words} times the points of b{more}; {shares}.",
-    ]
+def row(label, noise, points):
+    """What an agent did: points a visit."""
+    return PLAYED | {"agent": label, "noise": noise, "figures": {"points_a_visit": figure(points)}}
 
 
 def test_a_under_b():
     made = report_of(agent("a"), agent("b", noise="club"))
     points = {("a", "none"): 4.0, ("a", "club"): 1.0, ("b", "none"): 3.0, ("b", "club"): 2.0}
-    made["results"] = [row(label, noise, value, (None,) * 3, {}) for (label, noise), value in points.items()]
+    made["results"] = [row(label, noise, value) for (label, noise), value in points.items()]
     (table,) = report.cross(made)
     assert (
         table.title
@@ -200,16 +169,15 @@ def test_what_cannot_be_on_a_layout_is_left_out():
     shares = {"centuries": 0.0, "maximums": 0.0, "clearances": 0.5, "pot_rate": 0.5, "fouls_a_visit": 0.1}
     layouts = {"pots:easy": 30, "colours": 30, "random:10": 30, "opened": 30}
     tables = tables_of(*(result(layout, **shares) for layout in layouts), layouts=layouts)
-    where = "{}, 30 visits, physics paper, fidelity standard, real cue: {}"
+    where = "{}, 30 visits, noise none, physics paper, fidelity standard, real cue"
     for layout, breaks in (
         ("pots:easy", ["clearances %"]),
         ("colours", ["clearances %"]),
         ("random:10", ["centuries %", "clearances %"]),
         ("opened", ["centuries %", "147s %", "clearances %"]),
     ):
-        assert tables[where.format(layout, "breaks")].header[2:] == breaks
-        assert tables[where.format(layout, "potting and position")].header[2:] == ["pot rate %"]
-        assert where.format(layout, "colours") not in tables
+        shown = tables[where.format(layout)].header
+        assert shown == ["agent", *breaks, "best", "pot rate %", "fouls a visit", "ms"]
     assert most_points("held_out") == 147 and most_points("pots:hard") == 1
 
 
