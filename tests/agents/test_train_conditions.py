@@ -10,7 +10,7 @@ from agents.features.observed import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import ExpertIteration
 from agents.learning.hyperparameters import SHOT_OPTIONS, Recipe
-from agents.learning.model_files import packed, read
+from agents.learning.model_files import pack_model, read
 from agents.learning.models import load_trained
 from agents.players.trained import load_player
 from snooker_env.benchmark import play_visits, summary
@@ -138,9 +138,9 @@ def test_it_sees_those_of_the_table_that_it_plays_on(observed, monkeypatch):
 
 def test_such_a_model_is_stored_and_read(observed, tmp_path):
     trained = load_trained(observed, "agent")
-    (tmp_path / "plain.zip").write_bytes(packed(trained))
+    (tmp_path / "plain.zip").write_bytes(pack_model(trained))
     again = read(tmp_path / "plain.zip", "agent")
-    assert packed(again) == packed(trained) and again.env_options == trained.env_options
+    assert pack_model(again) == pack_model(trained) and again.env_options == trained.env_options
 
 
 def test_a_run_that_does_not_observe_them_cannot_begin_to(tmp_path, refused):

@@ -35,7 +35,7 @@ def test_only_the_known_slips_of_the_tables_are_marked():
 @pytest.mark.parametrize("topspin", [0.0, 40.0])
 def test_models_without_friction_are_the_package_without_friction(e, topspin):
     v1, w1, v2, w2 = shots.impact(1.2, topspin, 37.0, sn.Physics(e_b=e, mu_bb=0.0))
-    v_c, v_o, angle_c, angle_o = shots.closed(e, 0.0, cloth=True)(1.2, topspin, 37.0)
+    v_c, v_o, angle_c, angle_o = shots.make_closed_form(e, 0.0, cloth=True)(1.2, topspin, 37.0)
     for v, w, speed, angle in ((v1, w1, v_c, angle_c), (v2, w2, v_o, angle_o)):
         x, y = shots.rolling(v, w)
         assert np.hypot(x, y) == pytest.approx(speed, rel=1e-12)
@@ -45,8 +45,10 @@ def test_models_without_friction_are_the_package_without_friction(e, topspin):
 @pytest.mark.parametrize("cut", [5.0, 50.0])
 def test_planar_friction_is_the_package_for_a_stun_shot(cut):
     """Slip that ends (5 deg) and slip that lasts (50 deg); with no roll the planar model is exact."""
-    planar = shots.closed(shots.E_B, shots.MU_BB, cloth=True)
-    assert planar(1.2, 0.0, cut) == pytest.approx(shots.solved("reference")(1.2, 0.0, cut), rel=1e-9)
+    planar = shots.make_closed_form(shots.E_B, shots.MU_BB, cloth=True)
+    assert planar(1.2, 0.0, cut) == pytest.approx(
+        shots.make_solved_model("reference")(1.2, 0.0, cut), rel=1e-9
+    )
 
 
 def test_throw_of_tp_a14():

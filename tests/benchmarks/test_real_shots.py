@@ -108,9 +108,9 @@ def test_constants_move_towards_those_of_the_shots(file):
     starts = [np.array([*strike, LATE]) for strike in STRIKES]
     judges = [Judge(shot, other) for shot in shots]
     before = constants.loss(
-        [constants.rms(j, strikes.settled(j, s)[0]) for j, s in zip(judges, starts, strict=True)]
+        [constants.rms(j, strikes.settle_strike(j, s)[0]) for j, s in zip(judges, starts, strict=True)]
     )
-    found, after = constants.fitted(
+    found, after = constants.fit_real_shots(
         other, shots, 0.02, names=("mu_r",), say=lambda text: None, strikes=starts
     )
     judges = [Judge(shot, found) for shot in shots]

@@ -11,7 +11,7 @@ from agents.features.observed import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import FRESH, STARTS, ExpertIteration, Starts, judge_rewards
 from agents.learning.hyperparameters import Recipe
-from agents.learning.model_files import packed, read
+from agents.learning.model_files import pack_model, read
 from agents.learning.models import zip_model
 from agents.learning.value_network import value_of
 from snooker_env import player
@@ -258,13 +258,13 @@ def test_policy_and_value_are_saved_and_read_together(tmp_path):
     scores = PolicyProposals(model.policy.fused).scores(at)[0]
     (tmp_path / "model.zip").write_bytes(zip_model(model))
     trained = read(tmp_path / "model.zip", "agent")
-    (tmp_path / "plain.zip").write_bytes(packed(trained))
+    (tmp_path / "plain.zip").write_bytes(pack_model(trained))
     again = read(tmp_path / "plain.zip", "agent")
     for one in (trained, again):
         assert one.recipe == "ppo_value" and one.imitated == STATES and one.gamma == 0.0
         assert np.array_equal(value_of(one.policy.position_value, 1e-3)(at), expected)
         assert np.array_equal(PolicyProposals(one.policy.fused).scores(at)[0], scores)
-    assert packed(again) == packed(trained)
+    assert pack_model(again) == pack_model(trained)
     env = tables(3, noise="professional", aim="absolute")
     planners = [player(f"planner_30@{tmp_path / name}") for name in ("model.zip", "plain.zip", "")]
     one, *others = (made.at(env).play(Positions.of(env), np.arange(3)).values for made in planners)

@@ -8,7 +8,7 @@ from agents import learn_worth
 from agents.learn_worth import main
 from agents.learning import frame_self_play
 from agents.learning.frame_self_play import frames
-from agents.learning.frame_worth import TRACE, by_stage, calibration, fitted, fitted_chance, targets
+from agents.learning.frame_worth import TRACE, by_stage, calibration, fit_network, fitted_chance, targets
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Positions
 from snooker_env.planning.learned.dense_layers import Layers
@@ -85,8 +85,10 @@ def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees(monkeypatch
     k = np.flatnonzero(left.game[:, columns.STRIKER] == 1)[:1]  # a stroke after which the other comes
     decided.tried[0] = tried._replace(strokes=tried.strokes[k])
     left = turn_to_striker(left[k])
-    judged, seen = frame_self_play._judged, []
-    monkeypatch.setattr(frame_self_play, "_judged", lambda *args: seen.append(args[1]) or judged(*args))
+    judged, seen = frame_self_play._judge_strokes, []
+    monkeypatch.setattr(
+        frame_self_play, "_judge_strokes", lambda *args: seen.append(args[1]) or judged(*args)
+    )
     replies, first = frame_self_play._replies(player, decided, np.array([0]), np.random.default_rng(0))
     hard = bool((tried.kinds > 0).any())
     assert hard and first.tolist() == [0] * frame_self_play.REPLIES[hard] and len(seen) == 1
@@ -99,7 +101,7 @@ def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees(monkeypatch
 def test_a_position_is_worth_what_its_best_stroke_brings():
     player, decided = decided_at_the_break("none")
     at, rng, errors = decided.start, np.random.default_rng(0), np.zeros((1, 5))
-    again, here, row = frame_self_play._judged(player, at, np.array([5]), rng)
+    again, here, row = frame_self_play._judge_strokes(player, at, np.array([5]), rng)
     gains = player.judge.gains(again.start, here, again.strokes.values, errors)
     assert row["worth"] == pytest.approx(gains[:, 1], rel=1e-12)
 
@@ -114,7 +116,7 @@ def test_replies_are_to_the_best_stroke_and_as_often_to_one_of_the_finalists(mon
         return outcomes(at, rows, strokes, errors)
 
     monkeypatch.setattr(player.judge, "outcomes", watched)
-    monkeypatch.setattr(frame_self_play, "_judged", lambda *args: (None, np.arange(len(args[1])), {}))
+    monkeypatch.setattr(frame_self_play, "_judge_strokes", lambda *args: (None, np.arange(len(args[1])), {}))
     frame_self_play._replies(player, decided, np.zeros(200, np.int64), np.random.default_rng(0))
     strokes, finalists = decided.tried[0].strokes.values, frame_self_play.FINALISTS
     pick = (struck[0][:, None] == strokes[None, :finalists]).all(axis=2).argmax(axis=1)
@@ -139,7 +141,7 @@ def test_the_league_is_past_selves_and_the_planner(tmp_path):
     def others(k, *past):
         rounds = learn_worth.WorthRounds(tmp_path, 2, 40 * learn_worth.TABLES, 30, 0, False, None)
         rounds._past.extend(past)
-        return [part["other"] for part in rounds._drawn(k)]
+        return [part["other"] for part in rounds._list_arguments(k)]
 
     assert others(1, "first", "second")[::2] == [None] * 20
     assert set(others(1, "first", "second")[1::2]) == {"first", "second", "planner"}
@@ -150,7 +152,7 @@ def test_a_network_learns_what_it_is_told_beside_the_value():
     rng = np.random.default_rng(0)
     seen = rng.standard_normal((16_000, SIZE)).astype(np.float32)
     wanted = POINTS * (seen[:, -1] + 0.3 * seen[:, 3] - 0.2)
-    layers = fitted(seen, wanted, 0, 30)
+    layers = fit_network(seen, wanted, 0, 30)
     said = worth_of(Layers(layers, "relu"), seen)
     assert np.sqrt(np.mean((said - wanted) ** 2)) < 0.15 * np.std(wanted - POINTS * seen[:, -1])
 
@@ -207,7 +209,7 @@ def test_the_chance_to_win_is_learned_from_frames_between_equals(monkeypatch):
     rows["hand"] = rows["seen"]
     other = rows | {"won": np.where(rows["equals"], rows["won"], ~rows["won"])}
     none = rows | {"won": np.where(rows["equals"], ~rows["won"], rows["won"])}
-    kept, same, turned_round = (learn_worth.learned([one], 0)[1:] for one in (rows, other, none))
+    kept, same, turned_round = (learn_worth.fit_worth([one], 0)[1:] for one in (rows, other, none))
     assert kept[0] == same[0] and kept[1] == same[1]
     assert turned_round[1]["chance_error"] != kept[1]["chance_error"]
 

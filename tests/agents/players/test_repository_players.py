@@ -9,7 +9,7 @@ import pytest
 import snooker_env as sn
 from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe
-from agents.learning.models import PRETRAINED, load_trained, pretrained
+from agents.learning.models import PRETRAINED, load_trained, pretrained_names
 from agents.learning.networks import arrays_of
 from agents.players.trained import load_player, read_model
 from snooker_env.planning import Positions
@@ -26,10 +26,10 @@ def at_tables(n=6, layout="random:6"):
 
 
 def test_every_pretrained_model_has_an_entry_point():
-    assert {name for name in sn.players() if name.startswith("ppo_")} == set(pretrained())
+    assert {name for name in sn.players() if name.startswith("ppo_")} == set(pretrained_names())
 
 
-@pytest.mark.parametrize("name", pretrained())
+@pytest.mark.parametrize("name", pretrained_names())
 def test_a_player_is_a_function_of_a_position_and_a_seed(name):
     at, player, seeds = at_tables(), sn.player(name).at({"noise": "professional"}), np.arange(6)
     together = player.play(at, seeds)
