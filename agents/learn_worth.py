@@ -81,7 +81,7 @@ class WorthRounds(Rounds):
         shared = {"options": FRAME, "layers": self.layers, "chance": self.chance, "explore": EXPLORE}
         shared |= {"budget": self._budget, "replies": not self._chance_alone}
         parts = [(shared, part) for part in self._list_arguments(k)]
-        for j, part in enumerate(in_order(self._where.played(frames, parts))):
+        for j, part in enumerate(in_order(self._where.play_parts(frames, parts))):
             part["target"] = targets(part)
             part["held"] = (part["frame"] + j) % HELD == 0
             part["unit"] = part["frame"] + TABLES * j
