@@ -281,7 +281,7 @@ def bare(env: object) -> Any:
 def of_tables(tables: Tables) -> Positions:
     """The positions of an environment's tables, those of frames as their strikers see them."""
     game, own = tables.game.copy(), tables.conditions if tables.rules.drawn else None
-    saved: columns.Layouts | None = getattr(tables, "saved", None)
+    saved: columns.Layouts | None = getattr(tables, "layouts_before", None)
     if saved is None:
         game[:, columns.STEPS] = 0
         return Positions(tables.positions.copy(), tables.on_table.copy(), game, None, own)
