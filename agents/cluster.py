@@ -37,7 +37,7 @@ class Here:
     def __init__(self, threads=None):
         self._threads = threads
 
-    def played(self, task, parts):
+    def play_parts(self, task, parts):
         """Yield number and result of each part (shared data, arguments), in any order."""
         for k, (shared, args) in enumerate(parts):
             yield k, task(shared, args, self._threads)
@@ -49,8 +49,8 @@ class Cluster:
     def __init__(self, ray):
         self._ray, self.says = ray, f" on {int(ray.cluster_resources().get('CPU', 0))} cores"
 
-    def played(self, task, parts):
-        """As ``Here.played``. ClusterError if a part is given up, or is played by other software."""
+    def play_parts(self, task, parts):
+        """As ``Here.play_parts``. ClusterError if a part is given up, or is played by other software."""
         ray, wanted = self._ray, source()
         sent = {id(shared): ray.put(shared) for shared, _ in parts}
         far = ray.remote(num_cpus=1, max_retries=RETRIES)(_far)
@@ -137,11 +137,11 @@ def kept_at(task, parts):
     return KEPT / digest_of([*same, *([shared[id(one)], args] for one, args in parts)])
 
 
-def ended(task, parts, where):
+def play_and_keep(task, parts, where):
     """Yield number and result of each part. Those of a cluster are kept, each a file, until the job's folder is removed: the
     same job goes on with what an interrupted one has kept."""
     if isinstance(where, Here):
-        yield from where.played(task, parts)
+        yield from where.play_parts(task, parts)
         return
     folder, left = kept_at(task, parts), []
     folder.mkdir(parents=True, exist_ok=True)
@@ -150,7 +150,7 @@ def ended(task, parts, where):
             yield k, kept_arrays(folder / f"{k}.npz")
         except (OSError, ValueError):  # it is missing, or damaged
             left.append(k)
-    for n, result in where.played(task, [parts[k] for k in left]):
+    for n, result in where.play_parts(task, [parts[k] for k in left]):
         keep_arrays(folder / f"{left[n]}.npz", result)
         yield left[n], result
 

@@ -71,7 +71,7 @@ def nearest_choices(strokes, at, masks, planner):
     return np.where(there.any(axis=1), choices[np.arange(n), off.argmin(axis=1)], first)
 
 
-def played(task, name, form, seeds, threads=None):
+def play_table_episodes(task, name, form, seeds, threads=None):
     """One episode on each of the tables with these seeds: arrays ``COLUMNS`` of all strokes, episode after episode,
     ``last`` observations (and ``last_masks``) of each, and ``lengths`` (n,)."""
     n, reads = len(seeds), task.options(**free_options(task, "strokes"))
@@ -136,7 +136,7 @@ def episodes_of(part, seeds, first):
         yield EpisodeBuffer(id=first + k, seed=seeds[k], observations=shown, infos=infos, **ended)
 
 
-def written(folder, name, task, player, form, parts):
+def write_dataset(folder, name, task, player, form, parts):
     """Write the parts as the data set ``name``, whole or not at all: its figures."""
     import minari
     from minari.dataset.minari_storage import MinariStorage
@@ -267,7 +267,7 @@ def main(argv=None):
                 except ValueError as error:
                     parser.error(str(error))
                 file.parent.mkdir(parents=True, exist_ok=True)
-                part = played(task, args.player, form, seeds, args.threads)
+                part = play_table_episodes(task, args.player, form, seeds, args.threads)
                 keep_arrays(file, part)
                 new += len(part["rewards"])
             parts.append(file)
@@ -278,7 +278,7 @@ def main(argv=None):
             progress.at(strokes)
     seconds = time.perf_counter() - began
     folder = out / name
-    figures = written(folder, name, task, args.player, form, map(kept_arrays, parts))
+    figures = write_dataset(folder, name, task, args.player, form, map(kept_arrays, parts))
     if new:
         print(
             f"{new:,} strokes played at {new / seconds:,.0f} strokes/s: 1,000,000 take {1e6 / new * seconds / 3600:.2g} h"

@@ -48,11 +48,21 @@ with needs("agents.evaluate"):
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 
-    from .cluster import KEPT, ClusterError, Here, add_ray, checked_ray, ended, in_order, kept_at, place
+    from .cluster import (
+        KEPT,
+        ClusterError,
+        Here,
+        add_ray,
+        checked_ray,
+        in_order,
+        kept_at,
+        place,
+        play_and_keep,
+    )
     from .evaluation.entrants import Entrant, entrants_of
     from .evaluation.metrics import AXES, EntrantMetrics
     from .evaluation.travel import pack
-    from .evaluation.visits import joined, parts_of, play
+    from .evaluation.visits import join_parts, parts_of, play
     from .report import markdown, parts, verdict
 
 LAYOUT, VISITS, OTHERS = "held_out", 2000, 500
@@ -73,8 +83,8 @@ def play_agent(agent, condition, seeds, resamples, results=None):
     """
     each = parts_of_agent(agent, condition, seeds)
     if results is None:
-        results = in_order(Here().played(play, [part for run in each for part in run]))
-    runs = [joined(list(islice(results, len(run))), len(seeds)) for run in each]
+        results = in_order(Here().play_parts(play, [part for run in each for part in run]))
+    runs = [join_parts(list(islice(results, len(run))), len(seeds)) for run in each]
     counted = [counts(strokes) for strokes in runs]
     columns = {name: np.stack([one[name] for one in counted]) for name in counted[0]}
     return EntrantMetrics(agent, columns, runs, resamples)
@@ -128,7 +138,7 @@ def parser():
     return p
 
 
-def checked(args):
+def parse_evaluation(args):
     """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError."""
     agents = entrants_of(args.agent, args, "agent")
     labels = [agent.label for agent in agents]
@@ -182,7 +192,7 @@ def main(argv=None):
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_args(argv)
     try:
-        agents, references, seeds = checked(args)
+        agents, references, seeds = parse_evaluation(args)
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
@@ -199,14 +209,14 @@ def main(argv=None):
         total = sum(len(args["seeds"]) for _, args in job)
         with place(args.ray) as where, Progress("evaluation", total, "visits") as progress:
 
-            def counted():
-                for k, result in ended(play, job, where):
+            def count_off():
+                for k, result in play_and_keep(play, job, where):
                     part = job[k][1]
                     layout = part["condition"]["layout"] + where.says
                     progress.at(progress.done + len(part["seeds"]), layout)
                     yield k, result
 
-            evaluate(report, agents, seeds, in_order(counted()))
+            evaluate(report, agents, seeds, in_order(count_off()))
     except KeyboardInterrupt:
         why, code = "interrupted", INTERRUPTED
     except ClusterError as error:

@@ -30,7 +30,7 @@ with needs("agents.learn_worth"):
 
     from .cluster import add_ray, checked_ray, in_order, place
     from .learning.frame_self_play import FRAME, TABLES, frames
-    from .learning.frame_worth import calibration, fitted, fitted_chance, targets
+    from .learning.frame_worth import calibration, fit_network, fitted_chance, targets
     from .learning.loop import Loop
     from .learning.rounds import Rounds, arrays_of, shares_of_parts
 
@@ -80,15 +80,15 @@ class WorthRounds(Rounds):
     def parts_of(self, k):
         shared = {"options": FRAME, "layers": self.layers, "chance": self.chance, "explore": EXPLORE}
         shared |= {"budget": self._budget, "replies": not self._chance_alone}
-        parts = [(shared, part) for part in self._drawn(k)]
-        for j, part in enumerate(in_order(self._where.played(frames, parts))):
+        parts = [(shared, part) for part in self._list_arguments(k)]
+        for j, part in enumerate(in_order(self._where.play_parts(frames, parts))):
             part["target"] = targets(part)
             part["held"] = (part["frame"] + j) % HELD == 0
             part["unit"] = part["frame"] + TABLES * j
             part |= {name: part[name].astype(np.float16) for name in ("seen", "hand")}
             yield {name: part[name] for name in LEARNED_FROM}
 
-    def _drawn(self, k):
+    def _list_arguments(self, k):
         """The arguments of the parts of round k."""
         rng, parts = np.random.default_rng([self._seed, k]), self.parts
         scales = SCALES[0] * (SCALES[1] / SCALES[0]) ** shares_of_parts(rng, parts)
@@ -100,26 +100,26 @@ class WorthRounds(Rounds):
 
     def fit(self):
         given = self.layers if self._chance_alone else None
-        layers, chance, figures = learned(self.rounds[-KEEP:], self._seed + len(self.rounds) - 1, given)
+        layers, chance, figures = fit_worth(self.rounds[-KEEP:], self._seed + len(self.rounds) - 1, given)
         return arrays_of("worth", layers) | {"chance": np.array(chance)}, figures
 
     def take(self, arrays):
         self.layers, self.chance = worth_in(arrays)
         self._past.append((self.layers, self.chance))
 
-    def packed(self):
+    def pack_weights(self):
         """The file of weights."""
         return packed_arrays(arrays_of("worth", self.layers) | {"chance": np.array(self.chance)})
 
 
-def learned(rounds, seed, layers=None):
+def fit_worth(rounds, seed, layers=None):
     """Layers, if they are None, and chance fitted to the rows of some rounds, and figures of the frames kept from the fit."""
     both = {name: np.concatenate([one[name] for one in rounds]) for name in rounds[0]}
     used = ~both["held"]
     in_hand = used & (both["seen"] != both["hand"]).any(axis=1)
     seen = np.concatenate([both["seen"][used], both["hand"][in_hand]]).astype(np.float32)
     wanted = np.concatenate([both["target"][used], both["target"][in_hand]])
-    layers = fitted(seen, wanted, seed, PASSES) if layers is None else layers
+    layers = fit_network(seen, wanted, seed, PASSES) if layers is None else layers
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
     # a frame that was stopped was won by nobody; nor is it known what follows positions beside the frames, or what an
     # equal would have made of it
@@ -177,7 +177,7 @@ def main(argv=None):
     except ValueError as error:
         p.error(str(error))
     for file in (args.out / WORTH, *([FOLDER / WORTH] if args.export else [])):
-        write_atomic(file, rounds.packed())
+        write_atomic(file, rounds.pack_weights())
     for k, figures in enumerate(rounds.curve):
         print(f"round {k}: " + "  ".join(f"{name} {value:.4g}" for name, value in figures.items()))
     return 0

@@ -37,8 +37,8 @@ with needs("agents.tournament"):
     from .cluster import ClusterError, Here, add_ray, checked_ray, place
     from .evaluation.entrants import entrants_of
     from .evaluation.tournament_figures import ANCHOR_ELO, PRIOR, schedule
-    from .evaluation.tournament_file import faults, kept, result_of, seeds_of
-    from .evaluation.tournament_play import CHUNK, TABLES, drawn, play
+    from .evaluation.tournament_file import faults, read_incomplete, result_of, seeds_of
+    from .evaluation.tournament_play import CHUNK, TABLES, play, seed_of_draws
     from .evaluation.tournament_report import markdown, parts
     from .evaluation.travel import pack
 
@@ -82,7 +82,7 @@ def parser():
     return p
 
 
-def checked(args):
+def parse_tournament(args):
     """(entrants, protocol, game) of the command line. Raises ValueError before anything is played."""
     if len(args.players) < 2:
         raise refuse("players", " ".join(args.players), "must be two or more")
@@ -154,7 +154,7 @@ class Tournament:
             seeds = seeds_of(p)
             for some in (seeds[k : k + CHUNK] for k in range(0, len(seeds), CHUNK)):
                 first, second = (self.labels[k] for k in pair)
-                draws = [drawn(first, second, some[0]), drawn(second, first, some[0])]
+                draws = [seed_of_draws(first, second, some[0]), seed_of_draws(second, first, some[0])]
                 args = {"pair": list(pair), "seeds": some, "draws": draws}
                 args |= {"game": self.game, "best_of": p["best_of"]}
                 parts.append(args)
@@ -175,7 +175,7 @@ class Tournament:
         parts = [part for part in self.parts if not played(part)]
         shared = {"players": [pack(entrant, 0) for entrant in self.entrants]}
         here = self._here(parts, shared, threads, tick)
-        far = where.played(play, [(shared, part) for part in parts])
+        far = where.play_parts(play, [(shared, part) for part in parts])
         for k, result in here if isinstance(where, Here) else far:
             self.rows = sorted([*self.rows, *result["rows"].tolist()], key=lambda row: row[:5])
             for side, player in enumerate(parts[k]["pair"]):
@@ -209,14 +209,14 @@ def main(argv=None):
     if args.check:
         return _check(args.check)
     try:
-        entrants, protocol, game = checked(args)
+        entrants, protocol, game = parse_tournament(args)
         before = None
         if args.resume and args.out.exists():
-            before = kept(args.out, protocol, game, [(e.label, e.runs[0]) for e in entrants])
+            before = read_incomplete(args.out, protocol, game, [(e.label, e.runs[0]) for e in entrants])
     except ValueError as error:
         p.error(str(error))
     if before is not None and before["incomplete"] is None:
-        return _shown(before, args.markdown)
+        return _print_tables(before, args.markdown)
     line = "python -m agents.tournament " + shlex.join(argv)
     tournament = Tournament(entrants, protocol, game, line, before)
     snooker_env.warmup()
@@ -228,7 +228,7 @@ def main(argv=None):
     content = tournament.result(why)
     if args.out:
         write_result(args.out, content)
-    _shown(content, args.markdown)
+    _print_tables(content, args.markdown)
     if args.out:
         print(f"out: {args.out}")
     return code
@@ -238,7 +238,7 @@ def _play(tournament, args):
     """Play and say how far it is: why it is incomplete, or None, and the exit code."""
     last = [time.monotonic()]
 
-    def saved():
+    def save_file():
         if args.out and time.monotonic() - last[0] > SAVED:
             write_result(args.out, tournament.result("it was still running"))
             last[0] = time.monotonic()
@@ -249,7 +249,7 @@ def _play(tournament, args):
         with place(args.ray) as where:
             what = f"tournament{where.says}"
             with Progress(what, total, units, done=tournament.ended, quiet=args.quiet) as progress:
-                tournament.play(where, args.threads, progress.at, saved)
+                tournament.play(where, args.threads, progress.at, save_file)
     except (KeyboardInterrupt, ClusterError) as error:
         stopped, number = isinstance(error, KeyboardInterrupt), tournament.ended
         why = f"{'interrupted' if stopped else error} after {number:,} of {total:,} {units}"
@@ -262,7 +262,7 @@ def _play(tournament, args):
     return None, 0
 
 
-def _shown(content, file):
+def _print_tables(content, file):
     """Print the tables and write them as Markdown."""
     show(parts(content))
     if file:

@@ -85,9 +85,9 @@ def judge_strokes(training, loop):
     players = {"trained": best, "ghost_ball": "ghost_ball", "random": "random"}
     players = {name: snooker_env.player(one) for name, one in players.items()}
     figures = held_out(players, training.settings.eval_visits, loop, noise=noise, cue=training.strokes.cue)
-    learned = conclusion(AGENT, training.visits.tried, 0, figures)
+    learned = conclusion(AGENT, training.visits.trial_shots, 0, figures)
     results = {
-        "steps": sum(part.tried for part in training.parts),
+        "steps": sum(part.trial_shots for part in training.parts),
         "simulated_shots": sum(part.simulated for part in training.parts),
         "without": "those of the planner and the tactician that it learned from",
         "curve": {part.name: part.curve for part in training.parts},

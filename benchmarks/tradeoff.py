@@ -125,7 +125,7 @@ def play_shots(make, n, repeats, physics, seed):
     return {"potted": potted, "contacts": float(hits.mean()), "rows": rows}
 
 
-def dominated(rows, name, error):
+def find_dominated(rows, name, error):
     """The fidelities that are both faster and nearer the truth than ``name``."""
     others = [f for f in rows if f not in (name, ERRORS, "reference")]
     return [f for f in others if rows[f]["us"] < rows[name]["us"] and error(rows[f]) < error(rows[name])]
@@ -195,7 +195,7 @@ def recommendation(impact_rows, sets):
         f" {sets['full tables']['rows']['standard']['cue_mm'][1]:.2g} mm)."
     )
     euler = [f for f in IMPACTS if f.startswith("euler")]
-    beaten = {f: dominated(impact_rows, f, lambda r: r["angle_deg"][1]) for f in euler}
+    beaten = {f: find_dominated(impact_rows, f, lambda r: r["angle_deg"][1]) for f in euler}
     free = [f for f in euler if not beaten[f]]
     steps = np.array([float(f[6:]) for f in euler])
     order = -np.polyfit(np.log(steps), np.log([impact_rows[f]["angle_deg"][0] for f in euler]), 1)[0]

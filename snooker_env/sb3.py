@@ -71,7 +71,7 @@ class SnookerVecEnv(VecEnv):
         known = (*self.tables.tables.reals, *self.tables.tables.COUNTS, "foul")
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
-        self._actions = None
+        self._actions: Any = None
         self.episode_returns: Floats = np.zeros(num_envs)
         self.episode_lengths: Ints = np.zeros(num_envs, np.int64)
         """Rewards and steps so far, (n,) each: no state of a table holds them, save them with it."""
@@ -144,13 +144,13 @@ class SnookerVecEnv(VecEnv):
             raise AttributeError(str(error)) from None
         return [each[k] for k in self._get_indices(indices)]
 
-    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+    def set_attr(self, attr_name: str, value: object, indices: object = None) -> None:
         """Refuse with AttributeError: the tables share everything. Make another ``SnookerVecEnv`` instead."""
         words = "the tables share everything; make another SnookerVecEnv"
         raise AttributeError(f"{attr_name} cannot be set: {words}")
 
     def env_method(
-        self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
+        self, method_name: str, *method_args: object, indices: Any = None, **method_kwargs: object
     ) -> list[Any]:
         """Call ``get_state`` or ``action_masks`` for some tables; ValueError for another method."""
         choice("method_name", method_name, ("get_state", "action_masks"))

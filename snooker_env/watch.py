@@ -32,7 +32,7 @@ USUAL, TACTICIAN = "planner", "tactician"  # who plays a visit and a frame unles
 FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}  # options of a frame that is watched
 
 
-def play_episode(who: Player, seed: int, **options: Any) -> SnookerEnv:
+def play_episode(who: Player, seed: int, **options: object) -> SnookerEnv:
     """A ``SnookerEnv`` after a whole visit or frame, with its history; a visit is that of ``play_visits``."""
     env = SnookerEnv(**{**VISITS, **options})
     bound, decision = who.at(env), 0

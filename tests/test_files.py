@@ -76,7 +76,7 @@ READERS = {
     "a result": result_of,
     "a track of texts": lambda file: text._rows_in(file, {"track": "text", "visits": 2}),
     "a report": report.read,
-    "a tournament": lambda file: tournament_file.kept(file, {}, {}, []),
+    "a tournament": lambda file: tournament_file.read_incomplete(file, {}, {}, []),
     "settings of a run": in_folder(SETTINGS, lambda folder: kept_settings(folder, Settings)),
     "a model": zip_model,
 }

@@ -85,7 +85,7 @@ def _of_thread(uncaught):
 def command(name):
     """A decorator for ``main(argv)`` of the command ``name``: it ends as ``snooker_env._lib.command.exit_code`` says."""
 
-    def made(main):
+    def import_and_run(main):
         @functools.wraps(main)
         def run(argv=None):
             any_terminal()
@@ -101,7 +101,7 @@ def command(name):
 
         return run
 
-    return made
+    return import_and_run
 
 
 def in_one_line(kind, error, trace):

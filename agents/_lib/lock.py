@@ -24,7 +24,7 @@ class Lock:
         try:
             self._lock.acquire(timeout=0)
         except Timeout:
-            raise _taken(folder, field, self._path) from None
+            raise _refuse_taken_folder(folder, field, self._path) from None
         with suppress(OSError):  # Windows lets nobody write or read a locked file
             self._path.write_text(
                 f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n"
@@ -46,7 +46,7 @@ class Lock:
         self.release()
 
 
-def _taken(folder, field, path):
+def _refuse_taken_folder(folder, field, path):
     """The ValueError for a folder that another process holds."""
     who = ""
     with suppress(OSError):

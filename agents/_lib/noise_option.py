@@ -8,7 +8,7 @@ from snooker_env.tasks import Noise
 ERRORS = "aim_deg", "speed_rel", "speed_abs", "offset_mm", "elevation_deg"
 
 
-def scaled(noise, scale):
+def scale_noise(noise, scale):
     """Every error times ``scale``; how errors of direction grow with the speed is kept."""
     return replace(noise, **{name: getattr(noise, name) * scale for name in ERRORS})
 
@@ -23,4 +23,4 @@ def noise_option(text):
         scale = float(scale)
     except ValueError:
         raise refuse("noise", text, "must be LEVEL or LEVEL*SCALE") from None
-    return asdict(scaled(noise, number("noise scale", scale, 0.01, 100.0)))
+    return asdict(scale_noise(noise, number("noise scale", scale, 0.01, 100.0)))

@@ -16,7 +16,7 @@ from snooker_env.players.saved import saved_player
 from snooker_env.players.saved_models import SavedModel
 
 from ..learning.model_files import Trained
-from ..learning.models import POLICY, PRETRAINED, file_of, pretrained
+from ..learning.models import POLICY, PRETRAINED, file_of, pretrained_names
 from ..players.trained import read_model
 
 UNKNOWN = dict.fromkeys(("layout", "noise", "fidelity", "physics", "cue"), "unknown")
@@ -43,7 +43,7 @@ class Entrant:
             label, paths = "", text
         runs = []
         for path in paths.split(","):
-            if path in pretrained():
+            if path in pretrained_names():
                 path = str(PRETRAINED / f"{path}.zip")
             some = [path] if Path(path).exists() else _names(path) or sorted(glob.glob(path))
             if not some:
@@ -145,11 +145,11 @@ def _model(path, trust, options):
     ours = read_model(file, "agent")
     if ours is not None:
         return ours
-    told = _told(SavedModel.of(file, "agent"), dict(options))  # before anything in it runs
+    told = _read_record(SavedModel.of(file, "agent"), dict(options))  # before anything in it runs
     return Foreign(saved_player(file, dict(options), trust, "agent").seen, path, told)
 
 
-def _told(saved, options):
+def _read_record(saved, options):
     """The training record of a model that train.py did not make."""
     steps, gamma, seed = (saved.data.get(name) for name in ("num_timesteps", "gamma", "seed"))
     try:

@@ -166,13 +166,13 @@ def _elo(pairs, k, anchor, resamples):
         for (i, j), values in zip((pair.players, pair.players[::-1]), pair.sums["won"], strict=True):
             wins[i, j], seeds[i, j] = values.sum(), pair.seeds
             drawn[:, i, j] = pair.samples(values, resamples)
-    met = linked(seeds > 0, anchor)
+    met = find_reachable(seeds > 0, anchor)
     here = np.flatnonzero(met)
     at = int(np.searchsorted(here, anchor))
     among = np.ix_(here, here)
     both = strengths(np.concatenate([wins[None], drawn])[(slice(None), *among)], PRIOR)
     elo = ANCHOR_ELO + ELO * (both - both[:, at : at + 1])
-    sound = compared(wins[among], at)
+    sound = find_comparable(wins[among], at)
     all_elo = [{"elo": figure(np.nan, [np.nan]), "elo_by_prior": True} for _ in range(k)]
     for j, i in enumerate(here):
         mine = figure(elo[0, j], elo[1:, j])
@@ -228,7 +228,7 @@ def chance(ahead):
     return 0.5 * (1.0 + np.tanh(0.5 * np.asarray(ahead, np.float64)))
 
 
-def linked(edges, start):
+def find_reachable(edges, start):
     """Which players (k,) can be reached from one, itself included, by steps that ``edges`` (k, k) allow."""
     reached = np.zeros(len(edges), bool)
     reached[start] = True
@@ -237,10 +237,10 @@ def linked(edges, start):
     return reached
 
 
-def compared(wins, anchor):
+def find_comparable(wins, anchor):
     """Who (k,) won and lost something against the anchor, perhaps by way of others: results compare them."""
     won = np.asarray(wins) > 0
-    return linked(won, anchor) & linked(won.T, anchor)
+    return find_reachable(won, anchor) & find_reachable(won.T, anchor)
 
 
 def bound(others, matches, level=0.95):

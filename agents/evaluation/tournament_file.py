@@ -180,7 +180,7 @@ def _differences(value, want, name):
     return [] if same or close else [f"{name}: must be what follows from the rows"]
 
 
-def kept(path, protocol, game, sources):
+def read_incomplete(path, protocol, game, sources):
     """The content of an incomplete file of the same tournament. Raises ValueError."""
     content = read_result(path)
     wrong = faults(content)

@@ -133,7 +133,7 @@ class Encounter:
         for side, name in enumerate(("score", "opponent_score")):
             self.sums["points"][which, side] = info[name][which]
 
-    def ended(self, which, info):
+    def take_up_next(self, which, info):
         """The frames on the tables ``which`` (n,) bool have ended: write rows, take up the next frames."""
         for k in np.flatnonzero(which).tolist():
             winner, (seed, opener) = int(info["winner"][k]), self.unit[k].tolist()
@@ -171,7 +171,7 @@ def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
     return sorted(rows)
 
 
-def drawn(label, other, first):
+def seed_of_draws(label, other, first):
     """The seed of what a player draws against ``other`` in the matches from the seed ``first`` on."""
     return zlib.crc32(f"{label}\n{other}\n{first}".encode())
 
@@ -180,7 +180,7 @@ def play(shared, args, threads, tick=None):
     """The task of a part, a pair on some seeds: the rows, and each player's decisions, their time [s] and simulated shots.
 
     ``shared``: "players", of ``travel.pack``. ``args``: "pair" (indices), "seeds" of the matches, "draws"
-    (each player's ``drawn``), "game" as it stands in the file, "best_of"; ``tick`` is that of ``play_pair``.
+    (each player's ``seed_of_draws``), "game" as it stands in the file, "best_of"; ``tick`` is that of ``play_pair``.
     """
     both = zip(args["pair"], args["draws"], strict=True)
     players = [TimedPlayer(unpack(shared["players"][k]), seed) for k, seed in both]
@@ -211,7 +211,7 @@ def _play(meeting, agent, opponent, game, threads, tick):
         moved, over = ~done, np.zeros(len(done), bool)
         if done.any():
             before = meeting.unit.copy()
-            meeting.ended(going & done, info)
+            meeting.take_up_next(going & done, info)
             over = _renew(tables, meeting, done, before)
         now = matches - len(meeting.queue) - int(meeting.going.sum())
         if tick is not None and now != ended:

@@ -8,7 +8,7 @@ NAME = "snooker_env.tournament"
 """Name of the schema of a tournament's file."""
 
 
-def ranked(content):
+def labels_by_elo(content):
     """The labels of those who played, the highest Elo first."""
     players = content["figures"]["players"]
     played = [label for label, one in players.items() if one is not None]
@@ -21,7 +21,7 @@ def _unit(content):
 
 def tables_of(content):
     """The tables of a tournament."""
-    figures, order, best_of = content["figures"], ranked(content), content["protocol"]["best_of"]
+    figures, order, best_of = content["figures"], labels_by_elo(content), content["protocol"]["best_of"]
     won = "matches" if best_of > 1 else "frames"
     spent = {player["label"]: player for player in content["players"]}
     standing, play = [], []
@@ -88,7 +88,7 @@ def is_tournament(content):
 
 def title(content):
     """Who met."""
-    *others, last = ranked(content)
+    *others, last = labels_by_elo(content)
     best_of = content["protocol"]["best_of"]
     where = "frames" if best_of == 1 else f"matches, the best of {best_of} frames"
     return f"Tournament of {', '.join(others)} and {last}: {where}, noise {content['game']['noise']}"

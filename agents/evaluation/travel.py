@@ -15,11 +15,11 @@ from .entrants import Entrant
 
 def pack(entrant, k):
     """The run ``k`` of an ``Entrant`` as data: a dict of texts, lists and bytes."""
-    from ..learning.models import file_of, pretrained
+    from ..learning.models import file_of, pretrained_names
 
     run, file = entrant.runs[k], None
     kind, at, path = run.partition("@")
-    if is_name(run) and at and path not in pretrained():
+    if is_name(run) and at and path not in pretrained_names():
         file, run = file_of(Path(path), "agent"), f"{kind}@"
     elif not is_name(run):
         file, run = file_of(Path(run), "agent"), ""

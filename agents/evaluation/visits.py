@@ -35,7 +35,7 @@ def play(shared, args, threads):
     return columns | more
 
 
-def joined(results, total):
+def join_parts(results, total):
     """The ``PlayedStrokes`` of all visits from their parts, in the order in which one machine plays them."""
     columns = {name: np.concatenate([one[name] for one in results]) for name in COLUMNS}
     columns["visit"] = np.concatenate([one["visit"] + SIZE * n for n, one in enumerate(results)])

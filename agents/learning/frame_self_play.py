@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from agents._lib.noise_option import scaled
+from agents._lib.noise_option import scale_noise
 from snooker_env import Options
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.sides import strikers_own
@@ -48,7 +48,7 @@ def frames(shared, args, threads):
     is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won" (m,): the striker's lead, the
     points on the table, whether the striker won; "decided": whether anybody did; "equals": whether it played against
     itself; "frame" and "striker" (m,), -1 in the rows of replies, which come last and which nothing followed."""
-    noise = scaled(LEVELS["professional"], args["scale"])
+    noise = scale_noise(LEVELS["professional"], args["scale"])
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
     rules, many = options.rules, args["many"]
     known = options.but(conditions="fixed")  # a player does not know the constants of a table
@@ -62,7 +62,7 @@ def frames(shared, args, threads):
 
     def act(tables, mine, at, keys):
         nonlocal held
-        decided, here, row = _judged(player, at, keys, rng)
+        decided, here, row = _judge_strokes(player, at, keys, rng)
         strokes, tried, start = decided
         if len(here):
             which = mine[here]
@@ -91,9 +91,9 @@ def frames(shared, args, threads):
         return strokes
 
     tables = play_frames(rules, args["seed"], many, act, other, threads)
-    played = _follow(_joined(rows), tables)
+    played = _follow(_concatenate(rows), tables)
     played["equals"] = np.full(len(played["won"]), other is None)
-    return _with(played, _joined(beside)) if beside else played
+    return _with(played, _concatenate(beside)) if beside else played
 
 
 def play_frames(rules, seed, many, act, other, threads):
@@ -122,7 +122,7 @@ def play_frames(rules, seed, many, act, other, threads):
     return tables
 
 
-def _judged(player, at, keys, rng):
+def _judge_strokes(player, at, keys, rng):
     """What it does in n positions, in which of them it strikes (m,), and of these what is seen and what they are worth
     by search."""
     decided, worth = player.decide_frames(at, keys), player.judge.worth
@@ -149,11 +149,11 @@ def _replies(player, decided, here, rng):
     left = player.judge.outcomes(decided.start, here[rows], np.array(best), errors)
     left.game[:] = strikers_own(left.game)
     on = np.flatnonzero(left.game[:, columns.OVER] == 0)
-    _, played, row = _judged(player, left[on], rng.integers(2**31, size=len(on)), rng)
+    _, played, row = _judge_strokes(player, left[on], rng.integers(2**31, size=len(on)), rng)
     return row, rows[on[played]]
 
 
-def _joined(parts):
+def _concatenate(parts):
     """Rows one after the other."""
     return {name: np.concatenate([one[name] for one in parts]) for name in parts[0]}
 
@@ -163,7 +163,7 @@ def _with(rows, beside):
     n = len(beside["worth"])
     empty = {name: np.zeros((n, *part.shape[1:]), part.dtype) for name, part in rows.items()}
     more = empty | beside | {"next": np.full(n, -1), "striker": np.full(n, -1), "explored": np.ones(n, bool)}
-    return _joined([rows, more])
+    return _concatenate([rows, more])
 
 
 def _seen_by_strikers(tables, which):

@@ -31,7 +31,7 @@ def targets(rows):
     return target
 
 
-def fitted(seen, wanted, seed, passes):
+def fit_network(seen, wanted, seed, passes):
     """The layers of a network fitted to ``wanted`` (n,) points, over ``POINTS``, beside the value of the visit at ``seen``
     (n, SIZE), from nothing: going on from those of the round before, it overfits."""
     torch.manual_seed(seed)

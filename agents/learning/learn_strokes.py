@@ -56,7 +56,7 @@ FIRST_SEED = 30_000_000
 """The seed of the first table."""
 
 
-def fitted(seen, worth, table, seed, passes, seems=None):
+def fit_strokes(seen, worth, table, seed, passes, seems=None):
     """The layers of a network fitted to ``worth`` (n, k) points of strokes seen as (n, k, SIZE) on the tables with these
     seeds (n,), and figures of the tables kept from the fit. ``seems`` (n, k): the network adds to these points, and errors
     beyond ``POINTS`` count less (Huber's loss)."""
@@ -181,7 +181,7 @@ class StrokeRounds(Rounds):
         self.what, self.settings, self.first, self.layers = f"its own {name}", settings, first, ()
 
     @property
-    def tried(self):
+    def trial_shots(self):
         """Shots that were simulated for the strokes that were tried."""
         return sum(one["worth"].size * ERRORS for one in self.rounds)
 
@@ -219,7 +219,7 @@ class StrokeRounds(Rounds):
         names = ("seen", "worth", "table")
         seen, worth, table = (np.concatenate([one[name] for one in self.rounds]) for name in names)
         seen = seen.astype(np.float32)
-        layers, figures = fitted(seen, worth, table, self.settings.seed + seed, passes, self.seems(seen))
+        layers, figures = fit_strokes(seen, worth, table, self.settings.seed + seed, passes, self.seems(seen))
         return arrays_of(self.name, layers), figures
 
     def take(self, arrays):

@@ -1,7 +1,7 @@
 """How is a trained agent stored in a file and read again? As JSON and weights; nothing is unpickled.
 
 ``train.py`` writes zips of Stable-Baselines3, which ``PPO.load`` reads by running the pickles in their
-``data``; ``packed`` makes those of ``results/weights``, ``model.json`` and ``policy.pth`` alone. From either this module reads the
+``data``; ``pack_model`` makes those of ``results/weights``, ``model.json`` and ``policy.pth`` alone. From either this module reads the
 entries ``KEPT`` as plain JSON and the tensors of ``policy.pth``. The network is that of the current recipe of
 that name: a file cannot name other code.
 """
@@ -149,7 +149,7 @@ def _forms(weights):
     return {name: (tensor.shape, tensor.dtype, tensor.layout) for name, tensor in weights.items()}
 
 
-def packed(trained):
+def pack_model(trained):
     """A ``Trained`` as the bytes of a zip with ``model.json`` and ``policy.pth`` alone; reproducible."""
     import torch
 

@@ -16,7 +16,7 @@ CHECKPOINT = "checkpoint.pkl"
 """A run's folder holds it from the first save on."""
 
 
-def pretrained():
+def pretrained_names():
     """The names of the pre-trained models."""
     return sorted(file.stem for file in PRETRAINED.glob("*.zip"))
 
@@ -67,10 +67,14 @@ def load_weights(model, path):
     weights = other.policy.state_dict()
     model.policy.load_state_dict({name: weights[name] for name in model.policy.state_dict()})
     model.start = {"model": str(path), "shots": other.num_timesteps}
-    model.start |= {"imitated": other.imitated, "start": other.start, "simulated_shots": _simulated(path)}
+    model.start |= {
+        "imitated": other.imitated,
+        "start": other.start,
+        "simulated_shots": _count_training_shots(path),
+    }
 
 
-def _simulated(path):
+def _count_training_shots(path):
     """All simulated shots of the training of a run's model, by the run's figures; None: not known."""
     file = path / "results.json" if path.is_dir() else path.with_name("results.json")
     if not path.is_dir() and path.name != "model.zip":

@@ -15,9 +15,9 @@ def __getattr__(name):
     """A maker of each pre-trained model, which needs other libraries."""
     if name.startswith("__"):
         raise AttributeError(name)
-    from ..learning.models import PRETRAINED, pretrained
+    from ..learning.models import PRETRAINED, pretrained_names
 
-    if name in pretrained():
+    if name in pretrained_names():
         return lambda: read_model(PRETRAINED / f"{name}.zip")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

@@ -130,7 +130,7 @@ def run(main):
     _transcripts.clear()
 
     @command(loaded.name.removesuffix(".__main__") if loaded else sys.argv[0])
-    def copied(_argv):
+    def run_copy(_argv):
         before, printed = signal.signal(signal.SIGINT, _interrupt), _Copied(sys.stdout)
         try:
             with contextlib.redirect_stdout(printed):
@@ -142,7 +142,7 @@ def run(main):
             signal.signal(signal.SIGINT, before)
         return code
 
-    sys.exit(copied(None))
+    sys.exit(run_copy(None))
 
 
 def _interrupt(_number, _frame):

@@ -26,7 +26,7 @@ SOLVE, CROSSING, QUARTIC = (
 OF_BALLS, OF_CUSHION = contact.collide_balls.__code__, contact.collide_cushion.__code__
 
 
-def counted(positions, velocities, spins, physics):
+def count_per_shot(positions, velocities, spins, physics):
     """Counts per shot."""
     table, physics, code = (
         sn.Table.preset("match"),
@@ -64,5 +64,5 @@ def main():
     physics, *files = sys.argv[1:]
     for file in files:
         with np.load(file) as shots, np.errstate(all="ignore"):
-            found.append(counted(shots["positions"], shots["velocities"], shots["spins"], physics))
+            found.append(count_per_shot(shots["positions"], shots["velocities"], shots["spins"], physics))
     print(json.dumps(found))

@@ -44,7 +44,7 @@ from .pot_shots import DERIVED, FIRM, LONG, MODERATE, POTS, aimed, directions, r
 SKILLS = tuple(name for name in LEVELS if name != "none")
 
 
-def measured(level, shots, strokes, seed, physics, table):
+def measure_level(level, shots, strokes, seed, physics, table):
     """Figures of a level at every pot, as played and firm."""
     rows = []
     for k, shot in enumerate(shots):
@@ -159,14 +159,14 @@ def main():
     options = parser.options()
     physics, table = Physics.preset(options.physics), options.table
     if options.fit:
-        found = published.fitted(options.strokes, physics, table)
+        found = published.fit_published(options.strokes, physics, table)
         for what, values in found:
             print(f"{what:94s}" + "  ".join(f"{value:.4f}" for value in values))
         save_json(options.json, {"fit": found})
         return
     shots = [aimed(pot, physics, table, speed) for pot in POTS for speed in (None, FIRM)]
     rows = {
-        level: measured(level, shots, options.strokes, options.seed, physics, table)
+        level: measure_level(level, shots, options.strokes, options.seed, physics, table)
         for level in options.levels
     }
     show_pots(rows, options.levels)

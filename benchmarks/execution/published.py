@@ -69,7 +69,7 @@ def _directions(pots, targets, like, strokes, physics, table, in_off=False):
     return [_where(rate, target) for target in targets]
 
 
-def fitted(strokes, physics, table):
+def fit_published(strokes, physics, table):
     """Rows (what, values): the total direction errors [deg] that meet the published figures, in the middle
     and at both ends."""
     rows, targets = [], [("professional", LONG, *LONG_POTS, "the long pots")]

@@ -44,7 +44,7 @@ ALONG = LENGTH - 2.0 * RADIUS
 MPH, POOL_LENGTH, POOL_BALL = 0.44704, 2.54, 0.028575
 
 
-def measured():
+def read_measurements():
     """(incident speeds, rebound speeds [m/s], {(quantity, setting): (value, error or None)})."""
     speed, rebound = np.loadtxt(DATA, delimiter=",", skiprows=2).T
     with STROKES.open(encoding="utf-8", newline="") as file:
@@ -65,7 +65,7 @@ class Misfit:
     """(model - measured) / error of every measurement, for values in the order of ``NAMES``."""
 
     def __init__(self):
-        self.speed, self.rebound, self.known = measured()
+        self.speed, self.rebound, self.known = read_measurements()
         self.table = line.impacts()
         self._rolling = self.table[:, np.searchsorted(line.SPINS, 1.0 - 1e-9), 0]
         strokes = [name for (name, _), (_, error) in self.known.items() if error > 0]
@@ -91,7 +91,7 @@ class Misfit:
         return (self.model(values) - want) / errors
 
 
-def fitted(misfit, free):
+def fit_constants(misfit, free):
     """Least squares over the values named ``free``, the others at ``START_AT``, roll_drag at 0; from several
     knees, because the kink makes the problem bumpy."""
     which = [NAMES.index(name) for name in free]
@@ -184,8 +184,8 @@ def main():
     options = parser.options()
     misfit, match = Misfit(), sn.Physics.preset("match")
     fits = {
-        "fitted, roll_drag 0": fitted(misfit, NAMES[:4]),
-        "fitted, roll_drag free": fitted(misfit, NAMES),
+        "fitted, roll_drag 0": fit_constants(misfit, NAMES[:4]),
+        "fitted, roll_drag free": fit_constants(misfit, NAMES),
     }
     shipped = {name: getattr(match, name) for name in (*BEFORE, "roll_drag")}
     for name, constants in (("shipped", shipped), ("before", {**BEFORE, "roll_drag": 0.0})):

@@ -48,7 +48,7 @@ def _speeds_and_angles(v_c, v_o):
     return np.array([*both, *(abs(np.degrees(np.arctan2(v[1], v[0]))) for v in (v_c, v_o))])
 
 
-def solved(fidelity):
+def make_solved_model(fidelity):
     """A model for ``MODELS``: the package's impact at this fidelity, then the cloth until both balls roll."""
 
     def model(v0, topspin, cut):
@@ -58,7 +58,7 @@ def solved(fidelity):
     return model
 
 
-def closed(e, mu, cloth):
+def make_closed_form(e, mu, cloth):
     """A model for ``MODELS`` in closed form: the impact does not feel the cue ball's roll. c the cut, per
     unit mass
 
@@ -83,14 +83,14 @@ def closed(e, mu, cloth):
 
 
 MODELS = {
-    "elastic pucks": closed(1.0, 0.0, cloth=False),
-    "inelastic pucks": closed(E_B, 0.0, cloth=False),
-    "elastic, then cloth": closed(1.0, 0.0, cloth=True),
-    "inelastic, then cloth": closed(E_B, 0.0, cloth=True),
-    "planar friction, then cloth": closed(E_B, MU_BB, cloth=True),
-    "fast": solved("fast"),
-    "euler:10000": solved("euler:10000"),
-    "reference": solved("reference"),
+    "elastic pucks": make_closed_form(1.0, 0.0, cloth=False),
+    "inelastic pucks": make_closed_form(E_B, 0.0, cloth=False),
+    "elastic, then cloth": make_closed_form(1.0, 0.0, cloth=True),
+    "inelastic, then cloth": make_closed_form(E_B, 0.0, cloth=True),
+    "planar friction, then cloth": make_closed_form(E_B, MU_BB, cloth=True),
+    "fast": make_solved_model("fast"),
+    "euler:10000": make_solved_model("euler:10000"),
+    "reference": make_solved_model("reference"),
 }
 """Name -> model(v0, topspin, cut) -> the four ``QUANTITIES``. "fast" feels the spin but not the cloth during
 the impact."""
@@ -103,7 +103,7 @@ def predictions():
     return {name: np.array([model(*row) for row in rows]) for name, model in MODELS.items()}
 
 
-def measured():
+def read_camera():
     """(shots, 4): what the camera saw."""
     rows = tables()
     return np.column_stack([rows[f"measured_{q}"] for q in QUANTITIES])
@@ -122,7 +122,7 @@ def table_rows(found):
     A printed prediction is borne out if euler:10000 rounds to it, a printed error if it is right to 0.1 %:
     the speeds are given to 0.001 m/s, which is worth that much.
     """
-    rows, seen = tables(), measured()
+    rows, seen = tables(), read_camera()
     errors = paper_errors(found["euler:10000"], seen)
     out = []
     for j, q in enumerate(QUANTITIES):
@@ -149,7 +149,7 @@ def table_rows(found):
 def model_rows(found):
     """How each model does: errors [%] of the measurement per shot, rms of all shots and without shot 1, how
     many the camera allows."""
-    seen = measured()
+    seen = read_camera()
     limits = np.array(list(MEASURED_TO.values()))
     out = {}
     for name, values in found.items():

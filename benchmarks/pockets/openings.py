@@ -6,7 +6,7 @@ import numpy as np
 
 from snooker_env.physics.engine import EventKind
 
-from .windows import drops, played, strokes
+from .windows import drops, play_strokes_at, strokes
 
 PUBLISHED = (
     "published: a match pocket is 3 1/2 in (88.9 mm) wide at the fall of the slate, a club pocket 3 5/8 in (92.1), a wide one\n"
@@ -65,14 +65,14 @@ def clean(pocket, R):
     return openings(pocket)["throat"] / 2 - R
 
 
-def untouched(pocket, speeds, rolling, physics, distance=0.3, halvings=30):
+def measure_openings(pocket, speeds, rolling, physics, distance=0.3, halvings=30):
     """The largest offset [m] at which a ball that runs along the axis drops without a jaw in its log, by
     speed."""
     speeds = np.asarray(speeds, float)
     low, high = np.zeros(len(speeds)), np.full(len(speeds), 0.05)
 
     def free(s):
-        hit, _, out = played(
+        hit, _, out = play_strokes_at(
             pocket,
             strokes(pocket, s, 0.0, distance, speeds, rolling, False, physics),
             physics,

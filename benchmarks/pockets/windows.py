@@ -104,7 +104,7 @@ def strokes(pocket, s, angle, distance, speed, rolling, turned, physics):
     return np.stack([x, y], -1), np.stack([vx, vy], -1), np.stack([-vy * roll, vx * roll, 0.0 * vx], -1)
 
 
-def played(pocket, start, physics, log=0):
+def play_strokes_at(pocket, start, physics, log=0):
     """Play the strokes, one ball each: which drop, which start in a cushion (and are not played), and the run
     itself."""
     r, v, w = (np.ascontiguousarray(a)[:, None] for a in start)
@@ -131,7 +131,7 @@ def drops(pocket, angle, distance, speed, rolling, physics, s):
     start = strokes(
         pocket, s.ravel(), angle.ravel(), distance.ravel(), speed.ravel(), rolling.ravel(), False, physics
     )
-    return played(pocket, start, physics)[0].reshape(s.shape)
+    return play_strokes_at(pocket, start, physics)[0].reshape(s.shape)
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ def windows(pocket, paths, physics):
         start = strokes(
             pocket, s, angle[case], distance[case], speed[case], rolling[case], turned[case], physics
         )
-        return played(pocket, start, physics)[:2]
+        return play_strokes_at(pocket, start, physics)[:2]
 
     hit = pots(grid.ravel(), np.repeat(np.arange(n), SCAN))[0].reshape(n, SCAN)
     if hit[:, [0, -1]].any():

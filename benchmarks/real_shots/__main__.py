@@ -70,7 +70,7 @@ def measure(options, shots):
     physics = constants_of(options)
     if options.fit:
         used = [s for s in shots if part(s.id) == USED]
-        physics, _ = constants.fitted(physics, used, options.fit, options.seed)
+        physics, _ = constants.fit_real_shots(physics, used, options.fit, options.seed)
         print(
             f"\nfitted on {len(used)} shots: "
             + ", ".join(f"{k} {getattr(physics, k):.4g}" for k in constants.SEARCHED)

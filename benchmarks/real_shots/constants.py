@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 from .paths import Judge
-from .strikes import SCALE, bounds, clip, costs, fit, refit, settled, weights
+from .strikes import SCALE, bounds, clip, costs, fit, refit, settle_strike, weights
 
 SEARCHED = {
     "mu_s": (0.06, 0.40),
@@ -96,11 +96,11 @@ def _try(judges, strikes, physics):
     found = []
     for judge, strike in zip(judges, strikes, strict=True):
         judge.use(physics)
-        found.append(settled(judge, strike)[0])
+        found.append(settle_strike(judge, strike)[0])
     return found, [rms(judge, strike) for judge, strike in zip(judges, found, strict=True)]
 
 
-def fitted(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=print, strikes=None):
+def fit_real_shots(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=print, strikes=None):
     """The constants that suit ``shots`` best, and the strikes; in so many minutes, from ``physics`` on."""
     began = time.monotonic()
     low, high = (np.array([SEARCHED[name][k] for name in names]) for k in (0, 1))

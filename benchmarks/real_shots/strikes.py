@@ -153,7 +153,7 @@ def weights(judge):
     return w
 
 
-def settled(judge, strike, steps=4):
+def settle_strike(judge, strike, steps=4):
     """A strike after some of Gauss and Newton's own steps, each taken only if it lowers the cost; and the cost."""
     low, high = bounds(judge.shot, judge.physics)
     weight = np.repeat(weights(judge), 2)
@@ -192,7 +192,7 @@ def fit(judge: Judge, seed=0, runs=3, enough=0.03, bad=0.1):
         cost = costs(judge, pool)
         starts = [pool[np.argmin(cost)], pool[rng.integers(len(pool))]]
         best, _ = min((refine(judge, rng, s, low, high, generations=30) for s in starts), key=lambda f: f[1])
-        best, _ = settled(judge, best)
+        best, _ = settle_strike(judge, best)
         found.append(
             min((refine(judge, rng, best, low, high, s, 20) for s in (0.1, 1.5)), key=lambda f: f[1])
         )

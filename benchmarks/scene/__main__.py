@@ -41,7 +41,7 @@ from .verdicts import CHAOS, ERRORS, FULL, reasons, verdict
 FILE, PHYSICS = "scene.png", "match"
 
 
-def played(way, start):
+def play_batch(way, start):
     """The batch played to the end: positions, potted, on table.
 
     Between the points of the table without jaw arcs a ball can leave it: that shot ends otherwise than any.
@@ -101,24 +101,24 @@ def study(make, n, repeats, physics, chosen, seed):
     its = variants.load() if any(MODELS[m].code != STANDARD for m in chosen) else simulation
     here = np.ones(shots.positions.shape[:2], bool)
 
-    def started(**how):
+    def start_strokes(**how):
         v, w = shots.struck(**how)
         return shots.positions, v, w, here
 
     # with a professional's errors no shot is exactly head-on
     errors = {} if make is head_on_stun else {"seed": seed + 1}
-    start = started(**errors)
+    start = start_strokes(**errors)
     full = Way(constants, (STANDARD, 0), match, its)
     ways = {FULL: full}
     for name in chosen:
         m = MODELS[name]
         changed = sn.Physics.preset(physics, **m.physics) if m.physics else constants
         ways[name] = Way(changed, (m.code, 0), m.table or match, its)
-    ends = {name: played(way, start) for name, way in ways.items()}
+    ends = {name: play_batch(way, start) for name, way in ways.items()}
     truth = ends.pop(FULL)
     rows = {name: effect(end, truth, start, shots.ball) for name, end in ends.items()}
     for name, how in ((ERRORS, {"seed": seed + 2}), (CHAOS, {**errors, "aim": 1e-9})):
-        rows[name] = effect(played(full, started(**how)), truth, start, shots.ball)
+        rows[name] = effect(play_batch(full, start_strokes(**how)), truth, start, shots.ball)
     times = time_ways(ways, start[:3], repeats)
     took = {name: float(of.min(0).mean()) for name, of in times.items()}
     for name in chosen:

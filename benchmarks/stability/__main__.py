@@ -22,7 +22,7 @@ from .symmetry import growth, growth_lines, mirrored_fuzz, order_lines, order_ma
 from .worst import verdict
 
 
-def shown(x):
+def format_worst(x):
     """A figure in a cell: counts whole, "-" where nothing of the kind happened."""
     return str(x) if isinstance(x, int) else "-" if x == -np.inf else f"{x:.2g}"
 
@@ -34,7 +34,7 @@ def table_of(title, results, limits):
     for name, (played, figures) in results.items():
         failed = verdict(figures, limits)
         passed = f"FAIL: {', '.join(failed)}" if failed else "pass"
-        rows.append([name, str(played), *(shown(figures[c]) for c in limits), passed])
+        rows.append([name, str(played), *(format_worst(figures[c]) for c in limits), passed])
     return text_table([title, "played", *limits, "verdict"], rows)
 
 

@@ -15,7 +15,7 @@ from snooker_env.simulation import _run
 
 from ..fuzz import R
 from .impacts import any_impacts, collide, impact_figures
-from .shots import struck
+from .shots import strike_balls
 
 EULER_STEPS = (1, 2, 3, 5, 10, 20, 50, 100, 200, 1000, 10_000)
 
@@ -26,7 +26,7 @@ def euler_table():
     cases, out = any_impacts(200, 12), {}
     p = np.tile(SPOTS, (40, 1, 1))
     p[:, 0] = (0.1, -1.2)
-    motion = struck(p, np.linspace(1, 6, 40), np.pi / 2 + np.linspace(-0.12, 0.1, 40))
+    motion = strike_balls(p, np.linspace(1, 6, 40), np.pi / 2 + np.linspace(-0.12, 0.1, 40))
     for n in EULER_STEPS:
         name, errors, unsolved = f"euler:{n}", [], 0
         for case in cases:

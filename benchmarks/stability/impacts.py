@@ -35,7 +35,7 @@ def collide(case, physics, fidelity):
         return None
 
 
-def mirrored(rows):
+def mirror_rows(rows):
     """x -> -x for velocities, normals (even rows) and spins (odd rows), which are axial."""
     return [
         np.asarray(a) * ((1, -1, -1) if k % 2 and k < len(rows) - len(rows) % 2 else (-1, 1, 1))
@@ -70,12 +70,12 @@ def impact_figures(cases, physics, fidelities=EXACT_FIDELITIES):
         note(worst, "energy", (energy[1] - energy[0]) / energy[0])
         if closing > 1e-60:
             note(worst, "parting", (still - 1e-14 * speed) / closing)
-        other = collide(mirrored(case), physics, fidelity)
+        other = collide(mirror_rows(case), physics, fidelity)
         scale = np.where(np.arange(len(out))[:, None] % 2, R, 1.0) / speed
         note(
             worst,
             "mirror",
-            np.inf if other is None else np.abs((other - np.array(mirrored(out))) * scale).max(),
+            np.inf if other is None else np.abs((other - np.array(mirror_rows(out))) * scale).max(),
         )
     return worst
 

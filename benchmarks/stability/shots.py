@@ -62,7 +62,7 @@ def summary(found):
     }
 
 
-def struck(p, speed, aim, side: Any = 0.0, top: Any = 0.0):
+def strike_balls(p, speed, aim, side: Any = 0.0, top: Any = 0.0):
     """Velocities and spins of b tables whose first ball has just been struck, by arrays of b or numbers."""
     b, n = p.shape[:2]
     v, w, (speed, aim, side, top) = (
@@ -92,7 +92,7 @@ def chains(rng, gap, kind):
     return np.concatenate([free[:, None], rest], 1)
 
 
-def frozen(gap):
+def make_frozen_groups(gap):
     """Pairs, lines and triangles frozen at this gap, on unbounded cloth."""
     rng, out = np.random.default_rng(7), []
     for kind in ("pair", "line", "rack"):
@@ -102,7 +102,7 @@ def frozen(gap):
             rng.uniform(-np.pi, np.pi, 100) if kind == "pair" else rng.uniform(-0.15, 0.15, 100)
         )
         tips = rng.uniform(-0.35, 0.35, (2, 100))
-        out.append(shot_figures(p, *struck(p, rng.uniform(0.2, 7, 100), aim, *tips), None))
+        out.append(shot_figures(p, *strike_balls(p, rng.uniform(0.2, 7, 100), aim, *tips), None))
     return 900, merge(out)
 
 
@@ -130,27 +130,29 @@ def at_cushions(gap):
     p = p[fuzz.legal(second, table)]
     b = len(p)
     alone, any_way, tips = p[:, :1], rng.uniform(-np.pi, np.pi, b), rng.uniform(-0.4, 0.4, (2, b))
-    out = [shot_figures(alone, *struck(alone, rng.uniform(0.01, 7, b), any_way, *tips))]
-    out += [shot_figures(q, *struck(q, rng.uniform(0.01, 7, b), any_way, *tips)) for q in (p, p[:, ::-1])]
+    out = [shot_figures(alone, *strike_balls(alone, rng.uniform(0.01, 7, b), any_way, *tips))]
+    out += [
+        shot_figures(q, *strike_balls(q, rng.uniform(0.01, 7, b), any_way, *tips)) for q in (p, p[:, ::-1])
+    ]
     into = p[:, ::-1]
-    out.append(shot_figures(into, *struck(into, 3.0, np.arctan2(*(into[:, 1] - into[:, 0]).T[::-1]))))
+    out.append(shot_figures(into, *strike_balls(into, 3.0, np.arctan2(*(into[:, 1] - into[:, 0]).T[::-1]))))
     return 12 * b, merge(out)
 
 
-def wedged(gap):
+def make_wedges(gap):
     """A ball between two others, between two jaws that it touches both, and in a channel of ``PLAY``
     (narrower ones are refused)."""
     rng, b = np.random.default_rng(9), 20
     aim, tips, speed = rng.uniform(-np.pi, np.pi, b), rng.uniform(-0.4, 0.4, (2, b)), rng.uniform(0.05, 7, b)
     far = EXACT + gap
     between = np.tile([(0.0, 0.0), (far, 0.0), (-far, 0.0)], (b, 1, 1))
-    out = [shot_figures(between, *struck(between, speed, aim, *tips), None)]
+    out = [shot_figures(between, *strike_balls(between, speed, aim, *tips), None)]
     half = R + (PLAY + 1e-12 + gap) / 2
     channel = Table(
         "channel", np.array([(0, -1, half, -9, 9), (0, 1, half, -9, 9)]), np.zeros((0, 6)), np.zeros((0, 3))
     )
     one = np.zeros((b, 1, 2))
-    out.append(shot_figures(one, *struck(one, speed, aim, *tips), channel))
+    out.append(shot_figures(one, *strike_balls(one, speed, aim, *tips), channel))
     radius = 0.1
     apart = (radius + R) * np.sqrt(0.75)
     jaws = Table(
@@ -161,7 +163,7 @@ def wedged(gap):
         ),
         np.zeros((0, 3)),
     )
-    out.append(shot_figures(one, *struck(one, speed, aim, *tips), jaws))
+    out.append(shot_figures(one, *strike_balls(one, speed, aim, *tips), jaws))
     return 9 * b, merge(out)
 
 
@@ -170,7 +172,7 @@ def at_once(offset):
     it."""
     p = np.tile([(-0.3, 0.0), (0.0, R + 1e-4), (0.0, -R - 1e-4)], (60, 1, 1))
     p[:, 2, 0] += offset
-    return p, struck(
+    return p, strike_balls(
         p, np.linspace(0.3, 7, 60), 0.0, np.repeat([0.0, 0.3], 30), np.tile([-0.4, 0.0, 0.4], 20)
     )
 
@@ -201,7 +203,7 @@ def long_play():
     p[:, 0] = (0.1, -1.2)
     while played.min() < 60:
         to = p[np.arange(b), rng.integers(1, 22, b)] - p[:, 0]
-        v, w = struck(
+        v, w = strike_balls(
             p, rng.uniform(1, 6, b), np.arctan2(to[:, 1], to[:, 0]), *rng.uniform(-0.3, 0.3, (2, b))
         )
         sn.simulate_batch(p, v, w, on_table=here, threads=1)  # it refuses a layout that is not sound
@@ -221,7 +223,7 @@ def slow_cloth():
     p[:, 0] = (0.1, -1.2)
     return 36, shot_figures(
         p,
-        *struck(p, np.linspace(1.5, 5, 12), np.pi / 2 + np.linspace(-0.12, 0.1, 12), 0.2),
+        *strike_balls(p, np.linspace(1.5, 5, 12), np.pi / 2 + np.linspace(-0.12, 0.1, 12), 0.2),
         "match",
         {"mu_r": 2e-4},
     )
@@ -234,15 +236,15 @@ def shot_extremes():
     p[:, 0, 1] = rng.uniform(-0.05, 0.05, b)
     speeds = np.geomspace(1e-9, 50, b)
     out = {
-        "speeds 1e-9 to 50 m/s": (3 * b, shot_figures(p, *struck(p, speeds, 0.07, 0.3, -0.4))),
+        "speeds 1e-9 to 50 m/s": (3 * b, shot_figures(p, *strike_balls(p, speeds, 0.07, 0.3, -0.4))),
         "spins of 5,000 rad/s": (3 * b, spinning(p, rng)),
     }
     for gap in GAPS:
-        out[f"frozen pair, line, rack, gap {gap:g}"] = frozen(gap)
+        out[f"frozen pair, line, rack, gap {gap:g}"] = make_frozen_groups(gap)
     for gap in GAPS:
         out[f"frozen to nose or jaw, gap {gap:g}"] = at_cushions(gap)
     for gap in GAPS:
-        out[f"wedged between two, gap {gap:g}"] = wedged(gap)
+        out[f"wedged between two, gap {gap:g}"] = make_wedges(gap)
     out["three balls meet at once"] = three_at_once()
     constants = {
         "e_b, e_c": (0.0, 1.0),
@@ -254,7 +256,7 @@ def shot_extremes():
     }
     q = np.tile(SPOTS, (20, 1, 1))
     q[:, 0] = (0.1, -1.2)
-    motion = struck(
+    motion = strike_balls(
         q, rng.uniform(1, 7, 20), np.pi / 2 + rng.uniform(-0.12, 0.1, 20), *rng.uniform(-0.3, 0.3, (2, 20))
     )
     for name, values in constants.items():

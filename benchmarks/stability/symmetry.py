@@ -15,7 +15,7 @@ from snooker_env.physics.engine import EventKind
 
 from .. import fuzz
 from ..fuzz import D, R
-from .shots import struck
+from .shots import strike_balls
 
 CLOTH: Any = None
 """The table that is unbounded cloth."""
@@ -58,7 +58,7 @@ def symmetry_growth(shots=400):
         if all(np.hypot(*(q - a)) > D + 0.004 for a in keep):
             keep.append(q)
     p = np.tile(np.array([(-0.8, 0.0), *keep[:14]]), (shots, 1, 1))
-    v, w = struck(
+    v, w = strike_balls(
         p, rng.uniform(0.5, 6, shots), rng.uniform(-0.25, 0.25, shots), *rng.uniform(-0.3, 0.3, (2, shots))
     )
     c, s = np.cos(1.0), np.sin(1.0)

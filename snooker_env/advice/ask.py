@@ -105,7 +105,7 @@ def advise(
     )
 
 
-def _player_of(agent: Any, at: Positions) -> tuple[str, Player]:
+def _player_of(agent: object, at: Positions) -> tuple[str, Player]:
     """The player and its name; ValueError for one that knows visits alone in a frame."""
     agent = (OF_FRAMES if at.of_frames else AGENT) if agent is None else agent
     asked = player_of(agent)

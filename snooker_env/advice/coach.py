@@ -146,7 +146,7 @@ class Coaching:
 
 
 def coach(
-    strokes: Sequence[Recorded], *, target: NoiseLike = "professional", options: Any = None, seed: int = 0
+    strokes: Sequence[Recorded], *, target: NoiseLike = "professional", options: object = None, seed: int = 0
 ) -> Coaching:
     """Say what recorded strokes tell of a player: errors, pots expected and made, what costs most, and drills.
 

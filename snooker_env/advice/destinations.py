@@ -65,7 +65,7 @@ def destinations(
     noise: NoiseLike = "professional",
     samples: int = 500,
     seed: int = 0,
-    options: Any = None,
+    options: object = None,
 ) -> Destinations:
     """Find where the balls of a stroke stop under execution errors, and how often it pots and fouls.
 

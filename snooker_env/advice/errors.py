@@ -101,7 +101,7 @@ class PlayerErrors:
         hurried = self.speed and self.speed.value / base.speed_rel
         many, fast = turned or hurried or 1.0, hurried or turned or 1.0
         still = many * hypot(1.0, base.growth * self.at) / hypot(1.0, growth * self.at)
-        errors: Any = {"aim_deg": base.aim_deg * still, "offset_mm": base.offset_mm * still}
+        errors = {"aim_deg": base.aim_deg * still, "offset_mm": base.offset_mm * still}
         return Noise(
             **errors, elevation_deg=base.elevation_deg * many, speed_rel=base.speed_rel * fast, growth=growth
         )
@@ -179,7 +179,7 @@ def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
     if direction is None and speed is None:
         allowed = "with intended and played, with a pot and played, or with a pot and potted"
         raise refuse_what("strokes", "none that tells an error", f"must hold strokes {allowed}")
-    found: Any = {"aside": aside, "faster": estimate_mean(v, base.speed_rel)}
+    found = {"aside": aside, "faster": estimate_mean(v, base.speed_rel)}
     errors = PlayerErrors(direction=direction, at=at, growth=growth, speed=speed, **found)
     return Fit(errors, weights, pots, strokes)
 

@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._lib.check import choice, integer, refuse, refuse_what
 from .._lib.types import Bools, Floats, Ints, Words
@@ -73,7 +74,9 @@ class Practice:
         )
 
 
-def practice_of(noise: Any, options: Any = None, source: Any = None, *, of_frames: bool = False) -> Practice:
+def practice_of(
+    noise: Any, options: object = None, source: object = None, *, of_frames: bool = False
+) -> Practice:
     """The practice table for a noise and ``options``; None: those of an environment ``source``."""
     if options is None:
         options = getattr(bare(source), "options", None)
@@ -116,7 +119,7 @@ def one_position(source: Any, scores: Any = None) -> Positions:
     return at
 
 
-def _with_scores(at: Positions, scores: Any) -> Positions:
+def _with_scores(at: Positions, scores: ArrayLike) -> Positions:
     """A position of a visit as one of a frame with these scores of the striker and of the other."""
     if at.of_frames:
         raise refuse("scores", scores, "must be None: the position is of a frame, which has its own")

@@ -184,7 +184,7 @@ class Recorded:
         return cls(**made)
 
 
-def _cue(played: Any) -> dict[str, float]:
+def _cue(played: object) -> dict[str, float]:
     """``Recorded.played`` as five numbers; what is left out of tip and elevation is 0."""
     if not isinstance(played, Mapping):
         raise refuse_what("played", f"a {type(played).__name__}", f"must be a dict with {list(CUE_PARTS)}")
@@ -375,9 +375,9 @@ def _of_replay(
     reds = {ball: 1 + k for k, ball in enumerate(ball for ball in ids if 1 <= ball <= 15)}
     down = {(reds.get(ball, ball), into) for ball, into in fell.items()}
     ball, pocket = (None, None) if meant is None else meant
-    pot: Any = {"ball": ball, "pocket": pocket, "guessed": ball is not None and intended is None}
+    pot = {"ball": ball, "pocket": pocket, "guessed": ball is not None and intended is None}
     pot["potted"] = None if ball is None else (ball, pocket) in down and not one["penalty"]
-    came: Any = {"points": one["points"], "penalty": one["penalty"], "after": after, "scores": scores}
+    came = {"points": one["points"], "penalty": one["penalty"], "after": after, "scores": scores}
     came |= {**where, "cue": one.get("cue_kind")}
     return Recorded(position=position, intended=intended, played=played, **pot, **came)
 
@@ -413,7 +413,7 @@ def squirt(side: float, physics: Physics) -> float:
     return atan2(vy, vx)
 
 
-def agree_options(strokes: Sequence[Recorded], options: Any) -> Any:
+def agree_options(strokes: Sequence[Recorded], options: object) -> Any:
     """``options`` with what the strokes say of where they were played; ValueError where they contradict, or none says it."""
     if not (options is None or isinstance(options, Options | Mapping)):
         allowed = f"must be None, an Options, or a dict with keys as {PLAYED_ON}"

@@ -17,7 +17,7 @@ class TaskEnv(SnookerEnv):
     TASK: ClassVar[str]
 
     def __init__(
-        self, *, render_mode: RenderMode | None = None, render_size: tuple[int, int] = SIZE, **free: Any
+        self, *, render_mode: RenderMode | None = None, render_size: tuple[int, int] = SIZE, **free: object
     ):
         super().__init__(TASKS[self.TASK].options(**free), render_mode=render_mode, render_size=render_size)
 

@@ -109,7 +109,7 @@ def play_visits(
     seed: int = 0,
     threads: int | None = None,
     each: Callable[[int], None] | None = None,
-    **options: Any,
+    **options: object,
 ) -> PlayedStrokes:
     """Play visits side by side and record every stroke.
 

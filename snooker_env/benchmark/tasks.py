@@ -58,7 +58,7 @@ class Task:
     episodes: int
     thresholds: tuple[int, ...] = (1,)
 
-    def options(self, **free: Any) -> Options:
+    def options(self, **free: object) -> Options:
         """The options of the task as it is trained: frozen ones and these of ``FREE``, no others."""
         frees = ", ".join(FREE)
         for name in (name for name in free if name not in FREE):
@@ -72,7 +72,7 @@ class Task:
             raise refuse(name, free[name], f"must be left out: {why}")
         return Options(**{**self.changes, **free})
 
-    def judged_options(self, **free: Any) -> Options:
+    def judged_options(self, **free: object) -> Options:
         """The options that the task is judged with: ``options(**free)`` on the judged layout."""
         return self.options(**free).but(layout=self.judged_layout)
 

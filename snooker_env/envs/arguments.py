@@ -19,7 +19,7 @@ ONE = ("state", "position", "breaker")
 MANY = ("reset_mask", *STARTS, "breaker")  # keys of the reset options of one table and of many
 
 
-def seeds_of(seed: Any, n: int) -> list[int | None]:
+def seeds_of(seed: object, n: int) -> list[int | None]:
     """A seed or None for each of n tables, from the argument ``seed`` as in ``SyncVectorEnv.reset``."""
     if seed is None:
         return [None] * n
@@ -43,7 +43,7 @@ def mask_of(options: dict[str, Any], n: int) -> Bools:
     return mask.copy()
 
 
-def known_options(options: Any, known: tuple[str, ...]) -> dict[str, Any]:
+def known_options(options: object, known: tuple[str, ...]) -> dict[str, Any]:
     """The options of a reset as a dict; ValueError unless each is ``known``."""
     if options is None:
         return {}

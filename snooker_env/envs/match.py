@@ -73,7 +73,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         seats: Sequence[Mapping[str, Any]] | None = None,
         render_mode: RenderMode | None = None,
         render_size: Sequence[int] = SIZE,
-        **keywords: Any,
+        **keywords: object,
     ):
         super().__init__()
         self.options = match_options(options, keywords)
@@ -191,7 +191,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         if not self.agents:
             what = f"the frame {self.tables.unplayable}"
             raise gymnasium.error.ResetNeeded(f"{what}: call reset() before step()")
-        name: Any = self.agent_selection  # of PettingZoo's own type
+        name = self.agent_selection  # of PettingZoo's own type
         if self.terminations[name] or self.truncations[name]:
             self._was_dead_step(action)
             return

@@ -73,7 +73,7 @@ class MatchVectorEnv(SnookerVectorEnv):
 
     _game_of = staticmethod(lambda options, keywords: (match_options(options, keywords), None))
 
-    def _tables_of(self, opponent: Any, limit: int) -> Tables:
+    def _tables_of(self, opponent: object, limit: int) -> Tables:
         return match_tables(self.options, self._differences, self.num_envs)
 
     @property

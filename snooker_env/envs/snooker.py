@@ -68,12 +68,12 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         *,
         render_mode: RenderMode | None = None,
         render_size: Sequence[int] = SIZE,
-        **keywords: Any,
+        **keywords: object,
     ):
         self.options, opponent = game_of(options, keywords)
         self.tables = tables_of(self.options, opponent, 1)
-        self.action_space: Any = self.options.rules.actions.space
-        self.observation_space: Any = observation_space_of(self.options)
+        self.action_space = self.options.rules.actions.space
+        self.observation_space = observation_space_of(self.options)
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode

@@ -12,6 +12,7 @@ import numpy as np
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
+from numpy.typing import ArrayLike
 
 from .._lib.check import choice, integer, refuse
 from .._lib.types import Bools, Floats, Observation
@@ -93,7 +94,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         threads: int | None = None,
         render_size: Sequence[int] = SIZE,
-        **keywords: Any,
+        **keywords: object,
     ):
         n = self.num_envs = integer("num_envs", num_envs, 1, 2**24)
         threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
@@ -109,10 +110,10 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         alone = self.options.but(opponent="none")
         self._one = SnookerEnv(alone, render_mode=render_mode, render_size=render_size)
         self._one.options = self.options
-        self.single_action_space: Any = self._one.action_space
-        self.single_observation_space: Any = self._one.observation_space
+        self.single_action_space = self._one.action_space
+        self.single_observation_space = self._one.observation_space
         self.action_space: Any = batch_space(self.single_action_space, n)
-        self.observation_space: Any = batch_space(self.single_observation_space, n)
+        self.observation_space = batch_space(self.single_observation_space, n)
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size)
         self._generators: list[Any] = [None] * n
         self._generator_seeds = [-1] * n
@@ -124,7 +125,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     _game_of = staticmethod(game_of)  # the options, and who sits opposite the agent
 
-    def _tables_of(self, opponent: Any, limit: int) -> Tables:
+    def _tables_of(self, opponent: object, limit: int) -> Tables:
         return tables_of(self.options, opponent, self.num_envs, limit)
 
     # Gymnasium's interface
@@ -168,7 +169,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self._done[wanted] = False
         return self._arrange(written), tables.infos(written.reals, written.counts, wanted)
 
-    def step(self, actions: Any) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
+    def step(self, actions: ArrayLike) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
         """Play one step on each table.
 
         ``actions``: float (num_envs, k) within [-1, 1], clipped if up to 1e-6 outside; or choices, int
@@ -208,7 +209,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         """Return a picture of each table, as ``SnookerEnv.render``; a recorder gets all motion at once."""
         return self._pictures.render_all(self.tables, self._recent)
 
-    def close_extras(self, **kwargs: Any) -> None:
+    def close_extras(self, **kwargs: object) -> None:
         """End the threads; called by ``close``."""
         if hasattr(self, "_crew"):  # not if the constructor refused its options
             self._crew.shutdown()
@@ -238,7 +239,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         each = enumerate(self.np_random)
         return [self.tables.get_state(k) | {"rng": one.bit_generator.state} for k, one in each]
 
-    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+    def call(self, name: str, *args: object, **kwargs: object) -> tuple[Any, ...]:
         """Read or call something of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call`` does.
 
         ValueError if the name does not belong to one table, AttributeError if there is none."""
@@ -256,7 +257,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     get_attr = call
 
-    def set_attr(self, name: str, values: Any) -> None:
+    def set_attr(self, name: str, values: object) -> None:
         """Refuse with AttributeError: the tables share everything. Make another environment instead."""
         raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
 

@@ -129,7 +129,7 @@ def within(field: str) -> Iterator[None]:
         raise ValueError(f"{field}.{error}") from None
 
 
-def tuples(value: Any) -> Any:
+def tuples(value: object) -> Any:
     """Nested lists, as JSON returns them, as nested tuples."""
     return tuple(map(tuples, value)) if isinstance(value, list | tuple) else value
 

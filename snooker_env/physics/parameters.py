@@ -206,7 +206,7 @@ class Physics:
         return {k: v for k, v in self.__dict__.items() if k not in ("_constants", "_with_tables")}
 
     @classmethod
-    def preset(cls, name: PhysicsName = "paper", **fields: Any) -> "Physics":
+    def preset(cls, name: PhysicsName = "paper", **fields: object) -> "Physics":
         """The constants of a preset, with any ``fields`` replaced; ValueError if a name or value is wrong.
 
         "paper": [MJP14] and [MJP10]. "match": measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and
@@ -404,7 +404,7 @@ PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None
 """The type of an argument ``physics``, see ``Physics.of``."""
 
 
-def _mu_bb(value: Any) -> float | Literal["marlow"] | tuple[float, float, float]:
+def _mu_bb(value: object) -> float | Literal["marlow"] | tuple[float, float, float]:
     allowed = 'must be a number in [0, 1], "marlow", or (a, b, c) with a, b, c >= 0 and a + b <= 1'
     if isinstance(value, str):
         if value != "marlow":

@@ -106,7 +106,7 @@ class Planner:
     ):
         rules = options_in(env_or_options).rules
         errors = rules.noise if noise is None else Noise.of(noise)
-        plain: Any = {"reward": REWARDS[0], "one_stroke": False, "observation": OBSERVATIONS[0]}
+        plain = {"reward": REWARDS[0], "one_stroke": False, "observation": OBSERVATIONS[0]}
         self._rules = replace(rules, noise=errors, **plain)
         usual = min(1024, processors())
         self._threads = Threads(usual if threads is None else integer("threads", threads, 1, 1024))
@@ -247,7 +247,7 @@ class Planner:
         self.__dict__.update(state, _lock=threading.Lock())  # a lock belongs to one process
 
 
-def options_in(source: Any) -> Options:
+def options_in(source: object) -> Options:
     """The ``Options`` of an environment, of a dict, or as they are; ValueError for anything else."""
     if isinstance(source, Mapping):
         source = options_of(None, source)

@@ -128,9 +128,9 @@ class Position:
         places, present = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
         ids = {"cue": CUE, **dict(zip(COLOUR_NAMES, range(YELLOW, N_BALLS), strict=True))}
-        balls: Any = {name: tuple(places[i]) for name, i in ids.items() if present[i]}
+        balls = {name: tuple(places[i]) for name, i in ids.items() if present[i]}
         balls["reds"] = tuple(tuple(places[i]) for i in range(1, N_REDS + 1) if present[i])
-        visit: Any = {"in_hand": bool(in_hand), "points": points, "over": bool(over)}
+        visit = {"in_hand": bool(in_hand), "points": points, "over": bool(over)}
         return cls(**balls, on=BallOn(ball_on).name.lower(), **visit, table=None)
 
     def to_dict(self) -> dict[str, Any]:
@@ -178,7 +178,7 @@ def _with_names(init: Any) -> Any:
 Position.__init__ = _with_names(Position.__init__)
 
 
-def _name_on(on: Any, balls: int) -> str:
+def _name_on(on: object, balls: int) -> str:
     """What is on, as a word of ``ON``."""
     if on is None:
         return BallOn(next_on(balls)).name.lower()
@@ -221,7 +221,7 @@ def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue
     check_ball_on(on, ball_on, present, balls)
 
 
-def _check(raw: Any, field: str = "position") -> Mapping[str, Any]:
+def _check(raw: object, field: str = "position") -> Mapping[str, Any]:
     """A dict of JSON types that has keys of ``names`` only and no truth values where numbers belong."""
     if not isinstance(raw, Mapping):
         allowed = f"must be a dict with keys of {', '.join(_NAMES)}"
@@ -235,7 +235,7 @@ def _check(raw: Any, field: str = "position") -> Mapping[str, Any]:
     return raw
 
 
-def _places(value: Any) -> list[Any]:
+def _places(value: object) -> list[Any]:
     """The lists of numbers in a value: of one ball, or of several."""
     if not isinstance(value, list | tuple):
         return []

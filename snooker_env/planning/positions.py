@@ -102,7 +102,7 @@ class Positions:
             return source
         if isinstance(source, Position | Mapping):
             source = [source]
-        some: Any = source if isinstance(source, list | tuple) else ()
+        some = source if isinstance(source, list | tuple) else ()
         if len(some) and all(isinstance(one, Position | Mapping) for one in some):
             positions, on_table, game = zip(*map(_arrays, some), strict=True)
             return cls(np.stack(positions), np.stack(on_table), np.stack(game))
@@ -249,7 +249,7 @@ class Positions:
         return out
 
 
-def _floats(field: str, values: Any, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def _floats(field: str, values: object, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """``check.array``, but without a copy of an array that is valid already."""
     a = np.asarray(values)
     right = a.dtype == np.float64 and a.ndim == len(shape) and a.shape[1:] == shape[1:]
@@ -270,7 +270,7 @@ def _arrays(one: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[n
     return np.asarray(one["positions"], np.float64), np.asarray(one["on_table"], np.bool_), game
 
 
-def bare(env: Any) -> Any:
+def bare(env: object) -> Any:
     """The environment of this package inside all wrappers of Gymnasium, PettingZoo or Stable-Baselines3."""
     env = getattr(env, "unwrapped", env)
     inner = getattr(env, "tables", None)
@@ -281,7 +281,7 @@ def bare(env: Any) -> Any:
 def of_tables(tables: Tables) -> Positions:
     """The positions of an environment's tables, those of frames as their strikers see them."""
     game, own = tables.game.copy(), tables.conditions if tables.rules.drawn else None
-    saved: columns.Layouts | None = getattr(tables, "saved", None)
+    saved: columns.Layouts | None = getattr(tables, "layouts_before", None)
     if saved is None:
         game[:, columns.STEPS] = 0
         return Positions(tables.positions.copy(), tables.on_table.copy(), game, None, own)

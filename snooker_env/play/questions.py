@@ -62,9 +62,9 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
     return {"choice": CHOICES[int(decided.decision[0])], "choices": found}
 
 
-def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:
+def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: object) -> dict[str, Any]:
     """At most n strokes of the agent, the best of each ``_idea``, in words, data and paths; their order."""
-    how: Any = {**errors, "n": n + RIVALS * (n - 1), "options": {"cue": session.cue}}
+    how = {**errors, "n": n + RIVALS * (n - 1), "options": {"cue": session.cue}}
     at = session.as_visit()
     if not session.practice:  # alone at the table nobody wins
         at, how["options"] = (

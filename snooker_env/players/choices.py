@@ -1,7 +1,5 @@
 """How does a player play that scores the discrete choices? The highest score; its aim is solved."""
 
-from typing import Any
-
 import numpy as np
 
 from .._lib.check import refuse_what
@@ -45,7 +43,7 @@ class ChoicePlayer(BoundPlayer):
 
     def _bind(self, options: Options) -> None:
         names = ("physics", "table", "fidelity", "conditions", "cue")
-        same: Any = {name: getattr(options, name) for name in names}
+        same = {name: getattr(options, name) for name in names}
         self._rules = Options(action="discrete", **same).rules
         self._packed = self._rules.pack()
 

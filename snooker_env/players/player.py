@@ -184,7 +184,7 @@ def ask_player(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats
     --------
     >>> import numpy as np
     >>> import snooker_env as sn
-    >>> from snooker_env.players import VISITS, decided
+    >>> from snooker_env.players import VISITS, ask_player
     >>> tables = sn.SnookerVectorEnv(2, **VISITS)
     >>> _ = tables.reset(seed=0)
     >>> ask_player(sn.player("ghost_ball").at(tables), tables, np.array([True, False]), np.array([1, 2])).shape

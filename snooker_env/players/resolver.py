@@ -45,7 +45,7 @@ def players() -> list[str]:
     return [*BUILT_IN, *(name for name in _find_entry_points() if name not in BUILT_IN)]
 
 
-def player(name: Any, *, trust: bool = False, options: Mapping[str, Any] | None = None) -> Player:
+def player(name: object, *, trust: bool = False, options: Mapping[str, Any] | None = None) -> Player:
     """Return the player with a name.
 
     Parameters
@@ -171,7 +171,7 @@ def _make(name: str, maker: Callable[[], Any]) -> Any:
         raise refuse("player", name, allowed) from error
 
 
-def _of_object(thing: Any) -> Player:
+def _of_object(thing: object) -> Player:
     """A player as it is, or what makes one of an object that acts on observations."""
     if isinstance(thing, Player) and not isinstance(thing, type):
         return thing

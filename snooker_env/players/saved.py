@@ -61,7 +61,7 @@ class SavedNetwork:
 
     def __init__(self, model: FittingModel, trust: bool):
         self.options, self.model, self._trust = model.options, model, trust
-        self._network: Any = model.network(trust)
+        self._network = model.network(trust)
         self._masked = model.saved.algorithm[1] == "MaskablePPO"
 
     def __getstate__(self) -> dict[str, Any]:

@@ -105,7 +105,7 @@ class SeenPlayer(BoundPlayer):
         keys = seeds_of(seeds, len(at))
         shown, places = self._show(at, keys)
         actions = self._actions(shown, keys)
-        said: Any = ()
+        said = ()
         if self.frames:
             said = sayings(self._rules, actions, shown.game)
             shown = shown.copy()

@@ -142,12 +142,12 @@ def _write_speeds(ax: "Axes", shot: Shot) -> None:
             ax.annotate(words, tuple(_flip(place)), (0, 9), **style)
 
 
-def _flip(points: Any) -> Floats:
+def _flip(points: object) -> Floats:
     """Points (..., 2) in the order for matplotlib: y to the right, x down."""
     return np.asarray(points, np.float64)[..., ::-1]
 
 
-def _rgb(colour: Any, alpha: float = 1.0) -> tuple[float, float, float, float]:
+def _rgb(colour: object, alpha: float = 1.0) -> tuple[float, float, float, float]:
     """Red, green and blue up to 255, in matplotlib's form."""
     red, green, blue = np.asarray(colour, np.float64) / 255
     return red, green, blue, alpha

@@ -27,7 +27,7 @@ def count_shots() -> int:
     --------
     >>> import numpy as np
     >>> import snooker_env as sn
-    >>> from snooker_env.benchmark import simulated
+    >>> from snooker_env.benchmark import count_shots
     >>> before = count_shots()
     >>> _ = sn.simulate(np.zeros((1, 2)), np.array([[1.0, 0.0]]), np.zeros((1, 3)))
     >>> count_shots() - before

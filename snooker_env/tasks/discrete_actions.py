@@ -4,10 +4,10 @@ aim is solved for them, or is the straight line if none can be. Without a direct
 
 from collections.abc import Collection
 from math import atan2, cos, sin, sqrt
-from typing import Any
 
 import numpy as np
 from gymnasium import spaces
+from numpy.typing import ArrayLike
 
 from .._lib.check import refuse, refuse_what
 from .._lib.jit import entry, kernel
@@ -200,7 +200,7 @@ class Choices:
             raise refuse("action", action, f"must be an integer in [0, {self.choices})")
         return [float(a.item())]
 
-    def check_many(self, actions: Any, n: int) -> Floats:
+    def check_many(self, actions: ArrayLike, n: int) -> Floats:
         """The choices of n tables, float64 (n, 1); ValueError names the first table with an invalid one."""
         a = np.asarray(actions)
         if a.dtype.kind not in "iu" or a.shape not in ((n,), (n, 1)):

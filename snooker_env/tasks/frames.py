@@ -248,7 +248,7 @@ class Frames(Tables):
         going, striker = ~self.are_over(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
-            prepare: Any = lambda which, b, its=its, side=side: self.prepare(which, its, b, side)  # noqa: E731
+            prepare = lambda which, b, its=its, side=side: self.prepare(which, its, b, side)  # noqa: E731
             self.turn(prepare, out, crew, np.flatnonzero(going & (striker == side)))
         self._replies[:] = self._played * (striker != AGENT)
         crew(np.flatnonzero(going), lambda which, _: self._finish(which, out))
@@ -433,7 +433,7 @@ class Frames(Tables):
         """See ``Tables.set_position``. Player 0 is at the table; the points are its break."""
         ball_on, in_hand, points = game[[columns.BALL_ON, columns.IN_HAND, columns.POINTS]].tolist()
         balls, rules = mask_of_present(on_table) & ~CUE_BIT, self.rules
-        on: Any = {"ball_on": BallOn(ball_on), "in_hand": bool(in_hand), "break_points": points}
+        on = {"ball_on": BallOn(ball_on), "in_hand": bool(in_hand), "break_points": points}
         frame = Frame(on_table=balls, rack=balls, miss=rules.miss, rules=rules.game, **on)
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.layouts_before, k)

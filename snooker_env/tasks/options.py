@@ -333,7 +333,7 @@ class Options:
         keys = {key for key in members if _ONLY.get(key) in (None, *kinds)}
         return {f.name: f.default for f in _FIELDS if f.name in keys}
 
-    def but(self, **changes: Any) -> "Options":
+    def but(self, **changes: object) -> "Options":
         """Return a validated copy with some fields changed. ValueError as of ``Options``."""
         return replace(self, **changes)
 

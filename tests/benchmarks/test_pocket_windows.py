@@ -36,7 +36,7 @@ def test_the_clean_opening_is_the_same_at_all_speeds(preset, table, pocket):
     here, physics = alone(sn.Table.preset(table), pocket), sn.Physics.preset(preset)
     speeds = (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)
     assert openings.all_clean_drop(here, speeds, physics)
-    clean, free = openings.clean(here, physics.R), openings.untouched(here, speeds, True, physics)
+    clean, free = openings.clean(here, physics.R), openings.measure_openings(here, speeds, True, physics)
     assert (free > clean - 5e-5).all()
     # so far behind the edge a ball still meets a jaw
     assert (free[np.array(speeds) >= 6.0] < clean + 1e-4).all()

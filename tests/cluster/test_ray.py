@@ -13,7 +13,7 @@ pytest.importorskip("ray", reason='Ray is not installed: pip install -e ".[clust
 from ray.cluster_utils import Cluster as Nodes
 
 from agents import cluster, evaluate, tournament
-from agents.cluster import ClusterError, Here, ended, in_order, place
+from agents.cluster import ClusterError, Here, in_order, place, play_and_keep
 from agents.evaluation import visits
 from agents.evaluation.entrants import Entrant
 from agents.evaluation.travel import pack
@@ -92,13 +92,13 @@ def test_two_nodes_of_which_one_is_killed_play_what_one_process_plays(nodes, whe
     killer = threading.Thread(target=kill, daemon=True)
     killer.start()
     far = {}
-    for k, result in ended(visits.play, parts, where):
+    for k, result in play_and_keep(visits.play, parts, where):
         done.append(k)
         far[k] = result
     killer.join(60)
     assert nodes[1] not in nodes[0].list_all_nodes() and sorted(done) == list(range(12))
     monkeypatch.delenv("NOTED")
-    near = in_order(Here().played(visits.play, parts))
+    near = in_order(Here().play_parts(visits.play, parts))
     assert all(alike(far[k], one) for k, one in enumerate(near))
 
 
@@ -107,7 +107,7 @@ def test_two_nodes_play_every_kind_of_player(where, folder, monkeypatch):
     seeds = tables_of("held_out", 24)
     for name in names:
         parts, agent = parts_of(name, 24, 12, monkeypatch), Entrant.of(name)
-        far = in_order(where.played(visits.play, parts))
+        far = in_order(where.play_parts(visits.play, parts))
         one, other = (evaluate.play_agent(agent, AT, seeds, 100, r).strokes[0] for r in (far, None))
         assert same(one, other), name
     processes = {line.split()[0] for line in (folder / "noted").read_text().splitlines()}
@@ -118,20 +118,20 @@ def test_frames_of_self_play_are_the_same(where):
     shared = {"options": {"cue": "real", "max_strokes": 6}, "layers": None, "chance": None}
     shared |= {"budget": 30, "explore": 0.2, "replies": False}
     parts = [(shared, {"scale": 2.0, "seed": k, "many": 2, "other": None}) for k in (3, 5)]
-    for one, other in zip(*(in_order(w.played(frames, parts)) for w in (where, Here())), strict=True):
+    for one, other in zip(*(in_order(w.play_parts(frames, parts)) for w in (where, Here())), strict=True):
         assert all(np.array_equal(one[name], other[name]) for name in other)
 
 
 def test_a_job_goes_on_with_what_was_kept(where, folder, monkeypatch):
     """The parts that had ended are not played again, but a damaged one is."""
     parts = parts_of("tests.cluster.players:Noted", 8, 2, monkeypatch)
-    for k, _ in ended(visits.play, parts, where):
+    for k, _ in play_and_keep(visits.play, parts, where):
         if k == 1:
             break
     kept = sorted(cluster.kept_at(visits.play, parts).glob("*.npz"))
     kept[0].write_bytes(b"damaged")
     (folder / "noted").unlink()
-    whole = dict(ended(visits.play, parts, where))
+    whole = dict(play_and_keep(visits.play, parts, where))
     asked = [line for line in (folder / "noted").read_text().splitlines() if line.split()[1] == "0"]
     assert sorted(whole) == [0, 1, 2, 3] and len(asked) >= 4 - len(kept) + 1
     assert all(alike(whole[k], one) for k, one in in_turn(parts, monkeypatch))
@@ -141,7 +141,7 @@ def test_a_job_goes_on_with_what_was_kept(where, folder, monkeypatch):
 
 def in_turn(parts, monkeypatch):
     monkeypatch.delenv("NOTED")
-    return enumerate(in_order(Here().played(visits.play, parts)))
+    return enumerate(in_order(Here().play_parts(visits.play, parts)))
 
 
 @pytest.mark.parametrize(
@@ -151,14 +151,14 @@ def in_turn(parts, monkeypatch):
 def test_what_befalls_a_worker_is_one_line(where, monkeypatch, name, kind, says):
     monkeypatch.setattr(cluster, "RETRIES", 1)
     with pytest.raises(kind, match=says) as error:
-        list(where.played(visits.play, parts_of(f"tests.cluster.players:{name}", 2, 2, monkeypatch)))
+        list(where.play_parts(visits.play, parts_of(f"tests.cluster.players:{name}", 2, 2, monkeypatch)))
     assert "\n" not in str(error.value)
 
 
 def test_a_node_with_another_source_is_refused(where, monkeypatch):
     monkeypatch.setattr(cluster, "source", lambda: "another")
     with pytest.raises(ClusterError, match="holds another source or other libraries"):
-        list(where.played(visits.play, parts_of("random", 2, 2, monkeypatch)))
+        list(where.play_parts(visits.play, parts_of("random", 2, 2, monkeypatch)))
 
 
 @pytest.mark.parametrize(

@@ -107,7 +107,7 @@ def misfit():
 
 def test_match_is_the_fit_to_the_measurements(misfit):
     match = sn.Physics.preset("match")
-    best, free = (fit_cushion.fitted(misfit, fit_cushion.NAMES[:n]) for n in (4, 5))
+    best, free = (fit_cushion.fit_constants(misfit, fit_cushion.NAMES[:n]) for n in (4, 5))
     knee, power, mu_r, thrown, _ = best
     assert (match.e_c_knee, match.e_c_power, match.mu_r) == pytest.approx((knee, power, mu_r), rel=0.005)
     assert (match.e_c, match.roll_drag) == (fit_cushion.E_C, 0.0)

@@ -74,12 +74,12 @@ def test_the_network_is_fitted_to_what_strokes_are_worth():
     rng = np.random.default_rng(1)
     seen = rng.normal(2.0, 3.0, (600, 6, SIZE)).astype(np.float32)
     worth = 4.0 * seen[..., 3] - 6.0 * np.maximum(seen[..., 5], 0.0)
-    layers, figures = learn_strokes.fitted(seen, worth, np.arange(600), 0, 60)
+    layers, figures = learn_strokes.fit_strokes(seen, worth, np.arange(600), 0, 60)
     assert figures["explained"] > 0.9 and figures["positions"] == 600
     from snooker_env.planning.learned.dense_layers import Layers
 
     seems = worth + 6.0 * seen[..., 7]
-    more, figures = learn_strokes.fitted(seen, worth, np.arange(600), 0, 60, seems)
+    more, figures = learn_strokes.fit_strokes(seen, worth, np.arange(600), 0, 60, seems)
     assert figures["explained"] > 0.9 and figures["worth_chosen"] > figures["worth_chosen_unlearned"] + 1.0
     added = learn_strokes.POINTS * Layers(more, "relu")(seen.reshape(-1, SIZE))[:, 0]
     assert np.corrcoef(added, -seen[..., 7].reshape(-1))[0, 1] > 0.9

@@ -25,7 +25,7 @@ def few_tables(monkeypatch):
 def test_the_actions_of_an_episode_play_it_again(form):
     """From its seed, in the environment that the data set names, to the bit."""
     seeds = dataset.seeds_of(0)
-    part = dataset.played(BREAK, "ghost_ball", form, seeds, threads=1)
+    part = dataset.play_table_episodes(BREAK, "ghost_ball", form, seeds, threads=1)
     env, at = gymnasium.make(BREAK.id, **dataset.free_options(BREAK, form)), 0
     for k, (seed, length) in enumerate(zip(seeds, part["lengths"], strict=True)):
         seen, _ = env.reset(seed=seed)

@@ -87,7 +87,7 @@ def test_held_out_tables_alone_are_played_unless_others_are_named():
         (["--visits", "30"], {"held_out": 30}),
         (["--layouts", "colours", "held_out"], {"colours": 500, "held_out": 2000}),
     ):
-        _, _, seeds = evaluate.checked(evaluate.parser().parse_args(["--agent", "random", *words]))
+        _, _, seeds = evaluate.parse_evaluation(evaluate.parser().parse_args(["--agent", "random", *words]))
         assert {name: len(its) for name, its in seeds.items()} == sizes
 
 

@@ -10,9 +10,9 @@ from agents.evaluation.tournament_figures import (
     ELO,
     bound,
     chance,
-    compared,
     figures_of,
-    linked,
+    find_comparable,
+    find_reachable,
     schedule,
     strengths,
 )
@@ -135,11 +135,11 @@ def test_who_can_be_compared_by_results_alone():
     wins = np.zeros((5, 5))
     wins[0, 1] = wins[1, 0] = wins[2, 0] = wins[2, 1] = 3
     wins[[0, 1, 2], 3] = 3
-    assert compared(wins, 0).tolist() == [True, True, False, False, False]
-    assert compared(wins, 2).tolist() == [False, False, True, False, False]
-    assert linked((wins + wins.T) > 0, 1).tolist() == [True, True, True, True, False]
+    assert find_comparable(wins, 0).tolist() == [True, True, False, False, False]
+    assert find_comparable(wins, 2).tolist() == [False, False, True, False, False]
+    assert find_reachable((wins + wins.T) > 0, 1).tolist() == [True, True, True, True, False]
     wins[3, 2] = 1  # now 2 has lost to 3, who lost to 0
-    assert compared(wins, 0).tolist() == [True, True, True, True, False]
+    assert find_comparable(wins, 0).tolist() == [True, True, True, True, False]
 
 
 def test_the_bound_of_one_who_won_all():

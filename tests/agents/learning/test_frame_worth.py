@@ -8,7 +8,7 @@ from agents import learn_worth
 from agents.learn_worth import main
 from agents.learning import frame_self_play
 from agents.learning.frame_self_play import frames
-from agents.learning.frame_worth import TRACE, calibration, fitted, fitted_chance, targets
+from agents.learning.frame_worth import TRACE, calibration, fit_network, fitted_chance, targets
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Positions
 from snooker_env.planning.learned.dense_layers import Layers
@@ -85,8 +85,10 @@ def test_a_case_that_a_stroke_may_leave_is_what_the_next_player_sees(monkeypatch
     k = np.flatnonzero(left.game[:, columns.STRIKER] == 1)[:1]  # a stroke after which the other comes
     decided.tried[0] = tried._replace(strokes=tried.strokes[k])
     left = turn_to_striker(left[k])
-    judged, seen = frame_self_play._judged, []
-    monkeypatch.setattr(frame_self_play, "_judged", lambda *args: seen.append(args[1]) or judged(*args))
+    judged, seen = frame_self_play._judge_strokes, []
+    monkeypatch.setattr(
+        frame_self_play, "_judge_strokes", lambda *args: seen.append(args[1]) or judged(*args)
+    )
     replies, first = frame_self_play._replies(player, decided, np.array([0]), np.random.default_rng(0))
     hard = bool((tried.kinds > 0).any())
     assert hard and first.tolist() == [0] * frame_self_play.REPLIES[hard] and len(seen) == 1
@@ -111,7 +113,7 @@ def test_a_network_learns_what_it_is_told_beside_the_value():
     rng = np.random.default_rng(0)
     seen = rng.standard_normal((16_000, SIZE)).astype(np.float32)
     wanted = POINTS * (seen[:, -1] + 0.3 * seen[:, 3] - 0.2)
-    layers = fitted(seen, wanted, 0, 30)
+    layers = fit_network(seen, wanted, 0, 30)
     said = worth_of(Layers(layers, "relu"), seen)
     assert np.sqrt(np.mean((said - wanted) ** 2)) < 0.15 * np.std(wanted - POINTS * seen[:, -1])
 

@@ -20,7 +20,7 @@ from agents import evaluate
 from agents.evaluation.entrants import Entrant
 from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe, names
-from agents.learning.model_files import KEPT, packed, read
+from agents.learning.model_files import KEPT, pack_model, read
 from agents.learning.models import POLICY
 from agents.learning.policy_files import read_policy, write_policy
 from agents.players.trained import PolicyPlayer, load_player
@@ -54,7 +54,7 @@ def mask(tmp_path_factory):
 @pytest.fixture
 def plain(mask, tmp_path):
     """The same as those of results/weights are written."""
-    (tmp_path / "plain.zip").write_bytes(packed(read(mask, "agent")))
+    (tmp_path / "plain.zip").write_bytes(pack_model(read(mask, "agent")))
     return tmp_path / "plain.zip"
 
 
@@ -66,7 +66,7 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
     before = torch.get_rng_state()
     trained = read(file, "agent")
     assert torch.equal(torch.get_rng_state(), before) and not (tmp_path / "mark").exists()
-    (tmp_path / "plain.zip").write_bytes(packed(trained))
+    (tmp_path / "plain.zip").write_bytes(pack_model(trained))
     seen = np.random.default_rng(0).uniform(-1, 1, (16, *model.observation_space.shape)).astype(np.float32)
     wanted = {"recipe": name, "num_timesteps": 77, "gamma": model.gamma}
     wanted |= {"seed": 3, "imitated": 300, "start": None}
