@@ -14,7 +14,7 @@ from snooker_env.planning.worth import (
     NARROWEST,
     WIDEST,
     Chance,
-    chosen,
+    apply_decision,
     decide,
     lead_of,
     left_of,
@@ -206,15 +206,15 @@ def test_after_a_foul_all_choices_are_compared():
     for k in range(len(at)):
         one = at[[k]]
         options = {
-            columns.PLAY: either_way(chosen(one, columns.PLAY))[0],
-            columns.PLAY_AGAIN: -either_way(chosen(one, columns.PLAY_AGAIN))[0],
-            columns.REPLACE: -either_way(chosen(one, columns.REPLACE))[0],
+            columns.PLAY: either_way(apply_decision(one, columns.PLAY))[0],
+            columns.PLAY_AGAIN: -either_way(apply_decision(one, columns.PLAY_AGAIN))[0],
+            columns.REPLACE: -either_way(apply_decision(one, columns.REPLACE))[0],
         }
         assert values[k] == pytest.approx(max(options.values())) and options[int(best[k])] == pytest.approx(
             values[k]
         )
     assert len(set(best.tolist())) > 1, "one choice is always the best here"
-    replaced = chosen(at, columns.REPLACE)
+    replaced = apply_decision(at, columns.REPLACE)
     assert np.array_equal(replaced.positions, at.saved.positions)
     assert np.array_equal(lead_of(replaced), -lead_of(at))
 
