@@ -16,12 +16,13 @@ def native(n, **options):
 
 
 class OneByOne(VectorEnv):
-    """n single tables with the same options; ``max_episode_steps`` truncates."""
+    """n single tables with the same options; ``max_episode_steps`` truncates. Counted here: importing RL Baselines3 Zoo
+    replaces Gymnasium's ``TimeLimit`` by one that does not truncate an episode that terminates."""
 
     def __init__(self, n, mode=AutoresetMode.NEXT_STEP, max_episode_steps=None, **options):
-        limit, self.num_envs, self.mode = max_episode_steps, n, AutoresetMode(mode)
-        singles = [SnookerEnv(**options) for _ in range(n)]
-        self.envs = [gymnasium.wrappers.TimeLimit(one, limit) for one in singles] if limit else singles
+        self.limit, self.num_envs, self.mode = max_episode_steps, n, AutoresetMode(mode)
+        self.envs = singles = [SnookerEnv(**options) for _ in range(n)]
+        self.steps = [0] * n
         self.single_observation_space, self.single_action_space = (
             singles[0].observation_space,
             singles[0].action_space,
@@ -37,7 +38,7 @@ class OneByOne(VectorEnv):
         )
         for k in np.flatnonzero(options.pop("reset_mask", np.ones(self.num_envs, bool))):
             self.seen[k], info = self.envs[k].reset(seed=seeds[k], options=options)
-            self.done[k], infos = False, self._add_info(infos, info, k)
+            self.steps[k], self.done[k], infos = 0, False, self._add_info(infos, info, k)
         return self._stacked(), infos
 
     def step(self, actions):
@@ -45,12 +46,14 @@ class OneByOne(VectorEnv):
         rewards, ended, cut = np.zeros(self.num_envs), *np.zeros((2, self.num_envs), bool)
         for k, env in enumerate(self.envs):
             if waiting[k]:
-                self.seen[k], info = env.reset()
+                self.seen[k], info, self.steps[k] = *env.reset(), 0
             else:
                 self.seen[k], rewards[k], ended[k], cut[k], info = env.step(actions[k])
+                self.steps[k] += 1
+                cut[k] |= self.limit is not None and self.steps[k] >= self.limit
             if self.mode == AutoresetMode.SAME_STEP and (ended[k] or cut[k]):
                 infos = self._add_info(infos, {"final_obs": self.seen[k], "final_info": info}, k)
-                self.seen[k], info = env.reset()
+                self.seen[k], info, self.steps[k] = *env.reset(), 0
             infos = self._add_info(infos, info, k)
         self.done = ended | cut
         return self._stacked(), rewards, ended, cut, infos
