@@ -76,7 +76,6 @@ def parser():
     what = "go on with an incomplete --out; leave a complete one as it is"
     p.add_argument("--resume", action="store_true", help=what)
     p.add_argument("--force", action="store_true", help="replace --out if it is there")
-    p.add_argument("--quiet", action="store_true", help="show no progress")
     what = "verify files of tournaments instead; exit code 1 if one is wrong"
     p.add_argument("--check", nargs="+", type=Path, metavar="FILE", help=what)
     return p
@@ -248,7 +247,7 @@ def _play(tournament, args):
     try:
         with place(args.ray) as where:
             what = f"tournament{where.says}"
-            with Progress(what, total, units, done=tournament.ended, quiet=args.quiet) as progress:
+            with Progress(what, total, units, done=tournament.ended) as progress:
                 tournament.play(where, args.threads, progress.at, save_file)
     except (KeyboardInterrupt, ClusterError) as error:
         stopped, number = isinstance(error, KeyboardInterrupt), tournament.ended

@@ -132,7 +132,7 @@ def main(argv=None):
         except OSError as error:
             parser.error(f"out = {str(rest.out)!r}: must be a folder that can be written ({error.strerror})")
         again = f"Continue with:  {shlex.join([python(), 'train.py', '--resume', '--out', str(rest.out)])}"
-        loop = Loop(training.settings.agent, training.parts, training.save, again, 1, rest.no_progress)
+        loop = Loop(training.settings.agent, training.parts, training.save, again, 1)
         try:
             snooker_env.warmup()
             if (number := loop.run()) is not None:

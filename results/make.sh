@@ -46,7 +46,7 @@ train() {
     shift
     [[ -f $FOLDER/$name/results.json ]] && return
     rm -rf "${FOLDER:?}/$name"
-    python train.py "$@" --parallel one --no-progress --out "$FOLDER/$name" > "$FOLDER/$name.txt" 2>&1 ||
+    python train.py "$@" --parallel one --out "$FOLDER/$name" > "$FOLDER/$name.txt" 2>&1 ||
         { echo "$name failed: see $FOLDER/$name.txt" >&2; return 1; }
     echo "$(date +%H:%M) $name"
 }

@@ -21,8 +21,6 @@ class Progress:
         How much was done before, by a run that is resumed.
     to : text stream, optional
         Default None: ``sys.stderr``. Nothing is written where that is no terminal.
-    quiet : bool
-        Whether to say nothing.
 
     Examples
     --------
@@ -40,10 +38,9 @@ class Progress:
         *,
         done: int = 0,
         to: TextIO | None = None,
-        quiet: bool = False,
     ):
         self.done, self.total = done, total
-        silent = quiet or os.environ.get("SNOOKER_ENV_QUIET", "0") not in ("", "0")
+        silent = os.environ.get("SNOOKER_ENV_QUIET", "0") not in ("", "0")
         self._bar = tqdm(
             desc=what,
             total=total,

@@ -84,14 +84,14 @@ class Loop:
     """Runs the ``parts`` of a training called ``name``. ``save()`` keeps what going on needs, ``again`` is the command that
     goes on; ``more``: how many parts follow."""
 
-    def __init__(self, name, parts, save, again, more=0, quiet=False):
+    def __init__(self, name, parts, save, again, more=0):
         self.name, self.again = name, again
-        self._parts, self._save, self._many, self._quiet = parts, save, len(parts) + more, quiet
+        self._parts, self._save, self._many = parts, save, len(parts) + more
 
     def progress(self, what, total, unit, done=0, number=None):
         """The ``Progress`` of part ``number``; by default of the last one, which follows those of learning."""
         head = f"{self.name}, part {number or self._many} of {self._many}" if self._many > 1 else self.name
-        return Progress(f"{head}, {what}", total, unit, done=done, to=sys.stdout, quiet=self._quiet)
+        return Progress(f"{head}, {what}", total, unit, done=done, to=sys.stdout)
 
     def run(self):
         """Play all parts that are left. The signal that stopped it, or None."""

@@ -75,7 +75,7 @@ FREE_ON_RESUME = ("steps", "parallel", "eval_visits")
 
 
 def parse(argv):
-    """(parser, options given on the command line, the rest: out, resume, no_progress)."""
+    """(parser, options given on the command line, the rest: out, resume)."""
     about = "Train an agent, evaluate it on held-out tables beside simple players, and report the result."
     parser = argparse.ArgumentParser("train.py", "python train.py [options]", about)
     for f in fields(Settings):
@@ -95,10 +95,8 @@ def parse(argv):
     parser.add_argument("--out", type=Path, help="the run's folder [runs/AGENT-SEED]")
     what = "continue the run in that folder; options left out keep their values"
     parser.add_argument("--resume", action="store_true", help=what)
-    what = "do not say every few seconds how far it is"
-    parser.add_argument("--no-progress", action="store_true", help=what)
     given = vars(parser.parse_args(argv))
-    rest = argparse.Namespace(**{name: given.pop(name) for name in ("out", "resume", "no_progress")})
+    rest = argparse.Namespace(**{name: given.pop(name) for name in ("out", "resume")})
     for name, (low, high) in BOUNDS.items():
         if not low <= given.get(name, low) <= high:
             value = f"--{name.replace('_', '-')} is {given[name]}"

@@ -99,7 +99,9 @@ def rounds(tables: SnookerVectorEnv, seeds: list[int], decide: Decide) -> Iterat
     while going.any():
         # a frame that the opponent has won already only needs its last step
         asked = going & ~tables.tables.are_over()
-        actions = decide(asked, number) if asked.any() else np.zeros(tables.action_space.shape, np.float32)
+        actions = (
+            decide(asked, number) if asked.any() else np.zeros(tables.action_space.shape or (), np.float32)
+        )
         _, _, terminated, truncated, info = tables.step(actions)
         done = going & (terminated | truncated)
         yield asked, info, done, terminated

@@ -66,10 +66,12 @@ class MatchVectorEnv(SnookerVectorEnv):
         self._alike = one == other
         if self.options.observation == "masked" and not self._alike:
             raise refuse("seats", seats, 'must give both players the same choices with observation="masked"')
-        self.single_action_space = one if self._alike else spaces.Tuple((one, other))
-        self.action_space = batch_space(self.single_action_space, self.num_envs)
-        self.single_observation_space = observation_space_of(self.options, self.tables.seats[0].actions)
-        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.single_action_space: spaces.Space[Any] = one if self._alike else spaces.Tuple((one, other))
+        self.action_space: spaces.Space[Any] = batch_space(self.single_action_space, self.num_envs)
+        self.single_observation_space: spaces.Space[Any] = observation_space_of(
+            self.options, self.tables.seats[0].actions
+        )
+        self.observation_space: spaces.Space[Any] = batch_space(self.single_observation_space, self.num_envs)
 
     _game_of = staticmethod(lambda options, keywords: (match_options(options, keywords), None))
 

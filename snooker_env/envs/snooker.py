@@ -5,6 +5,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium import spaces
 
 from .._lib.check import choice, refuse
 from .._lib.types import Action, Bools, Observation, RenderMode
@@ -72,8 +73,8 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     ):
         self.options, opponent = game_of(options, keywords)
         self.tables = tables_of(self.options, opponent, 1)
-        self.action_space = self.options.rules.actions.space
-        self.observation_space = observation_space_of(self.options)
+        self.action_space: spaces.Space[Any] = self.options.rules.actions.space
+        self.observation_space: spaces.Space[Any] = observation_space_of(self.options)
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import gymnasium
 import numpy as np
+from gymnasium import spaces
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
@@ -110,10 +111,10 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         alone = self.options.but(opponent="none")
         self._one = SnookerEnv(alone, render_mode=render_mode, render_size=render_size)
         self._one.options = self.options
-        self.single_action_space = self._one.action_space
-        self.single_observation_space = self._one.observation_space
-        self.action_space: Any = batch_space(self.single_action_space, n)
-        self.observation_space = batch_space(self.single_observation_space, n)
+        self.single_action_space: spaces.Space[Any] = self._one.action_space
+        self.single_observation_space: spaces.Space[Any] = self._one.observation_space
+        self.action_space: spaces.Space[Any] = batch_space(self.single_action_space, n)
+        self.observation_space: spaces.Space[Any] = batch_space(self.single_observation_space, n)
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size)
         self._generators: list[Any] = [None] * n
         self._generator_seeds = [-1] * n

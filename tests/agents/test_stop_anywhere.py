@@ -11,12 +11,8 @@ from agents.learning import expert_iteration, learn_strokes, loop
 from agents.learning.frame_self_play import FRAME
 from tests.agents.training import TINY, results, weights
 
-EXPERT = str.split(
-    "--agent ppo_value --envs 4 --imitate 64 --steps 512 --eval-visits 4 --no-progress --seed 2"
-)
-STROKES = str.split(
-    "--agent stroke_value --eval-visits 4 --no-progress --set rounds=2 tables=10 frame_rounds=1 frames=10"
-)
+EXPERT = str.split("--agent ppo_value --envs 4 --imitate 64 --steps 512 --eval-visits 4 --seed 2")
+STROKES = str.split("--agent stroke_value --eval-visits 4 --set rounds=2 tables=10 frame_rounds=1 frames=10")
 WORTH = str.split("--rounds 2 --frames 16 --budget 30")
 
 
@@ -25,7 +21,7 @@ def start_training(command):
 
 
 def go_on_training(out):
-    return train.main(["--resume", "--no-progress", "--out", str(out)])
+    return train.main(["--resume", "--out", str(out)])
 
 
 def learn(out):

@@ -165,7 +165,7 @@ def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
         ({"set": ("env_kwargs={'action': 'discrete'}",)}, {"noise": "none"}),
     ):
         recipe = recipe_of(Settings(**{"agent": "ppo_value"} | settings))
-        training_summary.evaluate(recipe, model, 2, Loop("", [], None, "", 1, quiet=True))
+        training_summary.evaluate(recipe, model, 2, Loop("", [], None, "", 1))
         seen = [{name: value for name, value in one.items() if name != "each"} for one in played]
         assert seen == [{"first_seed": tables_of("held_out", 2)} | wanted] * 3
         del played[:]

@@ -7,7 +7,7 @@ import numpy as np
 import train
 from agents.learning.models import load_trained
 
-TINY = str.split("--agent ppo_target --envs 2 --eval-visits 4 --no-progress --parallel one --steps 512")
+TINY = str.split("--agent ppo_target --envs 2 --eval-visits 4 --parallel one --steps 512")
 
 
 def run(out, *options):
@@ -16,7 +16,7 @@ def run(out, *options):
 
 
 def resume(out, *options):
-    return train.main(["--resume", "--no-progress", "--out", str(out), *options])
+    return train.main(["--resume", "--out", str(out), *options])
 
 
 def interrupted_at(monkeypatch, owner, name, call, error=KeyboardInterrupt):

@@ -45,7 +45,7 @@ def test_it_makes_more_than_players_that_see_no_position():
 def test_a_network_is_learned(tmp_path, capsys, frame_rounds):
     whole = tmp_path / "whole"
     settings = ["rounds=2", "tables=10", f"frame_rounds={frame_rounds}", "frames=10"]
-    short = ["--agent", "stroke_value", "--set", *settings, "--eval-visits", "20", "--no-progress"]
+    short = ["--agent", "stroke_value", "--set", *settings, "--eval-visits", "20"]
     assert train.main([*short, "--seed", "3", "--out", str(whole)]) == 0
     said = capsys.readouterr().out
     assert f"python -m snooker_env.watch --agent stroke_value@{whole / 'strokes.npz'}" in said

@@ -19,7 +19,7 @@ UNPROVED += r"|protocol\.(chunk|resamples|tables)|best_(first|second)"
 """Fields on which nothing else in the file depends; of a player's best breaks only the highest shows."""
 USERS = "tests.agents.user_players"
 PLAYERS = ("ghost_ball", "random", f"{USERS}:Softly")
-QUICK = str.split("--frames 6 --resamples 100 --max-strokes 120 --threads 1 --quiet")
+QUICK = str.split("--frames 6 --resamples 100 --max-strokes 120 --threads 1")
 
 
 @pytest.fixture

@@ -97,7 +97,7 @@ def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
             with pytest.raises(ValueError, match=r"^agent = '.*': must be") if wrong else nullcontext():
                 call(file)
     for arguments in ([foreign], [ours, "--agent", "ppo_target"]):
-        new = ["--out", tmp_path / "new", "--envs", "2", "--no-progress"]
+        new = ["--out", tmp_path / "new", "--envs", "2"]
         assert "start = " in refused(train.main, "--start", *arguments, *new)
     assert not mark.exists()
 
