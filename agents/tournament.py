@@ -75,7 +75,6 @@ def parser():
     p.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here")
     what = "go on with an incomplete --out; leave a complete one as it is"
     p.add_argument("--resume", action="store_true", help=what)
-    p.add_argument("--force", action="store_true", help="replace --out if it is there")
     what = "verify files of tournaments instead; exit code 1 if one is wrong"
     p.add_argument("--check", nargs="+", type=Path, metavar="FILE", help=what)
     return p
@@ -124,9 +123,8 @@ def parse_tournament(args):
         raise refuse("threads", args.threads, "must be left out with --ray: a part has one core there")
     if args.threads is not None:
         integer("threads", args.threads, 1, 1024)
-    if args.out and args.out.exists() and not (args.resume or args.force):
-        how = "--resume goes on with an incomplete one, --force replaces it"
-        raise refuse("out", str(args.out), f"must be a new file; {how}")
+    if args.out and args.out.exists() and not args.resume:
+        raise refuse("out", str(args.out), "must be a new file; --resume goes on with an incomplete one")
     if args.resume and not args.out:
         raise refuse("resume", True, "must be given together with --out")
     for name in ("out", "markdown"):

@@ -25,7 +25,7 @@ from agents._lib import provenance
 from agents._lib.tables import text_table
 from snooker_env.physics.parameters import PRESETS, Physics
 
-from .._common.command import Command, at_least, run, save_json
+from .._common.command import Command, run, save_json
 from . import constants, tracks, verdict
 from .paths import Judge
 from .strikes import fit
@@ -45,7 +45,6 @@ def main(argv=None):
     parser.add_argument(
         "--physics", default="carom", choices=sorted(PRESETS), help="the constants of all shots [carom]"
     )
-    parser.add_argument("--shots", type=at_least(1), metavar="N", help="only the first N shots")
     parser.add_argument(
         "--fit", type=float, metavar="MINUTES", help="fit the constants anew, for so long, and judge those"
     )
@@ -54,7 +53,6 @@ def main(argv=None):
         shots = tracks.read(options.file)
     except ValueError as error:
         parser.error(str(error))
-    shots = shots[: options.shots]
     save_json(options.json, measure(options, shots))
 
 

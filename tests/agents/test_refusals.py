@@ -87,7 +87,7 @@ tournament ghost_ball random --options aim=target | options = 'aim=target': must
 tournament ghost_ball random --resume | resume = True: must be given together with --out
 tournament ghost_ball random --out pyproject.toml | out = 'pyproject.toml': must be a new file
 tournament ghost_ball random --out pyproject.toml --resume | pyproject.toml': must be JSON
-tournament ghost_ball random --out tests --force | out = 'tests': must be a file
+tournament ghost_ball random --out tests --resume | out = 'tests': must be a file
 dataset --task Snooker-v0 | task = 'Snooker-v0': must be one of
 dataset --form targets | form = 'targets': must be one of 'strokes', 'choices'
 dataset --strokes 0 | strokes = 0: must be an integer
