@@ -7,12 +7,13 @@ import pytest
 
 import train
 from agents import learn_worth
-from agents.learning import expert_iteration, learn_strokes, loop
+from agents.learning import expert_iteration, learn_strokes, loop, stroke_frames
 from agents.learning.frame_self_play import FRAME
+from snooker_env.players import FRAMES
 from tests.agents.training import TINY, results, weights
 
 EXPERT = str.split("--agent ppo_value --envs 4 --imitate 64 --steps 512 --eval-visits 4 --seed 2")
-STROKES = str.split("--agent stroke_value --eval-visits 4 --set rounds=2 tables=10 frame_rounds=1 frames=10")
+STROKES = str.split("--agent stroke_value --eval-visits 4 --set rounds=1 tables=10 frame_rounds=1 frames=10")
 WORTH = str.split("--rounds 2 --frames 16 --budget 30")
 
 
@@ -41,7 +42,7 @@ TRAININGS = {
         (2,),
     ),
     "expert iteration": (start_training(EXPERT), go_on_training, weights, (1, 11, 17, 18, 19)),
-    "strokes": (start_training(STROKES), go_on_training, arrays("strokes.npz"), (20,)),
+    "strokes": (start_training(STROKES), go_on_training, arrays("strokes.npz"), (12,)),
     "worth": (learn, learn, arrays("worth.npz"), (2,)),
 }
 """How each is begun and gone on with, what it leaves, and before which rounds it is stopped."""
@@ -50,8 +51,10 @@ TRAININGS = {
 @pytest.fixture(autouse=True)
 def small(monkeypatch):
     monkeypatch.setattr(expert_iteration, "POOL", 64)
-    monkeypatch.setitem(FRAME, "max_strokes", 40)
-    monkeypatch.setitem(FRAME, "layout", "colours")
+    short = {"max_strokes": 24, "layout": "colours"}
+    for name, value in short.items():
+        monkeypatch.setitem(FRAME, name, value)
+    monkeypatch.setattr(stroke_frames, "FRAMES", FRAMES | short)
     monkeypatch.setattr(learn_worth, "PASSES", 2)
     monkeypatch.setattr(learn_strokes, "PASSES", 2)
     monkeypatch.setattr(learn_strokes, "LAST_PASSES", {"visits": 3, "frames": 3})
