@@ -3,7 +3,7 @@ several training seeds.
 
     python -m agents.evaluate --agent ghost_ball runs/ppo_value-0
     python -m agents.evaluate --agent "ppo=runs/ppo_value-*" "targets=runs/target-*" --against targets \\
-        --json results/agents/main.json --markdown results/agents/main.md
+        --json runs/main.json --markdown runs/main.md
     python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/ref-*" --fidelity fast reference
     python -m agents.evaluate --agent search_2000 --visits 50 --noise professional
 
@@ -209,14 +209,14 @@ def main(argv=None):
         total = sum(len(args["seeds"]) for _, args in job)
         with place(args.ray) as where, Progress("evaluation", total, "visits") as progress:
 
-            def count_off():
+            def play_and_count():
                 for k, result in play_and_keep(play, job, where):
                     part = job[k][1]
                     layout = part["condition"]["layout"] + where.says
                     progress.at(progress.done + len(part["seeds"]), layout)
                     yield k, result
 
-            evaluate(report, agents, seeds, in_order(count_off()))
+            evaluate(report, agents, seeds, in_order(play_and_count()))
     except KeyboardInterrupt:
         why, code = "interrupted", INTERRUPTED
     except ClusterError as error:

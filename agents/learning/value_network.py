@@ -1,7 +1,7 @@
 """How is the value of a position computed? V = P x U: the chance to score, times what the visit then brings.
 
 One small network with two outputs (``ValueNetwork``). P starts from the likeliest pot's chance by its width;
-U is positive. It is trained with torch; ``snooker_env.planning.learned.LearnedValue`` plays the same weights.
+U is positive. It is trained with torch; ``snooker_env.planning.learned.learned_value`` plays the same weights.
 """
 
 from itertools import pairwise

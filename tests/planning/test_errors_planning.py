@@ -108,9 +108,7 @@ def test_what_cannot_be_planned_is_refused():
         return positions
 
     def row(*change):
-        at = spoilt(*change)
-        assert len(SILENT.play(at, [0, 1, 3], STROKE * 3).points) == 3  # it is not played
-        SILENT.play(at, [0, 1, 2, 3], STROKE * 4)
+        SILENT.play(spoilt(*change), [0, 1, 2, 3], STROKE * 4)
 
     pot = {"positions": Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)]), "rows": [0], "balls": [1]}
     pot |= {"targets": [(0.8, 0.8)], "strokes": 2.3}
@@ -208,3 +206,11 @@ def test_positions_that_cannot_be_are_refused(tmp_path):
         refused(lambda: Position.load(file), field, value, allowed)
     with pytest.raises(OSError):
         Position.load(tmp_path / "none.json")
+
+
+def test_an_unsound_table_is_refused_only_if_it_is_played():
+    at = Positions.of([AT] * 4)
+    at.positions[2][1] = 0.9
+    assert len(SILENT.play(at, [0, 1, 3], STROKE * 3).points) == 3
+    with pytest.raises(ValueError, match=r"positions\[2\]\[1\]"):
+        SILENT.play(at, [0, 1, 2, 3], STROKE * 4)

@@ -92,3 +92,17 @@ def test_without_a_display_it_refuses(monkeypatch):
     assert not window.is_open
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")  # said aloud: it is wanted
     require_display()
+
+
+@pytest.mark.parametrize("how", ["close button", "escape"])
+def test_a_window_that_is_closed_ends_the_film_and_draws_no_more(dummy_screen, pot, how):
+    event, key = dummy_screen.event, dummy_screen.K_ESCAPE
+    window = Window(size=(518, 300))
+    assert window.draw(scene("match", SPOTS))
+    event.post(
+        event.Event(dummy_screen.QUIT)
+        if how == "close button"
+        else event.Event(dummy_screen.KEYDOWN, key=key)
+    )
+    assert not window.play(Film("match", pot), fps=1000)
+    assert not window.is_open and not window.draw(scene("match", SPOTS))

@@ -245,6 +245,25 @@ def test_the_wrapper_writes_each_wanted_episode(tmp_path):
     assert [len(json.loads(p.read_text())["strokes"]) for p in env.paths] == [lengths[0], lengths[2]]
 
 
+def test_the_wrapper_writes_what_was_cut_short(tmp_path):
+    env = sn.RecordReplay(made(), tmp_path, suffix=".json", name_prefix="cut")
+    for seed in (1, 2):
+        env.reset(seed=seed)
+        env.step(67)
+    env.close()
+    assert [p.name for p in env.paths] == ["cut-episode-0.json", "cut-episode-1.json"]
+
+
+def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
+    env = sn.RecordReplay(gymnasium.wrappers.Autoreset(made()), tmp_path, suffix=".json")
+    env.reset(seed=1)
+    ends = 0
+    while ends < 3:
+        _, _, terminated, truncated, _ = env.step(67)
+        ends += terminated or truncated
+    assert [p.name for p in env.paths] == [f"snooker-episode-{k}.json" for k in range(3)]
+
+
 # Score bars and the referee's words follow the ``Frame`` after each stroke
 
 
