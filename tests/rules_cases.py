@@ -12,9 +12,9 @@ import json
 import sys
 
 from snooker_env.game import balls
+from snooker_env.game.fouls import AUTO
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import Stroke
-from snooker_env.game.ruling import AUTO
 from tests.game import geometry_cases
 from tests.game.geometry_cases import unknown
 

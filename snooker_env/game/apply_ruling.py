@@ -8,8 +8,8 @@ from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS
 from .balls import N_BALLS, balls_on_kernel, bits, check_table, mask_of
+from .fouls import AUTO, FLAG, OUTCOME, Before, Facts, ruling
 from .referee import Situation, Stroke, Verdict, check, numbers_of, verdict_of
-from .ruling import AUTO, FLAG, OUTCOME, Before, Facts, ruling
 from .snookered import NO_JAWS, find_snooker
 from .spotting import spot
 

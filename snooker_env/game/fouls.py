@@ -1,4 +1,4 @@
-"""Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke.
+"""Is a stroke a foul, what does it score, and who plays on which ball next? The rules of one stroke.
 
 ``ruling`` is a pure kernel on integers and masks (bit i is ball i). It does not judge intent or effort
 (``frame`` has what geometry decides of that); acts outside the simulation are passed in as flags."""

@@ -9,8 +9,8 @@ from typing import NamedTuple
 from .._lib.jit import kernel
 from .._lib.types import Bools, Floats
 from .balls import BLACK, COLOURS_MASK, available, balls_on_kernel, next_on_kernel
+from .fouls import FOUL, OUTCOME
 from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED
-from .ruling import FOUL, OUTCOME
 
 # Columns of visits and frames.
 BALL_ON = 0  # a ``BallOn``: what must be struck first

@@ -6,8 +6,8 @@ from typing import Any
 from .._lib.check import choice, integer, refuse
 from .._lib.jit import entry
 from .balls import ALL_MASK, COLOURS_MASK, CUE_BIT, N_BALLS, NAMES, BallOn, balls_on, check_ball_on, ids_of
+from .fouls import AUTO, RULE_FLAGS, Before, Facts, Flag, Foul, Outcome, Ruling, VisitEnd, ruling
 from .rule_sets import RULES, RulesName
-from .ruling import AUTO, RULE_FLAGS, Before, Facts, Flag, Foul, Outcome, Ruling, VisitEnd, ruling
 
 FULL_TABLE = ALL_MASK & ~CUE_BIT  # the mask of all 21 object balls
 MOST_POINTS = 2**60  # upper limit of scores: beyond any play, within the kernel's 64 bits

@@ -7,10 +7,10 @@ import numpy as np
 from .._lib.jit import entry, kernel
 from ..game import frame_columns as columns
 from ..game.balls import N_BALLS, N_REDS, YELLOW, balls_on_kernel, bits, touching_balls
+from ..game.fouls import AUTO
 from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.rule_sets import SHOOT_OUT
-from ..game.ruling import AUTO
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..tasks.declarations import nominated_ball
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, ROLL, ROLLING, find_escapes

@@ -12,8 +12,8 @@ from .._lib.check import refuse, refuse_what
 from .._lib.jit import entry
 from .._lib.types import CueKind, Floats, Ints, Vectors
 from ..game.balls import YELLOW
+from ..game.fouls import AUTO
 from ..game.frame_columns import BALL_ON, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPLACE
-from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
 from ..physics.cue_room import NO_RAILS

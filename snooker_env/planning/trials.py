@@ -10,7 +10,7 @@ from .._lib.jit import entry
 from .._lib.types import Floats, Ints, Words
 from ..game import frame_columns as columns
 from ..game.balls import N_BALLS
-from ..game.ruling import AUTO
+from ..game.fouls import AUTO
 from ..game.sides import strikers_own
 from ..physics.conditions import END_MASS_RATIO
 from ..physics.cue import squirt

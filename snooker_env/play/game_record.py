@@ -10,7 +10,7 @@ from .._lib.check import choice, number, refuse, refuse_what, truth
 from .._lib.types import CueKind
 from ..advice import CueStroke
 from ..game.balls import NAMES
-from ..game.ruling import AUTO
+from ..game.fouls import AUTO
 from ..players.requests import read_colour, read_place
 from ..simulation import SimulationError
 from ..tasks.noise import LEVELS

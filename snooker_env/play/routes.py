@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from .._lib.check import choice, integer, number, refuse, truth
 from ..advice import CueStroke
+from ..game.fouls import AUTO
 from ..game.frame import MOST_BREAK
-from ..game.ruling import AUTO
 from ..planning.position import Position
 from ..players.requests import STROKE, read_colour, read_place, read_stroke
 from ..replays import Replay

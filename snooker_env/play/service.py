@@ -14,9 +14,9 @@ import numpy as np
 from .._lib.check import choice, refuse, refuse_what
 from .._lib.types import NoiseName
 from ..advice.ask import AGENT
+from ..game.fouls import AUTO
 from ..game.frame import CHOICES, Frame
 from ..game.frame_columns import STROKES
-from ..game.ruling import AUTO
 from ..players import Player, Strokes, player
 from ..players.cue_stroke import cue_strokes
 from ..players.table_report import nominations_of

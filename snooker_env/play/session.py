@@ -16,11 +16,11 @@ from .._lib.types import CueKind, NoiseName
 from ..advice import CueStroke, Room
 from ..advice.room import room_for
 from ..game.balls import CUE, NAMES, BallOn, mask_of_present
+from ..game.fouls import AUTO
 from ..game.frame import Choice, Frame, write_frame
 from ..game.frame_columns import STROKES
 from ..game.in_hand import place_cue
 from ..game.rule_sets import RULES, RulesName, rule_set
-from ..game.ruling import AUTO
 from ..planning.position import Position
 from ..planning.positions import Positions, of_tables
 from ..players import Strokes

@@ -4,8 +4,8 @@ import numpy as np
 
 from .._lib.check import refuse_what
 from .._lib.types import Bools, Floats, Integers, Ints
+from ..game.fouls import AUTO
 from ..game.frame_columns import VISIT_COLUMNS
-from ..game.ruling import AUTO
 from ..planning import Positions, pots
 from ..planning.ghost_ball import geometric_strokes
 from ..planning.positions import PositionsLike, seeds_of

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from .._lib.types import Bools
 from ..game.balls import N_REDS, NAMES, BallOn, mask_of_present, points_available
+from ..game.fouls import Foul
 from ..game.frame_columns import BALL_ON
-from ..game.ruling import Foul
 from ..physics.engine import EventKind
 from ..render.scene import ScoreBar
 from ..simulation import Shot

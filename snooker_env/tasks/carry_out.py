@@ -8,7 +8,7 @@ from .._lib.jit import entry
 from .._lib.types import Floats, Ints
 from ..game import frame_columns as columns
 from ..game.balls import YELLOW
-from ..game.ruling import AUTO
+from ..game.fouls import AUTO
 from ..physics.cue import squirt
 from . import declarations
 from .box_actions import tip_on_disc

@@ -4,7 +4,7 @@ concedes, claims or lets the other begin: the one place where the numbers of an 
 from .._lib.jit import kernel
 from ..game import frame_columns as columns
 from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
-from ..game.ruling import AUTO
+from ..game.fouls import AUTO
 
 # Columns of the options that kernels take: what an action holds and says.
 A_TARGET = 0  # whether the aim of a box action is measured from a line at a ball

@@ -12,10 +12,10 @@ from ..game import frame_columns as columns
 from ..game.apply_ruling import settle
 from ..game.attempt import ATTEMPT_GAP, closest_approach
 from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, available, bits
+from ..game.fouls import AUTO, FLAG, OUTCOME, Before, Facts, ruling
 from ..game.paths import best_paths
 from ..game.philox import pair
 from ..game.rule_sets import SHOOT_OUT, SIX_RED
-from ..game.ruling import AUTO, FLAG, OUTCOME, Before, Facts, ruling
 from ..game.shut_in import shut_in
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import EventKind, Status

@@ -25,9 +25,9 @@ from .._lib.check import refuse
 from .._lib.types import Bools, Floats, Ints, Singles
 from ..game import frame_columns as columns
 from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
+from ..game.fouls import AUTO
 from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
 from ..game.layouts import deal_tables
-from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import scale_to_unit

@@ -5,8 +5,8 @@ from typing import Any
 
 from .._lib.types import Bools, CueKind, Floats
 from ..game.balls import BallOn, ids_of
+from ..game.fouls import Foul
 from ..game.frame import Frame
-from ..game.ruling import Foul
 from ..physics.cue_room import MOVED, RAISED, UNPLAYABLE
 from ..simulation import Shot
 from .noise import Noise

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats, Ints
 from ..game.balls import CUE, N_BALLS, TOUCH, bits, touching_balls
+from ..game.fouls import AUTO
 from ..game.frame_columns import ANYWHERE, IN_HAND
 from ..game.in_hand import nearest_anywhere, nearest_place
-from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.cue_room import in_room, raise_cue

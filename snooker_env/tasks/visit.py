@@ -10,9 +10,9 @@ from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats, Ints, Singles
 from ..game.apply_ruling import settle_visit
 from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
+from ..game.fouls import FLAG, VISIT
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
 from ..game.layouts import deal_tables
-from ..game.ruling import FLAG, VISIT
 from ..geometry import BALL_RADIUS
 from ..physics.conditions import scale_to_unit
 from ..physics.engine import Status

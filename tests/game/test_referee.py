@@ -23,10 +23,10 @@ from snooker_env.game.balls import (
     mask_of,
     next_on,
 )
+from snooker_env.game.fouls import RULE_FLAGS, Flag, Foul, Outcome, VisitEnd
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import FULL_TABLE, Situation, Stroke, judge
 from snooker_env.game.rule_sets import RULES
-from snooker_env.game.ruling import RULE_FLAGS, Flag, Foul, Outcome, VisitEnd
 from snooker_env.game.snookered import is_snookered
 from tests.refusals import refuse_each
 

@@ -8,7 +8,7 @@ import pytest
 
 from snooker_env.advice import CueStroke
 from snooker_env.game.balls import PINK
-from snooker_env.game.ruling import AUTO
+from snooker_env.game.fouls import AUTO
 from snooker_env.planning import Position
 from snooker_env.play.game_record import MOST_ACTS, open_game, record_game
 from snooker_env.play.session import DECLINED, Session

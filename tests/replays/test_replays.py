@@ -11,7 +11,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke
-from snooker_env.game.ruling import Foul
+from snooker_env.game.fouls import Foul
 from snooker_env.play.session import Session
 from snooker_env.render.table_picture import View
 from snooker_env.replays.referee_words import FOUL_WORDS, bars, foul_words

@@ -7,10 +7,10 @@ import snooker_env as sn
 from snooker_env import SnookerEnv
 from snooker_env.game import pots
 from snooker_env.game.balls import BLACK, BLUE, BROWN, CUE, N_BALLS, SPOTS, BallOn, mask_of
+from snooker_env.game.fouls import Foul
 from snooker_env.game.frame_columns import IN_HAND
 from snooker_env.game.layouts import layout
 from snooker_env.game.pots import POT_COLUMNS
-from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.kernels import LINE_ROWS, entry
 from snooker_env.tasks import CHOICES, choice_of, lines, windows

@@ -10,7 +10,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import EventKind
 from snooker_env.game.balls import SPOTS, VALUES
-from snooker_env.game.ruling import Foul
+from snooker_env.game.fouls import Foul
 from snooker_env.physics.flight import OVER
 from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
 

@@ -9,7 +9,7 @@ from gymnasium.utils.env_checker import check_env
 import snooker_env as sn
 from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
-from snooker_env.game.ruling import AUTO
+from snooker_env.game.fouls import AUTO
 from snooker_env.tasks.observations import FRAME_ENTRIES
 from snooker_env.tasks.options import NAMES
 from tests.tables import begun, frame_env, frame_state, plain

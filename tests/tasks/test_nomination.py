@@ -5,7 +5,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, BROWN, CUE, GREEN, PINK, SPOTS, YELLOW, BallOn, mask_of
-from snooker_env.game.ruling import AUTO, Foul
+from snooker_env.game.fouls import AUTO, Foul
 from snooker_env.geometry import BAULK_Y, D_RADIUS
 from tests.miss_paths import paths
 from tests.refusals import refused

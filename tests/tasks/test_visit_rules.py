@@ -6,7 +6,7 @@ import pytest
 
 from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, N_BALLS, REFEREE_TOUCH, SPOTS, YELLOW, BallOn
-from snooker_env.game.ruling import Foul
+from snooker_env.game.fouls import Foul
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.tasks.rewards import REWARDS
 from tests.tables import table_state
