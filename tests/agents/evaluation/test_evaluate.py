@@ -182,6 +182,16 @@ def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys):
     assert "points a visit" in printed and str(tmp_path / full) not in printed
 
 
+def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
+    def leave(report):
+        raise SystemExit(1)
+
+    monkeypatch.setattr(evaluate, "show", leave)
+    with pytest.raises(SystemExit):
+        evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md"}
+
+
 def test_a_physics_is_named_as_it_was_given():
     for text in ("paper", "match", "paper,mu_bb=marlow", "match,mu_bb=0.06"):
         option = physics_option(text)
