@@ -30,6 +30,7 @@ def refused(call, field, value, allowed):
         warnings.simplefilter("error")
         with pytest.raises(ValueError) as info:
             call()
+    assert value and allowed, "an empty text is in every message"
     message = str(info.value)
     assert type(info.value) is ValueError
     assert message.startswith(field), f"does not name {field}: {message}"

@@ -149,9 +149,13 @@ def test_a_replay_says_where_it_was_played(tmp_path):
     bench = agree_options(mine, None)
     assert practice_of("none", bench).options.cue == "real" and bench["physics"].mu_r == 0.012
     assert agree_options(mine, {"fidelity": "fast"}) == bench | {"fidelity": "fast"}
-    for name, value in (("cue", "free"), ("physics", "paper"), ("table", "tight")):
+    for name, value, shown in (
+        ("cue", "free", "'real'"),
+        ("physics", "paper", "0.012"),
+        ("table", "tight", "match"),
+    ):
         says = f"must be {value!r}, as options say"
-        refused(partial(agree_options, mine, {name: value}), f"strokes[0].{name}", "", says)
+        refused(partial(agree_options, mine, {name: value}), f"strokes[0].{name}", shown, says)
     mixed = [mine[0], replace(mine[1], cue="free")]
     refused(partial(agree_options, mixed, None), "strokes[1].cue", "free", "first stroke")
     ours = [replace(one, **dict.fromkeys(WHERE)) for one in mine]

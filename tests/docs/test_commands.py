@@ -5,6 +5,7 @@ import re
 import shlex
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -78,6 +79,16 @@ NOT_RUN = {
     "tests.library_versions": "it installs other versions of libraries, for half an hour",
 }
 
+DECLARED = {
+    "train.py": ["agents/train.py", "agents/learning/settings.py"],
+    "agents.evaluate": ["agents/cluster.py", "snooker_env/players/model_options.py"],
+    "agents.tournament": ["agents/cluster.py", "snooker_env/players/model_options.py"],
+    "agents.learn_worth": ["agents/cluster.py"],
+    "benchmarks.": ["benchmarks/_common/command.py"],
+    "snooker_env.": ["snooker_env/players/model_options.py"],
+}
+"""How a command's name begins -> other files that declare options of it."""
+
 GIVEN = {name: set() for page in PAGES for name, _ in commands(page.read_text(encoding="utf-8"))}
 """Module or file -> the options that some page gives it."""
 for _page in PAGES:
@@ -96,14 +107,13 @@ def test_every_command_is_known():
     "name", sorted(set(GIVEN) - set(NOT_RUN) - {"pytest", "sphinx", "venv", "rl_zoo3.train"})
 )
 def test_commands_have_the_options_that_are_given(name):
-    """They stand in the source of the command, or in what all commands of its kind share."""
-    top = name.split("/")[0] if name.endswith(".py") else name.split(".")[0]
-    shared = {
-        top: (top.replace("train.py", "agents"), "agents/_lib")
-        for top in ("train.py", "agents", "benchmarks")
-    }
-    files = [file for folder in shared.get(top, (top,)) for file in (ROOT / folder).rglob("*.py")]
-    files += [ROOT / name] if name.endswith(".py") else []
+    """They stand in the source of the command itself, or in one of the files that declare options for several."""
+    path = Path(name) if name.endswith(".py") else Path(*name.split("."))
+    mine = [*(ROOT / path).rglob("*.py"), ROOT / path.with_suffix(".py")]
+    files = [file for file in mine if file.is_file()]
+    assert files, f"{name}: no such command"
+    for top, shared in DECLARED.items():
+        files += [ROOT / file for file in shared] if name.startswith(top) else []
     source = "\n".join(file.read_text(encoding="utf-8") for file in files)
     for option in GIVEN[name]:
         field = option[2:].replace("-", "_")

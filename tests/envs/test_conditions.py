@@ -105,7 +105,7 @@ def test_a_state_holds_the_table():
 fixed(state) | state | a dict with ['conditions'] | must
 drawn(without) | state | a dict without ['conditions'] | must
 drawn(dict(state, conditions=dict(state["conditions"], mu_r=0.02))) | state.conditions.mu_r | 0.02 | must be a finite number in [0.01,
-drawn(dict(state, conditions={"mu_s": 0.2})) | state.conditions |  | must
+drawn(dict(state, conditions={"mu_s": 0.2})) | state.conditions | {'mu_s': 0.2} | must be a dict of the constants
 """
     names = {"state": state, "without": without, "fixed": fixed.set_state, "drawn": env.set_state}
     refuse_each(table, names)

@@ -271,7 +271,7 @@ reset({"state": ?}) | state | ? | must be a state of get_state() | None; 3
 reset(["state"]) | options | ['state'] | must be
 reset({"breaker": 0}) | options["breaker"] | 0 | no opponent
 alone({"breaker": 0}) | options["breaker"] | 0 | no opponent
-many({"reset_mask": ?}) | options["reset_mask"] |  | must be | [True, False]; np.array([True]); np.array([1, 0]); np.zeros(2, bool)
+many({"reset_mask": ?}) | options["reset_mask"] | ? | must be a bool array | [True, False]; np.array([1, 0]); np.zeros(2, bool)
 frame({"breaker": ?}) | options["breaker"] | ? | must be an integer | 2
 frame({"breaker": ?}) | options["breaker"] | ? | must be | '0'
 frame({"breaker": [0, 1]}) | options["breaker"] | 2 numbers | 1 of them

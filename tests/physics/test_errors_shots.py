@@ -150,7 +150,7 @@ sn.Physics(mu_bb=?) | physics.mu_bb | ? | must be a finite number in [0, 1] | -0
 sn.Physics(mu_bb=?) | physics.mu_bb | ? | "marlow", or (a, b, c) with a, b, c >= 0 and a + b <= 1 | "Marlow"; (0.1, 0.2); (0.5, 0.6, 1.0)
 sn.Physics(mu_bb=(0.1, ?, 1.0)) | physics.mu_bb | ? | must be a finite number in [0, inf) | -0.1; NAN
 sn.Physics(nap=0.001, roll_drag=0.01) | physics.roll_drag | 0.01 | must be 0 with physics.nap = 0.001
-sn.Physics(nap=?) | physics.nap | ? |  | 0.0127 * 9.81; -0.2; NAN; INF
+sn.Physics(nap=?) | physics.nap | ? | must be | 0.0127 * 9.81; -0.2; NAN; INF
 sn.Physics(e_c_power=0.25) | physics.e_c_knee | 0.0 | must be at least 0.001 m/s where e_c_power > 0
 sn.Physics.preset("match", e_c_knee=?) | physics.e_c_knee | 0.0 | must be at least 0.001 m/s where e_c_power > 0 | 0; 9e-4 * 0
 strike(physics={"mu_r": ?}) | physics.mu_r | ? | must be a finite number in [0, 1] | -0.01; NAN

@@ -8,7 +8,6 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import planning
-from snooker_env.game import BallOn
 from snooker_env.planning import (
     FrameJudge,
     Planner,
@@ -19,9 +18,9 @@ from snooker_env.planning import (
     VisitJudge,
     pot_aim,
 )
+from tests.planning.test_position import FULL
 from tests.refusals import refuse_each, refused
 
-FULL = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (-0.3, 0.7)], "pink": (0.2, 0.1), "black": (0.0, 1.4605)}
 GOOD = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], black=(0.0, 1.4605)).to_dict()
 AT = Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)])
 STROKE, SOFT = [[0.0, 0.0, 0.0, 0.2]], [2.0, 0.0, 0.0, 0.3, 0.0]
@@ -49,7 +48,8 @@ play(AT, [0], STROKE, [1, 2]) | keys | array of shape (2,) | must
 play(AT, [0], STROKE, [-1]) | keys | array of object | must be 1 integers
 play(AT, [0], STROKE, [0.5]) | keys | array of object | must
 play(AT, [0], STROKE, np.array([-1])) | keys | negative numbers | must be 1
-play(?, [0], STROKE) | positions | a  | must | None; []
+play(None, [0], STROKE) | positions | a NoneType | must be Positions, a Position
+play([], [0], STROKE) | positions | a list | must be Positions, a Position
 play({"points": 1}, [0], STROKE) | state | a dict without | must
 chosen([540]) | actions[0] | 540 | must
 chosen([0.5]) | actions | array of float64 | must
@@ -89,11 +89,11 @@ obstructions(AT, [0], [(0.0, 0.0)], [(1.0, 0.0)], ignore=[22]) | ignore | 22 | m
 pots(AT, most=0) | most | 0 | must
 VisitJudge({}, threads=0) | threads | 0 | must
 VisitJudge({}, noise="loud") | noise | 'loud' | must
-VisitJudge(3) | env_or_options | a  | must
+VisitJudge(3) | env_or_options | a int | must be an environment
 Search({}) | judge | a dict | must be a VisitJudge or a FrameJudge
 Search(JUDGE, ?) | budget | ? | must | 7; -1; 30.0; "30"; None
-Search(JUDGE).rank(3, [1]) | positions | a  | must
-Search(JUDGE).rank(MANY[:2], ?) | seeds |  | must be 2 integers, one for each position | [1]; 1; [[1, 2]]; [1.0, 2.0]; [True, False]
+Search(JUDGE).rank(3, [1]) | positions | a int | must be Positions, a Position
+Search(JUDGE).rank(MANY[:2], ?) | seeds | array of shape | must be 2 integers | [1]; 1; [[1, 2]]; [1.0, 2.0]; [True, False]
 Search(JUDGE).rank(spoilt("on_table", 0, False), [1, 2, 3, 4]) | positions[2].cue | None | must
 Search(JUDGE).rank(spoilt("game", 3, 1), [1, 2, 3, 4]) | positions[2].over | True | must
 Search(FRAMES).rank(AT, [0]) | positions | those of visits | must be of frames
@@ -195,7 +195,6 @@ def test_positions_that_cannot_be_are_refused(tmp_path):
     with pytest.raises(TypeError, match=r"argument 'red'; the reds are one list, reds=\[\(x, y\), \.\.\.\]"):
         Position(cue=(0.0, 0.2), red=(0.1, 0.3))
     assert Position(**FULL, yellow=(5.0, 5.0), table=None).yellow == (5.0, 5.0)
-    assert Position(**FULL, on=BallOn.ANY_COLOUR).on == "any_colour"
     file = tmp_path / "wrong.json"
     for change, field, value, allowed in (
         ({"points": 1.5}, f"{file}: points", "1.5", "must be an integer"),
