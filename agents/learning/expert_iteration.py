@@ -158,7 +158,7 @@ class ExpertIteration(Part):
         before = count_shots()
         tried = [one.strokes.values[:AMONG] for one in self._search.rank(at, seeds)]
         pick = rng.integers(min(map(len, tried)), size=n)
-        errors = rng.standard_normal((n * (FRESH + 1), 5))
+        errors = self._judge.noise.draw_errors(rng, n * (FRESH + 1))
         strokes = [np.repeat([one[0] for one in tried], FRESH, axis=0)]
         strokes.append(np.array([one[k] for one, k in zip(tried, pick.tolist(), strict=True)]))
         rows = np.concatenate([np.repeat(every, FRESH), every])

@@ -128,7 +128,7 @@ def _judge_strokes(player, at, keys, rng):
     decided, worth = player.decide_frames(at, keys), player.judge.worth
     here = np.flatnonzero([one is not None for one in decided.tried])
     seen = [worth.features_of(each[here]) for each in (decided.start, at)]
-    again, errors = np.repeat(here, FRESH), rng.standard_normal((FRESH * len(here), 5))
+    again, errors = np.repeat(here, FRESH), player.judge.noise.draw_errors(rng, FRESH * len(here))
     strokes = np.repeat(decided.strokes.values[here], FRESH, 0)
     judged = player.judge.gains(decided.start, again, strokes, errors)[:, 1]
     return decided, here, {"seen": seen[0], "hand": seen[1], "worth": judged.reshape(-1, FRESH).mean(axis=1)}
@@ -145,7 +145,7 @@ def _replies(player, decided, here, rng):
         picks[rng.random(len(picks)) < 0.5] = 0  # of half of them, what the best one leaves
         rows += [j] * len(picks)
         best += [tried.strokes.values[pick] for pick in picks.tolist()]
-    rows, errors = np.array(rows), rng.standard_normal((len(rows), 5))
+    rows, errors = np.array(rows), player.judge.noise.draw_errors(rng, len(rows))
     left = player.judge.outcomes(decided.start, here[rows], np.array(best), errors)
     left.game[:] = strikers_own(left.game)
     on = np.flatnonzero(left.game[:, columns.OVER] == 0)

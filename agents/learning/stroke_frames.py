@@ -42,7 +42,7 @@ def try_frames(learned, noise, cue, seeds, other, tried, rng, threads):
                 picks[j, best:] = rng.choice(order[j, best:count], others, replace=False)
             which = np.repeat(np.arange(len(here)), picks.shape[1] * errors)
             trials = np.repeat(looked.strokes[every, picks].reshape(-1, 5), errors, axis=0)
-            met = rng.standard_normal((len(which), 5))
+            met = judge.noise.draw_errors(rng, len(which))
             worth = judge.gains(start[here], which, trials, met)[:, 1].reshape(*picks.shape, errors)
             seen = looked.seen[every, picks].astype(np.float16)
             rows.append((seen, worth.mean(axis=2).astype(np.float32), seeds[mine[here]]))

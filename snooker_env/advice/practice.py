@@ -20,7 +20,7 @@ from ..players.cue_stroke import CueStroke
 from ..players.player import place_cue_balls
 from ..players.seen import begun
 from ..players.tactician import Tactician
-from ..tasks.noise import Noise, errors_of
+from ..tasks.noise import Noise
 from ..tasks.options import Options
 from ..tasks.tables import Tables
 
@@ -62,7 +62,7 @@ class Practice:
             return stops
         errors = np.zeros_like(strokes)
         if not (self.sure or keys is None):
-            errors = errors_of(np.stack([keys, np.zeros_like(keys)], axis=1))
+            errors = self.noise.errors_of(np.stack([keys, np.zeros_like(keys)], axis=1))
         after = self.judge.outcomes(at.known_to(self.options.rules), np.asarray(rows), strokes, errors)
         game, before = after.game, at.game[rows]
         stays = (game[:, columns.PHASE] == columns.STROKE) & (game[:, columns.STRIKER] == 0)

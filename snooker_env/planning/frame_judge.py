@@ -13,7 +13,7 @@ import numpy as np
 from .._lib.check import integer, refuse_what
 from .._lib.types import Bools, Environment, Floats, Ints
 from ..game import frame_columns as columns
-from ..tasks.noise import Noise, NoiseLike
+from ..tasks.noise import Noise, NoiseLike, Spread
 from ..tasks.options import Options, Rules
 from ..tasks.threads import Threads, processors
 from .aims import Dynamics
@@ -22,7 +22,7 @@ from .positions import Positions
 from .proposals import Proposals, at_balls, over_cushions, safeties
 from .prospects import spread_of
 from .search import BUDGET, Plan, Proposed, Search
-from .sobol import DIMENSIONS
+from .stroke_columns import COLUMNS
 from .trials import FrameTrials
 from .worth import LAST, Chance, Worth, follows, in_one_stroke, last_of, lead_of, left_of, pass_after_miss
 
@@ -81,7 +81,7 @@ class FrameJudge:
         usual = min(1024, processors())
         self.threads: int = usual if threads is None else integer("threads", threads, 1, 1024)
         self._trials = FrameTrials(self.rules, Threads(self.threads))
-        self.spread: float = spread_of(self.noise, rules.physics)
+        self.spread: Spread = spread_of(self.noise, rules.physics)
         self.dynamics: Dynamics = Dynamics.of(self.rules)
         self.worth: Worth = worth
         self.chance: Chance | None = chance
@@ -121,7 +121,7 @@ class FrameJudge:
     def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
         """See ``Judge.look``, with the chance of each pot; what fouls as intended is played where it wins the frame, or where
         nothing else was found."""
-        level = np.zeros((len(rows), DIMENSIONS))
+        level = np.zeros((len(rows), COLUMNS))
         after, before = self.outcomes(at, rows, proposed.strokes[rows, picks], level), lead_of(at)
         foul = after.game[:, columns.SCORE_1] > at.game[rows, columns.SCORE_1]
         foul &= (after.game[:, columns.OVER] == 0) | (after.game[:, columns.WINNER] != 0)
@@ -182,13 +182,13 @@ class FrameJudge:
             return np.zeros(len(now))
         left, clock = left_of(at), self.rules.rule_set.clock
         if not clock:
-            return self.chance(now, worth, left, last_of(at), self.spread)
+            return self.chance(now, worth, left, last_of(at), self.spread.core)
         # a stroke is played while there is time for one more, and takes at least the time to play it
         strokes = np.maximum(1, -((at.game[:, columns.CLOCK] - clock) // self.rules.time_to_play) - 1)
         each = np.maximum(LAST, at.on_table[:, 1:16].sum(axis=1))  # several reds at once
         left = np.minimum(left, each * strokes)
         worth = np.clip(worth, -left, left)
-        chances = self.chance(now, worth, left, last_of(at), self.spread)
+        chances = self.chance(now, worth, left, last_of(at), self.spread.core)
         ends = in_one_stroke(now, worth, each, at.game[:, columns.STRIKER] == 0)
         return np.where((strokes == 1) & (at.game[:, columns.RESPOTTED_BLACK] == 0), ends, chances)
 

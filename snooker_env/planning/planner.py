@@ -13,7 +13,7 @@ from .._lib.check import array, integer, refuse, refuse_what
 from .._lib.types import Environment, Floats, Integers, Ints, Scalars, Vectors, Words
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..tasks.noise import Noise, NoiseLike, errors_of
+from ..tasks.noise import Noise, NoiseLike
 from ..tasks.observations import OBSERVATIONS
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
@@ -186,7 +186,7 @@ class Planner:
                     "keys, errors", "both", "must be one of them: the errors are drawn or passed"
                 )
             return self._play(at[which], told, streams, array("errors", errors, (n, COLUMNS)))
-        drawn = np.zeros((n, COLUMNS)) if self.noise.silent else errors_of(streams)
+        drawn = np.zeros((n, COLUMNS)) if self.noise.silent else self.noise.errors_of(streams)
         return self._play(at[which], told, streams, drawn, self.noise.kick)
 
     def _read(self, positions: PositionsLike, rows: Integers) -> tuple[Positions, Ints]:

@@ -1,6 +1,6 @@
 """How likely is a pot? The chance that an error of the cue ball's direction stays within what the pot allows."""
 
-from math import erf, exp, hypot, sqrt
+from math import exp, hypot
 
 import numpy as np
 
@@ -8,6 +8,7 @@ from .._lib.jit import entry, kernel
 from .._lib.types import Floats
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, TOLERANCE
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
+from ..tasks.noise import Spread, chance_within
 
 FAR = 0.01  # decay of the chance per metre of both balls' paths [1/m]: the width alone nearly tells it
 
@@ -16,10 +17,9 @@ FAR = 0.01  # decay of the chance per metre of both balls' paths [1/m]: the widt
 def pot_chance(tolerance, length, spread):
     """The chance of a pot that allows errors of ``tolerance`` [rad], with paths of both balls of ``length`` [m] together.
 
-    The law of errors: normal, with the standard deviation ``spread`` [rad]. P(|error| < tolerance) = erf(tolerance /
-    (sqrt(2) spread)), times exp(-``FAR`` length).
+    P(|error| < tolerance) by the ``Spread`` of the player's direction, times exp(-``FAR`` length).
     """
-    return erf(tolerance / (spread * sqrt(2.0))) * exp(-FAR * length)
+    return chance_within(tolerance, spread) * exp(-FAR * length)
 
 
 @kernel
@@ -33,7 +33,7 @@ def length_of(positions, pot):
 
 @kernel
 def chance_of(positions, pot, spread):
-    """The chance of a row of ``find_pots`` for a stroke with this spread [rad]."""
+    """The chance of a row of ``find_pots`` for a stroke with this ``Spread``."""
     return pot_chance(pot[TOLERANCE], length_of(positions, pot), spread)
 
 
@@ -43,7 +43,7 @@ def _fill(tolerances, lengths, spread, chances):
         chances[k] = pot_chance(tolerances[k], lengths[k], spread)
 
 
-def pot_chances(tolerances: Floats, lengths: Floats, spread: float) -> Floats:
+def pot_chances(tolerances: Floats, lengths: Floats, spread: Spread) -> Floats:
     """``pot_chance`` of n pots: float64 (n,)."""
     chances = np.empty(len(tolerances))
     _fill(tolerances, lengths, spread, chances)

@@ -28,7 +28,7 @@ from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
 from ..tasks.kernel_arrays import CueLaw
 from ..tasks.lines import EASY, aim_at_ball, break_off, end_red_of_rack, new_work
-from ..tasks.noise import POT_SPEED
+from ..tasks.noise import POT_SPEED, Spread, widen
 from ..tasks.pot_aim import solved_aim
 from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, wrap_angle
@@ -57,7 +57,7 @@ ESCAPES, ANYWHERE, MOST_POTS = 8, 8, 16
 class Asking(Protocol):
     """What a generator may ask of the search that calls it."""
 
-    spread: float  # standard deviation of the cue ball's direction [rad]
+    spread: Spread
     dynamics: Dynamics
 
 
@@ -151,8 +151,8 @@ def _propose(balls, seeds, which, spread, growth, law, strokes, chances):
             _aim(strokes[k, i], p, here, lines[j], its, work)
             side, top = strokes[k, i, SIDE], strokes[k, i, TOP]
             aim = strokes[k, i, AIM] - squirt(side, its.end_mass_ratio)
-            own_spread = spread * hypot(1.0, growth * strokes[k, i, SPEED]) / hypot(1.0, growth * POT_SPEED)
-            wide = raised_spread(own_spread, side, top, aim, p, here, rails)
+            faster = hypot(1.0, growth * strokes[k, i, SPEED]) / hypot(1.0, growth * POT_SPEED)
+            wide = raised_spread(widen(spread, faster), side, top, aim, p, here, rails)
             chances[k, i] = chance_of(p, lines[j], wide)
 
 
@@ -292,7 +292,7 @@ def at_pots(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals
 
 
 def strokes_at(
-    at: Positions, which: Ints, speeds_and_tips: Floats, spread: float, dynamics: Dynamics
+    at: Positions, which: Ints, speeds_and_tips: Floats, spread: Spread, dynamics: Dynamics
 ) -> Proposals:
     """Strokes at chosen pots (n, m), indices of ``pots``, with speeds and tips (n, m, 3); their aims are solved."""
     n, m = which.shape

@@ -15,7 +15,7 @@ from ..geometry import BALL_RADIUS
 from ..physics.cue_room import NO_RAILS, STEEPEST, least_elevation
 from ..physics.parameters import PhysicsLike
 from ..tasks.discrete_actions import POTS
-from ..tasks.noise import TWICE, Noise
+from ..tasks.noise import TWICE, Noise, Spread, widen
 from .positions import Positions
 from .pot_chance import FAR, chance_of, length_of
 
@@ -41,7 +41,7 @@ def raised_spread(spread, side, top, aim, positions, on_table, rails):
     if rails.shape[0] == 0:
         return spread
     least = least_elevation((side, top, aim, 0.0), positions, on_table, rails, BALL_RADIUS)
-    return spread * (1.0 + min(least, STEEPEST) / TWICE)  # a tip goes up before a cue does further
+    return widen(spread, 1.0 + min(least, STEEPEST) / TWICE)  # a tip goes up before a cue does further
 
 
 @entry(what="the value of positions", seconds=1)
@@ -89,9 +89,8 @@ def in_parts(n: int, threads: int, fill: Callable[[slice], None]) -> None:
         list(pool.map(fill, map(slice, ends[:-1], ends[1:])))
 
 
-def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
-    """Return the standard deviation of the cue ball's direction in a stroke at 1.5 m/s, tip errors included; at least
-    1e-5 rad.
+def spread_of(noise: Noise, physics: PhysicsLike = None) -> Spread:
+    """Return the law of the cue ball's direction in a stroke at 1.5 m/s, tip errors included.
 
     Parameters
     ----------
@@ -102,22 +101,22 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
 
     Returns
     -------
-    float
-        Standard deviation [rad].
+    Spread
+        The standard deviation ``core`` [rad], at least 1e-5; the probability ``lapse`` of a lapse, and its ``factor``.
 
     Examples
     --------
     >>> from snooker_env.planning import spread_of
     >>> from snooker_env.tasks import LEVELS
-    >>> round(spread_of(LEVELS["club"]) * 1e3, 2)
-    4.78
+    >>> round(spread_of(LEVELS["olympiad"]).core * 1e3, 2)
+    2.6
     """
-    return max(1e-5, radians(noise.direction_deg(physics)))
+    return Spread(max(1e-5, radians(noise.direction_deg(physics))), noise.lapse, noise.lapse_factor)
 
 
 def prospects_of(
     at: Positions,
-    spread: float,
+    spread: Spread,
     constants: tuple[float, float, float, float] = RULE_OF_THUMB,
     most: int = POTS,
     threads: int = 1,
@@ -132,8 +131,8 @@ def prospects_of(
     ----------
     at : Positions
         The n positions.
-    spread : float
-        Standard deviation of the cue ball's direction [rad], see ``spread_of``.
+    spread : Spread
+        The law of the cue ball's direction, see ``spread_of``.
     constants : tuple of float, optional
         ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
     most, threads : int, optional
@@ -150,8 +149,10 @@ def prospects_of(
 
     Examples
     --------
-    >>> from snooker_env.planning import Position, Positions, prospects_of
-    >>> values, chances = prospects_of(Positions.of(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))), 1e-3)
+    >>> from snooker_env.planning import Position, Positions, prospects_of, spread_of
+    >>> from snooker_env.tasks import LEVELS
+    >>> spread = spread_of(LEVELS["professional"])
+    >>> values, chances = prospects_of(Positions.of(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))), spread)
     >>> bool(values[0] > 0), chances.shape
     (True, (1, 4))
     """

@@ -14,6 +14,7 @@ import numpy as np
 
 from .._lib.check import integer, refuse_what
 from .._lib.types import Bools, Floats, Integers, Ints
+from ..tasks.noise import Spread
 from ..tasks.options import Rules
 from .aims import Dynamics
 from .positions import Positions, PositionsLike, check_has_stroke, seeds_of
@@ -81,7 +82,7 @@ class Judge(Protocol):
 
     rules: Rules
     dynamics: Dynamics
-    spread: float  # standard deviation of the cue ball's direction [rad]
+    spread: Spread
     least: int  # smallest budget of a decision
 
     def plans(self, search: "Search", at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
@@ -140,7 +141,7 @@ class Search:
         self.judge: Judge = judge
         self.budget: int = integer("budget", budget, judge.least, MOST)
         self.propose: tuple[Propose, ...] = (propose,) if callable(propose) else tuple(propose)
-        self.spread: float = judge.spread  # this and the dynamics are what generators ask for
+        self.spread: Spread = judge.spread  # this and the dynamics are what generators ask for
         self.dynamics: Dynamics = judge.dynamics
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
@@ -176,7 +177,7 @@ class Search:
             order = np.take_along_axis(order, np.argsort(~there, axis=1, kind="stable"), 1)
 
         def sample_errors(rows: Ints, picks: Ints, errors: Floats) -> Floats:
-            return judge.sample(at, proposed, rows, picks, errors)
+            return judge.sample(at, proposed, rows, picks, judge.rules.noise.errors_from(errors))
 
         order, means, samples = halve(looks, order, plan.rounds, seeds, sample_errors, judge.score)
         scores, points = judge.figures(means)
@@ -203,7 +204,8 @@ def halve(
     """Sequential halving: of the strokes of n positions the best meet noise samples, the better ones more of them.
     ``looks`` (n, m, v): the values of each stroke without error, -inf where there is none; they count as ``PRIOR``
     samples. ``order`` (n, m): the strokes, best first. ``rounds``: how many go on, and their further samples.
-    ``sample_errors(rows, picks, errors)``: values (k, v) of the strokes ``picks`` of the positions ``rows`` under errors (k, 5).
+    ``sample_errors(rows, picks, errors)``: values (k, v) of the strokes ``picks`` of the positions ``rows`` under
+    the errors that normal numbers (k, 6) stand for.
     ``score``: what values (..., v) are compared by. Returns the order then, means (n, m, v) and samples (n, m)."""
     n, m = looks.shape[:2]
     every, sums = np.arange(n)[:, None], PRIOR * looks

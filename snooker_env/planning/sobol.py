@@ -11,11 +11,11 @@ import numpy as np
 from .._lib.jit import entry, kernel
 from .._lib.types import Floats
 
-DIMENSIONS = 5  # largest number of coordinates of a point
+DIMENSIONS = 6  # largest number of coordinates of a point
 _BITS, _ALL = 32, 0xFFFFFFFF
-# primitive polynomials (degree, inner coefficients) and first direction numbers of dimensions 2 to 5 [Joe &
+# primitive polynomials (degree, inner coefficients) and first direction numbers of dimensions 2 to 6 [Joe &
 # Kuo 2008, table new-joe-kuo-6]
-_POLYNOMIALS = ((1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)), (3, 2, (1, 1, 1)))
+_POLYNOMIALS = ((1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)), (3, 2, (1, 1, 1)), (4, 1, (1, 1, 3, 3)))
 
 
 def _directions():
@@ -86,17 +86,17 @@ def _points(seed, out):
 
 
 def sobol_points(n: int, dimensions: int, seed: int) -> Floats:
-    """The first n points, each in (0, 1), of a scrambled sequence of up to 5 dimensions: float64 (n, dimensions)."""
+    """The first n points, each in (0, 1), of a scrambled sequence of up to 6 dimensions: float64 (n, dimensions)."""
     out = np.empty((n, dimensions))
     _points(seed & _ALL, out)
     return out
 
 
 _NORMAL = np.vectorize(NormalDist().inv_cdf, otypes=[np.float64])
-_AIM_FIRST = [1, 2, 3, 0, 4]
+_AIM_FIRST = [1, 2, 3, 0, 4, 5]
 """Which coordinate becomes which error: the first, the most even one, that of the aim, which matters most."""
 
 
 def normal_points(n: int, seed: int) -> Floats:
-    """n evenly spread standard normal errors of speed, side, top, aim and elevation: float64 (n, 5)."""
+    """n evenly spread standard normal numbers: errors of speed, side, top, aim and elevation, and a lapse's: float64 (n, 6)."""
     return _NORMAL(sobol_points(n, DIMENSIONS, seed ^ 0x5EED))[:, _AIM_FIRST]

@@ -46,7 +46,7 @@ def _strike(which, strokes, errors, tables, shots, cues, noise, silent):
         struck = with_errors(*meant, errors[k], noise)
         stroke.strike_with(meant, struck, p, on, cue_row, j, shots)
         if silent[N_KICK] > 0.0:  # blocks are drawn as for errors, too
-            drawn_errors(tables.streams[k])
+            drawn_errors(tables.streams[k], noise)
         shots.kicks[j] = kick_of(silent, tables.streams[k])
 
 

@@ -12,7 +12,7 @@ from .._lib.check import number
 from .._lib.types import Bools, Environment, Floats, Ints
 from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
-from ..tasks.noise import Noise, NoiseLike
+from ..tasks.noise import Noise, NoiseLike, Spread
 from ..tasks.options import Options, Rules
 from .aims import Dynamics
 from .planner import Planner, options_in
@@ -20,7 +20,7 @@ from .positions import Positions
 from .proposals import Proposals, Propose, at_balls, over_cushions
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .search import Plan, Proposed, Search
-from .sobol import DIMENSIONS
+from .stroke_columns import COLUMNS
 
 SCHEDULES = (
     (30, 16, ((4, 2), (2, 3))),
@@ -88,7 +88,7 @@ class VisitJudge:
         self.planner: Planner = Planner(options, noise=noise, threads=threads)
         self.rules: Rules = self.planner.rules
         self.noise: Noise = self.rules.noise
-        self.spread: float = spread_of(self.noise, self.rules.physics)
+        self.spread: Spread = spread_of(self.noise, self.rules.physics)
         self.dynamics: Dynamics = Dynamics.of(self.rules)
         self.value: Value = self._by_rule if value is None else value
         self.legal: bool = options.reward == "legal"
@@ -140,7 +140,7 @@ class VisitJudge:
 
     def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
         """See ``Judge.look``: the points of each, by the chance of its pot."""
-        gains = self.sample(at, proposed, rows, picks, np.zeros((len(rows), DIMENSIONS)))[:, 0]
+        gains = self.sample(at, proposed, rows, picks, np.zeros((len(rows), COLUMNS)))[:, 0]
         if not self.noise.silent and not self.legal:
             chances = proposed.chances[rows, picks]
             gains *= chances

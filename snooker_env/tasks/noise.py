@@ -1,12 +1,17 @@
-"""How accurately does a player execute a shot? Gaussian errors of aim, speed, tip offset and elevation.
+"""How accurately does a player execute a shot? Errors of aim, speed, tip offset and elevation, now and then large ones.
+
+The law: each of a stroke's five errors is normal, and all five are ``lapse_factor`` times as large in a *lapse*, which a
+stroke is with the probability ``lapse``: a bad cueing, a lost concentration, a kick. So each error is a mixture of two
+normal laws, and the errors of one stroke are large together. Without lapses the law is Gaussian.
 
 What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): aim, and the squirt of a tip
 that is off to the side. No measurement of a snooker player's errors was found: what the levels are set by, their sources
 and what of them is our choice say docs/validation/execution_errors.md."""
 
 from dataclasses import asdict, dataclass, fields
-from math import degrees, hypot, radians, sqrt
-from typing import TypeAlias
+from math import degrees, erf, hypot, radians, sqrt
+from statistics import NormalDist
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -19,8 +24,26 @@ from ..physics.parameters import Physics, PhysicsLike
 
 # Packed deviations: 1 if there are none, speed [m/s], speed (relative), tip offset / R, aim, elevation [rad];
 # the probability of a kick; by how much those of tip and aim grow with the elevation [1/rad], 0 for a free cue, and
-# with the speed [s/m].
-(N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION, N_KICK, N_STEEPER, N_FASTER) = range(9)
+# with the speed [s/m]; the normal number from which a stroke is a lapse, inf for never, and how many times larger its
+# errors are.
+(
+    N_SILENT,
+    N_SPEED,
+    N_SPEED_REL,
+    N_TIP,
+    N_AIM,
+    N_ELEVATION,
+    N_KICK,
+    N_STEEPER,
+    N_FASTER,
+    N_LAPSE,
+    N_LAPSE_FACTOR,
+) = range(11)
+DRAWN = 6
+"""Standard normal numbers that a stroke draws: five errors, and one that says whether it is a lapse."""
+_SHAPE = ("growth", "lapse", "lapse_factor")
+"""Fields of ``Noise`` that shape errors and make none."""
+_NORMAL = NormalDist()
 KICK = 0.2
 """Friction between balls in a kick: a stun shot's contact sticks with it up to a cut of 45 degrees, so that
 more would change nothing there (docs/physics/limits.md). Not measured."""
@@ -30,9 +53,36 @@ TWICE = radians(15.0)
 """The elevation of a real cue at which errors of tip and aim are twice those of a level one [rad]: an estimate."""
 
 
+class Spread(NamedTuple):
+    """How the cue ball's direction errs in a stroke at ``POT_SPEED``: normally with the standard deviation ``core`` [rad], and
+    in a lapse, of the probability ``lapse``, with ``factor`` times that."""
+
+    core: float
+    lapse: float = 0.0
+    factor: float = 1.0
+
+
+@kernel
+def widen(spread, times):
+    """The same law with errors ``times`` as large."""
+    return Spread(spread.core * times, spread.lapse, spread.factor)
+
+
+@kernel
+def chance_within(tolerance, spread):
+    """The chance that an error of the ``Spread`` is within +- ``tolerance`` [rad]: of each normal law
+    P(|e| < t) = erf(t / (sqrt(2) sigma)), of both their mean by the probability of a lapse."""
+    share = tolerance / (spread.core * sqrt(2.0))
+    within = erf(share)
+    if spread.lapse > 0.0:
+        within += spread.lapse * (erf(share / spread.factor) - within)
+    return within
+
+
 @kernel
 def with_errors(speed, side, top, aim, elevation, errors, noise):
-    """The shot under the standard normal ``errors`` (5,): the only law of errors; see ``execute_stroke``."""
+    """The shot under ``errors`` (5,) in standard deviations, a lapse's factor applied: the only law of errors; see
+    ``execute_stroke``."""
     more = (1.0 + elevation * noise[N_STEEPER]) * sqrt(1.0 + (noise[N_FASTER] * speed) ** 2)
     return (
         max(0.0, speed + errors[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
@@ -44,12 +94,13 @@ def with_errors(speed, side, top, aim, elevation, errors, noise):
 
 
 @kernel
-def drawn_errors(stream):
-    """Five standard normal errors of a shot from a stream, as a tuple."""
+def drawn_errors(stream, noise):
+    """The five errors of a shot from a stream, in standard deviations, as a tuple."""
     a, b = normals(stream)
     c, d = normals(stream)
-    e, _ = normals(stream)
-    return a, b, c, d, e
+    e, f = normals(stream)
+    times = noise[N_LAPSE_FACTOR] if f > noise[N_LAPSE] else 1.0
+    return times * a, times * b, times * c, times * d, times * e
 
 
 @kernel
@@ -71,7 +122,7 @@ def execute_stroke(speed, side, top, aim, elevation, noise, stream):
     """
     if noise[N_SILENT]:
         return speed, side, top, aim, elevation
-    return with_errors(speed, side, top, aim, elevation, drawn_errors(stream), noise)
+    return with_errors(speed, side, top, aim, elevation, drawn_errors(stream, noise), noise)
 
 
 @kernel
@@ -84,16 +135,9 @@ def kick_of(noise, stream):
 
 
 @entry
-def _errors(streams, out):
+def _errors(streams, noise, out):
     for i in range(len(out)):
-        out[i, 0], out[i, 1], out[i, 2], out[i, 3], out[i, 4] = drawn_errors(streams[i])
-
-
-def errors_of(streams: Words) -> Floats:
-    """The errors (n, 5) of ``with_errors`` that shots would draw from ``streams``, which are not changed."""
-    out = np.empty((len(streams), 5))
-    _errors(streams.copy(), out)
-    return out
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3], out[i, 4] = drawn_errors(streams[i], noise)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,6 +155,10 @@ class Noise:
         Tip offset [mm], for each of side and height.
     growth : float, optional
         How errors of aim and tip grow with the cue speed V: times sqrt(1 + (growth V)^2) [s/m].
+    lapse : float, optional
+        Probability of a lapse, in [0, 1]: a stroke whose five errors are all larger.
+    lapse_factor : float, optional
+        How many times as large the errors of a lapse are, at least 1.
     kick : float, optional
         Probability of a kick, in [0, 1]: chalk or dirt between the cue ball and the first ball that it meets,
         with a friction of ``KICK`` = 0.2 in that one impact. How often it happens is not known.
@@ -128,12 +176,14 @@ class Noise:
     offset_mm: float = 0.0
     elevation_deg: float = 0.0
     growth: float = 0.0
+    lapse: float = 0.0
+    lapse_factor: float = 1.0
     kick: float = 0.0
 
     def __post_init__(self) -> None:
         for f in fields(self):
-            most = 1 if f.name == "kick" else np.inf
-            object.__setattr__(self, f.name, number(f"noise.{f.name}", getattr(self, f.name), 0, most))
+            least, most = float(f.name == "lapse_factor"), 1 if f.name in ("lapse", "kick") else np.inf
+            object.__setattr__(self, f.name, number(f"noise.{f.name}", getattr(self, f.name), least, most))
 
     @classmethod
     def of(cls, noise: "NoiseLike") -> "Noise":
@@ -154,11 +204,11 @@ class Noise:
     @property
     def silent(self) -> bool:
         """Whether all deviations are 0 and there are no kicks, a bool; then nothing is drawn."""
-        return not any(getattr(self, f.name) for f in fields(self) if f.name != "growth")
+        return not any(getattr(self, f.name) for f in fields(self) if f.name not in _SHAPE)
 
     def direction_deg(self, physics: PhysicsLike = None, *, speed: float = POT_SPEED) -> float:
-        """Return the standard deviation [deg] of the cue ball's direction: aim and squirt together, for a cue speed
-        [m/s]; default 1.5, about that of a pot.
+        """Return the standard deviation [deg] of the cue ball's direction, but for lapses: aim and squirt together, for a
+        cue speed [m/s]; default 1.5, about that of a pot.
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
         small offset [TP A.31]: with the usual ratio of 30, 0.163 deg per mm. It holds for strokes without
@@ -170,12 +220,29 @@ class Noise:
         return slow * hypot(1.0, self.growth * speed)
 
     def pack(self, R: float, *, real: bool = False) -> Floats:
-        """Return float64 (9,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]; ``real``:
+        """Return float64 (11,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]; ``real``:
         whether the errors of tip and aim grow with the elevation."""
         tip, turns = self.offset_mm * 1e-3 / R, (radians(self.aim_deg), radians(self.elevation_deg))
         grows = 1.0 / TWICE if real else 0.0, self.growth
         deviations = self.speed_abs, self.speed_rel, tip, *turns
-        return np.array([self.silent, *deviations, self.kick, *grows], np.float64)
+        lapses = _NORMAL.inv_cdf(1.0 - self.lapse) if 0.0 < self.lapse < 1.0 else np.inf * (0.5 - self.lapse)
+        return np.array([self.silent, *deviations, self.kick, *grows, lapses, self.lapse_factor], np.float64)
+
+    def errors_of(self, streams: Words) -> Floats:
+        """The errors (n, 5) in standard deviations that shots would draw from ``streams`` (n, 2), which are not changed."""
+        out = np.empty((len(streams), 5))
+        _errors(streams.copy(), self.pack(1.0), out)
+        return out
+
+    def draw_errors(self, rng: np.random.Generator, n: int) -> Floats:
+        """The errors (n, 5) in standard deviations of n strokes."""
+        return self.errors_from(rng.standard_normal((n, DRAWN)))
+
+    def errors_from(self, normals: Floats) -> Floats:
+        """The errors (n, 5) in standard deviations that standard normal numbers (n, ``DRAWN``) stand for."""
+        packed = self.pack(1.0)
+        times = np.where(normals[:, 5] > packed[N_LAPSE], packed[N_LAPSE_FACTOR], 1.0)
+        return normals[:, :5] * times[:, None]
 
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName

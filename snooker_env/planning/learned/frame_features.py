@@ -11,6 +11,7 @@ from ..._lib.types import Floats
 from ...game import frame_columns as columns
 from ...game.balls import N_BALLS, available, bits, touching_balls
 from ...geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ...tasks.noise import Spread
 from ...tasks.windows import HIGH, LOW, MOST_EDGES, half_width, open_part, open_windows
 from ..positions import Positions
 from ..prospects import in_parts
@@ -95,7 +96,7 @@ def _features(positions, on_table, game, spread, out):
         row[o + 15] = min(HALF_LENGTH - abs(cy), 0.1) * 10.0
         left = available(mask, game_row[columns.BALL_ON], game_row[columns.FREE_BALL])
         row[o + 16] = sqrt(max(0.0, left)) / 12.0
-        row[o + 17] = log(min(max(spread, NARROWEST), WIDEST) / SPREAD)
+        row[o + 17] = log(min(max(spread.core, NARROWEST), WIDEST) / SPREAD)
 
 
 def read_errors(seen: np.ndarray) -> Floats:
@@ -103,7 +104,7 @@ def read_errors(seen: np.ndarray) -> Floats:
     return SPREAD * np.exp(seen[:, SIZE - 1].astype(np.float64))
 
 
-def frame_features(at: Positions, spread: float, threads: int = 1) -> np.ndarray:
+def frame_features(at: Positions, spread: Spread, threads: int = 1) -> np.ndarray:
     """Features of n ``Positions`` as their strikers see them, the cue ball on the table: float32 (n, SIZE)."""
     out = np.empty((len(at), SIZE), np.float32)
     out[:, :VISIT_SIZE] = value_features(at.as_visits(), spread, threads)

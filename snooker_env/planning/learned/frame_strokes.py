@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..._lib.types import Bools, Floats, Integers, Ints
 from ...game import frame_columns as columns
 from ...game.balls import BLACK, N_BALLS, PINK, VALUES
+from ...tasks.noise import Spread
 from ...tasks.options import Rules
 from ..aims import Dynamics, law_of
 from ..frame_judge import EASY
@@ -73,10 +74,10 @@ class FrameStrokes:
         self.values: StrokeValue = values
         self.worth: LearnedWorth = worth
         self.dynamics: Dynamics = values.dynamics
-        self.spread: float = values.value.spread
+        self.spread: Spread = values.value.spread
         self._layers = Layers(layers, "relu") if layers else None
         self._noise = rules.noise.pack(self.dynamics.physics.R, real=len(self.dynamics.rails) > 0)
-        self._errors = normal_points(SAMPLES, _SEED)
+        self._errors = normal_points(SAMPLES, _SEED)[:, :COLUMNS]
         self._errors[0] = 0.0
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
@@ -170,7 +171,10 @@ class FrameStrokes:
         first, mean, cue = seen[:, 0], seen.mean(axis=1), seen[:, :, 0]
         columns_seen = [gains[:, 0], gains.min(axis=1), gains.max(axis=1), gains.std(axis=1)]
         columns_seen += [one.reshape(m, k).mean(axis=1) for one in (foul, potted, met == 0)]
-        columns_seen += [first[:, 0, path.LOST], np.full(m, np.log(np.clip(self.spread, *LEARNED) / SPREAD))]
+        columns_seen += [
+            first[:, 0, path.LOST],
+            np.full(m, np.log(np.clip(self.spread.core, *LEARNED) / SPREAD)),
+        ]
         for ball in (0, 1):
             columns_seen += [
                 mean[:, ball, path.NOSES] / 3.0,

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ...tasks.noise import Spread
 from ..positions import Positions
 from ..prospects import in_parts
 from .dense_layers import Layers
@@ -17,11 +18,13 @@ POINTS = 40.0  # unit of U [points]
 
 class LearnedValue:
     """The value [points] of n ``Positions``: called with them, it returns float32 (n,). ``members``: the
-    layers (weight (out, in), bias (out,)) of each network. ``spread`` [rad]: see ``spread_of``."""
+    layers (weight (out, in), bias (out,)) of each network. ``spread``: see ``spread_of``."""
 
-    def __init__(self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: float, threads: int = 1):
+    def __init__(
+        self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: Spread, threads: int = 1
+    ):
         self._members = [Layers(member, "relu") for member in members]
-        self.spread: float = spread
+        self.spread: Spread = spread
         self.threads: int = threads
 
     def __call__(self, at: Positions) -> NDArray[np.float32]:

@@ -22,7 +22,7 @@ from ..pot_geometry import Pots, pots
 from ..proposals import strokes_at
 from ..prospects import in_parts
 from ..sobol import normal_points
-from ..stroke_columns import COLUMNS, SIDE, SPEED, TOP
+from ..stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 from ..worth import SPREAD
 from . import cue_ball_path as path
 from .dense_layers import Layers
@@ -69,13 +69,8 @@ class StrokeValue:
         self._noise = replace(noise, speed_rel=max(noise.speed_rel, _LEAST_SPEED)).pack(
             dynamics.physics.R, real=len(dynamics.rails) > 0
         )
-        self._errors = normal_points(SAMPLES, _SEED) * (
-            1.0,
-            1.0,
-            1.0,
-            0.0,
-            0.0,
-        )  # the pot's chance knows those of the aim
+        self._errors = normal_points(SAMPLES, _SEED)[:, :COLUMNS]
+        self._errors[:, AIM:] = 0.0  # the pot's chance knows those of the aim
         self._errors[0] = 0.0
 
     def candidates(self, at: Positions, m: int, seeds: Ints) -> Candidates:
@@ -98,7 +93,7 @@ class StrokeValue:
             np.maximum(likely - scores.max(axis=1, keepdims=True), -40.0) / 10.0,
             *self._pots(at, strokes, chances, pot),
             *self._ahead(at, strokes, pot),
-            np.full(picks.shape, np.log(np.clip(self.value.spread, *LEARNED) / SPREAD)),
+            np.full(picks.shape, np.log(np.clip(self.value.spread.core, *LEARNED) / SPREAD)),
         ]
         return Candidates(rows, strokes, np.stack(columns, axis=-1).astype(np.float32))
 
