@@ -27,6 +27,7 @@ with needs("agents.learn_worth"):
     from snooker_env.planning.learned.frame_features import read_errors
     from snooker_env.planning.learned.learned_worth import worth_of
     from snooker_env.players.weights import FOLDER, WORTH, learned_worth, worth_in
+    from snooker_env.tasks import LEVELS
 
     from .cluster import add_ray, checked_ray, in_order, place
     from .learning.frame_self_play import FRAME, TABLES, frames
@@ -96,7 +97,8 @@ class WorthRounds(Rounds):
         others = [league[rng.integers(len(league))] if i % 2 else None for i in range(parts)]
         for i, (scale, other) in enumerate(zip(scales, others, strict=True)):
             other = None if self._chance_alone else other
-            yield {"scale": float(scale), "seed": first + TABLES * i, "many": TABLES, "other": other}
+            noise = LEVELS["professional"].scale(float(scale))
+            yield {"noise": noise, "seed": first + TABLES * i, "many": TABLES, "other": other}
 
     def fit(self):
         given = self.layers if self._chance_alone else None

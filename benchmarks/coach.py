@@ -12,7 +12,7 @@ median width of the 95 % intervals, the share of players whose estimate is withi
 the truth, with 95 % intervals of both shares (Wilson). Tolerances of pots are simulated once for the pool.
 """
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from math import atan2, hypot
 
 import numpy as np
@@ -39,7 +39,7 @@ def errors_like(times, speed_rel, aim_share=0.5, growth=BASE.growth):
     whole = BASE.direction_deg() * times / hypot(1.0, growth * POT_SPEED)
     squirt = Noise(offset_mm=1.0).direction_deg(speed=0.0)
     aim, tip = whole * aim_share**0.5, whole * (1.0 - aim_share) ** 0.5 / squirt
-    return Noise(aim_deg=aim, offset_mm=tip, speed_rel=speed_rel, elevation_deg=0.2 * times, growth=growth)
+    return replace(BASE.scale(times), aim_deg=aim, offset_mm=tip, speed_rel=speed_rel, growth=growth)
 
 
 PLAYERS = {
@@ -106,7 +106,7 @@ def play(pool, rows, noise, rng):
     planner = Planner({"noise": noise})
     at = Positions.of([pool[k].position for k in rows])
     strokes = np.stack([pool[k].intended.numbers() for k in rows])
-    z = rng.standard_normal((len(rows), 5))
+    z = noise.draw_errors(rng, len(rows))
     stops = planner.play_strokes(at, np.arange(len(rows)), strokes, errors=z)
     balls, pockets = np.array([(pool[k].ball, pool[k].pocket) for k in rows]).T
     made = (stops.potted[np.arange(len(rows)), balls] == pockets) & (stops.penalty == 0)

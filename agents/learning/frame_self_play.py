@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from agents._lib.noise_option import scale_noise
 from snooker_env import Options
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.sides import strikers_own
@@ -18,7 +17,6 @@ from snooker_env.planning.worth import last_of, lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
 from snooker_env.players import player as snooker_player
 from snooker_env.players.tactician import Tactician
-from snooker_env.tasks import LEVELS
 from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.frames import Asked, Frames, Seat
 from snooker_env.tasks.threads import Threads
@@ -39,7 +37,7 @@ def frames(shared, args, threads):
 
     ``shared``: "options" of the frames, "layers" of the worth (None: the value of the visit alone), "chance" (None or
     its numbers), "budget", "explore" (share of strokes that are not the best), "replies" (whether cases that strokes
-    may leave are judged, too). ``args``: "scale" of the errors, "seed" of the first table, "many" frames, "other": the
+    may leave are judged, too). ``args``: "noise", "seed" of the first table, "many" frames, "other": the
     name of who plays against it, or layers and chance of a past self; None: itself, and both sides count.
 
     Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue ball where it was played
@@ -48,8 +46,7 @@ def frames(shared, args, threads):
     is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won" (m,): the striker's lead, the
     points on the table, whether the striker won; "decided": whether anybody did; "equals": whether it played against
     itself; "frame" and "striker" (m,), -1 in the rows of replies, which come last and which nothing followed."""
-    noise = scale_noise(LEVELS["professional"], args["scale"])
-    options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": noise})
+    options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": args["noise"]})
     rules, many = options.rules, args["many"]
     known = options.but(conditions="fixed")  # a player does not know the constants of a table
     player = Tactician(shared["budget"], (shared["layers"], shared["chance"])).at(known)

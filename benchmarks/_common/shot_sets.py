@@ -58,10 +58,10 @@ class Shots:
 
 
 def _execute(speed, side, top, aim, noise, rng):
-    """A level stroke with the errors of a ``Noise``, five numbers of ``rng``; its elevation comes last."""
+    """A level stroke with the errors of a ``Noise``, six numbers of ``rng``; its elevation comes last."""
     if noise.silent:
         return speed, side, top, aim, 0.0
-    z, more = rng.standard_normal(5), hypot(1.0, noise.growth * speed)
+    z, more = noise.draw_errors(rng, 1)[0], hypot(1.0, noise.growth * speed)
     tip, turn = more * 1e-3 * noise.offset_mm / R, more * radians(noise.aim_deg)
     speed = max(0.0, speed + z[0] * sqrt(noise.speed_abs**2 + (noise.speed_rel * speed) ** 2))
     elevation = min(MAX_ELEVATION, max(0.0, z[4] * radians(noise.elevation_deg)))

@@ -93,8 +93,8 @@ class PlayerErrors:
 
     @property
     def noise(self) -> Noise:
-        """Execution errors like the player's, a ``Noise``, with a professional's proportions; of an error that is not known,
-        as many times a professional's as the other."""
+        """Execution errors like the player's, a ``Noise``, with a professional's proportions and lapses; of an error that is
+        not known, as many times a professional's as the other."""
         base = LEVELS[BASE]
         growth = base.growth if self.growth is None else self.growth.value
         turned = self.direction and self.direction.value / base.direction_deg(speed=self.at)
@@ -102,9 +102,8 @@ class PlayerErrors:
         many, fast = turned or hurried or 1.0, hurried or turned or 1.0
         still = many * hypot(1.0, base.growth * self.at) / hypot(1.0, growth * self.at)
         errors = {"aim_deg": base.aim_deg * still, "offset_mm": base.offset_mm * still}
-        return Noise(
-            **errors, elevation_deg=base.elevation_deg * many, speed_rel=base.speed_rel * fast, growth=growth
-        )
+        errors |= {"elevation_deg": base.elevation_deg * many, "speed_rel": base.speed_rel * fast}
+        return replace(base, **errors, growth=growth)
 
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types."""
@@ -201,8 +200,16 @@ def grow_with_speed(paces: Floats, at: float) -> Floats:
 
 def weigh_errors(e: Floats, more: Floats) -> Floats:
     """Log-likelihood (growths, scales) of errors (n,) whose deviations are ``more`` (growths, n) times each scale."""
-    squares = np.sum((e / more) ** 2, axis=1)[:, None]
-    return -len(e) * np.log(SCALES) - np.log(more).sum(axis=1)[:, None] - 0.5 * squares / SCALES**2
+    return np.array([np.log(density(e, SCALES[:, None] * row)).sum(axis=1) for row in more])
+
+
+def density(e: Floats, sigma: Floats) -> Floats:
+    """The density of errors under the law of ``BASE``, of which all but the lapses have the deviations ``sigma``."""
+    base, out = LEVELS[BASE], np.full(np.broadcast_shapes(e.shape, sigma.shape), 1e-300)
+    for share, times in ((1.0 - base.lapse, 1.0), (base.lapse, base.lapse_factor)):
+        wide = times * sigma
+        out += share / (wide * sqrt(2.0 * pi)) * np.exp(-0.5 * (e / wide) ** 2)
+    return out
 
 
 def weigh_guesses(e: Floats, widths: Floats, more: Floats) -> tuple[Floats, Any]:
@@ -211,13 +218,12 @@ def weigh_guesses(e: Floats, widths: Floats, more: Floats) -> tuple[Floats, Any]
     if not len(e):
         return np.zeros((len(more), len(SCALES))), np.zeros(0, np.bool_)
     safety, log_l = 0.5 / widths, np.empty((len(more), len(SHARES), len(SCALES)))
-    each = lambda scales, row: np.exp(-0.5 * (e / (scales * row)) ** 2) / (scales * row * sqrt(2.0 * pi))  # noqa: E731
     for row, out in zip(more, log_l, strict=True):
-        pot = each(SCALES[:, None], row)
+        pot = density(e, SCALES[:, None] * row)
         for k, share in enumerate(SHARES.tolist()):
             out[k] = np.log((1.0 - share) * pot + share * safety).sum(axis=1)
     g, k, s = np.unravel_index(log_l.argmax(), log_l.shape)
-    meant = (1.0 - SHARES[k]) * each(SCALES[s], more[g]) > SHARES[k] * safety
+    meant = (1.0 - SHARES[k]) * density(e, SCALES[s] * more[g]) > SHARES[k] * safety
     return np.logaddexp.reduce(log_l, axis=1), meant
 
 
@@ -409,8 +415,9 @@ def simulate_pots(strokes: list[Recorded], practice: Practice, seed: int) -> Cal
 
 def weigh_radii() -> Floats:
     """How likely an error of each size in ``SCALES`` is to have each of ``RADII``: (radii, scales), columns sum to 1."""
-    edges = np.sqrt(RADII[1:] * RADII[:-1])[:, None] / SCALES
-    below = np.vstack([np.zeros(len(SCALES)), chi5(edges), np.ones(len(SCALES))])
+    base, edges = LEVELS[BASE], np.sqrt(RADII[1:] * RADII[:-1])[:, None] / SCALES
+    inside = (1.0 - base.lapse) * chi5(edges) + base.lapse * chi5(edges / base.lapse_factor)
+    below = np.vstack([np.zeros(len(SCALES)), inside, np.ones(len(SCALES))])
     return np.diff(below, axis=0)
 
 

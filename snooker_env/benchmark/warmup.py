@@ -111,6 +111,7 @@ def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
     from ..planning.visit_judge import VisitJudge
     from ..planning.worth import best_places, decide
     from ..players import player
+    from ..tasks.noise import Spread
     from ..tasks.options import Options
 
     env.reset(seed=0)
@@ -120,8 +121,8 @@ def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
     Planner({"noise": "club"}).play_strokes(at, [0], [[1.0, 0.0, 0.0, 0.0, 0.0]], [0])
     obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
     room_for(np.zeros(5), at, Options(cue="real").rules)
-    prospects_of(at, 1e-3)
-    pot_chances(np.ones(1), np.ones(1), 1e-3)
+    prospects_of(at, Spread(1e-3))
+    pot_chances(np.ones(1), np.ones(1), Spread(1e-3))
     player("ghost_ball").at({"task": "frame"}).play(both, [0])
     player(_Still(task="frame", says=["decision"])).at({"task": "frame"}).play(both, [0])
     for name in ("search_30", "planner_30", "stroke_value"):

@@ -59,8 +59,9 @@ class FrameJudge:
 
     Examples
     --------
-    >>> from snooker_env.planning import FrameJudge, prospects_of
-    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, 1e-3)[0]).shots
+    >>> from snooker_env.planning import FrameJudge, prospects_of, spread_of
+    >>> from snooker_env.tasks import Noise
+    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, spread_of(Noise()))[0]).shots
     0
     """
 

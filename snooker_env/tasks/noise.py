@@ -8,7 +8,7 @@ What decides a pot is the total error of the cue ball's direction (``Noise.direc
 that is off to the side. No measurement of a snooker player's errors was found: what the levels are set by, their sources
 and what of them is our choice say docs/validation/execution_errors.md."""
 
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from math import degrees, erf, hypot, radians, sqrt
 from statistics import NormalDist
 from typing import NamedTuple, TypeAlias
@@ -167,7 +167,7 @@ class Noise:
     --------
     >>> from snooker_env.tasks import LEVELS, Noise
     >>> LEVELS["club"].aim_deg, Noise(speed_rel=0.02).silent
-    (0.108, False)
+    (0.048, False)
     """
 
     aim_deg: float = 0.0
@@ -200,6 +200,10 @@ class Noise:
             allowed = f"must be one of {names} or a dict of {list(asdict(cls()))}"
             raise refuse("noise", noise, allowed)
         return LEVELS[noise]
+
+    def scale(self, times: float) -> "Noise":
+        """Return a ``Noise`` with every error ``times`` as large; growth, lapses and kicks are the same."""
+        return replace(self, **{f.name: getattr(self, f.name) * times for f in fields(self)[:5]})
 
     @property
     def silent(self) -> bool:
@@ -247,12 +251,23 @@ class Noise:
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
 """The types that arguments called ``noise`` accept, see ``Noise.of``."""
+_PROFESSIONAL = Noise(
+    aim_deg=0.012,
+    speed_rel=0.015,
+    offset_mm=0.074,
+    elevation_deg=0.1,
+    growth=1.0,
+    lapse=0.12,
+    lapse_factor=8.0,
+)
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
-    "professional": Noise(aim_deg=0.027, speed_rel=0.01, offset_mm=0.164, elevation_deg=0.2, growth=1.0),
-    "amateur": Noise(aim_deg=0.054, speed_rel=0.02, offset_mm=0.328, elevation_deg=0.4, growth=1.0),
-    "club": Noise(aim_deg=0.108, speed_rel=0.04, offset_mm=0.656, elevation_deg=0.8, growth=1.0),
+    "professional": _PROFESSIONAL,
+    "amateur": _PROFESSIONAL.scale(2.0),
+    "club": _PROFESSIONAL.scale(4.0),
+    "beginner": _PROFESSIONAL.scale(8.0),
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
 }
-"""The levels: "none", "professional", "amateur", "club", "robot", "olympiad"; sources: above."""
+"""The levels: "none" errs never; "professional", "amateur", "club" and "beginner" are scales of one law; "robot" and
+"olympiad" are Gaussian. Sources: above."""

@@ -2,7 +2,7 @@
 
 import pytest
 
-from agents._lib.noise_option import noise_option, scale_noise
+from agents._lib.noise_option import noise_option
 from snooker_env.tasks import LEVELS, Noise
 
 
@@ -11,8 +11,8 @@ def test_a_level_is_its_name_and_a_scale_multiplies_its_errors():
     twice, one = Noise.of(noise_option("professional*2")), LEVELS["professional"]
     assert (twice.aim_deg, twice.offset_mm, twice.elevation_deg, twice.speed_rel) == (0.054, 0.328, 0.4, 0.02)
     assert (twice.growth, twice.kick) == (one.growth, one.kick)
-    assert scale_noise(one, 1.0) == one
-    assert scale_noise(Noise(speed_abs=0.1), 3.0).speed_abs == pytest.approx(0.3, rel=1e-12)
+    assert one.scale(1.0) == one
+    assert Noise(speed_abs=0.1).scale(3.0).speed_abs == pytest.approx(0.3, rel=1e-12)
 
 
 @pytest.mark.parametrize("wrong", ["loud", "club*", "club*x", "club*0", "club*nan"])

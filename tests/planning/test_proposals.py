@@ -29,6 +29,7 @@ from snooker_env.planning.proposals import (
     over_cushions,
 )
 from snooker_env.tasks import LEVELS
+from snooker_env.tasks.noise import Spread
 from tests.positions import chances_by_width, tables
 
 PLANNER = planning.Planner({"fidelity": "fast"}, threads=1)
@@ -41,7 +42,7 @@ NO_POT = planning.Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], b
 class Hand(NamedTuple):
     """What generators ask of a search."""
 
-    spread: float = SPREAD
+    spread: Spread = SPREAD
     dynamics: Dynamics = DYNAMICS
 
 

@@ -11,7 +11,7 @@ from snooker_env.game.pots import pots
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.parameters import Physics
 from snooker_env.planning import Positions, prospects
-from snooker_env.tasks.noise import Noise
+from snooker_env.tasks.noise import Noise, Spread
 from snooker_env.tasks.visit import BALL_ON
 from tests.positions import tables
 
@@ -29,7 +29,8 @@ def by_plain_python(positions, on_table, ball_on, spread, follows, second, third
     for ball, pocket, gx, gy, _, tolerance in pots(positions, on_table, mask_of(balls))[:16]:
         (cx, cy), (bx, by), (px, py) = positions[CUE], positions[int(ball)], POCKET_AIMS[int(pocket), :2]
         run = hypot(gx - cx, gy - cy) + hypot(px - bx, py - by)
-        within = norm.cdf(tolerance, scale=spread) - norm.cdf(-tolerance, scale=spread)
+        both = (1.0 - spread.lapse, spread.core), (spread.lapse, spread.factor * spread.core)
+        within = sum(share * (1.0 - 2.0 * norm.cdf(-tolerance, scale=wide)) for share, wide in both)
         chances.append(within * exp(-0.01 * run))
         more = follows * (1 - exp(-max(0, left - VALUE[int(ball)]) / follows))
         worths.append(chances[-1] * (VALUE[int(ball)] + more) * exp(-distant * run))
@@ -43,7 +44,7 @@ def test_prospects_recomputed(ball_on, constants):
     env = tables(30, layout="random:3", seed=2)
     at = Positions.of(env)
     at.game[:, BALL_ON] = int(ball_on)
-    for spread in (5e-4, 6e-3):
+    for spread in (Spread(5e-4), Spread(6e-3), Spread(5e-4, 0.1, 4.0)):
         values, chances = prospects.prospects_of(at, spread, constants, most=6)
         for k in range(30):
             value, all_of = by_plain_python(at.positions[k], at.on_table[k], ball_on, spread, *constants)
@@ -59,12 +60,12 @@ def test_what_is_left_of_a_last_black():
     at.on_table[0, BLACK] = True
     at.positions[0, CUE], at.positions[0, BLACK] = (0.0, 0.8), (0.4, 1.3)
     at.game[0, BALL_ON] = int(BallOn.BLACK)
-    (value,), (chances,) = prospects.prospects_of(at, 2e-3, near := (25.0, 0.15, 0.05, 0.0))
+    (value,), (chances,) = prospects.prospects_of(at, Spread(2e-3), near := (25.0, 0.15, 0.05, 0.0))
     best = 7.0 * np.sort(chances)[::-1]
     assert value == pytest.approx(best[0] + 0.15 * best[1] + 0.05 * best[2]) and value > 1.0
     at.on_table[0, PINK] = True  # but is not on: it follows
     at.positions[0, PINK] = (-0.6, -1.0)
-    assert prospects.prospects_of(at, 2e-3, near)[0][0] == pytest.approx(
+    assert prospects.prospects_of(at, Spread(2e-3), near)[0][0] == pytest.approx(
         value * (7 + 25 * (1 - exp(-6 / 25))) / 7
     )
 
@@ -76,5 +77,7 @@ def test_spread_is_that_of_the_aim_and_of_the_squirt(level):
     b = 1e-3 * noise.offset_mm / physics.R
     squirt = atan(2.5 * b * sqrt(1 - b * b) / (1 + physics.end_mass_ratio + 2.5 * (1 - b * b)))
     spread = hypot(radians(noise.aim_deg), squirt) * hypot(1.0, noise.growth * 1.5)
-    assert prospects.spread_of(noise, physics) == pytest.approx(spread, rel=1e-3)
-    assert prospects.spread_of(Noise(), physics) == 1e-5
+    assert prospects.spread_of(noise, physics) == pytest.approx(
+        (spread, noise.lapse, noise.lapse_factor), rel=1e-3
+    )
+    assert prospects.spread_of(Noise(), physics) == (1e-5, 0.0, 1.0)

@@ -21,7 +21,7 @@ from snooker_env.planning import (
 from snooker_env.planning.search import PRIOR
 from snooker_env.planning.sobol import normal_points
 from snooker_env.planning.visit_judge import FOUL, LEFT, schedule
-from snooker_env.tasks.noise import errors_of
+from snooker_env.tasks.noise import Noise
 from snooker_env.tasks.options import Options
 from tests.positions import tables
 
@@ -85,7 +85,7 @@ def test_strokes_under_errors_are_those_of_the_table_under_the_same_errors(noise
     at, rng, m = some(20), np.random.default_rng(1), 300
     rows, keys, strokes = rng.integers(0, 20, m), np.arange(1000, 1000 + m), random_strokes(m, rng)
     options = {"noise": noise, "fidelity": "fast"}
-    errors = errors_of(np.stack([keys, np.zeros(m, int)], 1).astype(np.uint64))
+    errors = Noise.of(noise).errors_of(np.stack([keys, np.zeros(m, int)], 1).astype(np.uint64))
     kept = strokes.copy(), errors.copy()
     actions = Strokes(strokes).actions(Options(), at[rows])
     planner = Planner(options, threads=1)
@@ -154,7 +154,9 @@ def test_the_ranking_recomputed(budget, value):
         here = at[k : k + 1]
         strokes, chances = (one[0] for one in at_pots(tool, here, looks, [seed]))
         look = chances * gains_by_hand(tool, here, strokes, np.zeros((1, 5)), worth)[:, 0]
-        gains = gains_by_hand(tool, here, strokes, normal_points(total, seed), worth)
+        gains = gains_by_hand(
+            tool, here, strokes, tool.judge.noise.errors_from(normal_points(total, seed)), worth
+        )
         order, score, done, met = sorted(range(looks), key=lambda i: -look[i]), list(look), 0, [0] * looks
         for many, each in rounds:
             done += each

@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.physics.columns import CONSTANTS
-from snooker_env.tasks.noise import Noise, errors_of, kick_of
+from snooker_env.tasks.noise import Noise, kick_of
 from tests.kernels import from_python
 from tests.tables import begun
 
@@ -87,7 +87,7 @@ def test_kicks_are_independent_of_the_errors_and_of_each_other():
             env.reset(seed=seed, options=CUT)
             streams = env.tables.streams.copy()
             ends.append(env.step(np.tile(ACTION, (n, 1)))[0])
-        drawn.append(errors_of(streams))
+        drawn.append(Noise(**errors).errors_of(streams))
         kicked.append((ends[0] != ends[1]).any(axis=1))
         assert kicked[-1].mean() == pytest.approx(share, abs=4 * np.sqrt(share * (1 - share) / n))
     drawn, both = np.concatenate(drawn), np.concatenate(kicked).astype(float)

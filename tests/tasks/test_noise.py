@@ -1,6 +1,7 @@
 """Is the noise as wide as its level says, does it reach the table, and does it leave every shot playable?"""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ import pytest
 from snooker_env import Physics, SnookerEnv
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue import strike
-from snooker_env.tasks.noise import LEVELS, Noise, execute_stroke
+from snooker_env.planning import spread_of
+from snooker_env.tasks.noise import LEVELS, Noise, chance_within, execute_stroke
 from tests.kernels import from_python
 from tests.tables import after_strike, begun
 
@@ -78,6 +80,45 @@ def test_errors_of_aim_and_tip_grow_with_the_speed():
     assert Noise(aim_deg=0.1, growth=4.0 / 3.0).direction_deg(speed=1.0) == pytest.approx(0.5 / 3.0)
 
 
+def test_a_lapse_makes_all_five_errors_larger_and_no_other_stroke_changes():
+    """A share p of the strokes has K times the errors that it would have; from keys as from Sobol or NumPy's numbers."""
+    wide, n = Noise(aim_deg=0.1, offset_mm=0.3, elevation_deg=0.2, speed_rel=0.02), 20_000
+    lapsing = replace(wide, lapse=0.1, lapse_factor=4.0)
+    plain, some = (
+        drawn(noise, n, 2.0, 0.1, 0.2, 0.3, 0.5) - (2.0, 0.1, 0.2, 0.3, 0.5) for noise in (wide, lapsing)
+    )
+    times = some / plain
+    lapse = times[:, 3] > 2.0
+    assert times == pytest.approx(np.where(lapse, 4.0, 1.0)[:, None] * np.ones(5), rel=1e-6)
+    assert lapse.mean() == pytest.approx(0.1, abs=4 * math.sqrt(0.09 / n))
+    assert abs(np.corrcoef(lapse, np.abs(plain[:, 3]))[0, 1]) < 4 / math.sqrt(
+        n
+    )  # the sixth number alone decides
+    streams = np.array([[k, 0] for k in range(n)], np.uint64)
+    numbers = lapsing.errors_of(streams)
+    assert (numbers == wide.errors_of(streams)).all(axis=1).mean() == pytest.approx(0.9, abs=0.01)
+    assert (streams[:, 1] == 0).all()
+    for errors in (numbers, lapsing.draw_errors(np.random.default_rng(3), n)):
+        assert errors.std(axis=0) == pytest.approx([math.sqrt(0.9 + 0.1 * 16.0)] * 5, rel=0.05)
+        assert (np.abs(errors) > 4.0).mean(axis=0) == pytest.approx([0.1 * 0.3173] * 5, abs=0.006)
+    for p, share in ((0.0, 0.0), (1.0, 1.0)):
+        always = Noise(aim_deg=0.1, lapse=p, lapse_factor=3.0).draw_errors(np.random.default_rng(3), 500)
+        assert (np.abs(always) > 4.5).any() == (share == 1.0) and always.std() == pytest.approx(
+            1.0 + 2.0 * share, rel=0.05
+        )
+
+
+def test_the_chance_to_stay_within_is_that_of_the_errors_drawn():
+    noise = Noise(aim_deg=0.1, lapse=0.07, lapse_factor=5.0)
+    errors, spread = (
+        np.radians(0.1) * noise.draw_errors(np.random.default_rng(4), 200_000)[:, 3],
+        spread_of(noise),
+    )
+    for within in (0.3, 1.0, 2.0, 6.0):
+        chance = from_python(chance_within)(within * spread.core, spread)
+        assert chance == pytest.approx((np.abs(errors) < within * spread.core).mean(), abs=0.004)
+
+
 def test_speed_and_elevation_are_never_negative():
     draws = drawn(Noise(speed_abs=1.0, elevation_deg=5.0), 500, 0.2, 0, 0, 0, 0.0)
     assert draws[:, 0].min() == 0.0 < draws[:, 0].max() and draws[:, 4].min() == 0.0 < draws[:, 4].max()
@@ -92,7 +133,9 @@ def test_no_noise_draws_nothing():
     noisy.step(np.zeros(4))
     assert noisy.get_state()["stream"] == [before["stream"][0], before["stream"][1] + 3]
     assert Noise().silent and not any(
-        Noise(**{f: 1e-9}).silent for f in Noise.__dataclass_fields__ if f != "growth"
+        Noise(**{f: 1e-9}).silent
+        for f in Noise.__dataclass_fields__
+        if f not in ("growth", "lapse", "lapse_factor")
     )
 
 

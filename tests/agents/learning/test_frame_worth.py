@@ -17,10 +17,11 @@ from snooker_env.planning.trials import turn_to_striker
 from snooker_env.planning.worth import SPREAD, Chance
 from snooker_env.players import FRAMES
 from snooker_env.players.tactician import Tactician
+from snooker_env.tasks import LEVELS
 
 SHARED = {"options": {"cue": "real", "miss": "clear_path", "max_strokes": 8}, "layers": None, "chance": None}
 SHARED |= {"budget": 30, "explore": 0.2, "replies": False}
-PART = {"scale": 2.0, "seed": 3, "many": 4, "other": None}
+PART = {"noise": LEVELS["professional"].scale(2.0), "seed": 3, "many": 4, "other": None}
 
 
 def test_a_target_is_the_search_and_what_followed():

@@ -12,6 +12,7 @@ from agents.learning.value_network import MEMBERS, POINTS, ValueNetwork, value_o
 from snooker_env.planning import Positions, Search, VisitJudge, spread_of
 from snooker_env.planning.learned.value_features import LOGIT, SIZE, value_features
 from snooker_env.tasks import LEVELS
+from snooker_env.tasks.noise import Spread
 from tests.positions import chances_by_width, tables
 
 SPREAD, SAMPLES = 1e-3, 3
@@ -249,8 +250,10 @@ def test_the_value_of_a_position_is_that_of_its_features_on_any_number_of_thread
     assert np.array_equal(seen, kept) and value(at).dtype == np.float32
     alone = [value(at[k : k + 1])[0] for k in range(0, 300, 11)]
     assert np.array_equal(alone, value(at)[::11]) and np.array_equal(value(at[::-1]), value(at)[::-1])
-    assert not np.allclose(value_of(made, 4e-3)(at), value(at), rtol=0.05)  # larger errors, a lower value
-    assert value_of(made, 4e-3)(at).mean() < value(at).mean()
+    assert not np.allclose(
+        value_of(made, Spread(4e-3))(at), value(at), rtol=0.05
+    )  # larger errors, a lower value
+    assert value_of(made, Spread(4e-3))(at).mean() < value(at).mean()
 
 
 def test_a_search_takes_it_as_its_value():

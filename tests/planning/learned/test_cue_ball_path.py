@@ -11,6 +11,7 @@ from snooker_env.planning.learned.value_features import value_features
 from snooker_env.planning.stroke_columns import AIM
 from snooker_env.players import VISITS
 from snooker_env.tasks import STROKES, Noise
+from snooker_env.tasks.noise import Spread
 
 
 def predicted(at, rows, strokes, options, pot=None):
@@ -107,5 +108,6 @@ def test_a_batch_is_as_each_row_where_only_the_cue_ball_lies_elsewhere():
     at = Positions.of(tables)[np.repeat(np.arange(6), 4)]
     at.positions[:, 0] += np.random.default_rng(0).uniform(-0.02, 0.02, (24, 2))
     at.on_table[9:11, 21] = False
-    together = value_features(at, 1e-3)
-    assert all(np.array_equal(value_features(at[[k]], 1e-3)[0], together[k]) for k in range(24))
+    spread = Spread(1e-3)
+    together = value_features(at, spread)
+    assert all(np.array_equal(value_features(at[[k]], spread)[0], together[k]) for k in range(24))

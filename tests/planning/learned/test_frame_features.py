@@ -19,13 +19,17 @@ from snooker_env.planning.learned.frame_features import (
     read_errors,
 )
 from snooker_env.planning.learned.value_features import SIZE as VISIT_SIZE
+from snooker_env.tasks.noise import Spread
 from tests.planning.test_frame_judge import frame_of
 
 COLOURS = VISIT_SIZE + NEAREST * RED_ENTRIES
 SHARED = COLOURS + 6
 
 
-def seen(at, spread=1e-3):
+MIDDLE = Spread(1e-3)
+
+
+def seen(at, spread=MIDDLE):
     return frame_features(at, spread)[0].astype(float)
 
 
@@ -74,6 +78,7 @@ def test_the_state_of_the_frame_and_the_size_of_the_errors_are_told():
         changed = at.copy()
         changed.game[:, column] = 1
         assert plain[SHARED + entry] == 0.0 and seen(changed)[SHARED + entry] == 1.0
-    for spread, shown in ((1e-3, 1e-3), (1e-5, NARROWEST), (0.1, WIDEST)):
+    for core, shown in ((1e-3, 1e-3), (1e-5, NARROWEST), (0.1, WIDEST)):
+        spread = Spread(core)
         assert seen(at, spread)[SHARED + 17] == pytest.approx(log(shown / 1.2e-3), rel=1e-5)
         assert read_errors(frame_features(at, spread)) == pytest.approx([shown], rel=1e-5)

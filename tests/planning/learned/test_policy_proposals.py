@@ -14,8 +14,8 @@ JUDGE = VisitJudge({"noise": "professional", "fidelity": "fast"}, threads=1)
 
 
 def spread_at(speed):
-    """The player's error of direction in a stroke at that speed [rad]."""
-    return np.radians(JUDGE.noise.direction_deg(speed=speed))
+    """The player's law of direction in a stroke at that speed."""
+    return JUDGE.spread._replace(core=np.radians(JUDGE.noise.direction_deg(speed=speed)))
 
 
 class Preferring:

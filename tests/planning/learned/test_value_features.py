@@ -17,6 +17,7 @@ from snooker_env.planning.learned.value_features import (
     value_features,
 )
 from snooker_env.tasks import LEVELS
+from snooker_env.tasks.noise import Spread
 from tests.positions import chances_by_width, tables
 
 SPREAD = spread_of(LEVELS["professional"])
@@ -60,7 +61,7 @@ def test_the_order_of_the_reds_does_not_matter():
     assert (np.abs(value_features(at, SPREAD) - value_features(other, SPREAD)).max(axis=1) > 0.1).all()
 
 
-@pytest.mark.parametrize(("ball_on", "spread"), [(0, SPREAD), (1, SPREAD), (1, 3e-3)])
+@pytest.mark.parametrize(("ball_on", "spread"), [(0, SPREAD), (1, SPREAD), (1, Spread(3e-3, 0.1, 4.0))])
 def test_the_pots_are_the_best_ones_recomputed(ball_on, spread):
     """Recomputed from ``planning.pots`` and the docstring's chance, by chance x (20 + value)."""
     at = some(60, "random:4", seed=5)
@@ -77,7 +78,8 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on, spread):
             aim_point = 0.889 - (0.0016 if middle else 0.01524), 1.7845 - 0.01524
             px, py = np.multiply(SIDES[direct.pocket[k, j]], aim_point)
             run = hypot(px - x, py - y)
-            chance = erf(tolerance / (spread * sqrt(2))) * exp(-0.01 * (away + run))
+            core, lapse = (erf(tolerance / (times * spread.core * sqrt(2))) for times in (1.0, spread.factor))
+            chance = (core + spread.lapse * (lapse - core)) * exp(-0.01 * (away + run))
             side = -1.0 if cx < 0 else 1.0
             odds = 0.25 * log((chance + 1e-3) / (1 - chance + 1e-3))
             entries = [1, chance, odds, VALUES[ball] / 7, np.cos(direct.cut[k, j]), away - 1, run - 1]

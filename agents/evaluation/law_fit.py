@@ -1,0 +1,114 @@
+"""Which law of execution errors do frames and long pots show? Frames are played under laws spread over ``RANGES``; a
+quadratic surface is fitted to each of their figures, and the likelihood of what was counted and said is read off it."""
+
+from dataclasses import replace
+from math import log
+
+import numpy as np
+
+from agents._lib.tables import TextTable
+from snooker_env import Position
+from snooker_env.planning import Planner, Positions
+from snooker_env.tasks import LEVELS
+
+RANGES = {
+    "core": (0.025, 0.065),
+    "lapse": (0.04, 0.2),
+    "lapse_factor": (2.5, 8.0),
+    "speed_rel": (0.008, 0.03),
+    "growth": (0.5, 2.5),
+}
+"""Of the direction's standard deviation at 1.5 m/s [deg], and of fields of ``Noise``; laws are spread in the logarithm."""
+FITTED = ("visits", "frames_50", "frames_100", "winner")
+"""Figures of frames that a law of errors decides: strokes and fouls are tactics, a mean break is points over visits."""
+LONG_POTS, STROKES = (57.5, 7.5), 1000
+"""Long pots that professionals are said to make, 50 to 65 % [%], and how often each of ours is tried."""
+LONG = ((0.7, 2.5), (0.4, 2.5), (0.9, 3.0))
+"""Of three long pots the ball's distance to the pocket's corner [m] and the cue speed [m/s]; the cue ball lies in baulk."""
+GRID, DRAWN, LEAST_LAWS = 9, 20_000, 12
+"""Values of a parameter in its profile, laws drawn to find the likeliest of the others, and fewest that are played."""
+
+
+def law_of(core, growth, **fields):
+    """A professional's errors with this direction at 1.5 m/s [deg], this growth, and ``fields`` of ``Noise``."""
+    base = replace(LEVELS["professional"], growth=growth)
+    times = core / base.direction_deg()
+    return replace(base, aim_deg=base.aim_deg * times, offset_mm=base.offset_mm * times, **fields)
+
+
+def spread_laws(n, seed):
+    """n laws, each parameter evenly spread over its range: the parameters' logarithms (n, 5), and each law as a dict."""
+    rng, (low, high) = np.random.default_rng(seed), np.log(np.array(list(RANGES.values())).T)
+    places = rng.permuted(np.tile(np.arange(n)[:, None], len(RANGES)), axis=0) + rng.random((n, len(RANGES)))
+    logs = low + (high - low) * places / n
+    return logs, [dict(zip(RANGES, np.exp(row).tolist(), strict=True)) for row in logs]
+
+
+def long_pots(noise, seed):
+    """The share of long pots made [%]."""
+    made, planner = [], Planner({"noise": noise})
+    for k, (off, speed) in enumerate(LONG):
+        at = Positions.of(Position(cue=(0.15 - 0.1 * k, -1.1), reds=[(0.889 - off, 1.7845 - off)], on="red"))
+        strokes = np.tile([speed, 0.0, 0.0, 0.0, 0.0], (STROKES, 1))
+        strokes[:, 3] = planner.pot_aim(at, [0], [1], [(0.889, 1.7845)], speed)
+        keys = np.arange(STROKES) + seed
+        made.append(
+            float((planner.play_strokes(at, np.zeros(STROKES, int), strokes, keys).points > 0).mean())
+        )
+    return 100.0 * float(np.mean(made))
+
+
+class Surface:
+    """A quadratic in the logarithms of the parameters, fitted to figures (n,)."""
+
+    def __init__(self, logs, values):
+        self._middle = logs.mean(axis=0)
+        terms = self._terms(logs)
+        self._factors = np.linalg.lstsq(terms, values, rcond=None)[0]
+        free = max(1, len(values) - terms.shape[1])
+        self.error = float(np.sqrt(((values - terms @ self._factors) ** 2).sum() / free))
+
+    def _terms(self, logs):
+        x = logs - self._middle
+        pairs = [x[:, [i]] * x[:, [j]] for i, j in ((0, 1), (1, 2), (2, 2), (0, 0))]
+        return np.hstack([np.ones((len(x), 1)), x, *pairs])
+
+    def __call__(self, logs):
+        return self._terms(logs) @ self._factors
+
+
+def misfit(surfaces, said, logs):
+    """-2 log likelihood (n,) of what was said, mean and standard error of each figure, at n laws."""
+    total = np.zeros(len(logs))
+    for name, surface in surfaces.items():
+        mean, error = said[name]
+        total += ((surface(logs) - mean) / np.hypot(error, surface.error)) ** 2
+    return total
+
+
+def profile(logs, figures, said, seed):
+    """The likeliest law of those spread like ``logs``, its misfit, and the profile of each parameter: its values and how
+    much larger the least misfit is with each of them. ``figures``: of each law, by name."""
+    surfaces = {name: Surface(logs, np.array(figures[name])) for name in said}
+    drawn, laws = spread_laws(DRAWN, seed)
+    misfits, rows = misfit(surfaces, said, drawn), {}
+    for k, (name, ends) in enumerate(RANGES.items()):
+        values = np.exp(np.linspace(log(ends[0]), log(ends[1]), GRID))
+        least = []
+        for value in values:
+            there = drawn.copy()
+            there[:, k] = log(value)
+            least.append(float(misfit(surfaces, said, there).min() - misfits.min()))
+        rows[name] = (values.tolist(), least)
+    return laws[int(misfits.argmin())], float(misfits.min()), rows
+
+
+def tables_of(best, least, rows):
+    """What ``profile`` found, as tables."""
+    words = ", ".join(f"{name} {value:.3g}" for name, value in best.items())
+    title = f"The likeliest law: {words}; -2 log likelihood {least:.1f}, and how much more with each value of a parameter"
+    lines = []
+    for name, (values, more) in rows.items():
+        lines.append([name, *(f"{value:.3g}" for value in values)])
+        lines.append(["", *(f"{value:.1f}" for value in more)])
+    return [TextTable(title, ["", *[""] * GRID], lines, 1, 1)]
