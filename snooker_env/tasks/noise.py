@@ -257,8 +257,8 @@ _PROFESSIONAL = Noise(
     offset_mm=0.074,
     elevation_deg=0.1,
     growth=1.0,
-    lapse=0.12,
-    lapse_factor=8.0,
+    lapse=0.1,
+    lapse_factor=7.0,
 )
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
