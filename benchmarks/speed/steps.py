@@ -24,6 +24,7 @@ FRAMES, SINGLE_FRAME, GHOST = (
     "frames, single table",
     "frames against ghost_ball, one thread",
 )
+PLANAR, FLYING, FLIGHT = "match, one thread", "match, balls fly, one thread", "balls that fly over balls that do not"
 SLOWER, SINGLE_SLOWER = "a frame's step over a visit's", "the same on a single table"
 SECONDS = 2.0
 """Of each timing."""
@@ -106,6 +107,8 @@ def rates(tables, seconds, repeats, seed):
         "single table": (single(seed), 1),
         FRAMES: (stepper(native(tables, 1, **FRAME), seed), tables),
         SINGLE_FRAME: (single(seed, **FRAME), 1),
+        PLANAR: (stepper(native(tables, 1, physics="match"), seed), tables),
+        FLYING: (stepper(native(tables, 1, physics={"preset": "match", "flight": True}), seed), tables),
         GHOST: (stepper(native(tables, 1, opponent="ghost_ball", **FRAME), seed), tables),
     }
     rounds = [
@@ -113,7 +116,8 @@ def rates(tables, seconds, repeats, seed):
         for _ in range(repeats)
     ]
     out = {name: float(np.median([r[name] for r in rounds])) for name in rounds[0]}
-    for name, one, other in ((SLOWER, FRAMES, "one thread"), (SINGLE_SLOWER, SINGLE_FRAME, "single table")):
+    slower = (SLOWER, FRAMES, "one thread"), (SINGLE_SLOWER, SINGLE_FRAME, "single table"), (FLIGHT, FLYING, PLANAR)
+    for name, one, other in slower:
         out[name] = float(np.median([r[other] / r[one] for r in rounds]))
     out["two threads over one"] = float(np.median([r["two threads"] / r["one thread"] for r in rounds]))
     return out
@@ -136,6 +140,7 @@ def show(found):
     print(
         f"  time of a frame's step, the agent alone, over a visit's: {alone:.2f}, on a single table {single:.2f}"
     )
+    print(f"  time of a step where balls may fly over one where they may not: {r[FLIGHT]:.3f}")
     print("tables:  " + "".join(f"{n:>9}" for n in found["sizes"]))
     print("steps/s: " + "".join(f"{x:>9,.0f}" for x in found["sizes"].values()))
 
