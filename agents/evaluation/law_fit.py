@@ -8,6 +8,7 @@ import numpy as np
 
 from agents._lib.tables import TextTable
 from snooker_env import Position
+from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import Planner, Positions
 from snooker_env.tasks import LEVELS
 
@@ -23,8 +24,12 @@ FITTED = ("visits", "frames_50", "frames_100", "winner")
 """Figures of frames that a law of errors decides: strokes and fouls are tactics, a mean break is points over visits."""
 LONG_POTS, STROKES = (57.5, 7.5), 1000
 """Long pots that professionals are said to make, 50 to 65 % [%], and how often each of ours is tried."""
-LONG = ((0.7, 2.5), (0.4, 2.5), (0.9, 3.0))
-"""Of three long pots the ball's distance to the pocket's corner [m] and the cue speed [m/s]; the cue ball lies in baulk."""
+LONG = (
+    ((-0.0133, -1.0442), (0.5731, 0.8155), 2.5),
+    ((-0.3624, -0.8306), (0.3002, 0.9501), 2.5),
+    ((-0.1185, -1.6913), (0.5430, 0.6157), 3.0),
+)
+"""The long pots of ``benchmarks.execution``: cue ball and red [m], cue speed [m/s]; the pocket is the top right one."""
 GRID, DRAWN, LEAST_LAWS = 9, 20_000, 12
 """Values of a parameter in its profile, laws drawn to find the likeliest of the others, and fewest that are played."""
 
@@ -45,16 +50,15 @@ def spread_laws(n, seed):
 
 
 def long_pots(noise, seed):
-    """The share of long pots made [%]."""
+    """The share of long pots made [%]; one that the cue ball follows counts, too."""
     made, planner = [], Planner({"noise": noise})
-    for k, (off, speed) in enumerate(LONG):
-        at = Positions.of(Position(cue=(0.15 - 0.1 * k, -1.1), reds=[(0.889 - off, 1.7845 - off)], on="red"))
+    for cue, red, speed in LONG:
+        at = Positions.of(Position(cue=cue, reds=[red], on="red"))
         strokes = np.tile([speed, 0.0, 0.0, 0.0, 0.0], (STROKES, 1))
-        strokes[:, 3] = planner.pot_aim(at, [0], [1], [(0.889, 1.7845)], speed)
+        strokes[:, 3] = planner.pot_aim(at, [0], [1], [POCKET_AIMS[3, :2]], speed)
         keys = np.arange(STROKES) + seed
-        made.append(
-            float((planner.play_strokes(at, np.zeros(STROKES, int), strokes, keys).points > 0).mean())
-        )
+        out = planner.play_strokes(at, np.zeros(STROKES, int), strokes, keys)
+        made.append(float((out.potted[:, 1] == 3).mean()))
     return 100.0 * float(np.mean(made))
 
 

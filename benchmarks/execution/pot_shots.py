@@ -82,16 +82,16 @@ MODERATE = (_BLUE, _BLACK, _RED, _HALF, _MIDDLE)
 """What a player plays most: the robot is held against these."""
 DERIVED = (_BLACK, _RED, _BLUE, LONG[2])
 """The pots for which the published sizes of aim errors were derived, with ``HALF_WINDOW``."""
-STRAIGHT = tuple(
-    Pot(f"straight from {far} m", 3, 0.5, 18.5, float(far), 0, speed)
+BY_DISTANCE = tuple(
+    Pot(f"from {far} m, 15 deg, 0.5 m to go", 3, 0.5, 5.0, float(far), 15, speed)
     for far, speed in ((1, 1.8), (2, 2.2), (3, 2.6))
 )
-"""On the table's diagonal, the ball half a metre from the corner pocket: what each level pots, by distance."""
+"""The ball half a metre from the corner pocket, a cut at which the cue ball does not follow it: what each level pots."""
 THIN = (
     Pot("thin 0.8 m, 60 deg, 0.8 m to go", 3, 0.8, 0.0, 0.8, 60, 2.3),
     Pot("thin 0.5 m, 70 deg, 0.5 m to go", 3, 0.5, 0.0, 0.5, 70, 2.3),
 )
-POTS = (*LONG, *MODERATE, *THIN, *STRAIGHT)
+POTS = (*LONG, *MODERATE, *THIN, *BY_DISTANCE)
 
 
 @dataclass(frozen=True, eq=False)

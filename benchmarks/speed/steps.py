@@ -24,7 +24,11 @@ FRAMES, SINGLE_FRAME, GHOST = (
     "frames, single table",
     "frames against ghost_ball, one thread",
 )
-PLANAR, FLYING, FLIGHT = "match, one thread", "match, balls fly, one thread", "balls that fly over balls that do not"
+PLANAR, FLYING, FLIGHT = (
+    "match, one thread",
+    "match, balls fly, one thread",
+    "balls that fly over balls that do not",
+)
 SLOWER, SINGLE_SLOWER = "a frame's step over a visit's", "the same on a single table"
 SECONDS = 2.0
 """Of each timing."""
@@ -116,7 +120,11 @@ def rates(tables, seconds, repeats, seed):
         for _ in range(repeats)
     ]
     out = {name: float(np.median([r[name] for r in rounds])) for name in rounds[0]}
-    slower = (SLOWER, FRAMES, "one thread"), (SINGLE_SLOWER, SINGLE_FRAME, "single table"), (FLIGHT, FLYING, PLANAR)
+    slower = (
+        (SLOWER, FRAMES, "one thread"),
+        (SINGLE_SLOWER, SINGLE_FRAME, "single table"),
+        (FLIGHT, FLYING, PLANAR),
+    )
     for name, one, other in slower:
         out[name] = float(np.median([r[other] / r[one] for r in rounds]))
     out["two threads over one"] = float(np.median([r["two threads"] / r["one thread"] for r in rounds]))

@@ -40,9 +40,10 @@ def test_noise_has_the_deviations_that_it_says():
 
 WIDTHS = {  # of the aim [deg] and of the speed [m/s] at 3 m/s; 3.162 = sqrt(1 + 3^2)
     "none": (0.0, 0.0),
-    "professional": (0.027 * 3.162, 0.03),
-    "amateur": (0.054 * 3.162, 0.06),
-    "club": (0.108 * 3.162, 0.12),
+    "professional": (0.012 * 3.162, 0.045),
+    "amateur": (0.024 * 3.162, 0.09),
+    "club": (0.048 * 3.162, 0.18),
+    "beginner": (0.096 * 3.162, 0.36),
     "robot": (0.033, 0.24),
     "olympiad": (0.125, 0.075),
 }
@@ -50,7 +51,7 @@ WIDTHS = {  # of the aim [deg] and of the speed [m/s] at 3 m/s; 3.162 = sqrt(1 +
 
 @pytest.mark.parametrize("name", LEVELS)
 def test_each_level_is_as_wide_as_written(name):
-    draws = drawn(LEVELS[name], 4000, 3.0, 0, 0, 1.0, 0.2)
+    draws = drawn(replace(LEVELS[name], lapse=0.0), 4000, 3.0, 0, 0, 1.0, 0.2)
     widths = np.degrees(draws[:, 3].std()), draws[:, 0].std()
     assert widths == pytest.approx(WIDTHS[name], rel=0.05, abs=1e-12)
 
@@ -62,7 +63,9 @@ def test_the_total_direction_error_is_that_of_the_balls_struck(name, physics):
     """Aim and squirt together, as the balls leave; 4000 of them give a standard deviation to 1.1 %."""
     constants = Physics.of(physics)
     ways = []
-    for speed, side, top, aim, elevation in drawn(LEVELS[name], 4000, 2.0, 0.0, 0.0, 0.0, 0.0).tolist():
+    for speed, side, top, aim, elevation in drawn(
+        replace(LEVELS[name], lapse=0.0), 4000, 2.0, 0.0, 0.0, 0.0, 0.0
+    ).tolist():
         v, _ = strike(speed, aim, side, top, elevation, constants)
         ways.append(math.degrees(math.atan2(v[1], v[0])))
     wanted = LEVELS[name].direction_deg(physics, speed=2.0)
