@@ -1,13 +1,16 @@
 """Learn what positions of frames are worth, by self-play: the worth of the ``tactician``.
 
-    python -m agents.learn_worth --out runs/worth [--rounds 2] [--chance] [--ray local]
+    python -m agents.learn_worth --out runs/worth [--rounds 2] [--chance | --against PLAYER] [--ray local]
 
 Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds
 before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
 Each position, and what its best strokes may leave, is judged by search (``frame_self_play``). A network is then fitted to
-the last rounds, and the chance to win to their frames between equals. After each round OUT holds its data and its
-weights: the same command goes on from there. The last round's weights are written to OUT/worth.npz, and with --export
-into the package. With --chance the network stays that of the package: all frames are between equals, no position is
+the last rounds, and the chance to win to their frames between equals. In a tenth of the positions a teacher with eight
+times the budget is asked, whose stroke is taken where it is clearly better. After each round OUT holds its data and its
+weights: the same command goes on from there. The last round's weights are written to OUT/worth.npz and play the package's
+``tactician`` and a population; with --export they are written into the package if none of these does better against them
+than an equal would. With --against all frames are played against one player, of whom nothing is learned: the best response.
+With --chance the network stays that of the package: all frames are between equals, no position is
 judged, and the chance to win alone is fitted.
 """
 
@@ -26,11 +29,13 @@ with needs("agents.learn_worth"):
     from snooker_env.planning.learned.dense_layers import Layers
     from snooker_env.planning.learned.frame_features import read_errors
     from snooker_env.planning.learned.learned_worth import worth_of
+    from snooker_env.players import player
+    from snooker_env.players.tactician import Tactician
     from snooker_env.players.weights import FOLDER, WORTH, learned_worth, worth_in
     from snooker_env.tasks import LEVELS
 
     from .cluster import add_ray, checked_ray, in_order, place
-    from .learning.frame_self_play import FRAME, TABLES, frames
+    from .learning.frame_self_play import FRAME, TABLES, frames, win_share
     from .learning.frame_worth import calibration, fit_network, fitted_chance, targets
     from .learning.loop import Loop
     from .learning.rounds import Rounds, arrays_of, shares_of_parts
@@ -43,6 +48,10 @@ KEEP, PASSES = 4, 15
 """Rounds whose positions a network is fitted to, and passes over them."""
 VISITORS = ("planner",)
 """Players of the league that are no past selves."""
+POPULATION = ("tactician", "planner", "stroke_value")
+"""Whom new weights must not lose to: the incumbent, and others."""
+JUDGED = 950_000_000
+"""The first table on which weights are judged: no training and no calibration plays it."""
 HELD = 8
 """One frame in so many is kept from the fit, to say how good it is."""
 LEARNED_FROM = [
@@ -67,11 +76,12 @@ class WorthRounds(Rounds):
 
     what, unit, now = "frames of self-play", "frames", "these frames"
 
-    def __init__(self, out, rounds, many, budget, seed, chance_alone, where):
-        asked = many, budget, seed, chance_alone
+    def __init__(self, out, rounds, many, budget, seed, chance_alone, against, where):
+        asked = many, budget, seed, chance_alone, against
         super().__init__(out, "worth", rounds, many, many // TABLES, asked)
         self._budget, self._seed, self._chance_alone, self._where = budget, seed, chance_alone, where
-        self.layers, self.chance = learned_worth() if chance_alone else (None, None)
+        self._against = against
+        self.layers, self.chance = learned_worth() if chance_alone or against else (None, None)
         self._past = []
 
     @property
@@ -80,7 +90,11 @@ class WorthRounds(Rounds):
 
     def parts_of(self, k):
         shared = {"options": FRAME, "layers": self.layers, "chance": self.chance, "explore": EXPLORE}
-        shared |= {"budget": self._budget, "replies": not self._chance_alone}
+        shared |= {
+            "budget": self._budget,
+            "replies": not self._chance_alone,
+            "taught": not self._chance_alone,
+        }
         parts = [(shared, part) for part in self._list_arguments(k)]
         for j, part in enumerate(in_order(self._where.play_parts(frames, parts))):
             part["target"] = targets(part)
@@ -96,13 +110,16 @@ class WorthRounds(Rounds):
         first, league = 10_000_000 * (self._seed + 1) + 100_000 * k, [*self._past, *VISITORS]
         others = [league[rng.integers(len(league))] if i % 2 else None for i in range(parts)]
         for i, (scale, other) in enumerate(zip(scales, others, strict=True)):
-            other = None if self._chance_alone else other
+            other = None if self._chance_alone else self._against or other
             noise = LEVELS["professional"].scale(float(scale))
             yield {"noise": noise, "seed": first + TABLES * i, "many": TABLES, "other": other}
 
     def fit(self):
         given = self.layers if self._chance_alone else None
-        layers, chance, figures = fit_worth(self.rounds[-KEEP:], self._seed + len(self.rounds) - 1, given)
+        known = self.chance if self._against else None  # no frame between equals tells it
+        layers, chance, figures = fit_worth(
+            self.rounds[-KEEP:], self._seed + len(self.rounds) - 1, given, known
+        )
         return arrays_of("worth", layers) | {"chance": np.array(chance)}, figures
 
     def take(self, arrays):
@@ -114,8 +131,8 @@ class WorthRounds(Rounds):
         return packed_arrays(arrays_of("worth", self.layers) | {"chance": np.array(self.chance)})
 
 
-def fit_worth(rounds, seed, layers=None):
-    """Layers, if they are None, and chance fitted to the rows of some rounds, and figures of the frames kept from the fit."""
+def fit_worth(rounds, seed, layers=None, chance=None):
+    """Layers and chance, if they are None, fitted to the rows of some rounds, and figures of the frames kept from the fit."""
     both = {name: np.concatenate([one[name] for one in rounds]) for name in rounds[0]}
     used = ~both["held"]
     in_hand = used & (both["seen"] != both["hand"]).any(axis=1)
@@ -125,14 +142,14 @@ def fit_worth(rounds, seed, layers=None):
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
     # a frame that was stopped was won by nobody; nor is it known what follows positions beside the frames, or what an
     # equal would have made of it
-    ended, held = both["decided"] & both["equals"], both["held"]
+    ended, held = both["decided"] & (both["equals"] | (chance is not None)), both["held"]
     for some, what in ((used & ended, "fitted"), (held & ended, "kept from the fit")):
         if not some.any():
             raise refuse(
                 "frames", len(np.unique(both["unit"])), f"must be more: of those {what} none has ended"
             )
     known = both["lead"], said.astype(np.float64), both["left"], both["last"], read_errors(both["seen"])
-    chance = fitted_chance(*(part[used & ended] for part in (*known, both["won"])))
+    chance = chance or fitted_chance(*(part[used & ended] for part in (*known, both["won"])))
     wins, won = chance(*known)[held & ended], both["won"][held & ended]
     rmse = lambda worth: float(np.sqrt(np.mean((worth - both["target"])[held] ** 2)))  # noqa: E731
     figures = {
@@ -157,6 +174,8 @@ def main(argv=None):
     p.add_argument("--seed", type=int, default=0, help="[0]")
     p.add_argument("--export", action="store_true", help="write the weights into the package, too")
     p.add_argument("--chance", action="store_true", help="fit the chance to win alone")
+    p.add_argument("--against", metavar="PLAYER", help="learn against this player alone")
+    p.add_argument("--judged", type=int, default=200, help="frames against each player at the end [200]")
     add_ray(p)
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
@@ -170,7 +189,7 @@ def main(argv=None):
         writable("out", args.out / WORTH)
         snooker_env.warmup()
         with place(args.ray) as where:
-            asked = args.frames, args.budget, args.seed, args.chance
+            asked = args.frames, args.budget, args.seed, args.chance, args.against
             rounds = WorthRounds(args.out, args.rounds, *asked, where)
             rounds.restore()
             again = "the same command goes on with the rounds in its folder"
@@ -178,11 +197,24 @@ def main(argv=None):
                 return 128 + number
     except ValueError as error:
         p.error(str(error))
-    for file in (args.out / WORTH, *([FOLDER / WORTH] if args.export else [])):
-        write_atomic(file, rounds.pack_weights())
+    write_atomic(args.out / WORTH, rounds.pack_weights())
     for k, figures in enumerate(rounds.curve):
         print(f"round {k}: " + "  ".join(f"{name} {value:.4g}" for name, value in figures.items()))
+    beats = args.judged == 0 or judge_weights(rounds, args)
+    if args.export and beats:
+        write_atomic(FOLDER / WORTH, rounds.pack_weights())
     return 0
+
+
+def judge_weights(rounds, args):
+    """Print how often the weights win against each of ``POPULATION`` or ``--against``; whether they lose to none clearly."""
+    mine, fine = Tactician(args.budget, (rounds.layers, rounds.chance)), True
+    for k, name in enumerate([args.against] if args.against else POPULATION):
+        other = f"{name}_{args.budget}" if name in ("tactician", "planner") else name
+        share, error = win_share(mine, player(other), JUDGED + 10_000 * k, args.judged)
+        fine &= share + 2.0 * error >= 0.5
+        print(f"wins {100.0 * share:.1f} ± {100.0 * error:.1f} % of {args.judged} frames against {other}")
+    return fine
 
 
 if __name__ == "__main__":

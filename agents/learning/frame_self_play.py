@@ -27,6 +27,10 @@ TABLES = 16
 """Frames that one part plays side by side."""
 FRESH = 8
 """Noise samples that judge the best stroke of a position."""
+TEACHER, TAUGHT = 8, 0.1
+"""How many times the budget a teacher of the player has, and the share of its positions in which the teacher is asked."""
+PAIRS, CLEAR = 24, 2.0
+"""Errors that both strokes meet, and the standard errors by which the teacher's must be better to be taken."""
 REPLIES, FINALISTS = (1, 6), 6
 """What the best strokes of a position may leave: cases that are judged where a pot is likely, and elsewhere; and among
 how many strokes."""
@@ -37,8 +41,9 @@ def frames(shared, args, threads):
 
     ``shared``: "options" of the frames, "layers" of the worth (None: the value of the visit alone), "chance" (None or
     its numbers), "budget", "explore" (share of strokes that are not the best), "replies" (whether cases that strokes
-    may leave are judged, too). ``args``: "noise", "seed" of the first table, "many" frames, "other": the
-    name of who plays against it, or layers and chance of a past self; None: itself, and both sides count.
+    may leave are judged, too), "taught" (whether a teacher is asked). ``args``: "noise",
+    "seed" of the first table, "many" frames, "other": the name of who plays against it, or layers and chance of a past
+    self; None: itself, and both sides count.
 
     Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue ball where it was played
     from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search, "swing" (m,) points of the
@@ -49,7 +54,9 @@ def frames(shared, args, threads):
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": args["noise"]})
     rules, many = options.rules, args["many"]
     known = options.but(conditions="fixed")  # a player does not know the constants of a table
-    player = Tactician(shared["budget"], (shared["layers"], shared["chance"])).at(known)
+    learned = shared["layers"], shared["chance"]
+    player = Tactician(shared["budget"], learned).at(known)
+    teacher = Tactician(TEACHER * shared["budget"], learned).at(known) if shared.get("taught") else None
     other = args["other"]
     if isinstance(other, str):
         other = snooker_player(other).at(known)
@@ -59,7 +66,7 @@ def frames(shared, args, threads):
 
     def act(tables, mine, at, keys):
         nonlocal held
-        decided, here, row = _judge_strokes(player, at, keys, rng)
+        decided, here, row = _judge_strokes(player, at, keys, rng, teacher)
         strokes, tried, start = decided
         if len(here):
             which = mine[here]
@@ -119,16 +126,47 @@ def play_frames(rules, seed, many, act, other, threads):
     return tables
 
 
-def _judge_strokes(player, at, keys, rng):
+def _judge_strokes(player, at, keys, rng, teacher=None):
     """What it does in n positions, in which of them it strikes (m,), and of these what is seen and what they are worth
     by search."""
     decided, worth = player.decide_frames(at, keys), player.judge.worth
     here = np.flatnonzero([one is not None for one in decided.tried])
+    if teacher is not None:
+        _teach(player.judge, teacher, decided, here[rng.random(len(here)) < TAUGHT], rng)
     seen = [worth.features_of(each[here]) for each in (decided.start, at)]
     again, errors = np.repeat(here, FRESH), player.judge.noise.draw_errors(rng, FRESH * len(here))
     strokes = np.repeat(decided.strokes.values[here], FRESH, 0)
     judged = player.judge.gains(decided.start, again, strokes, errors)[:, 1]
     return decided, here, {"seen": seen[0], "hand": seen[1], "worth": judged.reshape(-1, FRESH).mean(axis=1)}
+
+
+def _teach(judge, teacher, decided, rows, rng):
+    """In the positions ``rows`` play the teacher's strokes where they are clearly better, on the same errors. The best of
+    many strokes by few samples would be worse: what is judged well by luck is taken."""
+    if not len(rows):
+        return
+    ranked = teacher.search.rank(decided.start[rows], rng.integers(2**32, size=len(rows)))
+    theirs = np.array([one.strokes.values[0] for one in ranked])
+    each, errors = np.repeat(rows, PAIRS), judge.noise.draw_errors(rng, PAIRS * len(rows))
+    gains = [
+        judge.gains(decided.start, each, np.repeat(strokes, PAIRS, 0), errors)[:, 0 if judge.chance else 1]
+        for strokes in (theirs, decided.strokes.values[rows])
+    ]
+    more = (gains[0] - gains[1]).reshape(-1, PAIRS)
+    clear = more.mean(axis=1) > CLEAR * more.std(axis=1, ddof=1) / np.sqrt(PAIRS)
+    decided.strokes.values[rows[clear]] = theirs[clear]
+
+
+def win_share(player, other, seed, many, threads=None):
+    """The share of frames that a player wins against another, both unbound, under a professional's errors, and its
+    standard error; each breaks off half of them."""
+    options = Options(**{"task": "frame", **FRAMES, **FRAME, "noise": "professional"})
+    mine, theirs = player.at(options), other.at(options)
+    tables = play_frames(
+        options.rules, seed, many, lambda _tables, _which, at, keys: mine.play(at, keys), theirs, threads
+    )
+    won = (tables.game[:, columns.WINNER] == 0)[tables.game[:, columns.WINNER] >= 0]
+    return float(won.mean()), float(won.std() / np.sqrt(len(won)))
 
 
 def _replies(player, decided, here, rng):

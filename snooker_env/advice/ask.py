@@ -19,7 +19,8 @@ from .suggestions import Advice, Suggestion
 AGENT, OF_FRAMES = "planner_500", "tactician"  # who is asked if nobody is named: in a visit, and in a frame
 INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices
 RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with
-SELDOM = 0.05  # chance of a pot below which it is no suggestion where there are others
+SELDOM = 0.05  # chance of a pot below which it is no suggestion
+ALIKE = 0.005  # strokes whose chances to win differ by no more are as good
 CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
 
 
@@ -30,7 +31,7 @@ def advise(
     scores: tuple[int, int] | None = None,
     noise: NoiseLike = "professional",
     n: int = 5,
-    samples: int = 200,
+    samples: int = 2000,
     visits: int = 40,
     seed: int = 0,
     options: Any = None,
@@ -125,26 +126,38 @@ def _ask(player: Player, practice: Practice, at: Positions, n: int, seed: int) -
 
 
 def _choose_fair(practice: Practice, strokes: list[Intention], n: int, trials: Trials) -> list[Suggestion]:
-    """The first n strokes that are fair without errors and in most samples, the preferred kind first.
-
-    Pots that hardly ever go are none of them, unless nothing else is, or in a frame none of the others wins so often."""
-    waiting, out, unlikely = [one for one in strokes if one.kind not in FOULS], [], []
+    """The first n strokes that are fair without errors and in most samples, best first; no pot that hardly ever goes."""
+    waiting, out = [one for one in strokes if one.kind not in FOULS], []
     while waiting and len(out) < n:
         some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
-        for one in judge_strokes(practice, some, trials):
-            if one.foul <= 0.5:
-                (unlikely if one.kind == "pot" and one.chance < SELDOM else out).append(one)
-    most = max([one.win for one in out if one.win is not None], default=-1.0)
-    if not out or out[0].win is not None:
-        needed = [one for one in unlikely if not out or one.win > most][: max(1, n - len(out))]
-        note = "hardly ever made, but no better stroke was found"
-        out += [replace(one, words=f"{one.words}; {note}") for one in needed]
+        out += [one for one in judge_strokes(practice, some, trials) if _is_sensible(one)]
     if not out or out[0].win is None:
         return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
-    out = sorted(out, key=lambda one: -one.figure)[:n]
+    out = _sort_by_win(out)
     others = [one for one in waiting if (one.kind == "pot") != (out[0].kind == "pot")][:RIVALS]
     rivals = judge_strokes(practice, others, trials._replace(visits=0)) if others else []
-    return [_compare(out, [one for one in out[1:] + rivals if one.foul <= 0.5]), *out[1:]]
+    return [_compare(out, [one for one in out[1:] + rivals if _is_sensible(one)]), *out[1:]]
+
+
+def _is_sensible(one: Suggestion) -> bool:
+    """Whether a stroke is fair in most samples, and no pot that hardly ever goes."""
+    return one.foul <= 0.5 and (one.kind != "pot" or one.chance >= SELDOM)
+
+
+def _sort_by_win(strokes: list[Suggestion]) -> list[Suggestion]:
+    """Strokes of a frame, best first; of those that win as often as the best of them, the one with the most points first."""
+    waiting, out = sorted(strokes, key=lambda one: -one.figure), []
+    while waiting:
+        alike = [one for one in waiting if one.figure >= waiting[0].figure - ALIKE]
+        out += sorted(alike, key=lambda one: -_net_points(one))
+        waiting = waiting[len(alike) :]
+    return out
+
+
+def _net_points(one: Suggestion) -> float:
+    """Points to expect of a stroke and its visit, less those that it leaves to the other."""
+    comes = 1.0 - one.chance if one.kind == "pot" else 1.0
+    return one.points - comes * (one.leaves or 0.0)
 
 
 def _compare(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
@@ -159,6 +172,7 @@ def _compare(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
 
 
 def _choose_least_bad(practice: Practice, strokes: list[Intention], trials: Trials) -> Suggestion:
-    """The stroke that is fair in most samples, where none is fair."""
-    best = min(judge_strokes(practice, strokes, trials), key=lambda one: one.foul)
+    """The stroke that is fair in most samples, where none is sensible: a pot that hardly ever goes only if there are no others."""
+    judged = judge_strokes(practice, strokes, trials)
+    best = min(judged, key=lambda one: (one.kind == "pot" and one.chance < SELDOM, one.foul))
     return replace(best, words=f"no fair stroke found: {best.words}")

@@ -1,5 +1,7 @@
 """Is the worth of frames learned from what its targets say, and does an interrupted training go on?"""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from agents.learning import frame_self_play
 from agents.learning.frame_self_play import frames
 from agents.learning.frame_worth import TRACE, calibration, fit_network, fitted_chance, targets
 from snooker_env.game import frame_columns as columns
-from snooker_env.planning import Positions
+from snooker_env.planning import Positions, Ranked, Strokes
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
 from snooker_env.planning.trials import turn_to_striker
@@ -143,3 +145,34 @@ def test_frames_of_which_none_ends_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(learn_worth, "FRAME", short)
     with pytest.raises(SystemExit):
         main(["--rounds", "2", "--frames", "16", "--budget", "30", "--out", str(tmp_path / "none")])
+
+
+def test_a_teacher_is_heard_only_where_its_stroke_is_clearly_better():
+    """What strokes bring: their speed, and as much of the error as their side; both meet the same errors."""
+    mine, theirs = np.zeros((4, 5)), np.zeros((4, 5))
+    mine[:, 0] = 2.0
+    theirs[:, 0] = 2.1, 1.9, 2.1, 2.1  # better, worse, better by luck if at all, and not asked
+    theirs[2, 1] = 0.5
+
+    class Judge:
+        chance, noise = None, LEVELS["none"]
+
+        def gains(self, at, rows, strokes, errors):
+            points = strokes[:, 0] + (1.0 + 10.0 * strokes[:, 1]) * errors[:, 0]
+            return np.column_stack([np.zeros_like(points), points])
+
+    class Teacher:
+        def rank(self, at, seeds):
+            return [Ranked(Strokes(theirs[[k]]), None) for k in at.tolist()]
+
+    teacher, decided = (
+        SimpleNamespace(search=Teacher()),
+        SimpleNamespace(start=np.arange(4), strokes=Strokes(mine.copy())),
+    )
+    frame_self_play._teach(Judge(), teacher, decided, np.array([0, 1, 2]), np.random.default_rng(1))
+    assert decided.strokes.values[:, 0].tolist() == [2.1, 2.0, 2.0, 2.0]
+
+
+def test_a_player_wins_all_frames_against_one_that_hardly_scores():
+    share, error = frame_self_play.win_share(Tactician(30, (None, None)), sn.player("random"), 5, 4)
+    assert share == 1.0 and error == 0.0
