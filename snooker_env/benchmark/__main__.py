@@ -197,10 +197,11 @@ def _report(result: dict[str, Any], task: Task, file: Path) -> int:
     if why is not None:
         print(f"error: {why}", file=sys.stderr)
     if figures is not None:
-        score = format_figure(figures["score"], 1.0 if task.counts else 100.0)
+        scale = 1.0 if task.counts else 100.0
+        score, adjusted = (format_figure(figures[name], scale) for name in ("score", "adjusted"))
         unit = task.measure if task.counts else f"% ({task.measure})"
         where = f"{len(result['rows']):,} episodes, class {agent['class']}, budget {agent['budget']}"
-        print(f"{task.id}  {agent['label']}: {score} {unit}, {where}")
+        print(f"{task.id}  {agent['label']}: {score} {unit}, {adjusted} less luck, {where}")
     if why is None and suspicious(result, task):
         print(
             f"Nearly every episode brought nothing: is that how the actions of {agent['label']} are read? A model that was "
@@ -236,9 +237,10 @@ def _check(args: argparse.Namespace) -> int:
     for file in args.files:
         try:
             result = read_result(file)
-            if args.luck:
-                write_result(file, result := count_luck(result, args.threads))
+            result = count_luck(result, args.threads) if args.luck else result
             wrong = faults(result, args.threads)
+            if args.luck and not wrong:
+                write_result(file, result)
         except ValueError as error:
             wrong = [str(error).removeprefix(f"path = {str(file)!r}: ")]
         except OSError as error:

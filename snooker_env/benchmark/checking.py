@@ -164,17 +164,19 @@ def _play_again(
 
 
 def count_luck(record: dict[str, Any], threads: int | None = None) -> dict[str, Any]:
-    """A result with the luck of its episodes counted anew from its strokes, by the values that the package holds now.
-
-    ValueError if it is no result, or has other faults than its luck and what follows from that; the luck may be missing."""
-    luckless, task = COLUMNS.index("luck"), task_of(record["task"])
-    record = complete(record | {"rows": [[*row[:luckless], 0] for row in record["rows"]]}, task)
-    again = [row for row, _ in _play_again(record, task, strokes_of(record), threads)]
-    counted = [[*row[:luckless], want[luckless]] for row, want in zip(record["rows"], again, strict=True)]
-    record = complete(record | {"rows": counted}, task)
-    if wrong := faults(record, threads, asking=False):
+    """A result with the luck of its episodes counted anew from its strokes, by the values that the package holds now; what
+    else is wrong with it, ``faults`` says. ValueError if it is no result."""
+    if wrong := faults_of_fields(record):
         raise ValueError(wrong[0])
-    return record
+    task, rows = task_of(record["task"]), record["rows"]
+    record = record | {
+        "rows": [[*row[: len(COLUMNS) - 1], 0] if isinstance(row, list) else row for row in rows]
+    }
+    if wrong := _of_sources(record["agent"]) + _of_rows(record, task):
+        raise ValueError(wrong[0])
+    again = _play_again(record, task, strokes_of(record), threads)
+    rows = [[*row[:-1], want[-1]] for row, (want, _) in zip(record["rows"], again, strict=True)]
+    return complete(record | {"rows": rows}, task)
 
 
 def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
