@@ -1,130 +1,58 @@
-"""How lucky was an episode? What each of its strokes brought and left, less the mean of that over fresh errors of the
-same stroke from the same table: a sum whose expectation is 0, whatever is expected of a table (``EXPECTED``). So the
-*adjusted* score, less a ``share`` of the luck that was fixed beforehand, has the expectation of the score and varies less
-[Burch et al., AIVAT, 2018].
+"""How lucky was an episode? The sum of the luck of its strokes (``players.luck``), and of the table that a visit was dealt.
 
-Fresh errors are drawn by the kernels that play: copies of a table, with other random streams, take the same step."""
+Its expectation is 0: a score less a share of it that was fitted on other tables (``statistics.adjust``) has the expectation of
+the score, and varies less [Burch et al., AIVAT, 2018]."""
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
 
-from .._lib.types import Bools, Floats, Ints, Singles, Words
+from .._lib.types import Bools, Floats, Ints, Singles
 from ..envs.vector import SnookerVectorEnv
-from ..game.balls import GREEN, SPOTS, YELLOW
-from ..game.frame_columns import CHOICE, OVER, PHASE, POINTS, STRIKER, VISIT_COLUMNS
-from ..game.layouts import STORED
-from ..planning import Positions, processors, spread_of
-from ..planning.learned.learned_value import LearnedValue
 from ..planning.positions import of_tables
-from ..planning.visit_judge import for_opponent
-from ..players import decision_seeds, player
-from ..players.weights import learned_at, level_for
+from ..players.luck import EXPECTED, Expected, Turn, luck_of, mean_of_starts, value_of
 from ..tasks.carry_out import carry_out
-from ..tasks.frame_kernels import AGENT
 from ..tasks.frames import OPPONENT, Asked, Frames, Opponent
-from ..tasks.options import Options
-from ..tasks.tables import I_FOULS, Crew, StepOutput, Tables
+from ..tasks.tables import Crew, StepOutput, Tables
 from ..tasks.threads import Threads
 
-DRAWS = 16
-"""Fresh errors of each stroke."""
-BATCH = 8192  # tables that are played at once
-_KEYS = 0x6C75636B  # of the fresh errors: no player draws with this seed
-Expected: TypeAlias = Callable[[Tables, StepOutput], Floats]
-"""What the episodes on n tables that have just taken a stroke have brought and are expected to bring: (n,)."""
 Decide: TypeAlias = Callable[[Bools, int], Singles]
 """The actions on all tables, of those asked for their stroke of this number."""
-Turn: TypeAlias = Callable[[Tables, Ints, StepOutput, Crew], None]
-"""Plays a stroke on each of n tables, which are copies of the rows (n,) of others."""
-
-
-@lru_cache(maxsize=16)
-def value_of(options: Options) -> LearnedValue:
-    """The points that a visit is expected to score from a position, as the planner has learned."""
-    rules = options.rules
-    learned = learned_at(level_for(rules.noise))
-    return LearnedValue(learned.value, spread_of(rules.noise, rules.physics), processors())
-
-
-def expect_points(options: Options) -> Expected:
-    """Of visits: points, and the learned value of what is left while they go on."""
-    value = value_of(options)
-
-    def expected(tables: Tables, out: StepOutput) -> Floats:
-        points, on = tables.game[:, POINTS].astype(np.float64), np.flatnonzero(tables.game[:, OVER] == 0)
-        if len(on):
-            points[on] += value(of_tables(tables)[on])
-        return points
-
-    return expected
-
-
-def expect_legal(options: Options) -> Expected:
-    """Of one stroke: 1 unless it is a foul."""
-    return lambda tables, out: (out.counts[:, I_FOULS] == 0).astype(np.float64)
-
-
-def expect_lead(options: Options) -> Expected:
-    """Of a stroke and a visit of a frame: the lead, and the learned value of the visit that follows to who plays it."""
-    value = value_of(options)
-
-    def expected(tables: Tables, out: StepOutput) -> Floats:
-        assert isinstance(tables, Frames)
-        game, lead = tables.game, tables.lead().astype(np.float64)
-        ended = (game[:, OVER] != 0) | ((game[:, STRIKER] == AGENT) & (game[:, PHASE] != CHOICE))
-        on = np.flatnonzero(~ended)
-        if len(on):
-            sign = np.where(game[on, STRIKER] == AGENT, 1.0, -1.0)
-            lead[on] += sign * value(of_tables(tables)[on].as_visits())
-        return lead
-
-    return expected
-
-
-def expect_win(options: Options) -> Expected:
-    """Of frames: the agent's chance to win, by the tactician."""
-    judge = player("tactician").at(options)
-
-    def expected(tables: Tables, out: StepOutput) -> Floats:
-        theirs = judge.chance_to_win(of_tables(tables))
-        return np.where(tables.game[:, STRIKER] == AGENT, theirs, 1.0 - theirs)
-
-    return expected
-
-
-EXPECTED = {"points": expect_points, "legal": expect_legal, "lead": expect_lead, "won": expect_win}
-"""What an episode is expected to bring, for each score of a ``Task``."""
-
-
-@lru_cache(maxsize=16)
-def mean_of_starts(options: Options) -> float | None:
-    """The mean of ``value_of`` over all starts of visits that a layout of stored tables deals, mirrored ones included;
-    None for other layouts, which have no known mean."""
-    plan = options.rules.plan
-    if plan.code[0] != STORED:
-        return None
-    first, last = plan.code[2:].astype(int)
-    each = plan.tables[first:last]
-    mirrored = each * (-1.0, 1.0)
-    mirrored[:, [YELLOW, GREEN]] = mirrored[:, [GREEN, YELLOW]]
-    both = np.concatenate([each, mirrored])
-    there = ~np.isnan(both[..., 0])
-    balls = np.where(there[..., None], both, SPOTS)
-    starts = for_opponent(Positions(balls, there, np.zeros((len(both), VISIT_COLUMNS), np.int64)))
-    return float(value_of(options)(starts).mean(dtype=np.float64))
 
 
 class Luck:
-    """The luck of the episodes on n tables, both sides' in frames, as the agent sees it: ``sums`` (n,). That of a visit
-    holds the table that it was dealt, where the mean over all deals is known."""
+    """The luck of the episodes on n tables as their agent sees it, both sides' in frames. That of a visit holds the table that
+    it was dealt, where the mean over all deals is known.
+
+    Parameters
+    ----------
+    envs : SnookerVectorEnv
+        The tables, before their first reset; an opponent is watched from now on.
+    score : str
+        The score of an episode, as of ``Task``: "points", "legal", "lead" or "won".
+
+    Attributes
+    ----------
+    sums : numpy.ndarray
+        float64 (n,). The luck on each table so far, in units of the score; zero it where an episode begins.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> from snooker_env.benchmark import Luck
+    >>> envs = sn.SnookerVectorEnv(2, noise="club")
+    >>> luck, _ = Luck(envs, "points"), envs.reset(seed=0)
+    >>> luck.note(np.array([True, False]), np.zeros((2, 4), np.float32))
+    >>> bool(luck.sums[0] != 0.0), float(luck.sums[1])
+    (True, 0.0)
+    """
 
     def __init__(self, envs: SnookerVectorEnv, score: str):
         self.sums: Floats = np.zeros(envs.num_envs)
-        self._tables, self._crew = envs.tables, Threads(envs.threads)
+        self._tables, self.crew = envs.tables, Threads(envs.threads)
         self._options, self._points = envs.options, score == "points"
         self._expected: Expected = EXPECTED[score](envs.options)
         if isinstance(envs.tables, Frames) and len(envs.tables.seats) > 1:
@@ -145,11 +73,11 @@ class Luck:
         return watched
 
     def note(self, asked: Bools, actions: Floats | Singles) -> None:
-        """Add the luck of the strokes that the next step plays on the tables ``asked`` (n,)."""
+        """Add the luck of the strokes that the next step plays with ``actions`` (n, k) on the tables ``asked``, bool (n,)."""
         told = np.asarray(self._options.rules.actions.check_many(actions, self._tables.n), np.float64)
 
-        def turn(copies: Tables, rows: Ints, out: StepOutput, crew: Crew) -> None:
-            mine = told[rows]
+        def turn(copies: Tables, rows: Ints, out: StepOutput) -> None:
+            mine, crew = told[rows], self.crew
             if isinstance(copies, Frames) and len(copies.seats) > 1:
                 copies.turn(lambda which, buffers: copies.prepare(which, mine, buffers), out, crew)
             else:
@@ -159,28 +87,8 @@ class Luck:
 
     def add(self, rows: Ints, turn: Turn) -> None:
         """Add the luck of the stroke that ``turn`` plays on each of the tables ``rows``."""
-        if self._tables.rules.noise.silent and not isinstance(self._tables, Frames):
-            return
-        each = 1 + DRAWS
-        for first in range(0, len(rows), BATCH // each):
-            some = rows[first : first + BATCH // each]
-            again = np.repeat(some, each)
-            copies = self._tables.take(again)
-            copies.streams.reshape(-1, each, 2)[:, 1:] = fresh_streams(self._tables.streams[some])
-            out = copies.output()
-            turn(copies, again, out, self._crew)
-            brought = self._expected(copies, out).reshape(-1, each)
-            self.sums[some] += brought[:, 0] - brought[:, 1:].mean(axis=1)
-
-
-def fresh_streams(streams: Words) -> Words:
-    """Random streams (n, DRAWS, 2) of errors that are independent of those that ``streams`` (n, 2) draw next."""
-    fresh = np.zeros((len(streams), DRAWS, 2), np.uint64)
-    own = decision_seeds(_KEYS, streams[:, 0], streams[:, 1]).astype(np.uint64) << np.uint64(32)
-    fresh[:, :, 0] = own[:, None] + np.arange(
-        1, 1 + DRAWS, dtype=np.uint64
-    )  # no seed of a player is that large
-    return fresh
+        if len(rows) and (isinstance(self._tables, Frames) or not self._tables.rules.noise.silent):
+            self.sums[rows] += luck_of(self._tables, rows, turn, self._expected)
 
 
 class WatchedOpponent:
@@ -193,11 +101,13 @@ class WatchedOpponent:
         """See ``Opponent.strokes``."""
         asked = self._player.strokes(frames, which, crew)
 
-        def turn(copies: Tables, rows: Ints, out: StepOutput, crew: Crew) -> None:
+        def turn(copies: Tables, rows: Ints, out: StepOutput) -> None:
             assert isinstance(copies, Frames)
             values, places, nominated, decisions, declared = asked
             theirs = values[rows], places[rows], nominated[rows], decisions[rows], declared[rows]
-            copies.turn(lambda some, buffers: carry_out(copies, some, theirs, buffers, OPPONENT), out, crew)
+            copies.turn(
+                lambda some, buffers: carry_out(copies, some, theirs, buffers, OPPONENT), out, self._luck.crew
+            )
 
         self._luck.add(which, turn)
         return asked
