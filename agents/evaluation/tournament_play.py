@@ -216,7 +216,7 @@ def _play(meeting, agent, opponent, game, threads, tick):
         if done.any():
             before = meeting.unit.copy()
             meeting.take_up_next(going & done, info, luck.sums)
-            luck.sums[done] = 0.0
+            luck.sums[done], luck.counts[:] = 0.0, meeting.going
             over = _renew(tables, meeting, done, before)
         now = matches - len(meeting.queue) - int(meeting.going.sum())
         if tick is not None and now != ended:

@@ -20,8 +20,8 @@ TRAINED = {"none": "0", "50k": "50 k", "1M": "1 M", "5M": "5 M", "open": "open",
 Table = tuple[list[str], list[list[str]]]  # heading and rows
 
 LEGEND = (
-    "score: mean of all episodes; adjusted: the same less luck, by which agents are sorted; each with its 95 % bootstrap interval over "
-    "training seeds and episodes; a share that was never or always seen has the exact one-sided 95 % bound. IQM: mean of the middle half. "
+    "adjusted: the score less luck, by which agents are sorted, with its 95 % bootstrap interval over training seeds and episodes; a share "
+    "that was never or always seen has the exact one-sided 95 % bound. score: mean of all episodes. IQM: mean of the middle half. "
     "training: the budget of simulated shots. seeds: training seeds. shots: simulated shots a decision (d: declared). ms: time of a "
     "decision on one table. *: not official. Left out: thresholds that no agent reached and, on the page, all but the best degenerate "
     "agent."
@@ -62,11 +62,12 @@ def _of(results: Iterable[dict[str, Any]], task: Task) -> list[dict[str, Any]]:
 def _row(result: dict[str, Any], task: Task) -> list[str]:
     """The row of a result."""
     agent, figures, alone = result["agent"], result["figures"], result["timing"]["one_table_ms"]
-    shots, middle = agent["simulated_shots"], figures["iqm"]
+    shots, middle, scale = agent["simulated_shots"], figures["iqm"], 1.0 if task.counts else 100.0
     return [
         f"{CLASSES[agent['class']]}, {TRAINED[agent['budget']]}",
         agent["label"] + ("" if result["protocol"]["official"] else " *"),
-        *(format_figure(figures[name], 1.0 if task.counts else 100.0) for name in ("adjusted", "score")),
+        format_figure(figures["adjusted"], scale),
+        f"{scale * figures['score']['value']:.1f}",
         "" if middle is None else f"{middle['value']:.1f}",
         str(len(agent["sources"])),
         "?" if shots is None else f"{shots:,.0f}{' d' if agent['declared'] else ''}",

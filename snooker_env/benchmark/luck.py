@@ -37,6 +37,8 @@ class Luck:
     ----------
     sums : numpy.ndarray
         float64 (n,). The luck on each table so far, in units of the score; zero it where an episode begins.
+    counts : numpy.ndarray
+        bool (n,). Which tables have an episode whose luck counts, at first all.
 
     Examples
     --------
@@ -52,6 +54,7 @@ class Luck:
 
     def __init__(self, envs: SnookerVectorEnv, score: str):
         self.sums: Floats = np.zeros(envs.num_envs)
+        self.counts: Bools = np.ones(envs.num_envs, np.bool_)
         self._tables, self.crew = envs.tables, Threads(envs.threads)
         self._options, self._points = envs.options, score == "points"
         self._expected: Expected = EXPECTED[score](envs.options)
@@ -87,6 +90,7 @@ class Luck:
 
     def add(self, rows: Ints, turn: Turn) -> None:
         """Add the luck of the stroke that ``turn`` plays on each of the tables ``rows``."""
+        rows = rows[self.counts[rows]]
         if len(rows) and (isinstance(self._tables, Frames) or not self._tables.rules.noise.silent):
             self.sums[rows] += luck_of(self._tables, rows, turn, self._expected)
 

@@ -154,6 +154,8 @@ def rows_of(
         sums["pots"] += scored
         sums["fouls"] += asked & info["foul"]
         ended[done] = terminated[done]
+        if luck is not None:
+            luck.counts[done] = False  # the table goes on with another episode
         if task.frame:
             won[done] = (info["winner"] == 0)[done] & terminated[done]
             sums["points"][done], opponent[done] = info["score"][done], info["opponent_score"][done]
