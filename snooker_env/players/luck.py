@@ -78,6 +78,7 @@ def expect_lead(options: Options) -> Expected:
     return expected
 
 
+@lru_cache(maxsize=16)
 def expect_win(options: Options) -> Expected:
     """Of frames: the agent's chance to win, by the tactician."""
     judge = Tactician().at(options)

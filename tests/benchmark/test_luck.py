@@ -96,7 +96,9 @@ def test_the_mean_of_all_starts_is_that_of_the_tables_dealt():
     envs = sn.SnookerVectorEnv(2000, options)
     envs.reset(seed=0)
     values = value_of(options)(of_tables(envs.tables))
-    off = float(values.mean()) - mean_of_starts(options)
+    mean = mean_of_starts(options)
+    assert mean is not None
+    off = float(values.mean()) - mean
     assert abs(off) < 4.0 * values.std() / np.sqrt(2000) and abs(off) > 0.0
     dealt, _ = layout(plan, np.random.default_rng(0))
     assert dealt.shape == (22, 2) and mean_of_starts(options.but(layout="colours")) is None
