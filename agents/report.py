@@ -39,7 +39,7 @@ def _trials(row, below):
     return (known | row.get("counted", {})).get(below)
 
 
-_MEANS = "points_a_visit", "pots_a_visit", "colour_value"
+_MEANS = "points_a_visit", "adjusted_a_visit", "pots_a_visit", "colour_value"
 SHARES = {name: below for name, (_, below) in FIGURES.items() if name not in _MEANS}
 """Figures that are shares, and of what. A visit ends with its first foul: those a visit are a share, too."""
 
@@ -194,6 +194,7 @@ def _columns(against, most):
     breaks["clearances %"] = ("clearances", 0)
     return {
         "points a visit": figure("points_a_visit"),
+        "adjusted": figure("adjusted_a_visit"),
         "IQM": lambda r: _between([r["figures"]["points_a_visit_iqm"]["value"]], "{:.2f}"),
         **{f"times {other}": times(other) for other in against},
         **{heading: share(name) for heading, (name, least) in breaks.items() if least <= most},
@@ -209,9 +210,9 @@ def _columns(against, most):
 
 LEGEND = (
     "[low, high]: 95 % bootstrap interval over training seeds and visits; for what was never or always seen, the exact one-sided bound. "
-    "IQM: mean of the middle half. times X: points over those of X on the same tables, paired. next pot: pots that left a ball and that "
-    "another pot followed. easy left: of these, those that left a pot whose line may err by 4 mrad. high after red: potted reds that a "
-    "potted pink or black followed. ms: a decision's time, all tables played at once."
+    "adjusted: points less luck (docs/benchmark.md). IQM: mean of the middle half. times X: points over those of X on the same tables, "
+    "paired. next pot: pots that left a ball and that another pot followed. easy left: of these, those that left a pot whose line may err "
+    "by 4 mrad. high after red: potted reds that a potted pink or black followed. ms: a decision's time, all tables played at once."
 )
 
 

@@ -17,7 +17,7 @@ from itertools import combinations
 
 import numpy as np
 
-from snooker_env.benchmark.statistics import RESAMPLES, Resamples, figure
+from snooker_env.benchmark.statistics import RESAMPLES, Resamples, adjust, figure
 
 from .metrics import add_bound
 
@@ -35,7 +35,9 @@ KEYS = ("first", "second", "seed", "opener", "frame", "winner")
 index in the match; its winner, -1 if it was stopped."""
 COUNTED = ("points", "scored", "visits", "strokes", "fouls", "best")
 """What is counted of each player: points, those of its own pots, visits, strokes, fouls, its best visit."""
-COLUMNS = (*KEYS, *(f"{name}_{side}" for name in COUNTED for side in KEYS[:2]))
+COLUMNS = (*KEYS, *(f"{name}_{side}" for name in COUNTED for side in KEYS[:2]), "luck")
+"""Of a row; last the luck of the first player in the frame, in ``PARTS`` of a frame."""
+PARTS = 1000
 ANCHOR_ELO = 1000.0
 """Elo of the anchor."""
 RATIOS = {
@@ -76,6 +78,9 @@ class PlayedPair:
         sums = {"won": np.stack([won.sum(0), (1.0 - won).sum(0)]), "matches": np.full((2, m), 2.0)}
         sums["frames_won"] = np.stack([total(side) for side in sides])
         sums["frames"] = np.stack([total(np.ones(len(rows)))] * 2)
+        luck = total(column["luck"]) / PARTS
+        adjusted = adjust(sums["won"][:1], luck[None])[0]
+        sums["adjusted"] = np.stack([adjusted, 2.0 - adjusted])
         for name in COUNTED:
             sums[name] = np.stack([total(column[f"{name}_{side}"]) for side in KEYS[:2]])
         opened = np.stack([won[0], 1.0 - won[1]])
@@ -108,10 +113,10 @@ def figures_of(labels, rows, anchor, resamples=RESAMPLES):
     """All figures of a tournament.
 
     "players": for each label "matches", "frames", "won", "drawn", "win_rate" (the mean over its opponents),
-    "frame_rate", "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break". "pairs": for each pair
-    "first", "second", "matches", "won", "drawn", "win_rate" of the first player and "when_opening", that of
-    each in the matches that it opened. "opener": the share of matches won by the player who opened them;
-    "stopped": frames that were stopped. A figure is {"value", "low", "high"}.
+    "adjusted" (that less luck), "frame_rate", "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break".
+    "pairs": for each pair "first", "second", "matches", "won", "drawn", "win_rate" and "adjusted" of the first player
+    and "when_opening", that of each in the matches that it opened. "opener": the share of matches won by the player who
+    opened them; "stopped": frames that were stopped. A figure is {"value", "low", "high"}.
     """
     pairs = pairs_of(rows)
     elo = _elo(pairs, len(labels), labels.index(anchor), resamples)
@@ -137,7 +142,12 @@ def _player(mine, resamples):
     seeds = sum(pair.seeds for pair, _ in mine)
     figures = {"matches": int(sums["matches"]), "frames": int(sums["frames"]), "won": sums["won"]}
     figures["drawn"] = sum(pair.draws for pair, _ in mine)
-    for name, won, many in (("win_rate", "won", "matches"), ("frame_rate", "frames_won", "frames")):
+    rates = (
+        ("win_rate", "won", "matches"),
+        ("adjusted", "adjusted", "matches"),
+        ("frame_rate", "frames_won", "frames"),
+    )
+    for name, won, many in rates:
         shares = [pair.sums[won][side].sum() / pair.sums[many][side].sum() for pair, side in mine]
         drawn_of = lambda sums, pair, side: pair.samples(pair.sums[sums][side], resamples)  # noqa: E731
         samples = [drawn_of(won, pair, side) / drawn_of(many, pair, side) for pair, side in mine]
@@ -156,6 +166,8 @@ def _pair(pair, labels, resamples):
     first, second = (labels[k] for k in pair.players)
     made = {"first": first, "second": second, "matches": int(matches), "won": float(won[0].sum())}
     made |= {"drawn": pair.draws, "when_opening": opening}
+    adjusted = pair.sums["adjusted"][0]
+    made["adjusted"] = figure(adjusted.sum() / matches, pair.samples(adjusted, resamples) / matches)
     return made | {"win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, n)}
 
 

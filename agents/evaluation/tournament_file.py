@@ -14,7 +14,7 @@ from snooker_env.checks import refuse
 from .tournament_figures import ANCHOR_ELO, COLUMNS, PRIOR, figures_of, schedule
 from .tournament_report import NAME
 
-VERSION = 3
+VERSION = 4
 NUMBER = (int, float)
 
 FIELDS = {

@@ -19,10 +19,10 @@ import numpy as np
 
 from agents._lib.physics_option import physics_option
 from snooker_env import Options, SnookerVectorEnv
-from snooker_env.benchmark import count_shots
+from snooker_env.benchmark import Luck, count_shots
 from snooker_env.players import FRAMES, ask_player, decision_seeds
 
-from .tournament_figures import COUNTED
+from .tournament_figures import COUNTED, PARTS
 from .travel import unpack
 
 TABLES = 128
@@ -133,14 +133,16 @@ class Encounter:
         for side, name in enumerate(("score", "opponent_score")):
             self.sums["points"][which, side] = info[name][which]
 
-    def take_up_next(self, which, info):
-        """The frames on the tables ``which`` (n,) bool have ended: write rows, take up the next frames."""
+    def take_up_next(self, which, info, luck):
+        """The frames on the tables ``which`` (n,) bool have ended: write rows, take up the next frames. ``luck`` (n,): the
+        agent's in them, which begins anew."""
         for k in np.flatnonzero(which).tolist():
             winner, (seed, opener) = int(info["winner"][k]), self.unit[k].tolist()
             sides = (1, 0) if self.exchanged else (0, 1)  # of the pair's first player and of its second
             sums = [int(self.sums[name][k, side]) for name in COUNTED for side in sides]
             won = -1 if winner < 0 else sides[winner]
-            self.rows.append([*self.pair, seed, sides[opener], int(self.frame[k]), won, *sums])
+            its = round((-PARTS if self.exchanged else PARTS) * luck[k])
+            self.rows.append([*self.pair, seed, sides[opener], int(self.frame[k]), won, *sums, its])
             self.won[k] += 0.5 if winner < 0 else [winner == 0, winner == 1]
             self.frame[k] += 1
             if self.frame[k] == self.best_of or self.won[k].max() > 0.5 * self.best_of:
@@ -196,6 +198,7 @@ def _play(meeting, agent, opponent, game, threads, tick):
     agent = agent.at(options)
     matches, ended = len(meeting.queue) + len(meeting.frame), 0
     tables = _tables(meeting, options, opponent, threads)
+    luck = Luck(tables, "won")
     _, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
     # since the reset: only then is a state sure to hold a stroke to play
@@ -205,13 +208,15 @@ def _play(meeting, agent, opponent, game, threads, tick):
         to_play = going & ~over
         actions = ask_player(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], meeting.decision))
         meeting.decision += 1
+        luck.note(to_play, actions.astype(np.float32))
         _, _, terminated, truncated, info = tables.step(actions.astype(np.float32))
         meeting.step_all(going, info)
         done = terminated | truncated
         moved, over = ~done, np.zeros(len(done), bool)
         if done.any():
             before = meeting.unit.copy()
-            meeting.take_up_next(going & done, info)
+            meeting.take_up_next(going & done, info, luck.sums)
+            luck.sums[done], luck.counts[:] = 0.0, meeting.going
             over = _renew(tables, meeting, done, before)
         now = matches - len(meeting.queue) - int(meeting.going.sum())
         if tick is not None and now != ended:
@@ -221,7 +226,9 @@ def _play(meeting, agent, opponent, game, threads, tick):
             states = [state for state, some in zip(tables.get_state(), left, strict=True) if some]
             tables.close()
             meeting.keep(left)
-            tables = _tables(meeting, options, opponent, threads)
+            tables, sums = _tables(meeting, options, opponent, threads), luck.sums[left]
+            luck = Luck(tables, "won")
+            luck.sums[:] = sums
             _, info = tables.reset(options={"states": states})
             over = np.zeros(len(states), bool)
     tables.close()

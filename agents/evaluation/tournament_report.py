@@ -29,7 +29,8 @@ def tables_of(content):
         p, one = figures["players"][label], spent[label]
         elo = format_figure(p["elo"], form="{:.0f}") + (" *" if p["elo_by_prior"] else "")
         shares = [
-            format_figure(p[name], 100.0) for name in ("win_rate", "frame_rate")[: 2 if best_of > 1 else 1]
+            format_figure(p[name], 100.0)
+            for name in ("win_rate", "adjusted", "frame_rate")[: 3 if best_of > 1 else 2]
         ]
         standing.append([label, elo, *shares, f"{p['drawn']:,}" if p["drawn"] else ""])
         average, fouls = (
@@ -41,7 +42,7 @@ def tables_of(content):
             [label, format_figure(p["points_a_frame"]), average, str(p["highest_break"]), fouls, *took]
         )
     more = ["frames won [%]"] if best_of > 1 else []
-    wins = ["player", "Elo", f"{won} won [%]", *more, "draws"]
+    wins = ["player", "Elo", f"{won} won [%]", "luck-adjusted [%]", *more, "draws"]
     does = ["points a frame", "average break", "highest", "fouls a frame"]
     does += ["ms a decision", "shots a decision"]
     won_of = {}

@@ -15,7 +15,7 @@ from .travel import unpack
 
 SIZE = 100
 """Visits of a part."""
-COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance")
+COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance", "luck")
 
 
 def parts_of(sent, k, condition, seeds) -> list[tuple[dict, dict[str, Any]]]:

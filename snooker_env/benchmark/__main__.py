@@ -18,11 +18,11 @@ from ..players.model_options import add_model_options, options_of_words
 from ..players.program import AgentError
 from ..progress import Progress
 from .agents import Agent, is_player_name, seat
-from .checking import afresh, faults, faults_of_replay
+from .checking import afresh, count_luck, faults, faults_of_replay
 from .degenerate_check import ABOVE, results, winners
 from .leaderboard import board, lines, page
 from .playing import COLUMNS
-from .results import missing, read_result
+from .results import missing, read_result, write_result
 from .run import judge
 from .tasks import FREE, FRESH_SEED, SEEDS_END, TASKS, Task, task_of
 from .text import VISITS, judge_text
@@ -59,6 +59,10 @@ def parser() -> argparse.ArgumentParser:
     text.add_argument("--resume", action="store_true", help="go on with a result file")
     check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
+    help_ = (
+        "first count the luck of their episodes anew from their strokes, as after new weights, and write them"
+    )
+    check.add_argument("--luck", action="store_true", help=help_)
     help_ = "have --agent play N episodes again: the same strokes?"
     check.add_argument("--replay", type=int, metavar="N", help=help_)
     help_ = "have --agent play N episodes on fresh seeds: the same mean?"
@@ -193,10 +197,11 @@ def _report(result: dict[str, Any], task: Task, file: Path) -> int:
     if why is not None:
         print(f"error: {why}", file=sys.stderr)
     if figures is not None:
-        score = format_figure(figures["score"], 1.0 if task.counts else 100.0)
+        scale = 1.0 if task.counts else 100.0
+        score, adjusted = (format_figure(figures[name], scale) for name in ("score", "adjusted"))
         unit = task.measure if task.counts else f"% ({task.measure})"
         where = f"{len(result['rows']):,} episodes, class {agent['class']}, budget {agent['budget']}"
-        print(f"{task.id}  {agent['label']}: {score} {unit}, {where}")
+        print(f"{task.id}  {agent['label']}: {score} {unit}, {adjusted} less luck, {where}")
     if why is None and suspicious(result, task):
         print(
             f"Nearly every episode brought nothing: is that how the actions of {agent['label']} are read? A model that was "
@@ -232,7 +237,10 @@ def _check(args: argparse.Namespace) -> int:
     for file in args.files:
         try:
             result = read_result(file)
+            result = count_luck(result, args.threads) if args.luck else result
             wrong = faults(result, args.threads)
+            if args.luck and not wrong:
+                write_result(file, result)
         except ValueError as error:
             wrong = [str(error).removeprefix(f"path = {str(file)!r}: ")]
         except OSError as error:

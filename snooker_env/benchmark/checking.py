@@ -1,7 +1,7 @@
 """Is a submitted result what it says? Its strokes are played again; all that follows must be equal to the bit."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic
 from .results import complete, strokes_of
 from .schema import fault, faults_of_fields, shorten
-from .tasks import TASKS, Task
+from .tasks import TASKS, Task, task_of
 
 _BUDGET = re.compile(r"_\d+(?=@|$)")
 MOST = 12  # faults of rows, and of strokes, that are named
@@ -136,21 +136,47 @@ def _of_runs(result: dict[str, Any], strokes: Kept) -> list[str]:
 
 def _of_play(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
     """Where do the rows differ from what the strokes play?"""
-    wrong, rows = [], result["rows"]
+    wrong = list[str]()
+    again = _play_again(result, task, strokes, threads)
+    for k, (row, (want, short)) in enumerate(zip(result["rows"], again, strict=True)):
+        name = f"rows[{k}]"
+        if short:
+            wrong.append(fault(f"{name}.strokes", row[STROKES], "more: the episode goes on after them"))
+            continue
+        other = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
+        wrong += [fault(f"{name}.{COLUMNS[c]}", row[c], f"{want[c]}, as its strokes play") for c in other]
+    more = [f"rows: {len(wrong) - MOST} more faults"] if len(wrong) > MOST else []
+    return _elsewhere(result, wrong[:MOST] + more)
+
+
+def _play_again(
+    result: dict[str, Any], task: Task, strokes: Kept, threads: int | None
+) -> Iterator[tuple[list[int], bool]]:
+    """Each row as its strokes play, and whether its episode goes on after them."""
+    rows = result["rows"]
     for first in range(0, len(rows), BATCH):
         some = rows[first : first + BATCH]
         tables = playing.tables_for(task, len(some), threads)
         decide = playing.Repeater(strokes[first : first + BATCH], tables.options.rules.actions.size)
         played = playing.rows_of(task, tables, [row[1] for row in some], decide)
-        for k, (row, want) in enumerate(zip(some, played, strict=True)):
-            name = f"rows[{first + k}]"
-            if decide.short[k]:
-                wrong.append(fault(f"{name}.strokes", row[STROKES], "more: the episode goes on after them"))
-                continue
-            other = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
-            wrong += [fault(f"{name}.{COLUMNS[c]}", row[c], f"{want[c]}, as its strokes play") for c in other]
-    more = [f"rows: {len(wrong) - MOST} more faults"] if len(wrong) > MOST else []
-    return _elsewhere(result, wrong[:MOST] + more)
+        for row, want, short in zip(some, played, decide.short.tolist(), strict=True):
+            yield [row[0], *want[1:]], short
+
+
+def count_luck(record: dict[str, Any], threads: int | None = None) -> dict[str, Any]:
+    """A result with the luck of its episodes counted anew from its strokes, by the values that the package holds now; what
+    else is wrong with it, ``faults`` says. ValueError if it is no result."""
+    if wrong := faults_of_fields(record):
+        raise ValueError(wrong[0])
+    task, rows = task_of(record["task"]), record["rows"]
+    record = record | {
+        "rows": [[*row[: len(COLUMNS) - 1], 0] if isinstance(row, list) else row for row in rows]
+    }
+    if wrong := _of_sources(record["agent"]) + _of_rows(record, task):
+        raise ValueError(wrong[0])
+    again = _play_again(record, task, strokes_of(record), threads)
+    rows = [[*row[:-1], want[-1]] for row, (want, _) in zip(record["rows"], again, strict=True)]
+    return complete(record | {"rows": rows}, task)
 
 
 def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
@@ -196,7 +222,8 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
             if work > WORK / len(known) or len(wrong) >= MOST:
                 left += len(some)
                 continue
-            played = playing.play_episodes(task, source, [rows[k][1] for k in some], run, threads)
+            its = [rows[k][1] for k in some]
+            played = playing.play_episodes(task, source, its, run, threads, lucky=False)
             for k, again in zip(some.tolist(), played.strokes, strict=True):
                 if again.tobytes() != strokes[k].tobytes():
                     pairs = zip(strokes[k], again, strict=False)

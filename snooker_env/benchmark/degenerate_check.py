@@ -34,7 +34,10 @@ def best_constant(task: Task, threads: int | None = None) -> int:
         ]
         scores = []
         for choice in left:
-            rows = [play_episodes(training, Constant(choice), seeds, 0, threads).rows for seeds in batches]
+            played = (
+                play_episodes(training, Constant(choice), seeds, 0, threads, lucky=False) for seeds in batches
+            )
+            rows = [one.rows for one in played]
             scores.append(np.mean([row[_SCORE] for some in rows for row in some]))
         order = np.argsort(-np.array(scores), kind="stable")
         if len(left) == FINALISTS:

@@ -20,10 +20,11 @@ TRAINED = {"none": "0", "50k": "50 k", "1M": "1 M", "5M": "5 M", "open": "open",
 Table = tuple[list[str], list[list[str]]]  # heading and rows
 
 LEGEND = (
-    "score: mean of all episodes with its 95 % bootstrap interval over training seeds and episodes; a share that was never or always "
-    "seen has the exact one-sided 95 % bound. IQM: mean of the middle half. training: the budget of simulated shots. seeds: training "
-    "seeds. shots: simulated shots a decision (d: declared). ms: time of a decision on one table. *: not official. Left out: "
-    "thresholds that no agent reached and, on the page, all but the best degenerate agent."
+    "adjusted: the score less luck, by which agents are sorted, with its 95 % bootstrap interval over training seeds and episodes; a share "
+    "that was never or always seen has the exact one-sided 95 % bound. score: mean of all episodes. IQM: mean of the middle half. "
+    "training: the budget of simulated shots. seeds: training seeds. shots: simulated shots a decision (d: declared). ms: time of a "
+    "decision on one table. *: not official. Left out: thresholds that no agent reached and, on the page, all but the best degenerate "
+    "agent."
 )
 PROVED = (
     "A result is its strokes: check plays each episode again from its seed and computes all figures anew. "
@@ -46,26 +47,27 @@ def board(results: Iterable[dict[str, Any]], task: Task) -> Table:
         return list(CLASSES).index(agent["class"]), list(TRAINED).index(agent["budget"])
 
     score = "score" if task.counts else "share %"
-    head = ["class, training", "agent", score, "IQM", "seeds", "shots", "ms"]
+    head = ["class, training", "agent", "adjusted", score, "IQM", "seeds", "shots", "ms"]
     rows = [_row(result, task) for result in sorted(_of(results, task), key=order)]
     keep = [c for c, name in enumerate(head) if task.counts or name != "IQM"]
     return [head[c] for c in keep], [[row[c] for c in keep] for row in rows]
 
 
 def _of(results: Iterable[dict[str, Any]], task: Task) -> list[dict[str, Any]]:
-    """The results of a task that have figures, the best first."""
+    """The results of a task that have figures, the best first: by what is less luck."""
     mine = [one for one in results if one["task"] == task.id and one["figures"] is not None]
-    return sorted(mine, key=lambda one: (-one["figures"]["score"]["value"], one["agent"]["label"]))
+    return sorted(mine, key=lambda one: (-one["figures"]["adjusted"]["value"], one["agent"]["label"]))
 
 
 def _row(result: dict[str, Any], task: Task) -> list[str]:
     """The row of a result."""
     agent, figures, alone = result["agent"], result["figures"], result["timing"]["one_table_ms"]
-    shots, middle = agent["simulated_shots"], figures["iqm"]
+    shots, middle, scale = agent["simulated_shots"], figures["iqm"], 1.0 if task.counts else 100.0
     return [
         f"{CLASSES[agent['class']]}, {TRAINED[agent['budget']]}",
         agent["label"] + ("" if result["protocol"]["official"] else " *"),
-        format_figure(figures["score"], 1.0 if task.counts else 100.0),
+        format_figure(figures["adjusted"], scale),
+        f"{scale * figures['score']['value']:.1f}",
         "" if middle is None else f"{middle['value']:.1f}",
         str(len(agent["sources"])),
         "?" if shots is None else f"{shots:,.0f}{' d' if agent['declared'] else ''}",

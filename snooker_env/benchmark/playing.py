@@ -2,7 +2,7 @@
 of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,13 +14,15 @@ from ..envs.vector import SnookerVectorEnv
 from ..players import FRAMES, VISITS, Player, ask_player, decision_seeds
 from ..players import player as player_named
 from ..simulation.count import count_shots
+from .luck import Decide, Luck
 from .tasks import Task
 
 BATCH = 100  # episodes that are played side by side
 SUMS = ("strokes", "points", "pots", "fouls")
-COLUMNS = ("run", "table", "score", *SUMS, "cleared", "opponent_points", "ended")
+COLUMNS = ("run", "table", "score", *SUMS, "cleared", "opponent_points", "ended", "luck")
 """Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark_files.md)."""
 STROKES = COLUMNS.index("strokes")
+PARTS = 1000  # the column luck counts thousandths of the score
 Kept = list[NDArray[np.float32]]  # the strokes of each episode: its actions, one row each
 
 
@@ -87,8 +89,6 @@ class Repeater:
         return actions
 
 
-Decide = Callable[[Bools, int], NDArray[np.float32]]
-"""The actions on all tables, of those asked for their stroke of this number."""
 Round = tuple[Bools, dict[str, Any], Bools, Bools]  # asked for a stroke; the info after it; done; terminated
 
 
@@ -115,21 +115,36 @@ def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorE
 
 
 def play_episodes(
-    task: Task, player: Player | str, seeds: list[int], run: int = 0, threads: int | None = None
+    task: Task,
+    player: Player | str,
+    seeds: list[int],
+    run: int = 0,
+    threads: int | None = None,
+    *,
+    lucky: bool = True,
 ) -> PlayedEpisodes:
-    """Play one episode on each of the judged tables with these seeds, side by side; ``run``: the training seed's index."""
+    """Play one episode on each of the judged tables with these seeds, side by side; ``run``: the training seed's index;
+    ``lucky``: whether their luck is computed."""
     tables = tables_for(task, len(seeds), threads)
     decide = Decider(player, tables, seeds, run)
-    rows = rows_of(task, tables, seeds, decide, run)
+    rows = rows_of(task, tables, seeds, decide, run, lucky=lucky)
     strokes = decide.strokes() if decide.decisions else [np.empty((0, 0), np.float32)] * len(seeds)
     return PlayedEpisodes(rows, strokes, decide.decisions, decide.seconds, decide.simulated)
 
 
 def rows_of(
-    task: Task, tables: SnookerVectorEnv, seeds: list[int], decide: Decide, run: int = 0
+    task: Task,
+    tables: SnookerVectorEnv,
+    seeds: list[int],
+    decide: Decide,
+    run: int = 0,
+    *,
+    lucky: bool = True,
 ) -> list[list[int]]:
     """The rows of the episodes with these seeds, as ``decide`` plays them."""
     n = len(seeds)
+    luck = Luck(tables, task.score) if lucky else None
+    decide = decide if luck is None else luck.watch(decide)
     sums: dict[str, Floats] = {name: np.zeros(n) for name in SUMS}
     cleared, ended, won, opponent = np.zeros((4, n))
     for asked, info, done, terminated in rounds(tables, seeds, decide):
@@ -139,6 +154,8 @@ def rows_of(
         sums["pots"] += scored
         sums["fouls"] += asked & info["foul"]
         ended[done] = terminated[done]
+        if luck is not None:
+            luck.counts[done] = False  # the table goes on with another episode
         if task.frame:
             won[done] = (info["winner"] == 0)[done] & terminated[done]
             sums["points"][done], opponent[done] = info["score"][done], info["opponent_score"][done]
@@ -147,5 +164,6 @@ def rows_of(
     tables.close()
     scores = {"points": sums["points"], "legal": 1 - sums["fouls"], "won": won}
     scores["lead"] = sums["points"] - opponent
-    columns = (np.full(n, run), seeds, scores[task.score], *sums.values(), cleared, opponent, ended)
+    parts = np.zeros(n) if luck is None else np.round(PARTS * luck.sums)
+    columns = (np.full(n, run), seeds, scores[task.score], *sums.values(), cleared, opponent, ended, parts)
     return np.array(columns).T.astype(int).tolist()

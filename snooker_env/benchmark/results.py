@@ -19,10 +19,10 @@ from ..players import FRAMES, VISITS
 from ..players.degenerate import is_degenerate
 from ..players.resolver import PROGRAM
 from .agents import Agent
-from .playing import COLUMNS, STROKES, Kept, PlayedEpisodes
+from .playing import COLUMNS, PARTS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic, commit, machine, software
 from .schema import DATE, NAME, PROTOCOL, VERSION, line
-from .statistics import RESAMPLES, Resamples, bound_if_none, figure, iqm
+from .statistics import RESAMPLES, Resamples, adjust, bound_if_none, figure, iqm
 from .tasks import TASKS, Task
 
 BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}  # training budgets [simulated shots]
@@ -70,6 +70,7 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
     profile = [t for t in task.thresholds if t <= task.most]
     return {
         "score": mean(score, share=not counted),
+        "adjusted": mean(adjust(score, columns["luck"] / PARTS), share=not counted),
         "iqm": of(iqm(score), samples.iqms(score)) if counted else None,
         "profile": [{"at_least": t} | mean((score >= t).astype(float), share=True) for t in profile],
         "by_run": score.mean(axis=1).tolist(),

@@ -12,7 +12,9 @@ from ..game.balls import BallOn
 from ..game.layouts import POT_WINDOWS
 from ..planning import Positions, pots
 from ..players import VISITS, Player
+from .luck import Luck
 from .playing import Decider, rounds
+from .statistics import adjust
 from .tasks import HELD_OUT_SEED
 
 CENTURY = 100
@@ -22,7 +24,7 @@ MAXIMUM = 147
 EASY = POT_WINDOWS["easy"][0]
 HIGH = 6  # pink and black are colours of high value
 FIGURES = {
-    **{f"{name}_a_visit": (name, "visits") for name in ("points", "pots", "fouls")},
+    **{f"{name}_a_visit": (name, "visits") for name in ("points", "adjusted", "pots", "fouls")},
     **{name: (name, "visits") for name in ("centuries", "maximums", "clearances")},
     "pot_rate": ("pots", "strokes"),
     "next_pot_after_a_pot": ("followed", "goes_on"),
@@ -31,7 +33,7 @@ FIGURES = {
     "high_colours": ("high", "colours"),
     "high_colour_after_a_red": ("high_after_red", "reds"),
 }
-"""Each is a ratio of two sums over visits, see ``counts``."""
+"""Each is a ratio of two sums over visits, see ``counts``. "adjusted": points less luck, see ``luck``."""
 
 
 @dataclass
@@ -54,6 +56,9 @@ class PlayedStrokes:
         Position of the cue ball after the stroke [m]; NaN if it was potted.
     tolerance : float64 (n,)
         Tolerance of the aim of the widest direct pot after the stroke [rad]; 0 if there was none.
+    luck : float64 (n,)
+        Points and value of what it left, less their mean over fresh errors of the same stroke [points]; of the first
+        stroke with that of the table dealt.
     decision_seconds, simulated : float, int
         Time of all decisions of the player [s], and the shots that this process simulated for them.
 
@@ -74,6 +79,7 @@ class PlayedStrokes:
     cleared: Bools
     cue: Floats
     tolerance: Floats
+    luck: Floats
     decision_seconds: float
     simulated: int = 0
 
@@ -142,18 +148,20 @@ def play_visits(
     usual = {**VISITS, "layout": "held_out", "noise": "professional"}
     tables = SnookerVectorEnv(visits, threads=threads, **{**usual, **options})
     decide, log, ball_on = Decider(player, tables, seeds, seed), [], np.empty(0, np.int64)
+    luck, before = Luck(tables, "points"), np.zeros(visits)
 
     def note_ball_on(asked: Bools, number: int) -> Singles:
         nonlocal ball_on
         ball_on = Positions.of(tables).ball_on[asked]
         return decide(asked, number)
 
-    for number, (asked, info, done, _) in enumerate(rounds(tables, seeds, note_ball_on)):
+    for number, (asked, info, done, _) in enumerate(rounds(tables, seeds, luck.watch(note_ball_on))):
         here = np.flatnonzero(asked)
         left = Positions.of(tables)[here]
         cue = np.where(left.on_table[:, :1], left.positions[:, 0], np.nan)
         outcome = info["points"][here], info["foul"][here], ball_on, ~left.on_table[:, 1:].any(1), cue
-        log.append((here, np.full(len(here), number), *outcome, pots(left, most=1).tolerance[:, 0]))
+        widest, gained, before = pots(left, most=1).tolerance[:, 0], luck.sums - before, luck.sums.copy()
+        log.append((here, np.full(len(here), number), *outcome, widest, gained[here]))
         if each is not None:
             each(int(asked.sum() - done.sum()))
     tables.close()
@@ -181,6 +189,7 @@ def counts(s: PlayedStrokes) -> dict[str, Floats]:
         "clearances": s.has_scored & s.cleared,  # a foul clears no table
     }
     sums = {name: s.a_visit(values) for name, values in entries.items()}
+    sums["adjusted"] = adjust(sums["points"][None], s.a_visit(s.luck)[None])[0]
     for name, least in (("centuries", CENTURY), ("maximums", MAXIMUM)):
         sums[name] = (sums["points"] >= least).astype(float)
     return sums | {"visits": np.ones(s.visits)}
@@ -213,7 +222,7 @@ def summary(strokes: PlayedStrokes) -> dict[str, Any]:
         for name, (above, below) in (FIGURES | {"foul_rate": ("fouls", "strokes")}).items()
         if name not in ("maximums", "easy_pot_left_by_a_pot", "high_colour_after_a_red")
     }
-    for name in ("pots", "points", "fouls"):
+    for name in ("pots", "points", "adjusted", "fouls"):
         spread = float(np.std(each[name], ddof=1) / np.sqrt(strokes.visits)) if strokes.visits > 1 else None
         means[f"{name}_a_visit_se"] = spread
     longest = int(each["points"].max())

@@ -109,7 +109,7 @@ def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
             after_batch()
         for seed in seeds if run == 0 else ():
             if alone.decisions < ONE_TABLE:
-                alone.add(play_episodes(task, player, [seed], run, threads))
+                alone.add(play_episodes(task, player, [seed], run, threads, lucky=False))
 
 
 def _read_earlier(

@@ -7,8 +7,8 @@ from typing import Any, TypeAlias
 
 from .provenance import LIBRARIES
 
-NAME, VERSION = "snooker_env.benchmark.result", 3
-PROTOCOL = 2  # Version of the rules: tables, episodes, figures. Only results of one version compare.
+NAME, VERSION = "snooker_env.benchmark.result", 4
+PROTOCOL = 3  # Version of the rules: tables, episodes, figures. Only results of one version compare.
 PACKAGES = ("1.0.0",)  # versions whose results compare by these rules, the present one last
 BEGUN = "2026-11-21T00:00:00Z"  # no result is older than the project
 DATE = "%Y-%m-%dT%H:%M:%SZ"

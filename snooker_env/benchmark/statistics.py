@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from .._lib.types import Floats
 
 RESAMPLES = 2000  # number of bootstrap samples
+SHRINK = 10  # tables: the share of luck that so many show counts half
 
 
 def iqm(values: ArrayLike) -> float:
@@ -114,3 +115,18 @@ def figure(value: float, samples: Floats | Sequence[float]) -> dict[str, float |
     """A figure with its 95 % bootstrap interval: "value", "low" and "high"; None where a number is not finite."""
     numbers = zip(("value", "low", "high"), (value, *interval(samples)), strict=True)
     return {name: float(x) if np.isfinite(x) else None for name, x in numbers}
+
+
+def adjust(scores: Floats, luck: Floats) -> Floats:
+    """Scores (runs, visits) less a share of their luck (runs, visits), whose expectation is 0.
+
+    The share that varies least is fitted to the other half of the tables, every second one, and shrunk where they are few:
+    it does not depend on the luck that it multiplies, so that the mean stays unbiased."""
+    adjusted = scores.astype(np.float64)
+    for half in (0, 1):
+        other, its = scores[:, 1 - half :: 2], luck[:, 1 - half :: 2]
+        square, visits = float((its * its).sum()), other.shape[1]
+        if square > 0.0:
+            share = float(((other - other.mean()) * its).sum()) / square * visits / (visits + SHRINK)
+            adjusted[:, half::2] -= share * luck[:, half::2]
+    return adjusted

@@ -251,7 +251,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         each = []
         for k, generator in enumerate(self.np_random):
             one = copy.copy(self._one)
-            one.tables, one._np_random = self.tables.view(k), generator
+            one.tables, one._np_random = self.tables.take(slice(k, k + 1)), generator
             one._np_random_seed = self._generator_seeds[k]
             each.append(getattr(one, name))
         return tuple(one(*args, **kwargs) if callable(one) else one for one in each)

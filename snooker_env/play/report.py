@@ -117,6 +117,8 @@ def report(service: Service) -> dict[str, Any]:
     if service.agent_to_play():
         waits = "waits: press Continue." if service.paused else "is thinking."
         state["words"] = service.trouble or f"{seats.label(frame.striker)} {waits}"
+    if state["phase"] == "over":
+        state["words"] = " ".join([state["words"], *_say_luck(service)])
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
     return state | {"text": say_table(state, lines, said)}
 
@@ -129,3 +131,12 @@ def _say_chance(state: dict[str, Any]) -> list[str]:
     share = round(100 * chance) if sure else min(99, max(1, round(100 * chance)))
     one, other = state["labels"]
     return [f"Chance to win, both {errors_words(state['level'])}: {one} {share} %, {other} {100 - share} %."]
+
+
+def _say_luck(service: Service) -> list[str]:
+    """How lucky both were in the frame, in their chances to win; nothing where nobody errs."""
+    lucks, acts = [0.0, 0.0], service.session.acts
+    for k in service.session.strokes:
+        lucks[acts[k].player or 0] += acts[k].luck
+    one, other = (f"{name} {100 * luck:+.0f} %" for name, luck in zip(service.labels, lucks, strict=True))
+    return [f"Luck: {one}, {other}."] if any(lucks) else []

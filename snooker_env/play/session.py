@@ -12,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 
 from .._lib.check import choice, integer, refuse, refuse_what, truth
-from .._lib.types import CueKind, NoiseName
+from .._lib.types import CueKind, Floats, Ints, NoiseName
 from ..advice import CueStroke, Room
 from ..advice.room import room_for
 from ..game.balls import CUE, NAMES, BallOn, mask_of_present
@@ -24,6 +24,7 @@ from ..game.rule_sets import RULES, RulesName, rule_set
 from ..planning.position import Position
 from ..planning.positions import Positions, of_tables
 from ..players import Strokes
+from ..players.luck import expect_win, luck_of
 from ..players.table_report import nominations_of, visit_of
 from ..tasks.frames import Frames, Seat
 from ..tasks.noise import LEVELS
@@ -31,7 +32,8 @@ from ..tasks.options import CUES, Options
 from ..tasks.played import Played
 from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
-from ..tasks.tables import Crew
+from ..tasks.tables import Crew, StepOutput, Tables
+from ..tasks.threads import Threads
 
 DECLINED = 0  # the nomination of a player who does not use a free ball
 MOST_FRAMES = 99  # the longest match
@@ -49,6 +51,7 @@ class Act:
     detail: str = ""  # for a choice: the decision; for a stroke: the colour that was nominated
     room: Room | None = None  # for a stroke: how the cue found room for it
     asked: dict[str, Any] = field(default_factory=dict)  # what was asked for, as JSON types: see ``acts``
+    luck: float = 0.0  # of a stroke, in its player's chance to win; 0 in practice
 
 
 class Session:
@@ -230,12 +233,26 @@ class Session:
         asked["place"] = before["positions"][CUE] if frame.in_hand else None
         asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
         tables.nominated[0] = nominated
-        crew = Crew(self._buffers, self._watch)
+        crew, luck = Crew(self._buffers, self._watch), self._luck(actions, striker)
         tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
         if self.practice:
             self._hand_back()
         words = NAMES[nominated] if nominated > CUE else ""
-        return self._did(Act("stroke", self.state, striker, self._played, words, room, asked))
+        return self._did(Act("stroke", self.state, striker, self._played, words, room, asked, luck))
+
+    def _luck(self, actions: Floats, striker: int) -> float:
+        """The luck of a stroke that is about to be played, by the chance to win under the larger errors of both."""
+        if self.practice or self.noise[striker] == "none":
+            return 0.0
+        errors = max(self.noise, key=lambda name: LEVELS[name].direction_deg())
+
+        def turn(copies: Tables, rows: Ints, out: StepOutput) -> None:
+            assert isinstance(copies, Frames)
+            each, crew = actions[rows], Threads(1)
+            copies.turn(lambda which, b: copies.prepare(which, each, b, striker), out, crew)
+
+        first = luck_of(self.tables, np.zeros(1, np.int64), turn, expect_win(self.options_with(errors)))
+        return float(first[0] if striker == 0 else -first[0])
 
     def _watch(self, k, buffers, j, agents):
         self._played = self.tables.record(k, buffers, j)

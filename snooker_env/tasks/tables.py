@@ -279,14 +279,13 @@ class Tables(ABC):
         """Why the first table has no stroke left to play, in words."""
         return "is over" if self.begun[0] else "has not begun"
 
-    def view(self: _T, k: int) -> _T:
-        """Table k as a ``Tables`` with one table that shares its state."""
-        one = object.__new__(type(self))
-        here = slice(k, k + 1)
+    def take(self: _T, rows: slice | Ints) -> _T:
+        """The tables ``rows``: those of a slice share their state, those of an array are copies."""
+        taken = object.__new__(type(self))
         for name, value in vars(self).items():
-            setattr(one, name, value[here] if name in self._columns() else value)
-        one.n = 1
-        return one
+            setattr(taken, name, value[rows] if name in self._columns() else value)
+        taken.n = len(taken.positions)
+        return taken
 
     # the constants of tables
 

@@ -68,7 +68,7 @@ def consistent(task, record):
 def test_a_maximum_in_every_visit(label):
     """Rows that the rules of snooker allow, figures that follow from them."""
     record = judge(BREAK, Agent(label=label, sources=(sn.player("random"),)), episodes=100)
-    record["rows"] = [[0, seed, 147, 36, 147, 36, 0, 1, 0, 1] for seed in BREAK.seeds(100)]
+    record["rows"] = [[0, seed, 147, 36, 147, 36, 0, 1, 0, 1, 0] for seed in BREAK.seeds(100)]
     record["agent"]["sources"] = [label if label == "random" else "mine:Genius"]
     consistent(BREAK, record)
     assert faults(record)[0].startswith("strokes.data = ")

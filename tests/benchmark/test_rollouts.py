@@ -14,7 +14,12 @@ from snooker_env.game.banks import HELD_OUT
 def strokes(**columns):
     """``PlayedStrokes`` of these columns, with nothing in the others."""
     n = len(columns["visit"])
-    usual = {"cleared": np.zeros(n, bool), "cue": np.zeros((n, 2)), "tolerance": np.zeros(n)}
+    usual = {
+        "cleared": np.zeros(n, bool),
+        "cue": np.zeros((n, 2)),
+        "tolerance": np.zeros(n),
+        "luck": np.zeros(n),
+    }
     arrays = {name: np.array(column) for name, column in columns.items()}
     return PlayedStrokes(visits=max(columns["visit"]) + 1, decision_seconds=0.0, **usual | arrays)
 
@@ -30,7 +35,16 @@ def test_counts_of_a_visit_by_hand():
         tolerance=[1e-2, 0, 1e-3, 1e-2, 0],
     )
     assert s.following.tolist() == [2, -1, 3, 4, -1]
-    first = {"points": 9, "pots": 3, "strokes": 4, "fouls": 1, "goes_on": 3, "followed": 2, "easy": 2}
+    first = {
+        "points": 9,
+        "adjusted": 9,
+        "pots": 3,
+        "strokes": 4,
+        "fouls": 1,
+        "goes_on": 3,
+        "followed": 2,
+        "easy": 2,
+    }
     first |= {"colours": 1, "colour_points": 7, "high": 1, "reds": 2, "high_after_red": 1, "visits": 1}
     wanted = {name: [first.get(name, 0), int(name in ("strokes", "visits"))] for name in counts(s)}
     assert {name: values.tolist() for name, values in counts(s).items()} == wanted

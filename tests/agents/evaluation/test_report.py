@@ -121,7 +121,7 @@ def test_a_under_b():
 
 def result(layout="held_out", runs=1, counted=None, **figures):
     """What an agent did: only what is given."""
-    points = ("points_a_visit", "points_a_visit_iqm", "pots_a_visit_iqm", "colour_value")
+    points = ("points_a_visit", "adjusted_a_visit", "points_a_visit_iqm", "pots_a_visit_iqm", "colour_value")
     nothing = dict.fromkeys([*report.SHARES, *points], figure(None))
     amounts = {"visits": 30, "runs": runs, "strokes": 60, "ms_a_decision": 1.0, "longest_break": 7}
     shown = {name: figure(value) for name, value in figures.items()}

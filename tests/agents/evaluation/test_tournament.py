@@ -124,8 +124,9 @@ def test_another_tournament_is_not_gone_on_with(tmp_path, refused, parts, monkey
 def sound():
     """The content of a file of two players, without playing."""
     counted = [60, 30, 50, 30, 10, 10, 30, 20, 0, 2, 20, 12]
-    rows = [[0, 1, s, o, 0, (s + o) % 2, *counted] for s in range(3) for o in (0, 1)]
-    found = json.loads((ROOT / "results" / "agents" / "ladder.json").read_text())
+    lucks = iter((300, 200, -100, 50, -400, -250))
+    rows = [[0, 1, s, o, 0, int(s + o > 1), *counted, next(lucks)] for s in range(3) for o in (0, 1)]
+    found = read_result(ROOT / "results" / "agents" / "ladder.json")
     players = [found["players"][k] | {"label": label} for k, label in enumerate("ab")]
     protocol = found["protocol"] | {"matches": 6, "anchor": "a", "resamples": 100}
     figures = figures_of(["a", "b"], rows, "a", 100)

@@ -22,10 +22,10 @@ SOUND = {"points": (60, 30), "scored": (50, 30), "visits": (10, 10), "strokes": 
 SOUND |= {"fouls": (0, 2), "best": (20, 12)}
 
 
-def row(first, second, seed, opener, winner, frame=0, **changes):
+def row(first, second, seed, opener, winner, frame=0, luck=0, **changes):
     """One frame; ``changes``: of what is counted."""
     counted = SOUND | changes
-    return [first, second, seed, opener, frame, winner, *(x for name in COUNTED for x in counted[name])]
+    return [first, second, seed, opener, frame, winner, *(x for name in COUNTED for x in counted[name]), luck]
 
 
 def invented(t, seeds, rng):
