@@ -20,7 +20,7 @@ import { Tour } from "./play_tour.js";
 
 /** The strengths of an opponent: who plays, with whose errors. */
 const LEVELS = {
-  beginner: ["ghost_ball", "club"], "club player": ["tactician_500", "club"], amateur: ["tactician_500", "amateur"],
+  beginner: ["ghost_ball", "beginner"], "club player": ["tactician_500", "club"], amateur: ["tactician_500", "amateur"],
   professional: ["tactician_500", "professional"], perfect: ["tactician_500", "none"], "nobody: two play here": ["person", "none"],
 };
 const OWN = "own";
