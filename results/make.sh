@@ -5,7 +5,7 @@
 #                                      with TRACKED=FILE the real shots of that file, too
 #                                      pictures: films, screenshots, README's break, some minutes
 #                                      agents: trains the models of results/weights, compares all players, hours
-#                                      weights: those of results/weights for the planners, into the package
+#                                      weights: the models of FOLDER into results/weights, those into the package
 #                                      leaderboard [AGENT ...]: judges them all, or these alone, then its page: days
 #
 # Complete runs and files are left as they are and incomplete ones resumed; remove one to make it again.
@@ -73,7 +73,7 @@ agents() {
 }
 
 weights() {
-    python -c "from agents.learning.export import export; export()"
+    python -c "from agents.learning.export import export, keep_models; keep_models('$FOLDER'); export()"
 }
 
 judge() { # an agent's name, all simulated shots of its training; it stands on the page in any case
