@@ -4,9 +4,9 @@ worth of what they leave to the next player (``worth``), and by the chance to wi
 The budget goes where the decision is hard. Where a pot is likely (``EASY``), few pots are looked at; elsewhere more
 pots, several times as many safeties, and escapes where hardly anything is seen."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -19,13 +19,29 @@ from ..tasks.threads import Threads, processors
 from .aims import Dynamics
 from .planner import options_in
 from .positions import Positions
+from .pot_geometry import clear_paths
 from .proposals import Proposals, at_balls, over_cushions, safeties
 from .prospects import spread_of
 from .search import BUDGET, Plan, Proposed, Search
 from .sobol import DIMENSIONS
-from .trials import FrameTrials
-from .worth import LAST, Chance, Worth, follows, in_one_stroke, last_of, lead_of, left_of, pass_after_miss
+from .trials import FrameTrials, turn_to_striker
+from .worth import (
+    FOUL,
+    LAST,
+    Chance,
+    Worth,
+    follows,
+    in_one_stroke,
+    last_of,
+    lead_of,
+    left_of,
+    pass_after_miss,
+)
 
+SAFETY = 1  # the kind of safeties
+FORESEEN, AGAIN, KEPT = 8, 2.5, 0.8
+HIDES = 0.3
+Foresee: TypeAlias = Callable[[Positions, Ints, Floats, int], Floats]
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
 TIE = 2e-4
 """What a point counts beside the chance to win, so that a frame that is won or lost is still played well."""
@@ -74,6 +90,7 @@ class FrameJudge:
         *,
         noise: NoiseLike | None = None,
         threads: int | None = None,
+        foresee: Foresee | None = None,
     ):
         rules = options_in(env_or_options).rules
         self.noise: Noise = rules.noise if noise is None else Noise.of(noise)
@@ -85,6 +102,7 @@ class FrameJudge:
         self.dynamics: Dynamics = Dynamics.of(self.rules)
         self.worth: Worth = worth
         self.chance: Chance | None = chance
+        self.foresee: Foresee | None = foresee
         self.shots: int = 0
 
     def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
@@ -111,12 +129,30 @@ class FrameJudge:
         made, visits = [], at.as_visits()
         generators = (*search.propose, safeties, at_balls, over_cushions)
         for kind, (generate, many) in enumerate(zip(generators, plan.looks, strict=True)):
-            if many:
+            if many and kind == SAFETY and self.foresee is not None:
+                made.append(
+                    (*self._promising(at, generate(search, visits, FORESEEN * many, seeds), many), kind)
+                )
+            elif many:
                 made.append((*Proposals(*generate(search, visits, many, seeds)), kind))
         strokes = np.concatenate([one[0] for one in made], axis=1)
         chances = np.concatenate([one[1] for one in made], axis=1)
         kinds = np.concatenate([np.full(one[1].shape, one[2]) for one in made], axis=1)
         return Proposed(strokes, chances, kinds, np.full(len(at), plan.looks[1] > 0))
+
+    def _promising(self, at: Positions, made: Proposals, many: int) -> Proposals:
+        """The ``many`` of proposals for n positions that promise most without a simulated shot."""
+        seems = np.where(made.chances > 0.0, 0.0, -np.inf)
+        for samples, keep in ((1, round(many * AGAIN)), (4, round(many * KEPT))):
+            rows, picks = np.nonzero(np.isfinite(seems))
+            seems[rows, picks] = self.foresee(at, rows, made.strokes[rows, picks], samples)
+            seems[np.argsort(np.argsort(-seems, axis=1, kind="stable"), axis=1) >= keep] = -np.inf
+        # some as they come: what is foreseen errs alike for many
+        rest = (made.chances > 0.0) & ~np.isfinite(seems)
+        seems = np.where(rest, -1e9 - np.arange(seems.shape[1]), seems)
+        best = np.argsort(-seems, axis=1, kind="stable")[:, :many]
+        strokes = np.take_along_axis(made.strokes, best[..., None], 1)
+        return Proposals(strokes, np.take_along_axis(made.chances, best, 1))
 
     def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
         """See ``Judge.look``, with the chance of each pot; what fouls as intended is played where it wins the frame, or where
@@ -173,6 +209,16 @@ class FrameJudge:
         points = follows(self.worth, after, before, self.rules.rule_set.code)
         chance = self.chances(lead_of(after), before + points - lead_of(after), after)
         over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
+        lead = lead_of(after)
+        needs = (lead < -left_of(after)) & ~over & (after.game[:, columns.STRIKER] != 0)
+        rows = np.flatnonzero(needs & (after.game[:, columns.PHASE] == columns.STROKE))
+        if len(rows) and self.chance is not None:
+            some = turn_to_striker(after[rows])
+            hidden = rows[~some.in_hand & ~clear_paths(some).any_part]
+            if len(hidden):
+                gain = (before + points - lead)[hidden]
+                fouled = self.chances(lead[hidden] + FOUL, gain, after[hidden])
+                chance[hidden] += HIDES * np.maximum(0.0, fouled - chance[hidden])
         return np.column_stack([np.where(over, won, chance), points])
 
     def chances(self, now: Floats, worth: Floats, at: Positions) -> Floats:
