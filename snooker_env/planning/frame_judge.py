@@ -45,7 +45,7 @@ Foresee: TypeAlias = Callable[[Positions, Ints, Floats, int], Floats]
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
 TIE = 2e-4
 """What a point counts beside the chance to win, so that a frame that is won or lost is still played well."""
-PLANS = Plan((34, 0, 0, 0), ((6, 2), (3, 6))), Plan((24, 116, 20, 24), ((18, 3), (6, 7)))
+PLANS = Plan((44, 0, 0, 0), ((7, 2), (3, 7))), Plan((24, 40, 16, 24), ((20, 4), (7, 8)))
 """Where the decision is easy, and where it is hard, with ``BUDGET`` shots on average: looks at pots, safeties, contacts and
 escapes."""
 
