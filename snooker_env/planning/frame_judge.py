@@ -40,6 +40,7 @@ from .worth import (
 
 SAFETY = 1  # the kind of safeties
 FORESEEN, AGAIN, KEPT = 8, 2.5, 0.8
+DISTANT, FAREST, HIDDEN, FOULS = 0.02, 2.4, 0.03, 0.04
 HIDES = 0.3
 Foresee: TypeAlias = Callable[[Positions, Ints, Floats, int], Floats]
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
@@ -209,17 +210,28 @@ class FrameJudge:
         points = follows(self.worth, after, before, self.rules.rule_set.code)
         chance = self.chances(lead_of(after), before + points - lead_of(after), after)
         over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
-        lead = lead_of(after)
-        needs = (lead < -left_of(after)) & ~over & (after.game[:, columns.STRIKER] != 0)
-        rows = np.flatnonzero(needs & (after.game[:, columns.PHASE] == columns.STROKE))
-        if len(rows) and self.chance is not None:
-            some = turn_to_striker(after[rows])
-            hidden = rows[~some.in_hand & ~clear_paths(some).any_part]
-            if len(hidden):
-                gain = (before + points - lead)[hidden]
-                fouled = self.chances(lead[hidden] + FOUL, gain, after[hidden])
-                chance[hidden] += HIDES * np.maximum(0.0, fouled - chance[hidden])
+        if self.chance is not None:
+            chance = self._prefer(before, points, chance, after)
         return np.column_stack([np.where(over, won, chance), points])
+
+    def _prefer(self, before: Floats, points: Floats, chance: Floats, after: Positions) -> Floats:
+        """The chances of ``value_of``, with what speaks for a stroke beside the worth, which a search deceives, and, where the
+        striker needs snookers, for a snooker."""
+        lead, foul = lead_of(after), lead_of(after) < before
+        comes = (
+            (after.game[:, columns.STRIKER] == 1) & (after.game[:, columns.PHASE] == columns.STROKE) & ~foul
+        )
+        some = np.flatnonzero(comes & (after.game[:, columns.OVER] == 0))
+        care, out = -FOULS * foul, chance.copy()
+        if len(some):
+            theirs = turn_to_striker(after[some])
+            gaps = np.hypot(*(theirs.positions - theirs.positions[:, :1]).transpose(2, 0, 1))
+            near, hidden = np.where(theirs.balls_on, gaps, np.inf).min(axis=1), ~clear_paths(theirs).any_part
+            care[some] = DISTANT * np.minimum(near / FAREST, 1.0) + HIDDEN * hidden
+            rows = some[hidden & (lead[some] < -left_of(after)[some])]
+            fouled = self.chances(lead[rows] + FOUL, (before + points - lead)[rows], after[rows])
+            out[rows] += HIDES * np.maximum(0.0, fouled - chance[rows])
+        return out + 4.0 * chance * (1.0 - chance) * care
 
     def chances(self, now: Floats, worth: Floats, at: Positions) -> Floats:
         """The chances to win, (m,), of who leads by ``now`` and expects ``worth`` more than the other from the balls of
