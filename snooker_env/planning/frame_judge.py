@@ -40,7 +40,7 @@ from .worth import (
 
 SAFETY = 1  # the kind of safeties
 FORESEEN, AGAIN, KEPT = 8, 2.5, 0.8
-DISTANT, FAREST, HIDDEN, FOULS = 0.02, 2.4, 0.03, 0.04
+DISTANT, FAREST, HIDDEN, FOULS = 0.04, 2.8, 0.04, 0.06
 HIDES = 0.3
 Foresee: TypeAlias = Callable[[Positions, Ints, Floats, int], Floats]
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
@@ -58,6 +58,14 @@ def scale(plan: Plan, share: float) -> Plan:
     return Plan(
         looks, tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in plan.rounds)
     )
+
+
+def hardship_of(theirs: Positions) -> tuple[Floats, Bools]:
+    """What speaks for leaving n positions to the other, beside their worth, in chances to win of an even frame: (n,); and
+    whether no straight path leads to a ball on: (n,)."""
+    gaps = np.hypot(*(theirs.positions - theirs.positions[:, :1]).transpose(2, 0, 1))
+    near, hidden = np.where(theirs.balls_on, gaps, np.inf).min(axis=1), ~clear_paths(theirs).any_part
+    return DISTANT * np.minimum(near / FAREST, 1.0) + HIDDEN * hidden, hidden
 
 
 class FrameJudge:
@@ -225,9 +233,7 @@ class FrameJudge:
         care, out = -FOULS * foul, chance.copy()
         if len(some):
             theirs = turn_to_striker(after[some])
-            gaps = np.hypot(*(theirs.positions - theirs.positions[:, :1]).transpose(2, 0, 1))
-            near, hidden = np.where(theirs.balls_on, gaps, np.inf).min(axis=1), ~clear_paths(theirs).any_part
-            care[some] = DISTANT * np.minimum(near / FAREST, 1.0) + HIDDEN * hidden
+            care[some], hidden = hardship_of(theirs)
             rows = some[hidden & (lead[some] < -left_of(after)[some])]
             fouled = self.chances(lead[rows] + FOUL, (before + points - lead)[rows], after[rows])
             out[rows] += HIDES * np.maximum(0.0, fouled - chance[rows])

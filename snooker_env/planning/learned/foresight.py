@@ -9,8 +9,8 @@ from ..._lib.types import Bools, Floats, Ints
 from ...game.balls import N_BALLS, VALUES
 from ...tasks.options import Rules
 from ..aims import Dynamics, law_of
+from ..frame_judge import hardship_of
 from ..positions import Positions
-from ..pot_geometry import clear_paths
 from ..prospects import in_parts
 from ..sobol import normal_points
 from ..worth import pass_after_miss
@@ -23,8 +23,8 @@ FOUL = 8.0
 """What a predicted foul costs beside what the balls as they lie bring the other [points]."""
 POTTED = 0.5
 """Of the safeties that are predicted to pot a ball that is on, about so many do."""
-HIDDEN = 2.0
-"""What a snooker is worth beside what the worth says of it [points]."""
+EVEN = 80.0
+"""Points that are worth as much as the whole chance to win of an even frame."""
 _SEED = 7  # of the errors, which are the same for all
 
 
@@ -79,7 +79,7 @@ class Foresight:
         rest = np.flatnonzero(~foul & ~potted)
         left = pass_after_miss(at[of[rest]])
         left.positions[:] = places[rest]
-        gains[rest] = -self.worth(left) + HIDDEN * ~clear_paths(left).any_part
+        gains[rest] = -self.worth(left) + EVEN * hardship_of(left)[0]
         each = (one.reshape(m, k) for one in (gains, foul, potted, met == 0))
         gains, *fates = each
         return Foreseen(gains, out.reshape(m, k, 2, path.SEEN), *fates)
