@@ -38,11 +38,18 @@ from .worth import (
     pass_after_miss,
 )
 
+Foresee: TypeAlias = Callable[[Positions, Ints, Floats, int], Floats]
+"""What strokes (m, 5) without a pot in ``at[rows]`` promise under so many errors, without a simulated shot: (m,) [points]."""
 SAFETY = 1  # the kind of safeties
 FORESEEN, AGAIN, KEPT = 8, 2.5, 0.8
-DISTANT, FAREST, HIDDEN, FOULS = 0.04, 2.8, 0.04, 0.06
+"""Of safeties, for each that is looked at: how many are foreseen without error, and of these how many under several; the
+share of the looks that goes to those that promise most, the others come as they are."""
+SURE_OF = 4  # errors under which these are foreseen
+DISTANT, FAREST, HIDDEN, FOULS = 0.02, 2.4, 0.03, 0.04
+"""What speaks for a stroke beside the worth, in chances to win of an even frame: that the nearest ball on is so far from
+where the other must play [m], that it is hidden; and against it, that it is a foul."""
 HIDES = 0.3
-Foresee: TypeAlias = Callable[[Positions, Ints, Floats, int], Floats]
+"""How likely the other is to foul in a snooker that the striker needs."""
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
 TIE = 2e-4
 """What a point counts beside the chance to win, so that a frame that is won or lost is still played well."""
@@ -81,6 +88,8 @@ class FrameJudge:
         The law of the chance to win of an expected lead, see ``planning.worth``. None (default): points alone count.
     noise, threads : optional
         As for ``Planner``.
+    foresee : callable, optional
+        What safeties promise without a simulated shot; with it many more are considered. None (default): as proposed.
 
     Examples
     --------
@@ -140,7 +149,12 @@ class FrameJudge:
         for kind, (generate, many) in enumerate(zip(generators, plan.looks, strict=True)):
             if many and kind == SAFETY and self.foresee is not None:
                 made.append(
-                    (*self._promising(at, generate(search, visits, FORESEEN * many, seeds), many), kind)
+                    (
+                        *self._promising(
+                            self.foresee, at, generate(search, visits, FORESEEN * many, seeds), many
+                        ),
+                        kind,
+                    )
                 )
             elif many:
                 made.append((*Proposals(*generate(search, visits, many, seeds)), kind))
@@ -149,12 +163,12 @@ class FrameJudge:
         kinds = np.concatenate([np.full(one[1].shape, one[2]) for one in made], axis=1)
         return Proposed(strokes, chances, kinds, np.full(len(at), plan.looks[1] > 0))
 
-    def _promising(self, at: Positions, made: Proposals, many: int) -> Proposals:
+    def _promising(self, foresee: Foresee, at: Positions, made: Proposals, many: int) -> Proposals:
         """The ``many`` of proposals for n positions that promise most without a simulated shot."""
         seems = np.where(made.chances > 0.0, 0.0, -np.inf)
-        for samples, keep in ((1, round(many * AGAIN)), (4, round(many * KEPT))):
+        for samples, keep in ((1, round(many * AGAIN)), (SURE_OF, round(many * KEPT))):
             rows, picks = np.nonzero(np.isfinite(seems))
-            seems[rows, picks] = self.foresee(at, rows, made.strokes[rows, picks], samples)
+            seems[rows, picks] = foresee(at, rows, made.strokes[rows, picks], samples)
             seems[np.argsort(np.argsort(-seems, axis=1, kind="stable"), axis=1) >= keep] = -np.inf
         # some as they come: what is foreseen errs alike for many
         rest = (made.chances > 0.0) & ~np.isfinite(seems)
@@ -229,7 +243,8 @@ class FrameJudge:
         comes = (
             (after.game[:, columns.STRIKER] == 1) & (after.game[:, columns.PHASE] == columns.STROKE) & ~foul
         )
-        some = np.flatnonzero(comes & (after.game[:, columns.OVER] == 0))
+        comes &= (after.game[:, columns.OVER] == 0) & (after.game[:, columns.RESPOTTED_BLACK] == 0)
+        some = np.flatnonzero(comes)
         care, out = -FOULS * foul, chance.copy()
         if len(some):
             theirs = turn_to_striker(after[some])

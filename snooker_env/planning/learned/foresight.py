@@ -49,6 +49,12 @@ class Foresight:
         self._errors = normal_points(SAMPLES, _SEED)
         self._errors[0] = 0.0
 
+    def promise(self, at: Positions, rows: Ints, strokes: Floats, samples: int) -> Floats:
+        """What strokes (m, 5) in ``at[rows]`` promise on average of ``samples`` errors: (m,) [points]."""
+        missed, goes_on = self.worth(pass_after_miss(at)), self.worth(at)
+        balls = missed.astype(np.float64), goes_on.astype(np.float64)
+        return self.foresee(at, rows, strokes, *balls, samples, EVEN).gains.mean(axis=1)
+
     def foresee(
         self,
         at: Positions,
@@ -57,9 +63,10 @@ class Foresight:
         missed: Floats,
         goes_on: Floats,
         samples: int = SAMPLES,
+        even: float = 0.0,
     ) -> Foreseen:
         """What strokes (m, 5) in ``at[rows]`` are predicted to lead to. ``missed``, ``goes_on`` (n,): what the other and the
-        striker make of the balls of ``at`` as they lie [points]."""
+        striker make of the balls of ``at`` as they lie [points]; ``even``: what the hardship of what is left counts [points]."""
         m, k, errors = len(rows), samples, self._errors[:samples]
         balls, law = (at.positions, at.on_table, at.game), law_of(self.dynamics, at)
         out, places = np.empty((m * k, 2, path.SEEN)), np.empty((m * k, N_BALLS, 2))
@@ -79,7 +86,7 @@ class Foresight:
         rest = np.flatnonzero(~foul & ~potted)
         left = pass_after_miss(at[of[rest]])
         left.positions[:] = places[rest]
-        gains[rest] = -self.worth(left) + EVEN * hardship_of(left)[0]
+        gains[rest] = -self.worth(left) + even * hardship_of(left)[0]
         each = (one.reshape(m, k) for one in (gains, foul, potted, met == 0))
         gains, *fates = each
         return Foreseen(gains, out.reshape(m, k, 2, path.SEEN), *fates)
