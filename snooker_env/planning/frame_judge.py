@@ -4,9 +4,9 @@ worth of what they leave to the next player (``worth``), and by the chance to wi
 The budget goes where the decision is hard. Where a pot is likely (``EASY``), few pots are looked at; elsewhere more
 pots, several times as many safeties, and escapes where hardly anything is seen."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -19,17 +19,41 @@ from ..tasks.threads import Threads, processors
 from .aims import Dynamics
 from .planner import options_in
 from .positions import Positions
+from .pot_geometry import clear_paths
 from .proposals import Proposals, at_balls, over_cushions, safeties
 from .prospects import spread_of
 from .search import BUDGET, Plan, Proposed, Search
 from .stroke_columns import COLUMNS
-from .trials import FrameTrials
-from .worth import LAST, Chance, Worth, follows, in_one_stroke, last_of, lead_of, left_of, pass_after_miss
+from .trials import FrameTrials, turn_to_striker
+from .worth import (
+    FOUL,
+    LAST,
+    Chance,
+    Worth,
+    follows,
+    in_one_stroke,
+    last_of,
+    lead_of,
+    left_of,
+    pass_after_miss,
+)
 
+Foresee: TypeAlias = Callable[[Positions, Ints, Floats, int], Floats]
+"""What strokes (m, 5) without a pot in ``at[rows]`` promise under so many errors, without a simulated shot: (m,) [points]."""
+SAFETY = 1  # the kind of safeties
+FORESEEN, AGAIN, KEPT = 8, 2.5, 0.8
+"""Of safeties, for each that is looked at: how many are foreseen without error, and of these how many under several; the
+share of the looks that goes to those that promise most, the others come as they are."""
+SURE_OF = 4  # errors under which these are foreseen
+DISTANT, FAREST, HIDDEN, FOULS = 0.02, 2.4, 0.03, 0.04
+"""What speaks for a stroke of a search beside the worth, in chances to win of an even frame: that the nearest ball on is so far from
+where the other must play [m], that it is hidden; and against it, that it is a foul."""
+HIDES = 0.3
+"""How likely the other is to foul in a snooker that the striker needs."""
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
 TIE = 2e-4
 """What a point counts beside the chance to win, so that a frame that is won or lost is still played well."""
-PLANS = Plan((34, 0, 0, 0), ((6, 2), (3, 6))), Plan((24, 116, 20, 24), ((18, 3), (6, 7)))
+PLANS = Plan((44, 0, 0, 0), ((7, 2), (3, 7))), Plan((24, 40, 16, 24), ((20, 4), (7, 8)))
 """Where the decision is easy, and where it is hard, with ``BUDGET`` shots on average: looks at pots, safeties, contacts and
 escapes."""
 
@@ -41,6 +65,14 @@ def scale(plan: Plan, share: float) -> Plan:
     return Plan(
         looks, tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in plan.rounds)
     )
+
+
+def hardship_of(theirs: Positions) -> tuple[Floats, Bools]:
+    """What speaks for leaving n positions to the other, beside their worth, in chances to win of an even frame: (n,); and
+    whether no straight path leads to a ball on: (n,)."""
+    gaps = np.hypot(*(theirs.positions - theirs.positions[:, :1]).transpose(2, 0, 1))
+    near, hidden = np.where(theirs.balls_on, gaps, np.inf).min(axis=1), ~clear_paths(theirs).any_part
+    return DISTANT * np.minimum(near / FAREST, 1.0) + HIDDEN * hidden, hidden
 
 
 class FrameJudge:
@@ -56,6 +88,8 @@ class FrameJudge:
         The law of the chance to win of an expected lead, see ``planning.worth``. None (default): points alone count.
     noise, threads : optional
         As for ``Planner``.
+    foresee : callable, optional
+        What safeties promise without a simulated shot; with it many more are considered. None (default): as proposed.
 
     Examples
     --------
@@ -75,6 +109,7 @@ class FrameJudge:
         *,
         noise: NoiseLike | None = None,
         threads: int | None = None,
+        foresee: Foresee | None = None,
     ):
         rules = options_in(env_or_options).rules
         self.noise: Noise = rules.noise if noise is None else Noise.of(noise)
@@ -86,6 +121,7 @@ class FrameJudge:
         self.dynamics: Dynamics = Dynamics.of(self.rules)
         self.worth: Worth = worth
         self.chance: Chance | None = chance
+        self.foresee: Foresee | None = foresee
         self.shots: int = 0
 
     def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
@@ -112,12 +148,35 @@ class FrameJudge:
         made, visits = [], at.as_visits()
         generators = (*search.propose, safeties, at_balls, over_cushions)
         for kind, (generate, many) in enumerate(zip(generators, plan.looks, strict=True)):
-            if many:
+            if many and kind == SAFETY and self.foresee is not None:
+                made.append(
+                    (
+                        *self._promising(
+                            self.foresee, at, generate(search, visits, FORESEEN * many, seeds), many
+                        ),
+                        kind,
+                    )
+                )
+            elif many:
                 made.append((*Proposals(*generate(search, visits, many, seeds)), kind))
         strokes = np.concatenate([one[0] for one in made], axis=1)
         chances = np.concatenate([one[1] for one in made], axis=1)
         kinds = np.concatenate([np.full(one[1].shape, one[2]) for one in made], axis=1)
         return Proposed(strokes, chances, kinds, np.full(len(at), plan.looks[1] > 0))
+
+    def _promising(self, foresee: Foresee, at: Positions, made: Proposals, many: int) -> Proposals:
+        """The ``many`` of proposals for n positions that promise most without a simulated shot."""
+        seems = np.where(made.chances > 0.0, 0.0, -np.inf)
+        for samples, keep in ((1, round(many * AGAIN)), (SURE_OF, round(many * KEPT))):
+            rows, picks = np.nonzero(np.isfinite(seems))
+            seems[rows, picks] = foresee(at, rows, made.strokes[rows, picks], samples)
+            seems[np.argsort(np.argsort(-seems, axis=1, kind="stable"), axis=1) >= keep] = -np.inf
+        # some as they come: what is foreseen errs alike for many
+        rest = (made.chances > 0.0) & ~np.isfinite(seems)
+        seems = np.where(rest, -1e9 - np.arange(seems.shape[1]), seems)
+        best = np.argsort(-seems, axis=1, kind="stable")[:, :many]
+        strokes = np.take_along_axis(made.strokes, best[..., None], 1)
+        return Proposals(strokes, np.take_along_axis(made.chances, best, 1))
 
     def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
         """See ``Judge.look``, with the chance of each pot; what fouls as intended is played where it wins the frame, or where
@@ -172,9 +231,32 @@ class FrameJudge:
         """What strokes that were played at the leads ``before`` (m,) and left ``after`` are worth to their strikers:
         (m, 2), as ``gains``."""
         points = follows(self.worth, after, before, self.rules.rule_set.code)
-        chance = self.chances(lead_of(after), before + points - lead_of(after), after)
+        rest = before + points - lead_of(after)
+        chance = self.chances(lead_of(after), rest, after)
+        if self.chance is not None:
+            rows = np.flatnonzero(self._is_others(before, after) & (lead_of(after) < -left_of(after)))
+            rows = rows[hardship_of(turn_to_striker(after[rows]))[1]]
+            fouled = self.chances(lead_of(after)[rows] + FOUL, rest[rows], after[rows])
+            chance[rows] += HIDES * np.maximum(0.0, fouled - chance[rows])  # a snooker that the striker needs
         over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
         return np.column_stack([np.where(over, won, chance), points])
+
+    @staticmethod
+    def _is_others(before: Floats, after: Positions) -> Bools:
+        """Whether the other comes to a stroke without a foul: (m,)."""
+        game = after.game
+        comes = (game[:, columns.STRIKER] == 1) & (game[:, columns.PHASE] == columns.STROKE)
+        comes &= (game[:, columns.OVER] == 0) & (game[:, columns.RESPOTTED_BLACK] == 0)
+        return comes & (lead_of(after) >= before)
+
+    def _preference(self, before: Floats, chance: Floats, after: Positions) -> Floats:
+        """What speaks for strokes beside their ``chance`` to win, whose worth a search deceives: (m,)."""
+        if self.chance is None:
+            return np.zeros(len(before))
+        care, some = -FOULS * (lead_of(after) < before), np.flatnonzero(self._is_others(before, after))
+        if len(some):
+            care[some] = hardship_of(turn_to_striker(after[some]))[0]
+        return 4.0 * chance * (1.0 - chance) * care
 
     def chances(self, now: Floats, worth: Floats, at: Positions) -> Floats:
         """The chances to win, (m,), of who leads by ``now`` and expects ``worth`` more than the other from the balls of
@@ -202,6 +284,7 @@ class FrameJudge:
         whether one was, and then chance and points if it is not played again, and what they lose by the penalty."""
         before, parts = lead_of(at)[rows], np.zeros((len(rows), 7))
         both, called = self.value_of(before, after), after.game[:, columns.MISS_CALLED] != 0
+        both[:, 0] += self._preference(before, both[:, 0], after)
         parts[~called, :2], parts[called, 3:5], parts[:, 2] = both[~called], both[called], called
         some = np.flatnonzero(called)
         if len(some):

@@ -7,6 +7,8 @@ from .._lib.check import integer, refuse, refuse_what
 from .._lib.types import Floats, Integers, Singles
 from ..game import frame_columns as columns
 from ..planning import FrameJudge, Positions, Search, processors, spread_of
+from ..planning.aims import Dynamics
+from ..planning.learned.foresight import Foresight
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.learned_worth import LearnedWorth
 from ..planning.learned.policy_proposals import PolicyProposals
@@ -41,7 +43,8 @@ class Tactician(FramePlayer):
         learned = learned_at(level_for(noise))
         value = LearnedValue(learned.value, spread_of(noise, physics), processors())
         worth = LearnedWorth(value, layers)
-        self.judge = FrameJudge(options, worth, chance)
+        foresight = Foresight(options.rules, Dynamics.of(options.rules), worth)
+        self.judge = FrameJudge(options, worth, chance, foresee=foresight.promise)
         self.search = Search(self.judge, self.budget, PolicyProposals(learned.policy))
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:

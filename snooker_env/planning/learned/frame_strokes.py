@@ -11,38 +11,35 @@ from numpy.typing import NDArray
 
 from ..._lib.types import Bools, Floats, Integers, Ints
 from ...game import frame_columns as columns
-from ...game.balls import BLACK, N_BALLS, PINK, VALUES
+from ...game.balls import BLACK, PINK, VALUES
 from ...tasks.noise import Spread
 from ...tasks.options import Rules
-from ..aims import Dynamics, law_of
+from ..aims import Dynamics
 from ..frame_judge import EASY
 from ..positions import Positions, PositionsLike, check_has_stroke, seeds_of
 from ..proposals import safeties
-from ..prospects import in_parts
 from ..search import Ranked
-from ..sobol import normal_points
 from ..stroke_columns import COLUMNS, SIDE, SPEED, TOP
 from ..strokes import Strokes
 from ..worth import SPREAD, Chance, breaks_off, lead_of, left_of, pass_after_miss
 from . import cue_ball_path as path
 from .dense_layers import Layers
+from .foresight import FOUL as FOUL
+from .foresight import POTTED as POTTED
+from .foresight import SAMPLES as SAMPLES
+from .foresight import Foresight
 from .learned_worth import LearnedWorth
 from .stroke_value import LEARNED, LOOKS, POINTS, StrokeValue
 from .stroke_value import SIZE as POT_SIZE
 
-SAFETIES, SAMPLES = 60, 4
-"""Safeties that are looked at, and errors under which each is predicted; the first is none."""
+SAFETIES = 60
+"""Safeties that are looked at."""
 STROKES = LOOKS + SAFETIES
 SHARED, SAFE_SIZE = 5, 24
 SIZE = SHARED + POT_SIZE + SAFE_SIZE
 """What is seen of a stroke: what it seems to be worth, what the balls as they lie are worth to the other and to the striker,
 reds, whether it is a pot; what ``stroke_value`` sees of a pot; what is predicted of a safety."""
 FOULS = SHARED + POT_SIZE + 4  # the column of the share of errors under which a safety is a foul
-FOUL = 8.0
-"""What a predicted foul costs beside what the balls as they lie bring the other [points]."""
-POTTED = 0.5
-"""Of the safeties that are predicted to pot a ball that is on, about so many do."""
-_SEED = 7  # of the errors, which are the same for all
 _CHANCE = 2  # the column of what ``stroke_value`` sees that is the pot's chance
 
 
@@ -76,9 +73,7 @@ class FrameStrokes:
         self.dynamics: Dynamics = values.dynamics
         self.spread: Spread = values.value.spread
         self._layers = Layers(layers, "relu") if layers else None
-        self._noise = rules.noise.pack(self.dynamics.physics.R, real=len(self.dynamics.rails) > 0)
-        self._errors = normal_points(SAMPLES, _SEED)[:, :COLUMNS]
-        self._errors[0] = 0.0
+        self._foresight = Foresight(rules, self.dynamics, worth)
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """Rank strokes in n positions of frames by their points, as ``Search.rank``: none met a noise sample. None
@@ -147,30 +142,11 @@ class FrameStrokes:
     ) -> tuple[Floats, Floats]:
         """What safeties (m, 5) in ``at[rows]`` seem to be worth, in units of ``POINTS``, (m,), and what is predicted of
         them, (m, SAFE_SIZE). ``missed``, ``goes_on`` (n,): what the other and the striker make of the balls of ``at``."""
-        m, k = len(rows), len(self._errors)
-        balls, law = (at.positions, at.on_table, at.game), law_of(self.dynamics, at)
-        out, places = np.empty((m * k, 2, path.SEEN)), np.empty((m * k, N_BALLS, 2))
-        met, legal = np.empty(m * k, np.int64), np.empty(m * k, np.bool_)
-
-        def predict(part: slice) -> None:
-            all_of, some = slice(k * part.start, k * part.stop), (rows[part], strokes[part])
-            left = places[all_of], met[all_of], legal[all_of]
-            path.predict_contacts(balls, *some, self._errors, self._noise, law, out[all_of], left)
-
-        in_parts(m, self.values.value.threads, predict)
-        of, lost = np.repeat(rows, k), out[..., path.LOST] > 0.0
-        foul, potted = ~legal | lost[:, 0], legal & lost[:, 1] & ~lost[:, 0]
-        gains = -missed[of]
-        gains[potted] += POTTED * (VALUES[met] + goes_on[of] + missed[of])[potted]
-        gains[foul] = np.minimum(gains[foul], 0.0) - FOUL
-        rest = np.flatnonzero(~foul & ~potted)
-        left = pass_after_miss(at[of[rest]])
-        left.positions[:] = places[rest]
-        gains[rest] = -self.worth(left)
-        gains, seen = gains.reshape(m, k) / 20.0, out.reshape(m, k, 2, path.SEEN)
+        told = self._foresight.foresee(at, rows, strokes, missed, goes_on)
+        m, gains, seen = len(rows), told.gains / 20.0, told.seen
         first, mean, cue = seen[:, 0], seen.mean(axis=1), seen[:, :, 0]
         columns_seen = [gains[:, 0], gains.min(axis=1), gains.max(axis=1), gains.std(axis=1)]
-        columns_seen += [one.reshape(m, k).mean(axis=1) for one in (foul, potted, met == 0)]
+        columns_seen += [one.mean(axis=1) for one in (told.foul, told.potted, told.missed)]
         columns_seen += [
             first[:, 0, path.LOST],
             np.full(m, np.log(np.clip(self.spread.core, *LEARNED) / SPREAD)),
