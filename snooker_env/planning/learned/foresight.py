@@ -88,6 +88,5 @@ class Foresight:
         left = pass_after_miss(at[of[rest]])
         left.positions[:] = places[rest]
         gains[rest] = -self.worth(left) + even * hardship_of(left)[0]
-        each = (one.reshape(m, k) for one in (gains, foul, potted, met == 0))
-        gains, *fates = each
-        return Foreseen(gains, out.reshape(m, k, 2, path.SEEN), *fates)
+        fates = (one.reshape(m, k) for one in (foul, potted, met == 0))
+        return Foreseen(gains.reshape(m, k), out.reshape(m, k, 2, path.SEEN), *fates)
