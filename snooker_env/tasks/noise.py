@@ -167,7 +167,7 @@ class Noise:
     --------
     >>> from snooker_env.tasks import LEVELS, Noise
     >>> LEVELS["club"].aim_deg, Noise(speed_rel=0.02).silent
-    (0.048, False)
+    (0.056, False)
     """
 
     aim_deg: float = 0.0
@@ -252,10 +252,10 @@ class Noise:
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
 """The types that arguments called ``noise`` accept, see ``Noise.of``."""
 _PROFESSIONAL = Noise(
-    aim_deg=0.012,
-    speed_rel=0.015,
-    offset_mm=0.074,
-    elevation_deg=0.1,
+    aim_deg=0.014,
+    speed_rel=0.017,
+    offset_mm=0.085,
+    elevation_deg=0.11,
     growth=1.0,
     lapse=0.1,
     lapse_factor=7.0,

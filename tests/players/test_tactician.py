@@ -77,7 +77,7 @@ def test_the_chance_to_win_is_that_of_the_lead_to_come():
     going = np.flatnonzero(~at.over)
     law, worth = player.judge.chance, player.judge.worth
     some = at[going]
-    wanted = law(lead_of(some), worth(some), left_of(some), last_of(some), player.judge.spread)
+    wanted = law(lead_of(some), worth(some), left_of(some), last_of(some), player.judge.spread.core)
     np.testing.assert_allclose(chances[going], wanted, rtol=0, atol=1e-6)
     for k in range(12):
         assert player.chance_to_win(at[[k]])[0] == pytest.approx(chances[k], abs=1e-6)

@@ -40,10 +40,10 @@ def test_noise_has_the_deviations_that_it_says():
 
 WIDTHS = {  # of the aim [deg] and of the speed [m/s] at 3 m/s; 3.162 = sqrt(1 + 3^2)
     "none": (0.0, 0.0),
-    "professional": (0.012 * 3.162, 0.045),
-    "amateur": (0.024 * 3.162, 0.09),
-    "club": (0.048 * 3.162, 0.18),
-    "beginner": (0.096 * 3.162, 0.36),
+    "professional": (0.014 * 3.162, 0.051),
+    "amateur": (0.028 * 3.162, 0.102),
+    "club": (0.056 * 3.162, 0.204),
+    "beginner": (0.112 * 3.162, 0.408),
     "robot": (0.033, 0.24),
     "olympiad": (0.125, 0.075),
 }
