@@ -17,6 +17,7 @@ from ..physics.table import Table
 from ..planning.positions import Positions
 from ..planning.pot_chance import pot_chances
 from ..planning.pot_geometry import obstructions, pots
+from ..planning.prospects import spread_of
 from ..tasks.noise import LEVELS
 
 MOST = 126  # largest number of lines: from 21 balls to 6 pockets
@@ -58,7 +59,7 @@ class Line:
 def find_lines(positions: list[Positions], on: int, noise: str) -> list[Line]:
     """Lines to pockets for the balls ``on``; ``positions``: the table, with a free ball also for colours."""
     errors = LEVELS[noise]
-    sigma = 0.0 if errors.silent else radians(errors.direction_deg())
+    spread = None if errors.silent else spread_of(errors)
     tolerances = {}
     for position in positions:
         some = pots(position, most=MOST)
@@ -81,10 +82,10 @@ def find_lines(positions: list[Positions], on: int, noise: str) -> list[Line]:
     barred = obstructions(at, rows, places[balls], aims, ignore=skip)
     barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
     each = zip(ways, ghosts, aims, barred, strict=True)
-    return [_line(*one, places, tolerances, sigma) for one in each]
+    return [_line(*one, places, tolerances, spread) for one in each]
 
 
-def _line(which, ghost, aim, barred, places, tolerances, sigma):
+def _line(which, ghost, aim, barred, places, tolerances, spread):
     ball, pocket = which
     run, way = ghost - places[CUE], aim - places[ball]
     far, on = hypot(*run), hypot(*way)
@@ -95,8 +96,8 @@ def _line(which, ghost, aim, barred, places, tolerances, sigma):
     why = "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
     why = "" if tolerance or blocked else why
     chance = None
-    if sigma and tolerance:
-        chance = float(pot_chances(np.array([tolerance]), np.array([far + on]), sigma)[0])
+    if spread is not None and tolerance:
+        chance = float(pot_chances(np.array([tolerance]), np.array([far + on]), spread)[0])
     aim = atan2(run[1], run[0])
     return Line(ball, pocket, tolerance > 0.0, blocked, why, cut, far, on, aim, tolerance, chance)
 

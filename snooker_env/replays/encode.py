@@ -90,9 +90,9 @@ def encode_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, An
 
 
 def noise_data(noise: Noise) -> str | dict[str, float]:
-    """Execution errors as JSON types, which ``Noise.of`` reads: the name of a level, or the deviations that are not 0."""
+    """Execution errors as JSON types, which ``Noise.of`` reads: the name of a level, or the fields that are not the defaults."""
     level = next((name for name, one in LEVELS.items() if one == noise), None)
-    return level or {name: value for name, value in asdict(noise).items() if value}
+    return level or {name: value for name, value in asdict(noise).items() if value != getattr(Noise(), name)}
 
 
 def physics_data(physics: Physics) -> str | dict[str, Any]:

@@ -1,6 +1,7 @@
 """Do the levels of ``noise`` play as published, and does ``benchmarks.execution`` measure that rightly?"""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -46,19 +47,23 @@ def test_without_errors_every_pot_goes_in_and_stays_so_just_within_its_window():
         assert still.rate == 1.0 and still.placement == (0.0, 0.0, 0.0)
 
 
-def test_the_published_long_pots_take_about_half_of_a_professionals_errors():
-    """docs/validation/execution_errors.md: 0.035 deg makes them, the level 23 %."""
+def test_a_professional_makes_fewer_long_pots_than_are_said():
+    """docs/validation/execution_errors.md: 50 to 65 % are said, which Gaussian errors of 0.035 deg make; the level 38 %."""
     shots, (low, high) = shots_of(pot_shots.LONG), published.LONG_POTS
     usual = Noise.of("professional")
-    rate = published.mean_rate(shots, pot_shots.of_direction(0.035, usual, PHYSICS), 2000, PHYSICS, TABLE)
+    even = replace(pot_shots.of_direction(0.035, usual, PHYSICS), lapse=0.0)
+    rate = published.mean_rate(shots, even, 2000, PHYSICS, TABLE)
     assert low + 0.03 < rate < high - 0.03
-    assert published.mean_rate(shots, usual, 2000, PHYSICS, TABLE) == pytest.approx(0.23, abs=0.01)
+    assert published.mean_rate(shots, usual, 2000, PHYSICS, TABLE) == pytest.approx(0.38, abs=0.015)
 
 
 @pytest.mark.parametrize(("level", "deg"), [("amateur", 0.049), ("club", 0.119)])
 def test_the_published_aim_errors_pot_as_derived(level, deg):
-    """By the errors that ``--fit`` finds, less than half of the level's."""
-    noise, shots = pot_shots.of_direction(deg, level, PHYSICS), shots_of(pot_shots.DERIVED)
+    """By the errors without lapses that ``--fit`` found, about those of the level."""
+    noise, shots = (
+        replace(pot_shots.of_direction(deg, level, PHYSICS), lapse=0.0),
+        shots_of(pot_shots.DERIVED),
+    )
     low, high = published.by_derivation(level)
     assert low - 0.025 < published.mean_rate(shots, noise, 2000, PHYSICS, TABLE) < high + 0.025
 

@@ -92,7 +92,9 @@ def test_the_table_of_options_is_the_one_that_their_declarations_make():
 def test_noise_levels_have_the_numbers_that_are_printed():
     ((head, *rows),) = tables("Noise")
     levels = [ast.literal_eval(cell.strip("`")) for cell in head[2:]]
-    assert {*levels, "none"} == set(LEVELS)
+    scales = {"amateur": 2.0, "club": 4.0, "beginner": 8.0}
+    assert {*levels, *scales, "none"} == set(LEVELS)
+    assert all(LEVELS[name] == LEVELS["professional"].scale(times) for name, times in scales.items())
     assert [row[0].strip("`") for row in rows] == [field.name for field in dataclasses.fields(Noise)]
     for row in rows:
         numbers = [getattr(LEVELS[level], row[0].strip("`")) for level in levels]

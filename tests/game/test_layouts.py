@@ -14,6 +14,7 @@ from snooker_env.game.pots import pots
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from snooker_env.planning import Positions, prospects_of
+from snooker_env.tasks.noise import Spread
 
 NAMES = ["break_off", "line_up", "colours", "random:0", "random:6", "random:15"]
 
@@ -92,7 +93,7 @@ def test_no_pot_is_on_where_a_safety_is_asked_for(name):
     env = SnookerVectorEnv(60, layout=name, cue="real", noise="professional", threads=1)
     env.reset(seed=1)
     at, rules = Positions.of(env), env.options.rules
-    made_for = np.radians(0.063)  # the error that the tables were chosen for
+    made_for = Spread(np.radians(0.063))  # the error that the tables were chosen for
     chances = prospects_of(at, made_for, most=16, rails=rules.rails)[1]
     assert 0.05 < chances.max() <= LIKELY
     assert at.on_table[:, [0, *range(YELLOW, 22)]].all() and (at.on_table[:, 1:YELLOW].sum(axis=1) >= 3).all()

@@ -32,10 +32,12 @@ def errors(level, speed, n, seed):
     """(n,) each: speed [m/s], aim [rad], side and top over R, elevation [rad], for a level stroke without
     spin."""
     noise, rng = LEVELS[level], np.random.default_rng(seed)
+    lapse = np.where(rng.random(n) < noise.lapse, noise.lapse_factor, 1.0)
     faster = math.sqrt(1.0 + (noise.growth * speed) ** 2)
-    speeds = speed + rng.normal(size=n) * math.hypot(noise.speed_rel * speed, noise.speed_abs)
-    side, top = rng.normal(size=(2, n)) * noise.offset_mm * faster / (1e3 * R)
-    aim, elevation = rng.normal(size=(2, n)) * np.radians([[noise.aim_deg * faster], [noise.elevation_deg]])
+    speeds = speed + lapse * rng.normal(size=n) * math.hypot(noise.speed_rel * speed, noise.speed_abs)
+    side, top = lapse * rng.normal(size=(2, n)) * noise.offset_mm * faster / (1e3 * R)
+    wide = np.radians([[noise.aim_deg * faster], [noise.elevation_deg]])
+    aim, elevation = lapse * rng.normal(size=(2, n)) * wide
     return speeds, aim, side, top, np.maximum(elevation, 0.0)
 
 

@@ -109,12 +109,14 @@ def test_it_plays_frames_under_all_options(options):
     assert len(player.play(Positions.of(frame)[[]], [])) == 0
     for k in range(20):
         at, keys = Positions.of(frame), np.arange(12) + 50 * k
+        if at.over.any():
+            break
         strokes, half = player.play(at, keys), [1, 4, 11]
         for part, whole in zip(player.play(at[half], keys[half]).parts, strokes.parts, strict=True):
             assert np.array_equal(part, whole[half], equal_nan=True)
         met = {name: many + int(getattr(at, name).sum()) for name, many in met.items()}
         frame.step(strokes.actions(frame.options, at))
-    assert met["in_hand"] > 0
+    assert k > 10 and met["in_hand"] > 0
     assert (met["anywhere"] > 0) == (options.get("game") == "shoot_out")
 
 

@@ -110,7 +110,7 @@ def test_what_the_rules_decide_is_certain():
 
 def test_what_time_decides_is_certain():
     """The Shoot Out: time for one stroke, which brings at most 7 points, by a foul to the other."""
-    rules = {"task": "frame", "game": "shoot_out", "noise": "professional", "opponent": "none"}
+    rules = {"task": "frame", "game": "shoot_out", "noise": "club", "opponent": "none"}
     env, player = sn.SnookerEnv(**rules), sn.player("tactician_30")
     two = Position(cue=(0.3, 1.0), pink=(0.0, 0.885), black=(0.0, 1.4605), on="pink")
     hard = Position(cue=(0.0, -1.7), black=(-0.5, 1.7))

@@ -47,7 +47,7 @@ class Foresight:
         self.worth: LearnedWorth = worth
         self.dynamics: Dynamics = dynamics
         self._noise = rules.noise.pack(dynamics.physics.R, real=len(dynamics.rails) > 0)
-        self._errors = normal_points(SAMPLES, _SEED)[:, :COLUMNS]
+        self._errors = np.ascontiguousarray(normal_points(SAMPLES, _SEED)[:, :COLUMNS])
         self._errors[0] = 0.0
 
     def promise(self, at: Positions, rows: Ints, strokes: Floats, samples: int) -> Floats:

@@ -69,7 +69,7 @@ class StrokeValue:
         self._noise = replace(noise, speed_rel=max(noise.speed_rel, _LEAST_SPEED)).pack(
             dynamics.physics.R, real=len(dynamics.rails) > 0
         )
-        self._errors = normal_points(SAMPLES, _SEED)[:, :COLUMNS]
+        self._errors = np.ascontiguousarray(normal_points(SAMPLES, _SEED)[:, :COLUMNS])
         self._errors[:, AIM:] = 0.0  # the pot's chance knows those of the aim
         self._errors[0] = 0.0
 
