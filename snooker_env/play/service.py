@@ -6,6 +6,7 @@ has seen. An agent's stroke is dropped if the game has changed in the meantime."
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from math import sqrt
 from time import monotonic
 from typing import Any
 
@@ -23,7 +24,7 @@ from ..players.table_report import nominations_of
 from ..replays.chances import ChanceJudge, Standing, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
-from ..tasks.noise import LEVELS
+from ..tasks.noise import LEVELS, Noise
 from .session import DECLINED, Act, Session
 
 PERSON = "person"
@@ -59,7 +60,7 @@ class Seats:
         people = [seat for seat in seats if not self.is_agent(seat)]
         levels: list[NoiseName] = [session.noise[seat] for seat in people or seats]
         levels.append("amateur" if people and "none" in levels else "professional")
-        return max(levels, key=lambda name: LEVELS[name].direction_deg())
+        return max(levels, key=lambda name: _size(LEVELS[name]))
 
     def sit(self, who: list[str]) -> None:
         """Assign both seats; ValueError for an unknown name."""
@@ -270,3 +271,8 @@ class Service:
             nominated == DECLINED and session.frame.free_ball
         )
         session.play(stroke, nominated=nominated if sensible else AUTO)
+
+
+def _size(noise: Noise) -> float:
+    """The root mean square error of the direction [deg], lapses included."""
+    return noise.direction_deg() * sqrt(1.0 + noise.lapse * (noise.lapse_factor**2 - 1.0))

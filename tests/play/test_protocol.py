@@ -529,8 +529,9 @@ def test_lines_agree_with_geometry():
     assert straight.chance is None
     assert straight.to_pocket == pytest.approx(np.hypot(0.87376 - 0.6, 1.76926 - 1.4), abs=1e-6)
     (club,) = (line for line in find_lines([at], 0b010, "club") if line.pocket == straight.pocket)
-    sigma = np.radians(LEVELS["club"].direction_deg())
-    within = erf(straight.tolerance / (np.sqrt(2.0) * sigma))
+    noise = LEVELS["club"]
+    share = straight.tolerance / (np.sqrt(2.0) * np.radians(noise.direction_deg()))
+    within = (1.0 - noise.lapse) * erf(share) + noise.lapse * erf(share / noise.lapse_factor)
     assert club.chance == pytest.approx(within * np.exp(-0.01 * (straight.to_ball + straight.to_pocket)))
     away = lines[1, "bottom left"]
     assert not away.open and away.why == "cut too thin"

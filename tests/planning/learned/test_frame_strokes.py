@@ -77,7 +77,7 @@ def test_both_balls_come_to_rest_where_it_is_predicted():
 
 
 def test_what_strokes_seem_to_be_worth_is_about_what_they_are_worth():
-    """Of pots and of safeties, before anything of frames is learned: beside the same strokes under 16 execution errors."""
+    """Of pots and of safeties, before anything of frames is learned: beside the same strokes under 32 execution errors."""
     frame = sn.SnookerVectorEnv(24, layout="opened", **OPTIONS | {"noise": "professional"})
     frame.reset(seed=3)
     at, rng = Positions.of(frame), np.random.default_rng(4)
@@ -88,9 +88,9 @@ def test_what_strokes_seem_to_be_worth_is_about_what_they_are_worth():
         rows, which = np.nonzero(looked.there[:, kind])
         some = rng.permutation(len(rows))[:300]
         rows, which = rows[some], which[some] + kind.start
-        again, errors = np.repeat(rows, 16), rng.standard_normal((16 * len(rows), 5))
-        strokes = np.repeat(looked.strokes[rows, which], 16, axis=0)
-        worth = judge.gains(at, again, strokes, errors)[:, 1].reshape(-1, 16).mean(axis=1)
+        again, errors = np.repeat(rows, 32), judge.noise.draw_errors(rng, 32 * len(rows))
+        strokes = np.repeat(looked.strokes[rows, which], 32, axis=0)
+        worth = judge.gains(at, again, strokes, errors)[:, 1].reshape(-1, 32).mean(axis=1)
         said = seems[rows, which]
         assert np.corrcoef(said, worth)[0, 1] > alike
         assert abs(said.mean() - worth.mean()) < 9.0
