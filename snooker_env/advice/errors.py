@@ -37,6 +37,10 @@ AS_NEEDED = radians(2.0)  # a cue so little above what rails and balls need was 
 SHARES = np.linspace(0.005, 0.9, 12)  # shares of safeties among guessed pots that are thought of, each alike
 RADII = np.geomspace(0.12, 60.0, 27)  # sizes of errors that are tried [a professional's standard deviations]
 WAYS = 32  # errors of each radius that are tried
+# The density that every error has at least: beyond three or four deviations of a lapse its size tells nothing, for a line
+# was solved for a tip that was not meant, or a stroke was recorded wrongly
+FLOOR = 1e-5
+OUTER = 0.05  # share of pots played softest, and of those played hardest, whose speed may be a lapse's
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -205,7 +209,7 @@ def weigh_errors(e: Floats, more: Floats) -> Floats:
 
 def density(e: Floats, sigma: Floats) -> Floats:
     """The density of errors under the law of ``BASE``, of which all but the lapses have the deviations ``sigma``."""
-    base, out = LEVELS[BASE], np.full(np.broadcast_shapes(e.shape, sigma.shape), 1e-300)
+    base, out = LEVELS[BASE], np.full(np.broadcast_shapes(e.shape, sigma.shape), FLOOR)
     for share, times in ((1.0 - base.lapse, 1.0), (base.lapse, base.lapse_factor)):
         wide = times * sigma
         out += share / (wide * sqrt(2.0 * pi)) * np.exp(-0.5 * (e / wide) ** 2)
@@ -326,6 +330,10 @@ def measure_errors(strokes: list[Recorded], practice: Practice) -> Measurement:
         if practice.options.cue == "real":
             more *= 1.0 + elevation / TWICE
         directions[k], widths[k] = remainder(aside, 2.0 * pi) / (unit * more), CALLED / (unit * more)
+    if at_pots:
+        own = paces[list(at_pots)]
+        ends = np.quantile(own, OUTER, method="lower"), np.quantile(own, 1.0 - OUTER, method="higher")
+        paces[list(at_pots)] = np.clip(own, *ends)
     return Measurement(directions, widths, speeds, paces)
 
 
