@@ -225,6 +225,11 @@ def test_growth_with_the_speed_is_estimated(g):
     truth = [0.1 * np.hypot(1.0, g * one.at) / np.hypot(1.0, g * 1.5) for one in found]
     held = [one.direction.low < true < one.direction.high for one, true in zip(found, truth, strict=True)]
     assert sum(held) >= 18 and sum(one.growth.low <= g <= one.growth.high for one in found) >= 18
+    assert (
+        all(one.growth.high < 1.0 for one in found)
+        if g == 0.0
+        else all(one.growth.high > g / 2 for one in found)
+    )
     ratio = np.array([one.direction.value / true for one, true in zip(found, truth, strict=True)])
     assert abs(ratio.mean() - 1.0) < 0.07
     assert found[0].noise.direction_deg(speed=found[0].at) == pytest.approx(found[0].direction.value)
