@@ -114,15 +114,17 @@ def play(pool, rows, noise, rng):
 
 
 def execute(strokes, z, noise):
-    """The law of ``tasks.noise`` for strokes (n, 5) with a free cue: speed, side, top, aim of the cue, elevation."""
+    """The law of ``tasks.noise`` for strokes (n, 5) with a free cue: speed, side, top, aim of the cue, elevation; the tip
+    where the simulator has it, on the disc without a miscue."""
     speed, side, top, aim, elevation = strokes.T
     more, tip = np.hypot(1.0, noise.growth * speed), noise.offset_mm * 1e-3 / sn.Physics().R
     squirt = [np.arctan2(*sn.strike(1.0, 0.0, s)[0][1::-1]) for s in side]
+    tips = np.stack([side, top]) + z[:, 1:3].T * tip * more
+    tips /= np.maximum(1.0, np.hypot(*tips) / sn.Physics().max_offset)
     return np.column_stack(
         [
-            speed + z[:, 0] * np.hypot(noise.speed_abs, noise.speed_rel * speed),
-            side + z[:, 1] * tip * more,
-            top + z[:, 2] * tip * more,
+            np.maximum(0.0, speed + z[:, 0] * np.hypot(noise.speed_abs, noise.speed_rel * speed)),
+            *tips,
             aim - squirt + np.radians(noise.aim_deg) * more * z[:, 3],
             np.maximum(0.0, elevation + np.radians(noise.elevation_deg) * z[:, 4]),
         ]

@@ -29,7 +29,10 @@ SCALES = np.geomspace(LEAST, MOST, 600)
 STEP = float(np.log(SCALES[1] / SCALES[0]))
 # Growths g [s/m] that are thought of, errors being as sqrt(1 + (g V)^2): one in five that they do not grow, as of robots;
 # else each angle whose tangent is g V at the speed of a pot is as likely as any other
-GROWTHS = np.tan(np.linspace(0.0, 0.97, 31) * 0.5 * pi) / POT_SPEED
+_ANGLES = np.linspace(0.0, 0.97, 31) * 0.5 * pi
+GROWTHS = np.tan(_ANGLES) / POT_SPEED
+# The growths halfway between them: each stands for those between two of these
+ENDS = np.concatenate([[0.0], np.tan(0.5 * (_ANGLES[1:] + _ANGLES[:-1])) / POT_SPEED, GROWTHS[-1:]])
 UNGROWN = 0.2
 PRIOR = np.where(GROWTHS == 0.0, UNGROWN, (1.0 - UNGROWN) / (len(GROWTHS) - 1))
 SEVERAL = 1.5  # highest over lowest speed from which the strokes tell a growth
@@ -37,6 +40,10 @@ AS_NEEDED = radians(2.0)  # a cue so little above what rails and balls need was 
 SHARES = np.linspace(0.005, 0.9, 12)  # shares of safeties among guessed pots that are thought of, each alike
 RADII = np.geomspace(0.12, 60.0, 27)  # sizes of errors that are tried [a professional's standard deviations]
 WAYS = 32  # errors of each radius that are tried
+# The density that every error has at least: beyond three or four deviations of a lapse its size tells nothing, for a line
+# was solved for a tip that was not meant, or a stroke was recorded wrongly
+FLOOR = 1e-5
+OUTER = 0.05  # share of pots played softest, and of those played hardest, whose speed may be a lapse's
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,14 +67,15 @@ class PlayerErrors:
     Attributes
     ----------
     direction : Estimate or None
-        Standard deviation of the cue ball's direction at the cue speed ``at`` [deg]; None if no stroke tells it.
+        Standard deviation of the cue ball's direction, but for lapses, at the cue speed ``at`` [deg]; None if no stroke
+        tells it.
     at : float
         Cue speed [m/s]: 1.5, or the nearest between the quartiles of the strokes' speeds.
     growth : Estimate or None
-        The g [s/m] of the law that errors of direction grow with the cue speed V as sqrt(1 + (g V)^2), see ``Noise``; its
-        interval holds the likeliest values. None if all strokes are of about one speed.
+        The g [s/m] of the law that errors of direction grow with the cue speed V as sqrt(1 + (g V)^2), see ``Noise``.
+        None if all strokes are of about one speed.
     speed : Estimate or None
-        Standard deviation of the speed, as a share of the speed.
+        Standard deviation of the speed, but for lapses, as a share of the speed.
     aside, faster : Estimate or None
         Mean errors: of the direction, anticlockwise (to the left as the player sees it) [deg, at the speed ``at``], and of
         the speed, as a share. Only of strokes that were measured.
@@ -81,7 +89,7 @@ class PlayerErrors:
     >>> strokes = [Recorded(position=at, intended=meant, played={"speed": 2.0, "aim": 0.8 + e}) for e in (-0.002, 0.002)]
     >>> found = coach(strokes, options={"cue": "free", "physics": "paper", "table": "match"}).errors
     >>> round(found.direction.value, 2), found.direction.strokes, found.at
-    (0.14, 2, 2.0)
+    (0.13, 2, 2.0)
     """
 
     direction: Estimate | None
@@ -205,7 +213,7 @@ def weigh_errors(e: Floats, more: Floats) -> Floats:
 
 def density(e: Floats, sigma: Floats) -> Floats:
     """The density of errors under the law of ``BASE``, of which all but the lapses have the deviations ``sigma``."""
-    base, out = LEVELS[BASE], np.full(np.broadcast_shapes(e.shape, sigma.shape), 1e-300)
+    base, out = LEVELS[BASE], np.full(np.broadcast_shapes(e.shape, sigma.shape), FLOOR)
     for share, times in ((1.0 - base.lapse, 1.0), (base.lapse, base.lapse_factor)):
         wide = times * sigma
         out += share / (wide * sqrt(2.0 * pi)) * np.exp(-0.5 * (e / wide) ** 2)
@@ -258,11 +266,11 @@ def normalise(log_likelihood: Floats) -> Floats:
 
 
 def estimate_growth(weights: Floats, strokes: int) -> Estimate:
-    """Median of a posterior over ``GROWTHS``, and the ends of the likeliest of them that hold 95 %."""
-    order = np.argsort(-weights, kind="stable")
-    kept = GROWTHS[order[: int(np.searchsorted(np.cumsum(weights[order]), 0.95)) + 1]]
-    value = float(np.interp(0.5, np.cumsum(weights) - 0.5 * weights, GROWTHS))
-    return Estimate(value=value, low=float(kept.min()), high=float(kept.max()), strokes=strokes)
+    """Median and 95 % interval of a posterior over ``GROWTHS``."""
+    below = np.cumsum(weights)
+    low, high = np.searchsorted(below, (0.025, 0.975)).tolist()
+    value = float(np.interp(0.5, below - 0.5 * weights, GROWTHS))
+    return Estimate(value=value, low=float(ENDS[low]), high=float(ENDS[high + 1]), strokes=strokes)
 
 
 def estimate(weights: Floats, unit: float, strokes: int) -> Estimate:
@@ -326,6 +334,10 @@ def measure_errors(strokes: list[Recorded], practice: Practice) -> Measurement:
         if practice.options.cue == "real":
             more *= 1.0 + elevation / TWICE
         directions[k], widths[k] = remainder(aside, 2.0 * pi) / (unit * more), CALLED / (unit * more)
+    if at_pots:
+        own = paces[list(at_pots)]
+        ends = np.quantile(own, OUTER, method="lower"), np.quantile(own, 1.0 - OUTER, method="higher")
+        paces[list(at_pots)] = np.clip(own, *ends)
     return Measurement(directions, widths, speeds, paces)
 
 

@@ -37,6 +37,7 @@ PLAYED_ON = ("cue", "physics", "table")  # what errors are told by beside the st
 CALLED = radians(2.0)
 CUE_PARTS = ("speed", "side", "top", "aim", "elevation")
 MOST_PENALTY, MOST_POINTS = 7, 16
+FASTEST_CUE = 100.0  # [m/s]; under the law of errors a beginner's hardest stroke reaches 30 in a lapse
 _AIMS = POCKET_AIMS[:, [AIM_X, AIM_Y]]
 _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
 
@@ -193,7 +194,7 @@ def _cue(played: object) -> dict[str, float]:
     for key in ("speed", "aim"):
         if key not in played:
             raise refuse_what("played", f"a dict without {key!r}", f"must be a dict with {list(CUE_PARTS)}")
-    ends = {"speed": (0.0, 20.0), "side": (-1.0, 1.0), "top": (-1.0, 1.0), "elevation": (0.0, pi / 2)}
+    ends = {"speed": (0.0, FASTEST_CUE), "side": (-1.0, 1.0), "top": (-1.0, 1.0), "elevation": (0.0, pi / 2)}
     return {name: number(f"played.{name}", played.get(name, 0.0), *ends.get(name, ())) for name in CUE_PARTS}
 
 

@@ -1,4 +1,4 @@
-"""Which safeties would a coach play? Twenty positions by hand in which no pot is on, and what a coach would accept of
+"""Which safeties would a coach play? Twenty positions by hand in which no pot is likely, and what a coach would accept of
 the stroke that is advised there, as shares of simulated outcomes.
 
 ``python tests/advice/coach.py [AGENT]`` prints what is advised, by the tactician if nobody is named, and what of that is as
@@ -216,18 +216,18 @@ CASES = {
 
 
 UNLIKE = {
-    "break_off": "baulk 0.54: firm enough that the cue ball comes back up the table nearly every other time",
-    "thin_from_the_yellow_side": "foul 0.11, baulk 0.34, first struck [15, 15, 7, 11, 11]: inside reds and the far end red, too",
-    "thin_from_the_green_side": "baulk 0.65 (wanted 0.7), first struck [11, 4, 4, 7, 4]: inside reds more often than the end one",
-    "frozen_to_the_baulk_cushion": "foul 0.23, baulk 0.15: contacts over the whole table with a raised cue",
-    "from_the_top_cushion": "pot 1.00: it takes a pot on, where a coach would play safe",
-    "from_the_corner_of_baulk": "foul 0.11, baulk 0.56",
-    "roll_up_to_the_brown": "pot 0.80, hidden 0.09: four of five take the brown on",
-    "roll_up_to_the_green": "hidden 0.18, first struck [18, 18, 18, 17, 18]",
-    "snookered_behind_the_black": "foul 0.30 (wanted 0.25)",
-    "last_red_on_the_top_cushion": "baulk 0.33 (wanted 0.6)",
-    "two_reds_and_a_lead": "foul 0.06 (wanted 0.05), baulk 0.33",
-    "needs_a_snooker": "hidden 0.02: it plays safe, not for a snooker",
+    "break_off": "baulk 0.59 (wanted 0.8); one of five plays a plant of 41 %",
+    "thin_from_the_yellow_side": "foul 0.06 (wanted 0.05), baulk 0.57, first struck [4, 4, 11, 4, 15]: inside reds, too",
+    "thin_from_the_green_side": "baulk 0.65 (wanted 0.7)",
+    "frozen_to_the_baulk_cushion": "foul 0.28, baulk 0.29: contacts over the whole table with a raised cue",
+    "from_the_top_cushion": "pot 1.00: it takes a pot of three in four on, where a coach would play safe",
+    "roll_up_to_the_brown": "pot 1.00, hidden 0.00: it takes the brown on, at 51 to 74 %",
+    "roll_up_to_the_green": "pot 1.00, hidden 0.01: it takes the green on, at 42 to 66 %",
+    "snookered_behind_the_black": "foul 0.33 (wanted 0.25), likely 0.42 (wanted 0.3)",
+    "last_red_on_the_top_cushion": "foul 0.29, baulk 0.58 (wanted 0.6): so thin that the red is missed",
+    "two_reds_and_a_lead": "foul 0.09 (wanted 0.05)",
+    "reds_at_both_sides": "pot 0.40, likely 0.16 (wanted 0.15): two of five take pots of 46 and 31 % on",
+    "needs_a_snooker": "hidden 0.09 (wanted 0.2): it plays safe, not for a snooker",
 }
 """Where the tactician's advice is not as a coach wants it: what was measured."""
 

@@ -14,12 +14,12 @@ from snooker_env.tasks import LEVELS
 SEEN = {"seeds": (0,), "samples": 300}
 
 
-def test_there_are_twenty_and_no_pot_is_on_in_any():
+def test_there_are_twenty_and_no_pot_is_likely_in_any():
     assert len(CASES) == 20 and set(UNLIKE) <= set(CASES)
     for name, case in CASES.items():
         here = one_position(case.position, case.scores)
         chances = prospects_of(here, spread_of(LEVELS[NOISE]))[1]
-        assert chances.max() < 0.5, name
+        assert chances.max() < LIKELY, name
         assert case.coach and case.most and set(case.first) <= set(range(1, 22))
         hidden = not sn.planning.clear_paths(case.position).any_part[0]
         assert hidden == name.startswith("snookered"), name

@@ -14,17 +14,21 @@ def blue():
 
 
 def test_shares_are_those_of_the_environment(blue):
-    stops = destinations(ENDGAME, blue, noise="amateur", samples=2000)
-    points, fouls, after = played(ENDGAME, blue.stroke, 2000, noise="amateur")
+    many = 8000
+    stops = destinations(ENDGAME, blue, noise="amateur", samples=many)
+    points, fouls, after = played(ENDGAME, blue.stroke, many, noise="amateur")
     cue = np.array([s["positions"][0] for s in after if s["on_table"][0]])
     assert stops.scored == pytest.approx((points > 0).mean(), abs=0.05)
     assert stops.foul == pytest.approx(fouls.mean(), abs=0.03)
     assert stops.points == pytest.approx(points.mean(), abs=0.25) and stops.object_ball == 19
-    assert stops.samples == 2000
-    assert 0.3 < stops.potted < 1.0 and stops.potted == pytest.approx(1.0 - len(stops.ball) / 2000)
-    assert len(stops.cue) == round(2000 * (1.0 - stops.in_off))
+    assert stops.samples == many
+    assert 0.3 < stops.potted < 1.0 and stops.potted == pytest.approx(1.0 - len(stops.ball) / many)
+    assert len(stops.cue) == round(many * (1.0 - stops.in_off))
     assert stops.cue.mean(axis=0) == pytest.approx(cue.mean(axis=0), abs=0.05)
-    assert stops.cue.std(axis=0) == pytest.approx(cue.std(axis=0), rel=0.1)
+    # lapses decide a standard deviation, and a few of them are no sample: half of the strokes, and nine in ten
+    near, its_near = (np.abs(some - np.median(some, axis=0)) for some in (stops.cue, cue))
+    for part, rel in ((0.5, 0.1), (0.9, 0.15)):
+        assert np.quantile(near, part, axis=0) == pytest.approx(np.quantile(its_near, part, axis=0), rel=rel)
     missed = (points == 0) & ~fouls & [s["on_table"][0] for s in after]
     places = np.array([s["positions"][19] for s in after])[missed]
     assert stops.ball.mean(axis=0) == pytest.approx(places.mean(axis=0), abs=0.1)

@@ -1,21 +1,25 @@
 """Does advice of a frame say why: the chance to win, what the other finds, where the cue ball goes?"""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cases import ENDGAME, HIDDEN, OPEN, SNOOKERED, Given, played, stroke_of
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke, stroke_words
+from snooker_env.advice.ask import _sort_by_win
 from snooker_env.advice.practice import one_position
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position, Positions, clear_paths
+from snooker_env.tasks import LEVELS
 
 QUICK = {"samples": 60, "visits": 4, "scores": (20, 24)}
 LAST = Position(cue=(0.0, 0.4), black=(0.0, 1.0))
 
 
 def errors_of_another(n):
-    return np.random.default_rng(8).normal(size=(n, 5))
+    return LEVELS["professional"].draw_errors(np.random.default_rng(8), n)
 
 
 def test_the_tactician_is_asked_in_frames_and_the_planner_in_visits():
@@ -53,13 +57,44 @@ def test_the_chance_to_win_is_that_of_other_samples_too():
         assert f"win chance {100 * one.win:.0f} %" in one.words and 0.0 < one.win < 1.0
 
 
+def net_points(one):
+    return one.points - (1.0 - one.chance if one.kind == "pot" else 1.0) * one.leaves
+
+
+def test_of_strokes_that_win_as_often_as_the_best_the_one_with_more_points_is_first():
+    some = sn.advise(ENDGAME, n=1, noise="amateur", **QUICK)[0]
+    made = {
+        name: replace(some, kind=kind, win=win, points=points, chance=chance, leaves=leaves)
+        for name, kind, win, points, chance, leaves in (
+            ("best", "safety", 0.500, 0.0, 1.0, 3.0),  # -3 points
+            ("pot", "pot", 0.497, 5.0, 0.5, 4.0),  # 3 points
+            ("tight", "safety", 0.496, 0.0, 1.0, 1.0),  # -1 point
+            ("worse", "pot", 0.494, 9.0, 0.9, 0.0),  # more than 0.005 below the best
+            ("worst", "pot", 0.480, 12.0, 0.9, 0.0),
+        )
+    }
+    given = [made[name] for name in ("worst", "tight", "worse", "best", "pot")]
+    assert _sort_by_win(given) == [made[name] for name in ("pot", "tight", "best", "worse", "worst")]
+
+
 def test_strokes_are_ordered_by_it_and_the_best_is_compared():
     safe, pot = sn.advise(HIDDEN, n=4, **QUICK), sn.advise(ENDGAME, n=3, noise="amateur", **QUICK)
     for advice in (safe, pot):
-        assert [one.win for one in advice] == sorted((one.win for one in advice), reverse=True)
+        for k, one in enumerate(advice):
+            for later in advice[k + 1 :]:  # of those that win alike the one with more points
+                assert one.win > later.win or (
+                    later.win - one.win < 0.005 and net_points(one) >= net_points(later)
+                )
         assert all(one.against is None and " against " not in one.words for one in advice[1:])
     assert safe[0].kind == "safety" and "safety off the red, " in safe[0].words
-    assert f" against {100 * safe[0].against:.0f} % for the best pot" in safe[0].words
+    assert safe[0].words.endswith(
+        f" against {100 * safe[0].against:.0f} % for the next best"
+    )  # of the pots hardly any goes
+    far = Position(cue=(0.3, -0.5), reds=[(0.4, 1.5), (0.06, 1.74)], pink=(0.0, 0.89), black=(0.0, 1.4605))
+    bold = sn.advise(far, n=4, noise="beginner", **QUICK)[0]
+    assert bold.kind == "safety" and bold.words.endswith(
+        f" against {100 * bold.against:.0f} % for the best pot"
+    )
     assert pot[0].kind == "pot" and pot[0].words.endswith(f"{100 * pot[0].against:.0f} % for the best safety")
     lone = sn.advise(LAST, agent=Given(CueStroke(speed=0.9, aim=np.pi / 2)), **QUICK)
     assert len(lone) == 1 and lone[0].against is None and " against " not in lone[0].words

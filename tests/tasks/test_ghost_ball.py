@@ -41,7 +41,7 @@ def turn(tables, which=None):
 
 
 @pytest.mark.parametrize(
-    ("noise", "fouled", "back"), [("none", 0.02, 0.8), ("professional", 0.02, 0.8), ("amateur", 0.07, 0.65)]
+    ("noise", "fouled", "back"), [("none", 0.02, 0.8), ("professional", 0.04, 0.8), ("amateur", 0.07, 0.65)]
 )
 def test_it_breaks_off_without_a_foul_and_brings_the_cue_ball_back(noise, fouled, back):
     tables = dealt(1000, noise=noise)
