@@ -245,6 +245,32 @@ def test_an_error_grows_as_strokes_under_that_noise_do():
         assert each[1] == pytest.approx(np.hypot(1.0, LEVELS["professional"].growth * 2.0), rel=1e-12)
 
 
+def test_strokes_as_fast_as_a_lapse_makes_them_are_read():
+    env = sn.SnookerEnv(noise={"speed_rel": 2.0})
+    env.keep_history, fastest = True, 0.0
+    for seed in range(20):
+        env.reset(seed=seed)
+        env.step([1.0, 0.0, 0.0, 0.5])
+        fastest = max(fastest, strokes_of(env)[0].played["speed"])
+    assert fastest > 20.0  # it was refused
+
+
+def test_the_speed_of_the_softest_and_hardest_pots_may_be_a_lapse():
+    ball, pocket, meant = pot_of(ALONE)
+    speeds = [0.1, *np.linspace(1.0, 3.0, 38).tolist(), 15.0]
+    strokes = [
+        Recorded(position=ALONE, ball=ball, pocket=pocket, played={"speed": v, "aim": meant.aim})
+        for v in speeds
+    ]
+    paces = estimating.measure_errors(strokes, practice_of("professional", WHERE)).paces
+    assert paces.min() >= 1.0 and paces.max() <= 3.0
+    assert paces[5:-5].tolist() == speeds[5:-5]
+    assert (
+        estimating.measure_errors(strokes[:3], practice_of("professional", WHERE)).paces.tolist()
+        == speeds[:3]
+    )
+
+
 def test_a_cue_that_errors_raised_once_more_was_meant_lower():
     """Errors of a real cue grow with the elevation that was meant, not with the one at which they left room."""
     at = sn.Position(cue=(0.0, -1.70), black=(0.0, 1.0))
