@@ -68,9 +68,9 @@ LATE = """void (fetched => window.fetch = async (what, ...more) => {
 
 def test_a_drill_outlives_a_reload_and_gives_the_seats_back(shown):
     shown.set_up(EASY)
-    before = {"players": ["person", "ghost_ball"], "noise": ["none", "club"], "practice": False}
+    before = {"players": ["person", "ghost_ball"], "noise": ["none", "beginner"], "practice": False}
     shown.line("api/players", before)
-    shown.until("page.state.noise[1] === 'club'")
+    shown.until("page.state.noise[1] === 'beginner'")
     assert shown.page.inner_text("#side-1 .name") == "Beginner"
     shown(LATE)  # the state is known before the answer: no stroke on the table before the drill
     shown.page.click("#drills summary")
