@@ -76,8 +76,8 @@ class WorthRounds(Rounds):
 
     what, unit, now = "frames of self-play", "frames", "these frames"
 
-    def __init__(self, out, rounds, many, budget, seed, chance_alone, against, where):
-        asked = many, budget, seed, chance_alone, against
+    def __init__(self, out, rounds, asked, where):
+        many, budget, seed, chance_alone, against = asked
         super().__init__(out, "worth", rounds, many, many // TABLES, asked)
         self._budget, self._seed, self._chance_alone, self._where = budget, seed, chance_alone, where
         self._against = against
@@ -190,7 +190,7 @@ def main(argv=None):
         snooker_env.warmup()
         with place(args.ray) as where:
             asked = args.frames, args.budget, args.seed, args.chance, args.against
-            rounds = WorthRounds(args.out, args.rounds, *asked, where)
+            rounds = WorthRounds(args.out, args.rounds, asked, where)
             rounds.restore()
             again = "the same command goes on with the rounds in its folder"
             if (number := Loop("agents.learn_worth", [rounds], lambda: None, again).run()) is not None:

@@ -5,7 +5,7 @@ from ..simulation.count import count_shots
 from .agents import Agent
 from .checking import faults
 from .leaderboard import page
-from .luck import Luck
+from .luck_counter import Luck
 from .playing import COLUMNS
 from .results import read_result, write_result
 from .rollouts import CENTURY, FIGURES, MAXIMUM, PlayedStrokes, play_visits, summary

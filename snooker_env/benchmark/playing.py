@@ -14,7 +14,7 @@ from ..envs.vector import SnookerVectorEnv
 from ..players import FRAMES, VISITS, Player, ask_player, decision_seeds
 from ..players import player as player_named
 from ..simulation.count import count_shots
-from .luck import Decide, Luck
+from .luck_counter import Decide, Luck
 from .tasks import Task
 
 BATCH = 100  # episodes that are played side by side

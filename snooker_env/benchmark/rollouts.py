@@ -12,7 +12,7 @@ from ..game.balls import BallOn
 from ..game.layouts import POT_WINDOWS
 from ..planning import Positions, pots
 from ..players import VISITS, Player
-from .luck import Luck
+from .luck_counter import Luck
 from .playing import Decider, rounds
 from .statistics import adjust
 from .tasks import HELD_OUT_SEED
