@@ -165,7 +165,7 @@ def fit_worth(rounds, seed, layers=None, chance=None):
 
 @command("agents.learn_worth")
 def main(argv=None):
-    """Play, fit, write. Exit code 0, or 128 + the signal that stopped it."""
+    """Play, fit, write. Exit code 0, 1 if weights were too weak to be exported, or 128 + the signal that stopped it."""
     p = parser_of("python -m agents.learn_worth", __doc__)
     p.add_argument("--out", type=Path, required=True, help="folder of rounds and weights")
     p.add_argument("--rounds", type=int, default=2, help="[2]")
@@ -183,6 +183,11 @@ def main(argv=None):
         integer("frames", args.frames, TABLES, 100_000)
         integer("seed", args.seed, 0, 80)  # more would meet the tables of agents.calibrate
         integer("budget", args.budget, FrameJudge.least, 10**6)
+        integer("judged", args.judged, 0, 10**6)
+        if args.against is not None:
+            player(args.against)
+            if args.chance or args.export:
+                raise refuse("against", args.against, "must be given without --chance and --export")
         if args.frames % TABLES:
             raise refuse("frames", args.frames, f"must be a multiple of {TABLES}")
         checked_ray(args.ray)
@@ -201,7 +206,10 @@ def main(argv=None):
     for k, figures in enumerate(rounds.curve):
         print(f"round {k}: " + "  ".join(f"{name} {value:.4g}" for name, value in figures.items()))
     beats = args.judged == 0 or judge_weights(rounds, args)
-    if args.export and beats:
+    if args.export and not beats:
+        print(f"not exported: the weights lose clearly; they are in {args.out / WORTH}", file=sys.stderr)
+        return 1
+    if args.export:
         write_atomic(FOLDER / WORTH, rounds.pack_weights())
     return 0
 

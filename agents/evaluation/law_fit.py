@@ -102,9 +102,11 @@ def profile(logs, figures, said, seed):
         for value in values:
             there = drawn.copy()
             there[:, k] = log(value)
-            least.append(float(misfit(surfaces, said, there).min() - misfits.min()))
+            least.append(float(misfit(surfaces, said, there).min()))
         rows[name] = (values.tolist(), least)
-    return laws[int(misfits.argmin())], float(misfits.min()), rows
+    lowest = min([float(misfits.min()), *(value for _, least in rows.values() for value in least)])
+    rows = {name: (values, [one - lowest for one in least]) for name, (values, least) in rows.items()}
+    return laws[int(misfits.argmin())], lowest, rows
 
 
 def tables_of(best, least, rows):

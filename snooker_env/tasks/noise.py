@@ -1,7 +1,7 @@
 """How accurately does a player execute a shot? Errors of aim, speed, tip offset and elevation, now and then large ones.
 
 The law: each of a stroke's five errors is normal, and all five are ``lapse_factor`` times as large in a *lapse*, which a
-stroke is with the probability ``lapse``: a bad cueing, a lost concentration, a kick. So each error is a mixture of two
+stroke is with the probability ``lapse``: a bad cueing, a lost concentration. So each error is a mixture of two
 normal laws, and the errors of one stroke are large together. Without lapses the law is Gaussian.
 
 What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): aim, and the squirt of a tip
@@ -203,7 +203,12 @@ class Noise:
 
     def scale(self, times: float) -> "Noise":
         """Return a ``Noise`` with every error ``times`` as large; growth, lapses and kicks are the same."""
-        return replace(self, **{f.name: getattr(self, f.name) * times for f in fields(self)[:5]})
+        return replace(
+            self,
+            **{
+                f.name: getattr(self, f.name) * times for f in fields(self) if f.name not in (*_SHAPE, "kick")
+            },
+        )
 
     @property
     def silent(self) -> bool:

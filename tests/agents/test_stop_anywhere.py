@@ -14,7 +14,7 @@ from tests.agents.training import TINY, results, weights
 
 EXPERT = str.split("--agent ppo_value --envs 4 --imitate 64 --steps 512 --eval-visits 4 --seed 2")
 STROKES = str.split("--agent stroke_value --eval-visits 4 --set rounds=1 tables=10 frame_rounds=1 frames=10")
-WORTH = str.split("--rounds 2 --frames 16 --budget 30")
+WORTH = str.split("--rounds 2 --frames 16 --budget 30 --judged 0")
 
 
 def start_training(command):

@@ -176,3 +176,23 @@ def test_a_teacher_is_heard_only_where_its_stroke_is_clearly_better():
 def test_a_player_wins_all_frames_against_one_that_hardly_scores():
     share, error = frame_self_play.win_share(Tactician(30, (None, None)), sn.player("random"), 5, 4)
     assert share == 1.0 and error == 0.0
+
+
+@pytest.mark.parametrize(("share", "shipped"), [(0.5, True), (0.4, False)])
+def test_weights_that_lose_clearly_are_not_exported(share, shipped, tmp_path, monkeypatch):
+    """The standard error is 0.04: at 0.4 an equal would be more than two of them away."""
+    monkeypatch.setattr(learn_worth, "FOLDER", tmp_path)
+    monkeypatch.setattr(learn_worth, "Loop", lambda *_: SimpleNamespace(run=lambda: None))
+    monkeypatch.setattr(learn_worth.WorthRounds, "pack_weights", lambda self: b"weights")
+    monkeypatch.setattr(learn_worth, "win_share", lambda *_: (share, 0.04))
+    assert main(["--out", str(tmp_path / "run"), "--export"]) == (0 if shipped else 1)
+    assert (tmp_path / learn_worth.WORTH).is_file() == shipped
+    assert (tmp_path / "run" / learn_worth.WORTH).read_bytes() == b"weights"
+
+
+@pytest.mark.parametrize(
+    "wrong", [["--judged", "-1"], ["--against", "nobody"], ["--against", "planner", "--export"]]
+)
+def test_what_is_judged_against_whom_is_checked_before_the_work(wrong, tmp_path):
+    with pytest.raises(SystemExit):
+        main(["--out", str(tmp_path), *wrong])
