@@ -2,8 +2,8 @@
 
     python -m agents.learn_worth --out runs/worth [--rounds 2] [--chance | --against PLAYER] [--ray local]
 
-Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the rounds
-before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
+Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the package and
+the rounds before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
 Each position, and what its best strokes may leave, is judged by search (``frame_self_play``). A network is then fitted to
 the last rounds, and the chance to win to their frames between equals. In a tenth of the positions a teacher with eight
 times the budget is asked, whose stroke is taken where it is clearly better. After each round OUT holds its data and its
@@ -81,7 +81,7 @@ class WorthRounds(Rounds):
         super().__init__(out, "worth", rounds, many, many // TABLES, asked)
         self._budget, self._seed, self._chance_alone, self._where = budget, seed, chance_alone, where
         self._against = against
-        self.layers, self.chance = learned_worth() if chance_alone or against else (None, None)
+        self.layers, self.chance = learned_worth()
         self._past = []
 
     @property

@@ -10,7 +10,7 @@ from snooker_env.planning.worth import FOUL, SPREAD, Chance
 
 from .rounds import Perceptron, descend
 
-WIDTHS = (32, 16)
+WIDTHS = (64, 32)
 BATCH, DECAY = 512, 1.0
 SNOOKERS, NEEDS, STROKES = 0.3, 3.0, 40
 """Standard deviations of the priors of ``Chance.snookers`` and ``needs``, for hardly anybody wins who needs some: without

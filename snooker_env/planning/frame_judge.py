@@ -45,9 +45,6 @@ FORESEEN, AGAIN, KEPT = 8, 2.5, 0.8
 """Of safeties, for each that is looked at: how many are foreseen without error, and of these how many under several; the
 share of the looks that goes to those that promise most, the others come as they are."""
 SURE_OF = 4  # errors under which these are foreseen
-DISTANT, FAREST, HIDDEN, FOULS = 0.02, 2.4, 0.03, 0.04
-"""What speaks for a stroke of a search beside the worth, in chances to win of an even frame: that the nearest ball on is so far from
-where the other must play [m], that it is hidden; and against it, that it is a foul."""
 HIDES = 0.3
 """How likely the other is to foul in a snooker that the striker needs."""
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
@@ -65,14 +62,6 @@ def scale(plan: Plan, share: float) -> Plan:
     return Plan(
         looks, tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in plan.rounds)
     )
-
-
-def hardship_of(theirs: Positions) -> tuple[Floats, Bools]:
-    """What speaks for leaving n positions to the other, beside their worth, in chances to win of an even frame: (n,); and
-    whether no straight path leads to a ball on: (n,)."""
-    gaps = np.hypot(*(theirs.positions - theirs.positions[:, :1]).transpose(2, 0, 1))
-    near, hidden = np.where(theirs.balls_on, gaps, np.inf).min(axis=1), ~clear_paths(theirs).any_part
-    return DISTANT * np.minimum(near / FAREST, 1.0) + HIDDEN * hidden, hidden
 
 
 class FrameJudge:
@@ -235,7 +224,7 @@ class FrameJudge:
         chance = self.chances(lead_of(after), rest, after)
         if self.chance is not None:
             rows = np.flatnonzero(self._is_others(before, after) & (lead_of(after) < -left_of(after)))
-            rows = rows[hardship_of(turn_to_striker(after[rows]))[1]]
+            rows = rows[~clear_paths(turn_to_striker(after[rows])).any_part]
             fouled = self.chances(lead_of(after)[rows] + FOUL, rest[rows], after[rows])
             chance[rows] += HIDES * np.maximum(0.0, fouled - chance[rows])  # a snooker that the striker needs
         over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
@@ -248,15 +237,6 @@ class FrameJudge:
         comes = (game[:, columns.STRIKER] == 1) & (game[:, columns.PHASE] == columns.STROKE)
         comes &= (game[:, columns.OVER] == 0) & (game[:, columns.RESPOTTED_BLACK] == 0)
         return comes & (lead_of(after) >= before)
-
-    def _preference(self, before: Floats, chance: Floats, after: Positions) -> Floats:
-        """What speaks for strokes beside their ``chance`` to win, whose worth a search deceives: (m,)."""
-        if self.chance is None:
-            return np.zeros(len(before))
-        care, some = -FOULS * (lead_of(after) < before), np.flatnonzero(self._is_others(before, after))
-        if len(some):
-            care[some] = hardship_of(turn_to_striker(after[some]))[0]
-        return 4.0 * chance * (1.0 - chance) * care
 
     def chances(self, now: Floats, worth: Floats, at: Positions) -> Floats:
         """The chances to win, (m,), of who leads by ``now`` and expects ``worth`` more than the other from the balls of
@@ -284,7 +264,6 @@ class FrameJudge:
         whether one was, and then chance and points if it is not played again, and what they lose by the penalty."""
         before, parts = lead_of(at)[rows], np.zeros((len(rows), 7))
         both, called = self.value_of(before, after), after.game[:, columns.MISS_CALLED] != 0
-        both[:, 0] += self._preference(before, both[:, 0], after)
         parts[~called, :2], parts[called, 3:5], parts[:, 2] = both[~called], both[called], called
         some = np.flatnonzero(called)
         if len(some):

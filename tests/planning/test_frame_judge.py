@@ -6,7 +6,7 @@ import pytest
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import touching_balls as touching_kernel
 from snooker_env.planning import FrameJudge, Position, Positions, Search, prospects_of, spread_of
-from snooker_env.planning.frame_judge import DISTANT, FAREST, HIDDEN, KEPT, PLANS, SURE_OF, hardship_of
+from snooker_env.planning.frame_judge import KEPT, PLANS, SURE_OF
 from snooker_env.planning.proposals import EDGE, safeties
 from snooker_env.planning.search import BUDGET
 from snooker_env.planning.trials import turn_to_striker
@@ -235,18 +235,6 @@ def test_a_lot_decides_who_begins_at_the_black_that_makes_it_level():
     one = judge(OPTIONS | {"noise": "none"}, lambda some: np.full(len(some), 5.0), chance=LAW)
     (tried,) = Search(one).rank(at, [0])
     assert tried.kinds[0] == 0 and tried.scores[0] == 0.5 and tried.points[0] == 7.0
-
-
-def test_hardship_grows_with_the_distance_and_where_nothing_is_seen():
-    near, far, hidden = (
-        frame_of(Position(cue=(0.0, y), reds=[(0.0, 1.2)], **more, on="red"))
-        for y, more in ((0.8, {}), (-1.2, {}), (0.8, {"black": (0.0, 1.0)}))
-    )
-    told = [hardship_of(each) for each in (near, far, hidden)]
-    values = [value.item() for value, _ in told]
-    assert [bool(blind[0]) for _, blind in told] == [False, False, True]
-    assert values[0] == pytest.approx(DISTANT * 0.4 / FAREST) and values[1] == pytest.approx(DISTANT)
-    assert values[2] == pytest.approx(values[0] + HIDDEN)
 
 
 def test_safeties_that_promise_most_are_looked_at():

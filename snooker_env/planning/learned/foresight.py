@@ -9,7 +9,6 @@ from ..._lib.types import Bools, Floats, Ints
 from ...game.balls import N_BALLS, VALUES
 from ...tasks.options import Rules
 from ..aims import Dynamics, law_of
-from ..frame_judge import hardship_of
 from ..positions import Positions
 from ..prospects import in_parts
 from ..sobol import normal_points
@@ -24,8 +23,6 @@ FOUL = 8.0
 """What a predicted foul costs beside what the balls as they lie bring the other [points]."""
 POTTED = 0.5
 """Of the safeties that are predicted to pot a ball that is on, about so many do."""
-EVEN = 80.0
-"""Points that are worth as much as the whole chance to win of an even frame."""
 _SEED = 7  # of the errors, which are the same for all
 
 
@@ -54,7 +51,7 @@ class Foresight:
         """What strokes (m, 5) in ``at[rows]`` promise on average of ``samples`` errors: (m,) [points]."""
         missed, goes_on = self.worth(pass_after_miss(at)), self.worth(at)
         balls = missed.astype(np.float64), goes_on.astype(np.float64)
-        return self.foresee(at, rows, strokes, *balls, samples, EVEN).gains.mean(axis=1)
+        return self.foresee(at, rows, strokes, *balls, samples).gains.mean(axis=1)
 
     def foresee(
         self,
@@ -64,10 +61,9 @@ class Foresight:
         missed: Floats,
         goes_on: Floats,
         samples: int = SAMPLES,
-        even: float = 0.0,
     ) -> Foreseen:
         """What strokes (m, 5) in ``at[rows]`` are predicted to lead to. ``missed``, ``goes_on`` (n,): what the other and the
-        striker make of the balls of ``at`` as they lie [points]; ``even``: what the hardship of what is left counts [points]."""
+        striker make of the balls of ``at`` as they lie [points]."""
         m, k, errors = len(rows), samples, self._errors[:samples]
         balls, law = (at.positions, at.on_table, at.game), law_of(self.dynamics, at)
         out, places = np.empty((m * k, 2, path.SEEN)), np.empty((m * k, N_BALLS, 2))
@@ -87,6 +83,6 @@ class Foresight:
         rest = np.flatnonzero(~foul & ~potted)
         left = pass_after_miss(at[of[rest]])
         left.positions[:] = places[rest]
-        gains[rest] = -self.worth(left) + even * hardship_of(left)[0]
+        gains[rest] = -self.worth(left)
         fates = (one.reshape(m, k) for one in (foul, potted, met == 0))
         return Foreseen(gains.reshape(m, k), out.reshape(m, k, 2, path.SEEN), *fates)
