@@ -20,10 +20,8 @@ AGENT, OF_FRAMES = "planner_500", "tactician"  # who is asked if nobody is named
 INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices
 RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with
 SELDOM = 0.05  # chance of a pot below which it is no suggestion
-ALIKE, FEW = (
-    0.005,
-    0.05,
-)  # strokes are as good whose chances to win differ by no more, nor by this share of a small one
+ALIKE = 0.005  # strokes whose chances to win differ by no more are as good,
+FEW = 0.05  # or, where the chance is small, by no more than this share of it
 FAR = 1.25  # how many times as often a pot must win that takes a ball to lay snookers on
 CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
 FEWEST = 40  # strokes that are examined at least

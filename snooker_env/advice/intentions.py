@@ -82,7 +82,7 @@ def _count_snookers(at: Positions, after: Positions, strokes: list[Intention]) -
 
     A red is potted on the way as long as others are left; a colour that is spotted again costs no ball."""
     needs, out = bool((lead_of(at) + left_of(at))[0] < 0.0), []
-    fewer = after.on_table.sum(axis=1) < at.on_table.sum()
+    fewer = after.on_table[:, 1:].sum(axis=1) < at.on_table[0, 1:].sum()
     last = ~after.on_table[:, 1:16].any(axis=1)
     for one, lead, left, spends in zip(strokes, lead_of(after), left_of(after), fewer & last, strict=True):
         behind = int(-lead) if one.kind == "pot" and lead + left < 0.0 else 0
