@@ -20,8 +20,11 @@ AGENT, OF_FRAMES = "planner_500", "tactician"  # who is asked if nobody is named
 INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices
 RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with
 SELDOM = 0.05  # chance of a pot below which it is no suggestion
-ALIKE = 0.005  # strokes whose chances to win differ by no more are as good
+ALIKE = 0.005  # strokes whose chances to win differ by no more are as good,
+FEW = 0.05  # or, where the chance is small, by no more than this share of it
+FAR = 1.25  # how many times as often a pot must win that takes a ball to lay snookers on
 CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
+FEWEST = 40  # strokes that are examined at least
 
 
 def advise(
@@ -122,21 +125,40 @@ def _ask(player: Player, practice: Practice, at: Positions, n: int, seed: int) -
     bound = player.at(practice.options)
     rank = getattr(bound, "rank", None)
     played = bound.play(at, [seed]) if rank is None else rank(at, [seed])[0].strokes
-    return drop_alike(intend(practice, at, cue_strokes(played, at)[: CONSIDERED * n]))
+    return drop_alike(intend(practice, at, cue_strokes(played, at)[: max(FEWEST, CONSIDERED * n)]))
 
 
 def _choose_fair(practice: Practice, strokes: list[Intention], n: int, trials: Trials) -> list[Suggestion]:
     """The first n strokes that are fair without errors and in most samples, best first; no pot that hardly ever goes."""
-    waiting, out = [one for one in strokes if one.kind not in FOULS], []
+    fair = [one for one in strokes if one.kind not in FOULS]
+    out, waiting = _judge_fair(practice, [one for one in fair if not one.spends], n, trials)
+    if practice.options.task != "frame":
+        return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
+    spent, rest = _judge_fair(practice, [one for one in fair if one.spends], n, trials)
+    out = _lay_first(_sort_by_win(out), _sort_by_win(spent))
+    if not out:
+        return out
+    others = [one for one in waiting + rest if (one.kind == "pot") != (out[0].kind == "pot")][:RIVALS]
+    rivals = judge_strokes(practice, others, trials._replace(visits=0)) if others else []
+    return [_compare(out, [one for one in out[1:] + rivals if _is_sensible(one)]), *out[1:n]]
+
+
+def _judge_fair(
+    practice: Practice, waiting: list[Intention], n: int, trials: Trials
+) -> tuple[list[Suggestion], list[Intention]]:
+    """The first n strokes that are fair in most samples, in their order, and those that were not judged."""
+    out: list[Suggestion] = []
     while waiting and len(out) < n:
         some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
         out += [one for one in judge_strokes(practice, some, trials) if _is_sensible(one)]
-    if not out or out[0].win is None:
-        return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
-    out = _sort_by_win(out)
-    others = [one for one in waiting if (one.kind == "pot") != (out[0].kind == "pot")][:RIVALS]
-    rivals = judge_strokes(practice, others, trials._replace(visits=0)) if others else []
-    return [_compare(out, [one for one in out[1:] + rivals if _is_sensible(one)]), *out[1:]]
+    return out, waiting
+
+
+def _lay_first(others: list[Suggestion], spent: list[Suggestion]) -> list[Suggestion]:
+    """Strokes, best first: pots ``spent`` on a ball that a snooker is needed on stand behind the ``others``, unless they
+    win far more often."""
+    far = bool(others and spent) and spent[0].figure > FAR * others[0].figure
+    return spent + others if far else others + spent
 
 
 def _is_sensible(one: Suggestion) -> bool:
@@ -148,7 +170,8 @@ def _sort_by_win(strokes: list[Suggestion]) -> list[Suggestion]:
     """Strokes of a frame, best first; of those that win as often as the best of them, the one with the most points first."""
     waiting, out = sorted(strokes, key=lambda one: -one.figure), []
     while waiting:
-        alike = [one for one in waiting if one.figure >= waiting[0].figure - ALIKE]
+        best = waiting[0].figure
+        alike = [one for one in waiting if one.figure >= best - min(ALIKE, FEW * best)]
         out += sorted(alike, key=lambda one: -_net_points(one))
         waiting = waiting[len(alike) :]
     return out
@@ -172,7 +195,10 @@ def _compare(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
 
 
 def _choose_least_bad(practice: Practice, strokes: list[Intention], trials: Trials) -> Suggestion:
-    """The stroke that is fair in most samples, where none is sensible: a pot that hardly ever goes only if there are no others."""
+    """Where no stroke is sensible, the one that is fair in most samples, in a frame wins most often: a pot that hardly
+    ever goes only if there are no others."""
     judged = judge_strokes(practice, strokes, trials)
-    best = min(judged, key=lambda one: (one.kind == "pot" and one.chance < SELDOM, one.foul))
+    worst = [one.foul if one.win is None else -one.win for one in judged]
+    seldom = [one.kind == "pot" and one.chance < SELDOM for one in judged]
+    best = judged[min(range(len(judged)), key=lambda k: (seldom[k], worst[k]))]
     return replace(best, words=f"no fair stroke found: {best.words}")

@@ -9,6 +9,7 @@ import numpy as np
 from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..planning import Outcomes, Positions, clear_paths, obstructions
+from ..planning.worth import lead_of, left_of
 from ..players.cue_stroke import CueStroke
 from . import stroke_words as say
 from .practice import Practice, arrive, find_arrivals, join, start_from
@@ -29,6 +30,7 @@ class Intention(NamedTuple):
     words: str  # what it does and how it is struck, in words
     alike: str  # the same without what the room does: strokes with equal ones are one stroke to a player
     room: Room
+    spends: bool  # whether it pots a ball that the striker needs to lay snookers on
 
 
 def intend(practice: Practice, at: Positions, strokes: list[CueStroke]) -> list[Intention]:
@@ -37,9 +39,10 @@ def intend(practice: Practice, at: Positions, strokes: list[CueStroke]) -> list[
     stops = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
     hidden = ~clear_paths(starts).any_part
     lies = _say_lies(stops) if at.of_frames else [""] * len(strokes)
-    return [
+    made = [
         _intend(practice, starts, stops, k, one, bool(hidden[k]), lies[k]) for k, one in enumerate(strokes)
     ]
+    return _count_snookers(at, stops.afterstates, made) if at.of_frames else made
 
 
 def _intend(
@@ -71,7 +74,26 @@ def _intend(
     how_played = (say.stroke_words(played, distance, physics, way) for way in (room, None))
     push = say.push_words(dx, dy, stroke.aim, first) if first >= 0 else ""
     words, alike = (", ".join(filter(None, (what, how, lie, push))) for how in how_played)
-    return Intention(stroke, starts[k : k + 1], kind, ball, pocket, first, words, alike, room)
+    return Intention(stroke, starts[k : k + 1], kind, ball, pocket, first, words, alike, room, False)
+
+
+def _count_snookers(at: Positions, after: Positions, strokes: list[Intention]) -> list[Intention]:
+    """Strokes of a frame, which say whether the striker needs snookers, and what a pot then leaves.
+
+    A red is potted on the way as long as others are left; a colour that is spotted again costs no ball."""
+    needs, out = bool((lead_of(at) + left_of(at))[0] < 0.0), []
+    fewer = after.on_table[:, 1:].sum(axis=1) < at.on_table[0, 1:].sum()
+    last = ~after.on_table[:, 1:16].any(axis=1)
+    for one, lead, left, spends in zip(strokes, lead_of(after), left_of(after), fewer & last, strict=True):
+        behind = int(-lead) if one.kind == "pot" and lead + left < 0.0 else 0
+        words = say.snookers_words(needs, behind, int(left))
+        out.append(
+            one._replace(
+                words=", ".join(filter(None, (one.words, words))),
+                spends=needs and one.kind == "pot" and bool(spends),
+            )
+        )
+    return out
 
 
 def drop_alike(strokes: list[Intention]) -> list[Intention]:

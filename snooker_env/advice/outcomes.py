@@ -49,7 +49,8 @@ def judge_strokes(practice: Practice, strokes: list[Intention], trials: Trials) 
         chance, stayed = float(made.mean()), stops.potted[mine, CUE] < 0
         points, interval = expect_points(stops.points[mine], stops.goes_on[mine], rest)
         middle, spread = _cloud(stops.places[mine, CUE][stayed])
-        figures = say.figures_words(one.kind, chance, points, bool(look))
+        foul = float((~no_foul).mean())
+        figures = say.figures_words(one.kind, chance, points, foul if look else None)
         out.append(
             Suggestion(
                 **vars(one.stroke),
@@ -59,7 +60,7 @@ def judge_strokes(practice: Practice, strokes: list[Intention], trials: Trials) 
                 chance_interval=(chance, chance) if sure else wilson(int(made.sum()), tries),
                 points=points,
                 points_interval=interval,
-                foul=float((~no_foul).mean()),
+                foul=foul,
                 in_off=float((~stayed).mean()),
                 stops=middle,
                 spread=spread,

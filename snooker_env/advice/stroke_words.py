@@ -20,6 +20,7 @@ _FULLNESS = (0.38, 0.62, 0.87)  # offsets over the diameter up to which a hit is
 RAISED = 0.05  # elevation [rad] from which a raised cue is mentioned
 TIGHT = 0.05  # largest gap [m] to a ball that the cue ball lies tight behind
 NEARLY = 0.002  # gap [m] below which the tip is still on the cue ball when it meets a ball (docs/physics/limits.md)
+RISKY = 0.2  # share of fouls from which a stroke of a frame is said to foul
 AT_CUSHION = 0.15  # largest gap [m] to the cushion at an end that the cue ball is played to
 
 
@@ -117,6 +118,14 @@ def push_words(x: float, y: float, aim: float, ball: int) -> str:
     return f"at a real table a push stroke, a foul: the {ball_name(ball)} is {1000.0 * gap:.1f} mm away"
 
 
+def snookers_words(needs: bool, behind: int, left: int) -> str:
+    """That the striker needs snookers, and what a pot leaves then: ``behind`` by more than is ``left``; 0: no such pot."""
+    leaves = f"{behind} behind with {left} left" if behind else ""
+    if needs:
+        return f"needs snookers, then {leaves}" if behind else "needs snookers"
+    return f"then needs snookers: {leaves}" if behind else ""
+
+
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
     """What a stroke does; ``how``: an escape's cushion, how full a ball is struck, "" away from a touching one."""
     if kind == "pot":
@@ -144,11 +153,15 @@ def points_words(points: float) -> str:
     return f"{shown} point{'' if shown == '1' else 's'}"
 
 
-def figures_words(kind: str, chance: float, points: float, judged: bool = False) -> str:
-    """A pot's chance and points, else how often it is fair; ``judged``: its worth as a safety is said elsewhere."""
+def figures_words(kind: str, chance: float, points: float, foul: float | None = None) -> str:
+    """A pot's chance and points, else how often it is fair; ``foul``: of a frame, where its worth as a safety is said
+    elsewhere, the share of fouls."""
+    risk = f"fouls in {percent(foul)}" if foul is not None and foul > RISKY else ""
     if kind == "pot":
-        return f"pot {percent(chance)}, {points_words(points)} expected"
-    unjudged = kind in ("contact", "escape") and not judged
+        return f"pot {percent(chance)}{risk and f', {risk}'}, {points_words(points)} expected"
+    if risk:
+        return risk
+    unjudged = kind in ("contact", "escape") and foul is None
     no_pot = "; no pot intended, its worth as a safety is not judged" if unjudged else ""
     return f"fair {percent(chance)}{no_pot}"
 

@@ -136,7 +136,7 @@ def _say_chance(state: dict[str, Any]) -> list[str]:
 def _say_luck(service: Service) -> list[str]:
     """How lucky both were in the frame, in their chances to win; nothing where nobody errs."""
     lucks, acts = [0.0, 0.0], service.session.acts
-    for k in service.session.strokes:
-        lucks[acts[k].player or 0] += acts[k].luck
+    for k, luck in zip(service.session.strokes, service.session.luck, strict=True):
+        lucks[acts[k].player or 0] += luck
     one, other = (f"{name} {100 * luck:+.0f} %" for name, luck in zip(service.labels, lucks, strict=True))
     return [f"Luck: {one}, {other}."] if any(lucks) else []

@@ -211,10 +211,11 @@ def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], A
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
         labels, judge = service.labels, service.judge()
+        luck = session.luck if judge is not None and any(session.luck) else None
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
     title = f"{labels[0]} - {labels[1]}"
-    return form(Replay(strokes, title=title, players=labels, judge=judge))
+    return form(Replay(strokes, title=title, players=labels, judge=judge, luck=luck))
 
 
 ERRORS = ("noise", "samples", "seed", "revision")

@@ -133,6 +133,11 @@ class Session:
         return [k for k, act in enumerate(self.acts[: self.at]) if act.played is not None]
 
     @property
+    def luck(self) -> list[float]:
+        """The luck of each of the strokes, in its player's chance to win."""
+        return [self.acts[k].luck for k in self.strokes]
+
+    @property
     def position(self) -> Positions:
         """The frame as its striker sees it."""
         return of_tables(self.tables)

@@ -18,7 +18,7 @@ from ..planning import Position
 from ..render.scene import scene_data
 from ..simulation import Shot, simulate
 from ..tasks.played import Played
-from .chances import ChanceJudge, check_judge, standings_of, win_chances
+from .chances import ChanceJudge, check_judge, check_luck, standings_of, win_chances
 from .encode import encode_stroke, physics_data, table_data
 from .web import WEB, table_js
 
@@ -44,6 +44,9 @@ class Replay:
     judge : object with ``chance_to_win``, optional
         Of a frame: who says how likely each player wins, as ``snooker_env.player("tactician").at(env)``, with
         the errors of ``env``. ValueError with strokes that are of no frame. None (default): nobody says it.
+    luck : sequence of float, optional
+        Beside a judge: how much luck each stroke had, in [-1, 1], in its player's chance to win. Strokes alone do
+        not tell it: they hold what was struck, not what was meant. None (default): it is not known.
 
     Attributes
     ----------
@@ -51,6 +54,8 @@ class Replay:
         As tuples of Shot or Played and of names, the latter empty for bare shots, str and ``Table``.
     win_chance : tuple of float or None
         How likely the first player wins: before the first stroke, and after each. None without a judge.
+    luck : tuple of float or None
+        As given.
 
     Examples
     --------
@@ -69,6 +74,7 @@ class Replay:
         players: Iterable[str] | None = None,
         table: TableLike = None,
         judge: ChanceJudge | None = None,
+        luck: Sequence[float] | None = None,
     ):
         if not isinstance(strokes, Iterable):
             raise refuse("strokes", strokes, "must be strokes, one after the other")
@@ -106,6 +112,7 @@ class Replay:
         self.win_chance: tuple[float, ...] | None = None
         if (asked := check_judge(judge)) is not None:
             self.win_chance = tuple(win_chances(asked, standings_of(self.strokes)))
+        self.luck: tuple[float, ...] | None = check_luck(luck, len(self.strokes), asked is not None)
         self._data: dict[str, Any] | None = None
 
     @property
@@ -135,7 +142,8 @@ class Replay:
                 "physics": physics_data(physics) if same else None,
             }
             self._data |= {"R": physics.R, "spin_decel": physics.spin_decel, "strokes": strokes}
-            self._data["win_chance"] = self.win_chance and list(self.win_chance)
+            self._data |= {"win_chance": self.win_chance and list(self.win_chance)}
+            self._data |= {"luck": self.luck and list(self.luck)}
         return dict(self._data)
 
     def html(self) -> str:
@@ -265,7 +273,7 @@ def replay(
     strokes = source.strokes if isinstance(source, Replay) else _strokes(source, table)
     made = Replay(strokes, title=title, players=players, table=table, judge=judge)
     if isinstance(source, Replay) and judge is None:
-        made.win_chance = source.win_chance
+        made.win_chance, made.luck = source.win_chance, source.luck
     if path is not None:
         made.save(path)
     return made

@@ -106,7 +106,7 @@ def test_a_pot_that_hardly_ever_goes_is_never_suggested():
 
 
 def test_of_strokes_that_win_alike_the_one_with_more_points_or_less_left_stands_first():
-    """Chances to win within half a percent are as good; others stay in their order."""
+    """Chances to win within half a percent, or a 20th of a small one, are as good; others stay in their order."""
     words = "win points chance leaves kind"
     rows = [
         (0.9, 5.0, 0.5, 8.0, "pot"),
@@ -117,3 +117,8 @@ def test_of_strokes_that_win_alike_the_one_with_more_points_or_less_left_stands_
     strokes = [SimpleNamespace(**dict(zip(words.split(), row, strict=True)), figure=row[0]) for row in rows]
     net = [one.points for one in _sort_by_win(strokes)]
     assert net == [20.0, 5.0, 0.0, 60.0]  # worth 19.2, 1, -1 points; the last wins less often
+    small = [
+        SimpleNamespace(figure=win, kind="pot", points=10.0 * k, chance=1.0, leaves=0.0)
+        for k, win in enumerate((0.0125, 0.0085, 0.0083))
+    ]
+    assert [one.figure for one in _sort_by_win(small)] == [0.0125, 0.0083, 0.0085]

@@ -1,6 +1,7 @@
 """Does advice of a frame say why: the chance to win, what the other finds, where the cue ball goes?"""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,8 +9,10 @@ from cases import ENDGAME, HIDDEN, OPEN, SNOOKERED, Given, played, stroke_of
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke, stroke_words
-from snooker_env.advice.ask import _sort_by_win
-from snooker_env.advice.practice import one_position
+from snooker_env.advice.ask import _choose_least_bad, _lay_first, _sort_by_win
+from snooker_env.advice.intentions import intend
+from snooker_env.advice.outcomes import Trials, judge_strokes
+from snooker_env.advice.practice import one_position, practice_of
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position, Positions, clear_paths
 from snooker_env.tasks import LEVELS
@@ -177,3 +180,90 @@ def test_a_player_of_visits_does_not_advise_a_frame():
             sn.advise(OPEN, agent=agent, **QUICK)
     for agent in ("stroke_value", "tactician_253", Given(CueStroke(speed=0.9, aim=np.pi / 2))):
         assert sn.advise(OPEN, agent=agent, n=1, **QUICK)[0].win is not None
+
+
+HOPELESS = Position(
+    cue=(0.0, 1.74), blue=(0.3, -1.72), pink=(0.0, 1.68), black=(-0.06, 1.7), on="blue"
+)  # no stroke of many is fair
+NOTHING, PINK_FIRST = (CueStroke(speed=1.0, aim=aim) for aim in (0.0, -np.pi / 2))
+
+
+def test_where_nothing_is_fair_the_foul_that_wins_most_often_is_advised_and_said():
+    """Nothing struck gives 5 away, the pink first 6; others that leave more behind are found among discrete choices."""
+    practice, at = practice_of("none", {"cue": "free"}, of_frames=True), one_position(HOPELESS, (41, 22))
+    trials = Trials(samples=1, visits=0, seed=0)
+    nothing, pink = judge_strokes(practice, intend(practice, at, [NOTHING, PINK_FIRST]), trials)
+    assert nothing.win > pink.win + 0.03 and nothing.foul == pink.foul == 1.0
+    strokes = intend(practice, at, [PINK_FIRST, NOTHING])
+    assert _choose_least_bad(practice, strokes, trials).stroke == NOTHING
+    how = {"noise": "none", "visits": 0, "options": {"cue": "free"}}
+    (one,) = sn.advise(HOPELESS, agent=Given(NOTHING, PINK_FIRST), scores=(41, 22), **how)
+    assert one.foul == 1.0 and one.win >= nothing.win and ", fouls in 100 %; win chance " in one.words
+    assert one.words.startswith("no fair stroke found: foul, ")
+
+
+def test_a_risk_of_a_foul_is_said_in_a_frame():
+    risks = {}
+    for agent in ("tactician_60", Given(*(CueStroke(speed=2.0, aim=1.65 + 0.01 * k) for k in range(12)))):
+        for position in (SNOOKERED, HIDDEN):
+            for one in sn.advise(position, agent=agent, noise="beginner", n=8, **QUICK):
+                said = f", fouls in {100 * one.foul:.0f} %" in one.words
+                assert said == (one.foul > 0.2), one.words
+                assert one.kind == "pot" or said != (f", fair {100 * one.chance:.0f} %" in one.words)
+                risks[said] = risks.get(said, 0) + 1
+    assert min(risks[True], risks[False]) >= 3
+    say = stroke_words.figures_words
+    assert say("pot", 0.54, 12.0, 0.28) == "pot 54 %, fouls in 28 %, 12 points expected"
+    assert say("pot", 0.54, 12.0, 0.2) == say("pot", 0.54, 12.0) == "pot 54 %, 12 points expected"
+    assert say("escape", 0.72, 0.0, 0.28) == "fouls in 28 %" and say("escape", 0.8, 0.0, 0.2) == "fair 80 %"
+
+
+COLOURS = {
+    "yellow": (0.292, -1.0475),
+    "green": (-0.292, -1.0475),
+    "brown": (0.0, -1.0475),
+    "blue": (0.0, 0.0),
+    "pink": (0.0, 0.89),
+    "black": (0.0, 1.4605),
+}
+BEHIND = Position(cue=(0.4, -0.6), **COLOURS, on="yellow")
+"""The yellow can be potted nine times of ten; 27 are left."""
+
+
+def test_a_snooker_that_is_needed_is_laid_and_a_pot_comes_first_only_on_the_way():
+    how = {"n": 3, "samples": 300, "visits": 4}
+    usual = sn.advise(BEHIND, scores=(35, 62), **how)[0]
+    assert usual.kind == "pot" and "snookers" not in usual.words
+    lays = sn.advise(BEHIND, scores=(30, 62), **how)
+    assert all(one.kind == "safety" and ", needs snookers, " in one.words for one in lays)
+    assert lays[0].snookers > 0.5 and lays[0].words.endswith(" for the best pot")
+    last = Position(cue=(0.2, 0.9), reds=[(0.5, 1.3)], **COLOURS)
+    first = sn.advise(last, scores=(20, 60), **how)[0]
+    assert first.kind == "safety"  # the last red is easier to hide than six colours
+    more = Position(cue=(0.2, 0.9), reds=[(0.5, 1.3), (-0.3, 0.6)], **COLOURS)
+    first = sn.advise(more, scores=(20, 70), **how)[0]
+    assert first.kind == "pot" and ", needs snookers, then 49 behind with 42 left, pot " in first.words
+    colour = Position(
+        cue=(0.2, 1.2), **COLOURS, on="any_colour"
+    )  # it is spotted again, and if missed its points are lost
+    first = sn.advise(colour, scores=(20, 56), **how)[0]
+    assert first.kind == "pot" and ", needs snookers, then 29 behind with 27 left, pot " in first.words
+
+
+def test_a_pot_that_takes_a_ball_to_lay_snookers_on_is_first_where_it_wins_far_more_often():
+    made = {
+        name: SimpleNamespace(figure=win) for name, win in (("safe", 0.010), ("pot", 0.012), ("far", 0.014))
+    }
+    safe, pot, far = made["safe"], made["pot"], made["far"]
+    assert _lay_first([safe], [pot]) == [safe, pot] and _lay_first([safe], [far, pot]) == [far, pot, safe]
+    assert _lay_first([], [pot]) == [pot] and _lay_first([safe], []) == [safe]
+
+
+def test_a_pot_after_which_snookers_are_needed_says_so():
+    """The yellow brings 2 where a black would bring 7: 27 are left."""
+    straight = Position(cue=(0.103, -0.814), **COLOURS, on="any_colour")
+    pot = Given(CueStroke(speed=1.5, aim=np.arctan2(-0.737, 0.597)))
+    for mine, words in ((30, ", then needs snookers: 28 behind with 27 left, pot 100 %"), (31, "")):
+        (one,) = sn.advise(straight, agent=pot, noise="none", visits=0, scores=(mine, 60))
+        assert (one.kind, one.ball) == ("pot", 16)
+        assert words in one.words and ("snookers" in one.words) == bool(words)

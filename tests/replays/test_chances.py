@@ -1,6 +1,7 @@
 """Is the chance to win in a replay that of each position of the frame, from the first player's side?"""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from snooker_env.game import frame_columns as columns
 from snooker_env.game.frame import frame_of
 from snooker_env.planning import Positions
 from snooker_env.replays.chances import standings_of
+from tests.playing import EASY, STRAIGHT, Asked
 from tests.refusals import refused
 from tests.replays.test_replays import keeping, visit
 
@@ -138,3 +140,51 @@ def test_recorded_episodes_are_judged(tmp_path):
     data = json.loads(recorded.paths[0].read_text())
     assert len(data["win_chance"]) == len(data["strokes"]) + 1
     assert all(0.0 < chance < 1.0 for chance in data["win_chance"][:-1])
+
+
+def test_the_luck_of_a_game_is_that_of_its_end():
+    """The page sums the same luck in words; where nobody errs none is known."""
+    game = Asked()
+    game("players", players=["person", "person"], noise=["none", "none"])
+    game("position", position=EASY, scores=[20, 30])
+    game("stroke", speed=2.0, aim=STRAIGHT)
+    assert game.get("replay")["luck"] is None
+    game("players", players=["person", "person"], noise=["club", "beginner"])
+    for speed in (2.0, 1.5, 0.9, 2.5, 1.0):
+        striker = round(10 * speed) % 2
+        game("position", position=EASY, scores=[20, 30], striker=striker)
+        game("stroke", speed=speed, aim=STRAIGHT)
+    told = game("concede")
+    data = game.get("replay")
+    assert len(data["luck"]) == len(data["strokes"]) == 6 and all(abs(one) <= 1 for one in data["luck"])
+    sums = [
+        sum(
+            luck
+            for luck, stroke in zip(data["luck"], data["strokes"], strict=True)
+            if stroke["player"] == seat
+        )
+        for seat in (0, 1)
+    ]
+    assert {stroke["player"] for stroke in data["strokes"]} == {0, 1} and min(map(abs, sums)) >= 0.01
+    words = re.search(r"Luck: Player 1 ([+-]\d+) %, Player 2 ([+-]\d+) %\.", told["words"])
+    assert [int(one) for one in words.groups()] == [round(100 * one) for one in sums]
+    game.service.close()
+
+
+def test_luck_stands_beside_chances_alone(frame):
+    env, _ = frame
+    n = len(env.history)
+    luck = [0.1] * n
+    told = sn.Replay(env.history, judge=Judge(), luck=luck)
+    assert sn.replay(told, title="again").to_dict()["luck"] == luck == list(told.luck)
+    assert sn.replay(env, judge=Judge()).luck is None
+    refused(lambda: sn.Replay(env.history, luck=luck), "luck", "[0.1", "must be None: without a judge")
+    refused(
+        lambda: sn.Replay(env.history, judge=Judge(), luck=luck[1:]), "luck", "[0.1", f"must be {n} numbers"
+    )
+    refused(
+        lambda: sn.Replay(env.history, judge=Judge(), luck=[*luck[1:], 1.5]),
+        f"luck[{n - 1}]",
+        "1.5",
+        "[-1, 1]",
+    )

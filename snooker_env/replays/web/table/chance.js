@@ -6,16 +6,20 @@ const shares = chance => {
   return [first, 100 - first];
 };
 
+/** Words side by side in an element, and what they are said to mean. */
+const say = (element, words, meaning) => {
+  element.setAttribute("role", "img");
+  element.setAttribute("aria-label", meaning);
+  element.title = meaning;
+  element.replaceChildren(...words.map(text => Object.assign(document.createElement("span"), { textContent: text })));
+};
+
 /** Show in an element how likely the first of two players wins; null: nobody says it. `how`: more words. */
 export function showChance(element, chance, names, how = "") {
   element.toggleAttribute("hidden", chance === null);
   if (chance === null) return;
   const both = shares(chance).map(share => `${share} %`);
-  const words = `chance to win${how}: ${names.map((name, k) => `${name} ${both[k]}`).join(", ")}`;
-  element.setAttribute("role", "img");
-  element.setAttribute("aria-label", words);
-  element.title = words;
+  const meaning = `chance to win${how}: ${names.map((name, k) => `${name} ${both[k]}`).join(", ")}`;
   element.style.setProperty("--share", `${100 * chance}%`);
-  const word = text => Object.assign(document.createElement("span"), { textContent: text });
-  element.replaceChildren(...[both[0], "chance to win", both[1]].map(word));
+  say(element, [both[0], "chance to win", both[1]], meaning);
 }

@@ -198,5 +198,5 @@ export function decode(replay) {
   }
   let last = null;
   const strokes = replay.strokes.map(data => (last = new Stroke(data, replay, last)));
-  return { win_chance: null, ...replay, strokes };
+  return { win_chance: null, luck: null, ...replay, strokes };
 }
