@@ -216,18 +216,16 @@ CASES = {
 
 
 UNLIKE = {
-    "break_off": "baulk 0.59 (wanted 0.8); one of five plays a plant of 41 %",
-    "thin_from_the_yellow_side": "foul 0.06 (wanted 0.05), baulk 0.57, first struck [4, 4, 11, 4, 15]: inside reds, too",
-    "thin_from_the_green_side": "baulk 0.65 (wanted 0.7)",
-    "frozen_to_the_baulk_cushion": "foul 0.28, baulk 0.29: contacts over the whole table with a raised cue",
+    "break_off": "four of five play a plant out of the rack that goes in 40 %: exact places make it what it is on no table",
+    "thin_from_the_green_side": "three of five play a plant out of the pack",
+    "thin_from_the_yellow_side": "foul 0.29 (wanted 0.05): so thin that the red is missed",
+    "frozen_to_the_baulk_cushion": "foul 0.30, baulk 0.22: thin contacts with a raised cue, many of them missed",
     "from_the_top_cushion": "pot 1.00: it takes a pot of three in four on, where a coach would play safe",
-    "roll_up_to_the_brown": "pot 1.00, hidden 0.00: it takes the brown on, at 51 to 74 %",
-    "roll_up_to_the_green": "pot 1.00, hidden 0.01: it takes the green on, at 42 to 66 %",
-    "snookered_behind_the_black": "foul 0.33 (wanted 0.25), likely 0.42 (wanted 0.3)",
-    "last_red_on_the_top_cushion": "foul 0.29, baulk 0.58 (wanted 0.6): so thin that the red is missed",
-    "two_reds_and_a_lead": "foul 0.09 (wanted 0.05)",
-    "reds_at_both_sides": "pot 0.40, likely 0.16 (wanted 0.15): two of five take pots of 46 and 31 % on",
-    "needs_a_snooker": "hidden 0.09 (wanted 0.2): it plays safe, not for a snooker",
+    "roll_up_to_the_brown": "pot 0.60: three of five take the brown on, at 71 %; the others roll up behind it",
+    "roll_up_to_the_green": "pot 1.00, hidden 0.01: it takes the green on, at 73 %",
+    "snookered_behind_the_black": "foul 0.46 (wanted 0.25)",
+    "last_red_on_the_top_cushion": "foul 0.28 (wanted 0.1): so thin that the red is missed",
+    "two_reds_and_a_lead": "foul 0.11 (wanted 0.05), baulk 0.23 (wanted 0.5)",
 }
 """Where the tactician's advice is not as a coach wants it: what was measured."""
 
