@@ -130,7 +130,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
     def _arrange(self, out: StepOutput) -> Observation:
         masks = out.masks[0] if len(out.masks) else None
-        return observations.arrange(self.options.observation, out.observations[0], masks)
+        return observations.arrange(self.options.rules.observation, out.observations[0], masks)
 
     def _watch(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
         super()._watch(k, buffers, j, mine)
