@@ -75,6 +75,10 @@ class View(NamedTuple):
     rails: Floats  # as in a cue's row
 
 
+FLAT = View(False, Spread(1.0), np.empty(0))
+"""The balls."""
+
+
 def space(
     kind: ObservationKind,
     *,
