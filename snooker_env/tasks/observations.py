@@ -18,7 +18,7 @@ from .lines import POTS
 from .noise import Spread
 from .pot_chance import plain_chance
 
-OBSERVATIONS = ("pots", "flat", "balls", "masked")
+OBSERVATIONS: tuple[ObservationKind, ...] = ("pots", "flat", "balls", "masked")
 """The kinds of observations: one array of pots, or of balls; a dict of two; a dict of the flat one and the available
 choices. "pots" is of visits alone."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
