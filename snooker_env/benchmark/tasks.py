@@ -127,7 +127,7 @@ def _task(name: str, title: str, layout: str, score: str, judged: str = "", **mo
     return Task(id=f"Snooker{name}-v0", title=title, score=score, **more)
 
 
-_BALLS = {"observation": "flat"}  # where there may be no pots to see
+_BALLS: dict[str, Any] = {"observation": "flat"}  # where there may be no pots to see
 _LEGAL = _BALLS | {"changes": {"reward": "legal", "one_stroke": True}}
 _FRAME = {"task": "frame", "opponent": "planner", "miss": "clear_path"}
 _CLUB = {"changes": {"noise": "club"}, "thresholds": _BREAK}
