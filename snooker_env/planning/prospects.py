@@ -2,22 +2,22 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from math import atan2, exp, radians
+from math import exp
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._lib.jit import entry, kernel
+from .._lib.jit import entry
 from .._lib.types import Floats
 from ..game.balls import N_BALLS, VALUES, BallOn, balls_on_kernel, bits
-from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, find_pots
+from ..game.pots import POT_BALL, POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS
-from ..physics.cue_room import NO_RAILS, STEEPEST, least_elevation
+from ..physics.cue_room import NO_RAILS
 from ..physics.parameters import PhysicsLike
 from ..tasks.discrete_actions import POTS
-from ..tasks.noise import TWICE, Noise, Spread, widen
+from ..tasks.noise import Noise, Spread
+from ..tasks.pot_chance import FAR, length_of, plain_chance
 from .positions import Positions
-from .pot_chance import FAR, chance_of, length_of
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
 WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost
@@ -32,16 +32,6 @@ RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, DISTANT)
 SURE = (1e4, 1e-3, 0.0, -FAR)
 """Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left: the
 last one undoes the loss that the chance has by the paths."""
-
-
-@kernel
-def raised_spread(spread, side, top, aim, positions, on_table, rails):
-    """``spread`` of a stroke whose cue, pointing in the direction ``aim`` [rad], must be raised: errors grow with the
-    elevation (``tasks.noise``)."""
-    if rails.shape[0] == 0:
-        return spread
-    least = least_elevation((side, top, aim, 0.0), positions, on_table, rails, BALL_RADIUS)
-    return widen(spread, 1.0 + min(least, STEEPEST) / TWICE)  # a tip goes up before a cue does further
 
 
 @entry(what="the value of positions", seconds=1)
@@ -62,8 +52,7 @@ def _prospects(positions, on_table, ball_on, spread, constants, rails, values, c
         a = b = c = 0.0
         for j in range(many):
             ball = int(lines[j, POT_BALL])
-            aim = atan2(lines[j, GHOST_Y] - p[0, 1], lines[j, GHOST_X] - p[0, 0])
-            chance = chance_of(p, lines[j], raised_spread(spread, 0.0, 0.0, aim, p, on_table[k], rails))
+            chance = plain_chance(p, on_table[k], lines[j], spread, rails)
             if j < chances.shape[1]:
                 chances[k, j] = chance
             rest = max(0.0, left - VALUES[ball])
@@ -111,7 +100,7 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> Spread:
     >>> round(spread_of(LEVELS["olympiad"]).core * 1e3, 2)
     2.6
     """
-    return Spread(max(1e-5, radians(noise.direction_deg(physics))), noise.lapse, noise.lapse_factor)
+    return noise.spread(physics)
 
 
 def prospects_of(

@@ -28,7 +28,7 @@ class FittingModel:
         saved = SavedModel.of(path, field)
         options = ({"action": "discrete"} if saved.action[0] == "Discrete" else {}) | options
         for frame, replaced in ((False, False), (True, False), (True, True)):
-            for kind in OBSERVATIONS:
+            for kind in OBSERVATIONS[frame:]:
                 task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
                 told = {name: options[name] for name in options if frame or name != "says"}
                 model = cls(saved, told | task | {"observation": kind})

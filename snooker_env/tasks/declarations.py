@@ -7,7 +7,7 @@ from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
 from ..game.fouls import AUTO
 
 # Columns of the options that kernels take: what an action holds and says.
-A_TARGET = 0  # whether the aim of a box action is measured from a line at a ball
+A_AIM = 0  # what the aim of a box action means: the index in ``box_actions.AIMS``
 A_ELEVATION = 1  # the elevation that 1 means [rad]; 0: an action holds none
 A_PLACEMENT = 2  # whether a box action holds the place of a cue ball in hand
 A_DISCRETE = 3  # whether an action is a choice

@@ -1,7 +1,7 @@
 """Along which lines may the cue ball be sent? To the direct pots, else to what it sees, or over cushions.
 
-``action="discrete"`` chooses among up to ``POTS`` lines; ``aim="target"`` is measured from the first. Without
-a direct pot they are, best first: at the start of a frame, thin at the end red of either side, the break-off;
+``action="discrete"`` and ``aim="pot"`` choose among up to ``POTS`` lines; ``aim="target"`` is measured from the first.
+Without a direct pot they are, best first: at the start of a frame, thin at the end red of either side, the break-off;
 where hardly anything is seen, escapes, whose aim is found for the stroke; the middle of the widest window of
 directions in which a ball on is met first, its two edges, thin, and the middles of other windows."""
 
@@ -12,13 +12,13 @@ import numpy as np
 from .._lib.jit import entry, kernel
 from ..game.balls import N_BALLS, N_REDS, SPOTS, touching_balls
 from ..game.first_contact import find_first_ball
-from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, count_pots, find_pots
-from ..geometry import BALL_RADIUS
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, count_pots, find_pots
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cloth import COLUMNS
 from ..physics.impact.polynomial import WORK
 from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, escape_aim, find_escapes
 from .kernel_arrays import Work
-from .pot_aim import swerved_aim
+from .pot_aim import solved_aim, swerved_aim
 from .windows import HIGH, LOW, MOST_EDGES, half_width, open_windows, room, towards, wrap_angle
 
 POTS = 4
@@ -187,3 +187,23 @@ def aim_along(line, stroke, positions, on_table, on, law, work):
     if line[LINE_SPEED] == 0.0:
         return aim_at_ball(line[LINE_AIM], stroke, positions, on_table, law, work)
     return escape_aim(line[LINE_AIM], stroke, positions, on_table, on, law, work)
+
+
+@kernel(uses=(find_escapes,))
+def list_lines(positions, on_table, on, rows):
+    """Write the lines to choose from, as ``find_lines``: direct pots, else others; their number, and whether they are pots."""
+    many = find_pots(positions, on_table, on, BALL_RADIUS, rows[:POTS])
+    if many:
+        return many, True
+    return find_lines(positions, on_table, on, rows), False
+
+
+@kernel(uses=(solved_aim, aim_along))
+def aim_on(k, pots, stroke, positions, on_table, on, law, work):
+    """Direction [rad] of the stroke (speed, side, top, elevation) on line ``k`` of ``list_lines``, in ``work.lines``."""
+    line = work.lines[k]
+    if not pots:
+        return aim_along(line, stroke, positions, on_table, on, law, work)
+    pocket, ghost, ball = int(line[POT_POCKET]), (line[GHOST_X], line[GHOST_Y]), int(line[POT_BALL])
+    target = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
+    return solved_aim(positions, on_table, ball, target, ghost, stroke, law, work)

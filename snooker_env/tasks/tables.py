@@ -184,7 +184,7 @@ class Tables(ABC):
             self.conditions = np.tile(nominal(rules.physics), (n, 1))
             self.cues, self.phys = np.repeat(self.cues, n, axis=0), np.tile(rules.physics.pack(), (n, 1))
         if rules.observed:
-            self.SIZE = type(self).SIZE + CONDITIONS
+            self.SIZE += CONDITIONS
 
     def pack(self, side: int = 0) -> Packed:
         """The rules for the kernels, with the actions and errors of the seat ``side``."""
