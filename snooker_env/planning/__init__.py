@@ -20,7 +20,8 @@ from .position import Position
 from .positions import Positions
 from .pot_geometry import Pots, clear_paths, obstructions, pots
 from .proposals import Proposals, at_pots
-from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
+from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
+from .prospects import prospects_of, spread_of
 from .search import Ranked, Search
 from .strokes import Strokes, action_masks
 from .visit_judge import VisitJudge

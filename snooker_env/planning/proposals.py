@@ -35,7 +35,7 @@ from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, wrap_angle
 from .aims import Dynamics, law_of
 from .positions import Positions
-from .prospects import DISTANT, FOLLOWS
+from ..tasks.rule_of_thumb import DISTANT, FOLLOWS
 from .sobol import sobol
 from .stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 

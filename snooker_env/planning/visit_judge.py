@@ -18,7 +18,8 @@ from .aims import Dynamics
 from .planner import Planner, options_in
 from .positions import Positions
 from .proposals import Proposals, Propose, at_balls, over_cushions
-from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
+from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
+from .prospects import prospects_of, spread_of
 from .search import Plan, Proposed, Search
 from .stroke_columns import COLUMNS
 

@@ -10,13 +10,15 @@ from ..game.fouls import AUTO
 A_AIM = 0  # what the aim of a box action means: the index in ``box_actions.AIMS``
 A_ELEVATION = 1  # the elevation that 1 means [rad]; 0: an action holds none
 A_PLACEMENT = 2  # whether a box action holds the place of a cue ball in hand
-A_DISCRETE = 3  # whether an action is a choice
+A_DISCRETE = 3  # whether an action is a choice: 0 not, 1 of ``discrete_actions``, ``MENU`` of a menu
 A_NOMINATE = 4  # of a box action, the component that nominates; of choices 0; -1: none
 A_DECISION = 5  # the component that decides after a foul; -1: none
 A_DECLARATION = 6  # the component that declares; -1: none
 A_CONCEDE = 7  # whether an action can concede
 A_CLAIM = 8  # whether it can claim the frame
 A_LOT = 9  # whether it can let the other player begin after the lot
+
+MENU = 2
 
 SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
 DECLARES = SAYS[2:]

@@ -17,8 +17,9 @@ from .declarations import STROKE_CHOICES
 from .lines import POTS
 from .noise import Spread
 from .pot_chance import plain_chance
+from .stroke_menu import MENU_SIZE
 
-OBSERVATIONS = ("pots", "flat", "balls", "masked")
+OBSERVATIONS = ("pots", "strokes", "flat", "balls", "masked")
 """The kinds of observations: one array of pots, or of balls; a dict of two; a dict of the flat one and the available
 choices. "pots" is of visits alone."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
@@ -64,6 +65,15 @@ SHOWN_SPEED = 2.0
 """The cue speed whose chances observations show [m/s]."""
 POTS_SIZE = POTS * len(POT_ENTRIES) + 2 + len(STATE_ENTRIES)
 """Numbers in the observation "pots" (61): the pots, the cue ball's place (0 when off the table), the state of the game."""
+STROKE_ENTRIES = (
+    *("there", "pot", "chance", "log_chance", "points", "speed", "top", "cut", "tolerance"),
+    *("x", "y", "noses", "balls", "run", "lost", "missed", "near", "reach"),
+    *("prospects", "best", "second", "foul", "promise"),
+)
+STROKE_SIZE = len(STROKE_ENTRIES)
+"""Numbers of a stroke."""
+MENU_VIEW = MENU_SIZE * STROKE_SIZE + len(STATE_ENTRIES)
+"""Numbers in the observation "strokes"."""
 _FAR, _HALF = 4.0, 0.01  # longer than any path of the cue ball [m]; a middling tolerance [rad]
 
 
@@ -116,7 +126,7 @@ def space(
     >>> observation_space("flat").shape
     (121,)
     """
-    choice("observation", kind, OBSERVATIONS[frame:])
+    choice("observation", kind, OBSERVATIONS[2 * frame :])
     entries = len(STATE_ENTRIES) + (len(FRAME_ENTRIES) if frame else 0)
     balls = spaces.Box(-REACH, REACH, (N_BALLS, len(BALL_COLUMNS)), np.float32)
     state = spaces.Box(-1.0, 1.0, (entries,), np.float32)
@@ -128,7 +138,7 @@ def space(
             parts["conditions"] = spaces.Box(-1.0, 1.0, (CONDITIONS_SIZE,), np.float32)
         return spaces.Dict(parts)
     more = REPLACED_SIZE * replaced + CONDITIONS_SIZE * conditions
-    size = POTS_SIZE if kind == "pots" else BALLS_SIZE + entries
+    size = {"pots": POTS_SIZE, "strokes": MENU_VIEW}.get(kind, BALLS_SIZE + entries)
     flat = spaces.Box(-REACH, REACH, (size + more,), np.float32)
     if kind == "masked":
         return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})
@@ -136,7 +146,7 @@ def space(
 
 
 @kernel
-def _observe_state_into(row, at, on_table, ball_on, in_hand, points):
+def observe_state_into(row, at, on_table, ball_on, in_hand, points):
     """Write ``STATE_ENTRIES`` from the place ``at`` on."""
     for c in range(at, at + len(STATE_ENTRIES)):
         row[c] = 0.0
@@ -157,7 +167,7 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
         row[at + 2] = 1.0 if here else 0.0
         row[at + 3] = VALUES[i] / 7.0
         row[at + 4] = (on >> i) & 1
-    _observe_state_into(row, BALLS_SIZE, on_table, ball_on, in_hand, points)
+    observe_state_into(row, BALLS_SIZE, on_table, ball_on, in_hand, points)
 
 
 @kernel
@@ -189,12 +199,12 @@ def observe_pots_into(row, positions, on_table, ball_on, on, in_hand, points, vi
         row[at + 9], row[at + 10], row[at + 11] = far / _FAR, tx / HALF_WIDTH, ty / HALF_LENGTH
     at, here = POTS * size, on_table[0]
     row[at], row[at + 1] = cx / HALF_WIDTH if here else 0.0, cy / HALF_LENGTH if here else 0.0
-    _observe_state_into(row, at + 2, on_table, ball_on, in_hand, points)
+    observe_state_into(row, at + 2, on_table, ball_on, in_hand, points)
 
 
 def arrange(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = None) -> Observation:
     """Observations (..., k) in a kind of ``space``: "pots" and "flat" are ``rows`` itself, "balls" has new arrays."""
-    if kind in ("pots", "flat"):
+    if kind in ("pots", "strokes", "flat"):
         return rows
     if kind == "masked":
         if masks is None:

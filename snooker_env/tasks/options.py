@@ -26,6 +26,7 @@ from .discrete_actions import Choices
 from .kernel_arrays import Packed, pack_cue
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
+from .stroke_menu import Menu
 from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
@@ -33,7 +34,7 @@ MOST_TIME = 15.0
 """The most time to play [s]: the longest shot clock. With more no stroke would ever be in time."""
 TIME_TO_PLAY = 9.0
 """Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
-ACTIONS = ("box", "discrete")
+ACTIONS = ("box", "discrete", "strokes")
 CONDITIONS = ("fixed", "drawn")
 CUES = ("free", "real")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
@@ -205,7 +206,7 @@ class Options:
 
     task: Literal["visit", "frame", "match"] = "visit"
     layout: str = "default"
-    action: Literal["box", "discrete"] = "box"
+    action: Literal["box", "discrete", "strokes"] = "box"
     aim: Literal["pot", "absolute", "target"] = "pot"
     observation: Literal["default"] | ObservationKind = "default"
     noise: NoiseLike = "none"
@@ -283,7 +284,7 @@ class Options:
 
     def _observation(self) -> ObservationKind:
         """The kind of observations; ValueError for one that the task has not."""
-        kinds = observations.OBSERVATIONS[self.task != "visit" :]
+        kinds = observations.OBSERVATIONS[2 * (self.task != "visit") :]
         kind = choice("observation", self.observation, ("default", *kinds))
         return kinds[0] if kind == "default" else kind
 
@@ -311,15 +312,17 @@ class Options:
         return drawn, observed
 
     def _actions(self) -> Actions | Choices:
-        if choice("action", self.action, ACTIONS) == "box":
+        if (kind := choice("action", self.action, ACTIONS)) == "box":
             return Actions(self.aim, self.elevation, self.placement, self.says)
         for name in ("elevation", "placement"):
             if getattr(self, name) is not False:
-                raise refuse(name, getattr(self, name), 'must be False with action="discrete"')
+                raise refuse(name, getattr(self, name), f'must be False with action="{kind}"')
+        if kind == "strokes" and self.says:
+            raise refuse("says", self.says, 'must be () with action="strokes"')
         if "decision" in self.says:
             raise refuse("says", self.says, 'must not hold "decision" with action="discrete"')
         choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
-        return Choices(self.says)
+        return Menu() if kind == "strokes" else Choices(self.says)
 
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""

@@ -23,6 +23,7 @@ from .discrete_actions import Choices
 from .kernel_arrays import C_END_MASS, Packed
 from .noise import Noise
 from .options import NEVER, Rules
+from .stroke_menu import Menu, menu_masks
 from .played import Played, judgement_of, room_of, strike_of
 from .states import FrameState, State
 
@@ -257,6 +258,9 @@ class Tables(ABC):
         """``action_masks`` of one space of actions."""
         choices = actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE
         out = np.empty((len(which), choices), np.bool_)
+        if isinstance(actions, Menu):
+            menu_masks(which, self.positions, self.on_table, self.game, out)
+            return out
         reads = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY, self.rules.cue_row
         discrete_actions.masks(which, self.positions, self.on_table, self.game, *reads, out)
         return out

@@ -24,7 +24,6 @@ from ..prospects import in_parts
 from ..sobol import normal_points
 from ..stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 from ..worth import SPREAD
-from . import cue_ball_path as path
 from .dense_layers import Layers
 from .learned_value import LearnedValue
 from .policy_proposals import PolicyProposals, draw_choices
