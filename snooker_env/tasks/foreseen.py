@@ -132,3 +132,6 @@ def foresee(which, at, tables, rules, errors, out):
             one[F_PROSPECTS], one[F_BEST], one[F_SECOND] = worth / 35.0, best, second
             arrives = not lost and seen[path.REACH] >= 1.0 and abs(seen[path.ASIDE]) < _ASTRAY
             one[F_PROMISE] = chance * (VALUES[ball] + worth) / 42.0 if arrives else 0.0
+        last = STROKES * (many - 1) * STROKE_SIZE  # a stroke that is not there shows the one that is played for it
+        for c in range(STROKES * many * STROKE_SIZE, MENU_SIZE * STROKE_SIZE):
+            all_rows[c] = all_rows[last + c % (STROKES * STROKE_SIZE)] if c % STROKE_SIZE != F_THERE else 0.0
