@@ -142,8 +142,8 @@ def _run(positions, on_table, skip, law, work, out):
 
 @kernel(seconds=1)
 def _meet(stroke, ball, positions, on_table, cue_law, work, out):
-    """The cue ball of a stroke (5,) meets ``ball``, past all others: whether it does, and the velocity and the spin that
-    the ball leaves with. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
+    """The cue ball of a stroke (5,) meets ``ball``, past all others: whether it does, the velocity and the spin that
+    the ball leaves with, and the elevation of the cue. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
@@ -157,23 +157,24 @@ def _meet(stroke, ball, positions, on_table, cue_law, work, out):
     if not met:
         out[X], out[Y] = x, y
         out[MISSED] = 1.0 if hypot(x - cx, y - cy) < hypot(bx - cx, by - cy) else 2.0
-        return False, still, still
+        return False, still, still, played[4]
     nx, ny = bx - x, by - y
     away = hypot(nx, ny)
     own, w, other, spin, _ok = collide_balls(
         (v[0], v[1], 0.0), w, still, still, (nx / away, ny / away), law, phys[P_E_B], work.series
     )
     cloth.begin(motion, state, 0, t, (x, y), (own[0], own[1]), w, phys)
-    return True, other, spin
+    return True, other, spin, played[4]
 
 
 @kernel(seconds=1, uses=(_meet, _run))
 def foresee_pot(stroke, pot, positions, on_table, cue_law, work, out):
-    """What is predicted of a stroke (5,) at a pot, of ball and pocket; fills ``out`` (SEEN,)."""
+    """What is predicted of a stroke (5,) at a pot, of ball and pocket; fills ``out`` (SEEN,), and returns the elevation of
+    the cue [rad]."""
     phys, (ball, pocket) = cue_law.phys, pot
-    met, other, _spin = _meet(stroke, ball, positions, on_table, cue_law, work, out)
+    met, other, _spin, raised = _meet(stroke, ball, positions, on_table, cue_law, work, out)
     if not met:
-        return
+        return raised
     px = POCKET_AIMS[pocket, AIM_X] - positions[ball, 0]
     py = POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
     run, speed = hypot(px, py), hypot(other[0], other[1])
@@ -182,6 +183,7 @@ def foresee_pot(stroke, pot, positions, on_table, cue_law, work, out):
     rolls = (25.0 / 49.0) * speed * speed / (2.0 * phys[P_MU_R] * phys[P_G])
     out[REACH] = min(FAREST, rolls / run)
     _run(positions, on_table, ball, Law(phys, cue_law.fidelity, cue_law.n_steps), work, out)
+    return raised
 
 
 @kernel
@@ -211,7 +213,7 @@ def foresee_contact(stroke, positions, on_table, cue_law, work, out, its):
     out[MISSED], its[NEAR] = 2.0, 9.0
     if ball == 0:
         return 0
-    met, other, spin = _meet(stroke, ball, positions, on_table, cue_law, work, out)
+    met, other, spin, _raised = _meet(stroke, ball, positions, on_table, cue_law, work, out)
     if not met:
         return 0
     _run(positions, on_table, ball, law, work, out)

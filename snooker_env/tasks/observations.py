@@ -17,9 +17,9 @@ from .declarations import STROKE_CHOICES
 from .lines import POTS
 from .noise import Spread
 from .pot_chance import plain_chance
-from .stroke_menu import MENU_SIZE
+from .stroke_menu import MENU_SIZES
 
-OBSERVATIONS = ("pots", "strokes", "flat", "balls", "masked")
+OBSERVATIONS = ("pots", "flat", "balls", "masked", "strokes")
 """The kinds of observations: one array of pots, or of balls; a dict of two; a dict of the flat one and the available
 choices. "pots" is of visits alone."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
@@ -72,8 +72,6 @@ STROKE_ENTRIES = (
 )
 STROKE_SIZE = len(STROKE_ENTRIES)
 """Numbers of a stroke."""
-MENU_VIEW = MENU_SIZE * STROKE_SIZE + len(STATE_ENTRIES)
-"""Numbers in the observation "strokes"."""
 _FAR, _HALF = 4.0, 0.01  # longer than any path of the cue ball [m]; a middling tolerance [rad]
 
 
@@ -126,7 +124,7 @@ def space(
     >>> observation_space("flat").shape
     (121,)
     """
-    choice("observation", kind, OBSERVATIONS[2 * frame :])
+    choice("observation", kind, OBSERVATIONS[frame:])
     entries = len(STATE_ENTRIES) + (len(FRAME_ENTRIES) if frame else 0)
     balls = spaces.Box(-REACH, REACH, (N_BALLS, len(BALL_COLUMNS)), np.float32)
     state = spaces.Box(-1.0, 1.0, (entries,), np.float32)
@@ -137,8 +135,10 @@ def space(
         if conditions:
             parts["conditions"] = spaces.Box(-1.0, 1.0, (CONDITIONS_SIZE,), np.float32)
         return spaces.Dict(parts)
-    more = REPLACED_SIZE * replaced + CONDITIONS_SIZE * conditions
-    size = {"pots": POTS_SIZE, "strokes": MENU_VIEW}.get(kind, BALLS_SIZE + entries)
+    more = REPLACED_SIZE * (replaced and kind != "strokes") + CONDITIONS_SIZE * conditions
+    size = {"pots": POTS_SIZE, "strokes": STROKE_SIZE * MENU_SIZES[frame] + entries}.get(
+        kind, BALLS_SIZE + entries
+    )
     flat = spaces.Box(-REACH, REACH, (size + more,), np.float32)
     if kind == "masked":
         return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})

@@ -284,7 +284,7 @@ class Options:
 
     def _observation(self) -> ObservationKind:
         """The kind of observations; ValueError for one that the task has not."""
-        kinds = observations.OBSERVATIONS[2 * (self.task != "visit") :]
+        kinds = observations.OBSERVATIONS[self.task != "visit" :]
         kind = choice("observation", self.observation, ("default", *kinds))
         return kinds[0] if kind == "default" else kind
 
@@ -322,7 +322,7 @@ class Options:
         if "decision" in self.says:
             raise refuse("says", self.says, 'must not hold "decision" with action="discrete"')
         choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
-        return Menu() if kind == "strokes" else Choices(self.says)
+        return Menu(frame=self.task != "visit") if kind == "strokes" else Choices(self.says)
 
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ..._lib.types import Bools, Floats, Integers, Ints
 from ...game import frame_columns as columns
 from ...game.balls import BLACK, PINK, VALUES
-from ...tasks.noise import Spread
 from ...tasks import cue_ball_path as path
+from ...tasks.noise import Spread
 from ...tasks.options import Rules
 from ..aims import Dynamics
 from ..frame_judge import EASY

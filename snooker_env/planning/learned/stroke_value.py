@@ -14,6 +14,7 @@ from ..._lib.types import Floats, Ints
 from ...game.balls import N_BALLS, VALUES
 from ...game.frame_columns import BALL_ON, VISIT_COLUMNS
 from ...geometry import AIM_X, AIM_Y, IS_MIDDLE, POCKET_AIMS
+from ...tasks import cue_ball_path as path
 from ...tasks.discrete_actions import STROKES
 from ...tasks.noise import Noise
 from ..aims import Dynamics, law_of
