@@ -62,7 +62,7 @@ class SnookerVecEnv(VecEnv):
     >>> observations = tables.reset()
     >>> observations, rewards, dones, infos = tables.step(np.zeros((4, 4), np.float32))
     >>> observations.shape, rewards.dtype.name, len(infos)
-    ((4, 121), 'float32', 4)
+    ((4, 61), 'float32', 4)
     """
 
     tables: SnookerVectorEnv

@@ -75,7 +75,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     >>> observations, infos = envs.reset(seed=1)
     >>> observations, rewards, terminations, truncations, infos = envs.step(np.zeros((8, 4)))
     >>> observations.shape, rewards.shape
-    ((8, 121), (8,))
+    ((8, 61), (8,))
     """
 
     metadata: dict[str, Any] = SnookerEnv.metadata

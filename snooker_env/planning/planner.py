@@ -42,7 +42,7 @@ class Outcomes(NamedTuple):
     afterstates : Positions
         n rows: the balls at rest, with colours respotted, and the ball on for the next stroke.
     observations : numpy.ndarray
-        float32 (n, 121). The flat observation of each afterstate, as with ``task="visit"``.
+        float32 (n, 121). The flat observation of each afterstate, as ``observation="flat"`` of a visit.
 
     Examples
     --------
