@@ -187,6 +187,7 @@ def foresee(which, at, player, tables, rules, errors, out):
     ``rules``: the code of the rule set, cues and constants, one row or one a table, fidelity."""
     (positions, on_table, game), (code, cues, phys, fidelity, n_steps) = tables, rules
     work, in_frame = new_work(), game.shape[1] > columns.STRIKER
+    kind = 1 if in_frame else 0
     table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
     wide = (
         np.empty((MOST_RUNS, RUN_COLUMNS)),
@@ -198,8 +199,8 @@ def foresee(which, at, player, tables, rules, errors, out):
     for j in range(which.shape[0]):
         k, rows = which[j], out[at[j]]
         p, here, row, stroke = positions[k], on_table[k], game[k], desk.stroke
-        end = STROKE_SIZE * MENU_SIZES[in_frame]
-        for c in range(_STATES[in_frame]):
+        end, state = STROKE_SIZE * MENU_SIZES[kind], _STATES[kind]
+        for c in range(state):
             rows[end + c] = rows[BALLS_SIZE + c]
         for c in range(end):
             rows[c] = 0.0

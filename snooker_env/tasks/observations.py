@@ -21,7 +21,7 @@ from .stroke_menu import MENU_SIZES
 
 OBSERVATIONS = ("pots", "flat", "balls", "masked", "strokes")
 """The kinds of observations: one array of pots, or of balls; a dict of two; a dict of the flat one and the available
-choices. "pots" is of visits alone."""
+choices; one array of strokes. "pots" is of visits alone."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
 """Columns of the table of balls: x / 0.889 m and y / 1.7845 m (0 when off the table), 1 if on the table,
 value / 7, 1 if it may be struck first (a ball on; with a free ball every colour)."""
@@ -70,8 +70,8 @@ STROKE_ENTRIES = (
     *("x", "y", "noses", "balls", "run", "lost", "missed", "near", "reach"),
     *("prospects", "best", "second", "foul", "promise"),
 )
+"""Entries of each stroke on the menu, of which ``foreseen`` writes them; docs/environment/specification.md says what they are."""
 STROKE_SIZE = len(STROKE_ENTRIES)
-"""Numbers of a stroke."""
 _FAR, _HALF = 4.0, 0.01  # longer than any path of the cue ball [m]; a middling tolerance [rad]
 
 
@@ -99,10 +99,10 @@ def space(
 
     Parameters
     ----------
-    kind : {"pots", "flat", "balls", "masked"}
+    kind : {"pots", "flat", "balls", "masked", "strokes"}
         "pots": a Box (61,), of visits alone; "flat": a Box (121,); "balls": a Dict of the boxes "balls" (22, 5) and
         "state" (11,); "masked": a Dict of the boxes "observations", that of "flat", and "action_mask" (choices,),
-        int8 in {0, 1}.
+        int8 in {0, 1}; "strokes": a Box (1391,), of a frame (2560,).
     frame, replaced : bool, optional
         Whether the 19 entries of a frame or match follow, shapes (140,) and (30,), and whether the layout
         that "replace" restores, as with a miss rule: (206,), or the box "replaced" (22, 3). Default False.

@@ -136,13 +136,15 @@ class Options:
         "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
     action : str, default "box"
         "box": numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540)
-        unless ``says`` adds more.
+        unless ``says`` adds more. "strokes": one integer that means a stroke on a menu for the position, in [0, 60), in a
+        frame [0, 110).
     aim : str, default "pot"
         What the aim of a box action means. "pot": it picks a pot, else a fair stroke's line, for which the aim is solved.
         "absolute": a direction from +x. "target": an angle from the best pot's line, else from a fair stroke's.
     observation : str, default "default"
         "pots", of a visit: one array of the four widest pots. "flat": one array of all balls. "balls": the same as a
-        dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the available choices.
+        dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the available choices. "strokes": one
+        array of what is foreseen of each stroke on the menu.
         "default": "pots", in a frame "flat".
     noise : str, dict or Noise, default "none"
         Execution errors: "none", "professional", "amateur", "club", "robot", "olympiad", or standard deviations as a
