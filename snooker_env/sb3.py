@@ -232,8 +232,14 @@ class StrokesPolicy(_ActorCritic):
     """The policy of PPO and MaskablePPO for ``action="strokes", observation="strokes"``.
 
     One small network reads each stroke alike and gives its logit; the value comes from all strokes together and the state.
-    A stroke that is not there is never chosen, by PPO neither. K and the columns come from the spaces. ``use_sde``, which PPO
-    gives, is ignored. MaskablePPO needs sb3-contrib.
+    A stroke that is not there is never chosen, by PPO neither. K and the columns come from the spaces.
+
+    Parameters
+    ----------
+    *args, **kwargs
+        As of the policies of PPO, or MaskablePPO of sb3-contrib, which give them. The network is fixed.
+    use_sde : bool, optional
+        Ignored: choices have no noise of their own.
 
     Examples
     --------
@@ -264,7 +270,15 @@ class _StrokesQ(QNetwork):
 
 
 class StrokesQPolicy(DQNPolicy):
-    """The policy of DQN for ``action="strokes", observation="strokes"``: the same network gives the value of each stroke."""
+    """The policy of DQN for ``action="strokes", observation="strokes"``: the same network gives the value of each stroke.
+
+    Examples
+    --------
+    >>> from stable_baselines3 import DQN
+    >>> from snooker_env.sb3 import SnookerVecEnv, StrokesQPolicy
+    >>> tables = SnookerVecEnv(4, action="strokes", observation="strokes", seed=1, threads=1)
+    >>> agent = DQN(StrokesQPolicy, tables, learning_starts=8, buffer_size=1_000, device="cpu")
+    """
 
     def make_q_net(self) -> QNetwork:
         """The network of the values of strokes."""

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-torch = pytest.importorskip("torch")
 pytest.importorskip("stable_baselines3")
+import torch
 from stable_baselines3 import DQN, PPO
 
 from snooker_env.sb3 import SnookerVecEnv, StrokesNet, StrokesPolicy, StrokesQPolicy
