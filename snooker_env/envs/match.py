@@ -141,7 +141,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
         side = PLAYERS.index(agent)
         if not isinstance(self.tables.seats[side].actions, Choices):
-            raise refuse("action", "box", 'must be "discrete": a Box has no masks')
+            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
         return self._mask(side, agent == self.agent_selection)
 
     def _mask(self, side, turn):

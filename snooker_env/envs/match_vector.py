@@ -122,7 +122,7 @@ class MatchVectorEnv(SnookerVectorEnv):
     def action_masks(self) -> Bools:
         """Return the strikers' choices, bool (num_envs, choices); ValueError unless both have the same."""
         if not self._alike or not isinstance(self.tables.seats[0].actions, Choices):
-            words = 'must be "discrete" for both players: a Box has no masks'
+            words = 'must be "discrete" or "strokes" for both players: a Box has no masks'
             raise refuse("action", self.options.action, words)
         return self.tables.action_masks()
 

@@ -128,7 +128,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     def action_masks(self) -> Bools:
         """Return the choices, bool (540,) or longer, for maskable algorithms; ValueError with "box"."""
         if not isinstance(self.options.rules.actions, Choices):
-            raise refuse("action", "box", 'must be "discrete": a Box has no masks')
+            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
         return self.tables.action_masks()[0]
 
     def _arrange(self, out: StepOutput) -> Observation:

@@ -203,7 +203,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     def action_masks(self) -> Bools:
         """Return the available choices, bool (num_envs, 540) or wider. ValueError with ``action="box"``."""
         if not isinstance(self.options.rules.actions, Choices):
-            raise refuse("action", "box", 'must be "discrete": a Box has no masks')
+            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:

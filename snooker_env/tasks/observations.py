@@ -17,10 +17,11 @@ from .declarations import STROKE_CHOICES
 from .lines import POTS
 from .noise import Spread
 from .pot_chance import plain_chance
+from .stroke_menu import MENU_SIZES
 
-OBSERVATIONS: tuple[ObservationKind, ...] = ("pots", "flat", "balls", "masked")
+OBSERVATIONS: tuple[ObservationKind, ...] = ("pots", "flat", "balls", "masked", "strokes")
 """The kinds of observations: one array of pots, or of balls; a dict of two; a dict of the flat one and the available
-choices. "pots" is of visits alone."""
+choices; one array of strokes. "pots" is of visits alone."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
 """Columns of the table of balls: x / 0.889 m and y / 1.7845 m (0 when off the table), 1 if on the table,
 value / 7, 1 if it may be struck first (a ball on; with a free ball every colour)."""
@@ -64,6 +65,13 @@ SHOWN_SPEED = 2.0
 """The cue speed whose chances observations show [m/s]."""
 POTS_SIZE = POTS * len(POT_ENTRIES) + 2 + len(STATE_ENTRIES)
 """Numbers in the observation "pots" (61): the pots, the cue ball's place (0 when off the table), the state of the game."""
+STROKE_ENTRIES = (
+    *("there", "pot", "chance", "log_chance", "points", "speed", "top", "cut", "tolerance"),
+    *("x", "y", "noses", "balls", "run", "lost", "missed", "near", "reach"),
+    *("prospects", "best", "second", "foul", "promise"),
+)
+"""Entries of each stroke on the menu, of which ``foreseen`` writes them; docs/environment/specification.md says what they are."""
+STROKE_SIZE = len(STROKE_ENTRIES)
 _FAR, _HALF = 4.0, 0.01  # longer than any path of the cue ball [m]; a middling tolerance [rad]
 
 
@@ -91,10 +99,10 @@ def space(
 
     Parameters
     ----------
-    kind : {"pots", "flat", "balls", "masked"}
+    kind : {"pots", "flat", "balls", "masked", "strokes"}
         "pots": a Box (61,), of visits alone; "flat": a Box (121,); "balls": a Dict of the boxes "balls" (22, 5) and
         "state" (11,); "masked": a Dict of the boxes "observations", that of "flat", and "action_mask" (choices,),
-        int8 in {0, 1}.
+        int8 in {0, 1}; "strokes": a Box (1391,), of a frame (2560,).
     frame, replaced : bool, optional
         Whether the 19 entries of a frame or match follow, shapes (140,) and (30,), and whether the layout
         that "replace" restores, as with a miss rule: (206,), or the box "replaced" (22, 3). Default False.
@@ -127,8 +135,10 @@ def space(
         if conditions:
             parts["conditions"] = spaces.Box(-1.0, 1.0, (CONDITIONS_SIZE,), np.float32)
         return spaces.Dict(parts)
-    more = REPLACED_SIZE * replaced + CONDITIONS_SIZE * conditions
-    size = POTS_SIZE if kind == "pots" else BALLS_SIZE + entries
+    more = REPLACED_SIZE * (replaced and kind != "strokes") + CONDITIONS_SIZE * conditions
+    size = {"pots": POTS_SIZE, "strokes": STROKE_SIZE * MENU_SIZES[frame] + entries}.get(
+        kind, BALLS_SIZE + entries
+    )
     flat = spaces.Box(-REACH, REACH, (size + more,), np.float32)
     if kind == "masked":
         return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})
@@ -136,7 +146,7 @@ def space(
 
 
 @kernel
-def _observe_state_into(row, at, on_table, ball_on, in_hand, points):
+def observe_state_into(row, at, on_table, ball_on, in_hand, points):
     """Write ``STATE_ENTRIES`` from the place ``at`` on."""
     for c in range(at, at + len(STATE_ENTRIES)):
         row[c] = 0.0
@@ -157,7 +167,7 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
         row[at + 2] = 1.0 if here else 0.0
         row[at + 3] = VALUES[i] / 7.0
         row[at + 4] = (on >> i) & 1
-    _observe_state_into(row, BALLS_SIZE, on_table, ball_on, in_hand, points)
+    observe_state_into(row, BALLS_SIZE, on_table, ball_on, in_hand, points)
 
 
 @kernel
@@ -189,12 +199,12 @@ def observe_pots_into(row, positions, on_table, ball_on, on, in_hand, points, vi
         row[at + 9], row[at + 10], row[at + 11] = far / _FAR, tx / HALF_WIDTH, ty / HALF_LENGTH
     at, here = POTS * size, on_table[0]
     row[at], row[at + 1] = cx / HALF_WIDTH if here else 0.0, cy / HALF_LENGTH if here else 0.0
-    _observe_state_into(row, at + 2, on_table, ball_on, in_hand, points)
+    observe_state_into(row, at + 2, on_table, ball_on, in_hand, points)
 
 
 def arrange(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = None) -> Observation:
     """Observations (..., k) in a kind of ``space``: "pots" and "flat" are ``rows`` itself, "balls" has new arrays."""
-    if kind in ("pots", "flat"):
+    if kind in ("pots", "strokes", "flat"):
         return rows
     if kind == "masked":
         if masks is None:

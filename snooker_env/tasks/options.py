@@ -26,6 +26,7 @@ from .discrete_actions import Choices
 from .kernel_arrays import Packed, pack_cue
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
+from .stroke_menu import Menu
 from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
@@ -33,7 +34,7 @@ MOST_TIME = 15.0
 """The most time to play [s]: the longest shot clock. With more no stroke would ever be in time."""
 TIME_TO_PLAY = 9.0
 """Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
-ACTIONS = ("box", "discrete")
+ACTIONS = ("box", "discrete", "strokes")
 CONDITIONS = ("fixed", "drawn")
 CUES = ("free", "real")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
@@ -135,13 +136,15 @@ class Options:
         "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
     action : str, default "box"
         "box": numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540)
-        unless ``says`` adds more.
+        unless ``says`` adds more. "strokes": one integer that means a stroke on a menu for the position, in [0, 60), in a
+        frame [0, 110).
     aim : str, default "pot"
         What the aim of a box action means. "pot": it picks a pot, else a fair stroke's line, for which the aim is solved.
         "absolute": a direction from +x. "target": an angle from the best pot's line, else from a fair stroke's.
     observation : str, default "default"
         "pots", of a visit: one array of the four widest pots. "flat": one array of all balls. "balls": the same as a
-        dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the available choices.
+        dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the available choices. "strokes": one
+        array of what is foreseen of each stroke on the menu.
         "default": "pots", in a frame "flat".
     noise : str, dict or Noise, default "none"
         Execution errors: "none", "professional", "amateur", "club", "robot", "olympiad", or standard deviations as a
@@ -205,7 +208,7 @@ class Options:
 
     task: Literal["visit", "frame", "match"] = "visit"
     layout: str = "default"
-    action: Literal["box", "discrete"] = "box"
+    action: Literal["box", "discrete", "strokes"] = "box"
     aim: Literal["pot", "absolute", "target"] = "pot"
     observation: Literal["default"] | ObservationKind = "default"
     noise: NoiseLike = "none"
@@ -311,15 +314,17 @@ class Options:
         return drawn, observed
 
     def _actions(self) -> Actions | Choices:
-        if choice("action", self.action, ACTIONS) == "box":
+        if (kind := choice("action", self.action, ACTIONS)) == "box":
             return Actions(self.aim, self.elevation, self.placement, self.says)
         for name in ("elevation", "placement"):
             if getattr(self, name) is not False:
-                raise refuse(name, getattr(self, name), 'must be False with action="discrete"')
+                raise refuse(name, getattr(self, name), f'must be False with action="{kind}"')
+        if kind == "strokes" and self.says:
+            raise refuse("says", self.says, 'must be () with action="strokes"')
         if "decision" in self.says:
             raise refuse("says", self.says, 'must not hold "decision" with action="discrete"')
         choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
-        return Choices(self.says)
+        return Menu(frame=self.task != "visit") if kind == "strokes" else Choices(self.says)
 
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""

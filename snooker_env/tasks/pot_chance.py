@@ -39,13 +39,19 @@ def chance_of(positions, pot, spread):
 
 
 @kernel
+def at_elevation(spread, elevation):
+    """``spread`` of a stroke whose cue is raised to ``elevation`` [rad]: errors grow with it (``tasks.noise``)."""
+    return widen(spread, 1.0 + min(elevation, STEEPEST) / TWICE)  # a tip goes up before a cue does further
+
+
+@kernel
 def raised_spread(spread, side, top, aim, positions, on_table, rails):
-    """``spread`` of a stroke whose cue, pointing in the direction ``aim`` [rad], must be raised: errors grow with the
-    elevation (``tasks.noise``)."""
+    """``spread`` of a stroke whose cue, pointing in the direction ``aim`` [rad], must be raised."""
     if rails.shape[0] == 0:
         return spread
-    least = least_elevation((side, top, aim, 0.0), positions, on_table, rails, BALL_RADIUS)
-    return widen(spread, 1.0 + min(least, STEEPEST) / TWICE)  # a tip goes up before a cue does further
+    return at_elevation(
+        spread, least_elevation((side, top, aim, 0.0), positions, on_table, rails, BALL_RADIUS)
+    )
 
 
 @kernel

@@ -20,11 +20,21 @@ from ..physics.conditions import scale_to_unit
 from ..physics.engine import Status
 from .kernel_arrays import C_RAILS, OutputArrays, PlayedArrays
 from .lines import POTS
-from .observations import POTS_SIZE, SHOWN_SPEED, SIZE, View, observe_into, observe_pots_into
+from .observations import (
+    POTS_SIZE,
+    SHOWN_SPEED,
+    SIZE,
+    STATE_ENTRIES,
+    STROKE_SIZE,
+    View,
+    observe_into,
+    observe_pots_into,
+)
 from .options import NEVER, Rules
 from .rewards import REWARDS, reward_of
 from .states import State, check_visit
 from .stroke import JUMPED, ShotBuffers, see, write_ruling
+from .stroke_menu import MENU_SIZES
 from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_info, write_stroke_info
 
 _OK = int(Status.OK)
@@ -100,7 +110,9 @@ class Visits(Tables):
     COLUMNS = VISIT_COLUMNS
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
-        self.SIZE = POTS_SIZE if rules.observation == "pots" else SIZE
+        self.SIZE = {"pots": POTS_SIZE, "strokes": STROKE_SIZE * MENU_SIZES[0] + len(STATE_ENTRIES)}.get(
+            rules.observation, SIZE
+        )
         super().__init__(rules, n, limit=limit)
         spread, rails = rules.noise.spread(rules.physics, speed=SHOWN_SPEED), rules.cue_row[C_RAILS:]
         self._view: View = View(rules.observation == "pots", spread, rails)
@@ -138,6 +150,7 @@ class Visits(Tables):
         rules = REWARDS.index(self.rules.reward), self.limit, self.rules.one_stroke
         tables = self.positions, self.on_table, self.game
         _conclude(which, *tables, b.played, rules, self._view, out.arrays)
+        self.show_strokes(which, which, out.observations)
 
     def _begin(self, which: Ints, out: StepOutput, *, fresh: bool = True) -> None:
         if len(which):
@@ -146,6 +159,7 @@ class Visits(Tables):
                 deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
                 self.draw_conditions(which)
             _begin(which, fresh, plan.in_hand, self.arrays, self._view, out.arrays, out.last)
+            self.show_strokes(which, which, out.observations)
             self.show_conditions(which, out)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
@@ -161,6 +175,7 @@ class Visits(Tables):
     def observe(self, which: Ints, player: int = 0) -> Singles:
         rows = np.empty((len(which), self.SIZE), np.float32)
         observe(which, self.positions, self.on_table, self.game, self._view, rows)
+        self.show_strokes(which, np.arange(len(which)), rows)
         if self.rules.observed:
             rows[:, -CONDITIONS:] = scale_to_unit(self.conditions[which])
         return rows
