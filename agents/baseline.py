@@ -24,7 +24,7 @@ SETTINGS |= {"gae_lambda": 0.5, "vf_coef": 0.05, "ent_coef": 0.003}
 
 def train(task, seed):
     """The agent of a training seed; its tables begin below those of the judging."""
-    options = TASKS[task].options(action="discrete")
+    options = TASKS[task].options(action="discrete", observation="flat")
     if TASKS[task].frame:
         options = options.but(opponent="ghost_ball")
     envs = SnookerVecEnv(TABLES, options=options, seed=10_000 * seed)

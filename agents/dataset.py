@@ -49,7 +49,7 @@ def free_options(task, form) -> dict[str, Any]:
         if task.frame:
             raise refuse("form", form, 'must be "strokes" in frames: choices make no decision after a foul')
         return {"action": "discrete", "observation": "masked"}
-    return FRAMES if task.frame else VISITS
+    return {"observation": "flat"} | (FRAMES if task.frame else VISITS)
 
 
 def nearest_choices(strokes, at, masks, planner):

@@ -103,6 +103,7 @@ def main(argv=None):
         vectorization_mode="vector_entry_point",
         autoreset_mode="SameStep",
         action="discrete",
+        observation="flat",
         noise=args.noise,
     )
     numbers, choices = envs.single_observation_space.shape[0], int(envs.single_action_space.n)

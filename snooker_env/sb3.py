@@ -9,14 +9,24 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 try:
+    import torch
     from stable_baselines3.common.monitor import Monitor
+    from stable_baselines3.common.policies import ActorCriticPolicy
     from stable_baselines3.common.vec_env import VecEnv
+    from stable_baselines3.dqn.policies import DQNPolicy, QNetwork
 except ModuleNotFoundError as error:
     if (error.name or "").split(".")[0] != "stable_baselines3":
         raise
     from ._lib.install import missing
 
     raise missing("snooker_env.sb3 needs Stable-Baselines3", "train") from error
+
+try:
+    from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy as _ActorCritic
+except ModuleNotFoundError as error:
+    if (error.name or "").split(".")[0] != "sb3_contrib":
+        raise
+    _ActorCritic = ActorCriticPolicy
 
 from collections.abc import Sequence
 from typing import Any
@@ -25,7 +35,7 @@ from ._lib.check import choice, integer, refuse
 from ._lib.types import Bools, Floats, Ints, Observation, Singles
 from .envs.vector import SnookerVectorEnv
 
-__all__ = ["SnookerVecEnv"]
+__all__ = ["SnookerVecEnv", "StrokesPolicy", "StrokesQPolicy"]
 
 
 class SnookerVecEnv(VecEnv):
@@ -52,7 +62,7 @@ class SnookerVecEnv(VecEnv):
     >>> observations = tables.reset()
     >>> observations, rewards, dones, infos = tables.step(np.zeros((4, 4), np.float32))
     >>> observations.shape, rewards.dtype.name, len(infos)
-    ((4, 121), 'float32', 4)
+    ((4, 61), 'float32', 4)
     """
 
     tables: SnookerVectorEnv
@@ -160,3 +170,117 @@ class SnookerVecEnv(VecEnv):
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
         """Return whether tables are wrapped: only as in a ``Monitor``, for each reports its episodes."""
         return [issubclass(wrapper_class, Monitor) for _ in self._get_indices(indices)]
+
+
+HIDDEN = 64
+"""Units of each of the two layers that read a stroke, and of the one that reads the position."""
+_AWAY = -1e8  # the score of a stroke that is not there
+
+
+class StrokesNet(torch.nn.Module):
+    """Reads ``observation="strokes"``, (b, K * C + S) float32: each stroke alike, with the state, by two layers; the position
+    from what they made of all strokes that are there, their mean and their largest, and from the state."""
+
+    def __init__(self, choices: int, size: int):
+        super().__init__()
+        self.choices, self.columns = choices, size // choices
+        state = size - choices * self.columns
+        self.of_stroke = torch.nn.Linear(self.columns, HIDDEN)
+        self.of_state = torch.nn.Linear(state, HIDDEN, bias=False)
+        self.second = torch.nn.Linear(HIDDEN, HIDDEN)
+        self.score = torch.nn.Linear(HIDDEN, 1)
+        self.position = torch.nn.Linear(2 * HIDDEN + state, HIDDEN)
+        self.latent_dim_pi, self.latent_dim_vf = choices, HIDDEN
+        for layer in (self.of_stroke, self.of_state, self.second, self.position):
+            torch.nn.init.orthogonal_(layer.weight, 2.0**0.5)
+        torch.nn.init.orthogonal_(self.score.weight, 0.01)
+
+    def read(self, seen: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+        """What is made of each stroke (b, K, HIDDEN), whether it is there (b, K), and the state (b, S)."""
+        strokes = seen[:, : self.choices * self.columns].view(-1, self.choices, self.columns)
+        state = seen[:, self.choices * self.columns :]
+        first = torch.tanh(self.of_stroke(strokes) + self.of_state(state)[:, None])
+        return torch.tanh(self.second(first)), strokes[..., 0] > 0.5, state
+
+    def scores(self, made: torch.Tensor) -> torch.Tensor:
+        """The scores (b, K) of strokes."""
+        return self.score(made)[..., 0]
+
+    def judge(self, made: torch.Tensor, there: torch.Tensor, state: torch.Tensor) -> torch.Tensor:
+        """What is made of positions (b, HIDDEN)."""
+        here = there[..., None]
+        mean = (made * here).sum(1) / here.sum(1).clamp(min=1)
+        most = torch.where(here, made, -1.0).amax(1)
+        return torch.tanh(self.position(torch.cat([mean, most, state], 1)))
+
+    def forward(self, features: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Logits of the strokes (b, K), and what is made of positions (b, HIDDEN)."""
+        made, there, state = self.read(features)
+        return torch.where(there, self.scores(made), _AWAY), self.judge(made, there, state)
+
+    def forward_actor(self, features: torch.Tensor) -> torch.Tensor:
+        """The logits alone."""
+        made, there, _ = self.read(features)
+        return torch.where(there, self.scores(made), _AWAY)
+
+    def forward_critic(self, features: torch.Tensor) -> torch.Tensor:
+        """What is made of positions alone."""
+        return self.judge(*self.read(features))
+
+
+class StrokesPolicy(_ActorCritic):
+    """The policy of PPO and MaskablePPO for ``action="strokes", observation="strokes"``.
+
+    One small network reads each stroke alike and gives its logit; the value comes from all strokes together and the state.
+    A stroke that is not there is never chosen, by PPO neither. K and the columns come from the spaces.
+
+    Parameters
+    ----------
+    *args, **kwargs
+        As of the policies of PPO, or MaskablePPO of sb3-contrib, which give them. The network is fixed.
+    use_sde : bool, optional
+        Ignored: choices have no noise of their own.
+
+    Examples
+    --------
+    >>> from stable_baselines3 import PPO
+    >>> from snooker_env.sb3 import SnookerVecEnv, StrokesPolicy
+    >>> tables = SnookerVecEnv(4, action="strokes", observation="strokes", seed=1, threads=1)
+    >>> agent = PPO(StrokesPolicy, tables, n_steps=8, batch_size=32, device="cpu")
+    """
+
+    def __init__(self, *args: Any, use_sde: bool = False, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+
+    def _build(self, lr_schedule: Any) -> None:
+        """Make the network, in place of that of the base class, and its optimizer."""
+        self.mlp_extractor = StrokesNet(self.action_space.n, self.observation_space.shape[0])
+        self.action_net, self.value_net = torch.nn.Identity(), torch.nn.Linear(HIDDEN, 1)
+        self.optimizer = self.optimizer_class(self.parameters(), lr=lr_schedule(1), **self.optimizer_kwargs)
+
+
+class _StrokesQ(QNetwork):
+    def __init__(self, *args: Any, **kwargs: Any):
+        super().__init__(*args, **kwargs)
+        self.q_net = StrokesNet(self.action_space.n, self.observation_space.shape[0])
+
+    def forward(self, obs: Any) -> torch.Tensor:
+        net = self.q_net
+        return net.scores(net.read(self.extract_features(obs, self.features_extractor))[0])
+
+
+class StrokesQPolicy(DQNPolicy):
+    """The policy of DQN for ``action="strokes", observation="strokes"``: the same network gives the value of each stroke.
+
+    Examples
+    --------
+    >>> from stable_baselines3 import DQN
+    >>> from snooker_env.sb3 import SnookerVecEnv, StrokesQPolicy
+    >>> tables = SnookerVecEnv(4, action="strokes", observation="strokes", seed=1, threads=1)
+    >>> agent = DQN(StrokesQPolicy, tables, learning_starts=8, buffer_size=1_000, device="cpu")
+    """
+
+    def make_q_net(self) -> QNetwork:
+        """The network of the values of strokes."""
+        its = self._update_features_extractor(self.net_args, features_extractor=None)
+        return _StrokesQ(**its).to(self.device)

@@ -29,12 +29,13 @@ NAME = "snooker_env.watch"
 FILMS = (".mp4", ".gif")
 SUFFIXES = (".html", ".json", *FILMS)
 USUAL, TACTICIAN = "planner", "tactician"  # who plays a visit and a frame unless someone is named
-FRAME = {"task": "frame", "cue": "real", "miss": "clear_path", **FRAMES}  # options of a frame that is watched
+FRAME = {"task": "frame", "cue": "real", "miss": "clear_path"}  # options of a frame that is watched
 
 
 def play_episode(who: Player, seed: int, **options: object) -> SnookerEnv:
     """A ``SnookerEnv`` after a whole visit or frame, with its history; a visit is that of ``play_visits``."""
-    env = SnookerEnv(**{**VISITS, **options})
+    reads = VISITS if options.get("task", "visit") == "visit" else FRAMES
+    env = SnookerEnv(**options | {"action": "box"} | reads)
     bound, decision = who.at(env), 0
     env.keep_history = True
     env.reset(seed=seed)

@@ -143,6 +143,7 @@ def gaussian(times):
     }
 
 
+FORM = {"aim": "absolute", "observation": "flat"}  # unless a set says otherwise
 VISITS = {
     "plain": {},
     "target": {"aim": "target", "noise": gaussian(1.0), "elevation": True},
@@ -163,7 +164,7 @@ VISITS = {
 def visits(options):
     """Visits on single tables: observations, rewards, ends and infos."""
     out, rng = Digest(), np.random.default_rng(4)
-    env = gymnasium.make("Snooker-v0", **options)
+    env = gymnasium.make("Snooker-v0", **FORM | options)
     for k in range(12):
         observation, info = env.reset(seed=k)
         out.add(observation, info)
@@ -190,6 +191,7 @@ def many_visits(mode):
         24,
         vectorization_mode="vector_entry_point",
         aim="target",
+        observation="flat",
         noise=gaussian(2.0),
         layout="random:4",
         threads=2,
@@ -241,7 +243,7 @@ def _first_place(env, options):
 def frames(options):
     """Frames that the agent plays alone."""
     out, rng = Digest(), np.random.default_rng(6)
-    env = gymnasium.make("Snooker-v0", task="frame", opponent="none", **GIVEN, **options)
+    env = gymnasium.make("Snooker-v0", task="frame", opponent="none", **GIVEN, **FORM | options)
     for k in range(3):
         env.reset(seed=k)
         observation, info = env.reset(options=_first_place(env.unwrapped, {}))
@@ -260,7 +262,7 @@ def matches(options):
     """Frames of two players, each figure as the player who broke sees it."""
     out, rng = Digest(), np.random.default_rng(8)
     options = {name: value for name, value in options.items() if name != "layout"}
-    env = sn.match_env(noise="none", **options)
+    env = sn.match_env(noise="none", **FORM | options)
     for k in range(3):
         env.reset(seed=k)
         env.reset(options=_first_place(env, {}))

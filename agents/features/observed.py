@@ -30,7 +30,7 @@ def training_tables(n, threads=None, **options):
 
     from snooker_env.sb3 import SnookerVecEnv
 
-    base = SnookerVecEnv(n, threads=threads, **options)
+    base = SnookerVecEnv(n, threads=threads, observation="flat", **options)
 
     class Seen(VecEnvWrapper):
         """All tables at once."""

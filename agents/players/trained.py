@@ -47,7 +47,8 @@ class BoxModel:
 
     def __init__(self, model):
         self.model, belong = model, (*ACTION_OPTIONS, *SEEN_OPTIONS)
-        self.options = {key: model.env_options[key] for key in belong if key in model.env_options}
+        own = {key: model.env_options[key] for key in belong if key in model.env_options}
+        self.options = {"observation": "flat"} | own
 
     def act(self, observations, masks, seeds):
         """The actions (n, k)."""

@@ -12,11 +12,11 @@ from snooker_env import MatchVectorEnv
 from snooker_env.game.balls import REDS_MASK, BallOn
 from snooker_env.game.snookered import is_snookered
 from snooker_env.planning import Positions, prospects_of, spread_of
-from snooker_env.players import ask_player, decision_seeds, player
+from snooker_env.players import FRAMES, ask_player, decision_seeds, player
 
 PLAYER = "tactician_30"
 """On both sides."""
-RULES = {"task": "frame", "noise": "professional", "cue": "real", "miss": "clear_path", "elevation": True}
+RULES = {"task": "frame", "noise": "professional", "cue": "real", "miss": "clear_path", **FRAMES}
 LIKELY = 0.4
 """Chance of a direct pot, by its width, above which a position is none for a safety."""
 REDS, SIDE_BY_SIDE, A_FRAME = 3, 32, 3

@@ -77,12 +77,13 @@ def stepper(env, seed):
     return lambda k: env.step(actions[k % 16])
 
 
+FORM = {"aim": "absolute", "observation": "flat"}  # the shot's time is measured, not that of its aim
 FRAME = {"task": "frame", "layout": "opened"}
 
 
 def single(seed, **options):
     """``step(k)`` of one ``SnookerEnv``, with a reset after each end."""
-    env = SnookerEnv(**options)
+    env = SnookerEnv(**FORM, **options)
     env.reset(seed=seed)
     actions = np.random.default_rng(seed).uniform(-1.0, 1.0, (1024, 4)).astype(np.float32)
 
@@ -97,13 +98,13 @@ def single(seed, **options):
 
 def native(n, threads, **options):
     """The vector environment of n tables."""
-    return SnookerVectorEnv(n, threads=threads, autoreset_mode=AutoresetMode.SAME_STEP, **options)
+    return SnookerVectorEnv(n, threads=threads, autoreset_mode=AutoresetMode.SAME_STEP, **FORM, **options)
 
 
 def rates(tables, seconds, repeats, seed):
     """Medians of steps a second of every kind, the kinds taking turns."""
     mode = {"autoreset_mode": AutoresetMode.SAME_STEP}
-    sync = gymnasium.make_vec("Snooker-v0", 16, vectorization_mode="sync", vector_kwargs=mode)
+    sync = gymnasium.make_vec("Snooker-v0", 16, vectorization_mode="sync", vector_kwargs=mode, **FORM)
     kinds = {
         "one thread": (stepper(native(tables, 1), seed), tables),
         "two threads": (stepper(native(tables, 2), seed), tables),

@@ -36,7 +36,7 @@ Solver: TypeAlias = tuple[int, int]  # a fidelity as the kernels read it: a code
 PhysicsName: TypeAlias = Literal["paper", "match", "carom"]
 TableName: TypeAlias = Literal["match", "tight", "uk8", "pool9", "carom"]
 NoiseName: TypeAlias = Literal["none", "professional", "amateur", "club", "beginner", "robot", "olympiad"]
-ObservationKind: TypeAlias = Literal["flat", "balls", "masked"]
+ObservationKind: TypeAlias = Literal["pots", "strokes", "flat", "balls", "masked"]
 RenderMode: TypeAlias = Literal["human", "rgb_array", "ansi"]
 MissRule: TypeAlias = Literal["off", "clear_path", "attempt"]
 CueKind: TypeAlias = Literal["free", "real"]
@@ -44,7 +44,7 @@ CueKind: TypeAlias = Literal["free", "real"]
 # These depend on an environment's options, so that no annotation can say more.
 Action: TypeAlias = Any  # for a Box an array or sequence of numbers (k,), for ``action="discrete"`` an int
 Observation: TypeAlias = Any
-"""float32 (k,) with ``observation="flat"``; with "balls" a dict of float32 arrays, "balls" (22, 5) and
+"""float32 (k,) with ``observation="pots"`` or "flat"; with "balls" a dict of float32 arrays, "balls" (22, 5) and
 "state" (k,); with "masked" a dict of "observations", float32 (k,), and "action_mask", int8 (choices,)."""
 
 

@@ -132,7 +132,8 @@ def play_visits(
     each : callable, optional
         Called after each round of strokes with the number of visits that still go on.
     **options
-        Options of the environment; left out: ``players.VISITS`` on the layout "held_out", with "professional" noise.
+        Options of the environment; left out: the layout "held_out" and "professional" noise. However actions are read
+        there, the player's strokes are played as they are.
 
     Returns
     -------
@@ -145,8 +146,8 @@ def play_visits(
     [0, 1, 2]
     """
     seeds = list(range(first_seed, first_seed + visits)) if isinstance(first_seed, int) else list(first_seed)
-    usual = {**VISITS, "layout": "held_out", "noise": "professional"}
-    tables = SnookerVectorEnv(visits, threads=threads, **{**usual, **options})
+    usual = {"layout": "held_out", "noise": "professional"}
+    tables = SnookerVectorEnv(visits, threads=threads, **usual | options | {"action": "box"} | VISITS)
     decide, log, ball_on = Decider(player, tables, seeds, seed), [], np.empty(0, np.int64)
     luck, before = Luck(tables, "points"), np.zeros(visits)
 

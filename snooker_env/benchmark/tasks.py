@@ -35,6 +35,8 @@ class Task:
         The Gymnasium id, with its version, and the aim of the task in a few words.
     changes, judged_layout : mapping, str
         Options that differ from those of ``Snooker-v0``, and the layout of the judging in place of theirs.
+    observation : str
+        What an agent observes unless it chooses otherwise.
     score, measure : str
         The score of an episode, "points", "legal", "lead" or "won", and the name of its mean.
     episodes, thresholds : int, tuple of int
@@ -57,6 +59,7 @@ class Task:
     measure: str
     episodes: int
     thresholds: tuple[int, ...] = (1,)
+    observation: str = "pots"
 
     def options(self, **free: object) -> Options:
         """The options of the task as it is trained: frozen ones and these of ``FREE``, no others."""
@@ -70,7 +73,7 @@ class Task:
                 raise TypeError(f"{what}; the free options of {self.id} are {frees}")
             why = f"{self.id} freezes it at {self.frozen_options[name]!r}; only Snooker-v0 lets you choose it"
             raise refuse(name, free[name], f"must be left out: {why}")
-        return Options(**{**self.changes, **free})
+        return Options(**{**self.changes, **_FORM, "observation": self.observation, **free})
 
     def judged_options(self, **free: object) -> Options:
         """The options that the task is judged with: ``options(**free)`` on the judged layout."""
@@ -105,6 +108,8 @@ class Task:
         return most_points(self.judged_layout) if self.counts else 1
 
 
+_FORM = {"action": "box", "aim": "pot"}
+"""How an agent acts unless it chooses otherwise: with ``observation`` all of the form, whatever ``Snooker-v0`` has."""
 _USUAL = {f.name: f.default for f in fields(Options) if f.init}
 _BREAK = (1, 10, 25, 50, 75, 100, 147)
 _LEAD = (-60, -40, -20, -10, -4, 0, 1)
@@ -122,16 +127,18 @@ def _task(name: str, title: str, layout: str, score: str, judged: str = "", **mo
     return Task(id=f"Snooker{name}-v0", title=title, score=score, **more)
 
 
-_LEGAL = {"changes": {"reward": "legal", "one_stroke": True}}
+_BALLS = {"observation": "flat"}  # where there may be no pots to see
+_LEGAL = _BALLS | {"changes": {"reward": "legal", "one_stroke": True}}
 _FRAME = {"task": "frame", "opponent": "planner", "miss": "clear_path"}
 _CLUB = {"changes": {"noise": "club"}, "thresholds": _BREAK}
-_SAFE = {"changes": _FRAME | {"one_stroke": True}, "thresholds": _LEAD}
+_SAFE = _BALLS | {"changes": _FRAME | {"one_stroke": True}, "thresholds": _LEAD}
+_WIN = _BALLS | {"changes": _FRAME | {"reward": "win"}}
 _ALL = (
     _task("Break", "build a break on an opened table", "opened", "points", "held_out", thresholds=_BREAK),
     _task("BreakClub", "the same with a club player's errors", "opened", "points", "held_out", **_CLUB),
     _task("Escape", "one stroke out of a snooker, no foul", "escape", "legal", "held_out_escape", **_LEGAL),
     _task("Safety", "one fair stroke where no pot is on", "safety", "lead", "held_out_safety", **_SAFE),
-    _task("Frame", "win a frame against planner", "break_off", "won", changes=_FRAME | {"reward": "win"}),
+    _task("Frame", "win a frame against planner", "break_off", "won", **_WIN),
 )
 TASKS: dict[str, Task] = {task.id: task for task in _ALL}
 """The tasks of the benchmark by id."""

@@ -106,13 +106,13 @@ def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
     """Planning, players and advice."""
     from ..advice.room import room_for
     from ..planning import Planner, Positions, clear_paths, obstructions, pots, prospects_of
-    from ..planning.pot_chance import pot_chances
     from ..planning.proposals import at_balls, over_cushions
     from ..planning.visit_judge import VisitJudge
     from ..planning.worth import best_places, decide
     from ..players import player
     from ..tasks.noise import Spread
     from ..tasks.options import Options
+    from ..tasks.pot_chance import pot_chances
 
     env.reset(seed=0)
     at, both, planner = Positions.of(env), Positions.of(match), Planner({"action": "discrete"})

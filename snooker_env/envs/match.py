@@ -134,14 +134,14 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         turn = agent == self.agent_selection  # an error before reset()
         side = PLAYERS.index(agent)
         rows = self.tables.observe(np.zeros(1, np.int64), side)
-        masks = self._mask(side, turn) if self.options.observation == "masked" else None
-        return observations.arrange(self.options.observation, rows[0], masks)
+        masks = self._mask(side, turn) if self.options.rules.observation == "masked" else None
+        return observations.arrange(self.options.rules.observation, rows[0], masks)
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
         """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
         side = PLAYERS.index(agent)
         if not isinstance(self.tables.seats[side].actions, Choices):
-            raise refuse("action", "box", 'must be "discrete": a Box has no masks')
+            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
         return self._mask(side, agent == self.agent_selection)
 
     def _mask(self, side, turn):

@@ -64,7 +64,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         super().__init__(num_envs, options, autoreset_mode=AutoresetMode.DISABLED, **keywords)
         one, other = (seat.actions.space for seat in self.tables.seats)
         self._alike = one == other
-        if self.options.observation == "masked" and not self._alike:
+        if self.options.rules.observation == "masked" and not self._alike:
             raise refuse("seats", seats, 'must give both players the same choices with observation="masked"')
         self.single_action_space: spaces.Space[Any] = one if self._alike else spaces.Tuple((one, other))
         self.action_space: spaces.Space[Any] = batch_space(self.single_action_space, self.num_envs)
@@ -122,7 +122,7 @@ class MatchVectorEnv(SnookerVectorEnv):
     def action_masks(self) -> Bools:
         """Return the strikers' choices, bool (num_envs, choices); ValueError unless both have the same."""
         if not self._alike or not isinstance(self.tables.seats[0].actions, Choices):
-            words = 'must be "discrete" for both players: a Box has no masks'
+            words = 'must be "discrete" or "strokes" for both players: a Box has no masks'
             raise refuse("action", self.options.action, words)
         return self.tables.action_masks()
 

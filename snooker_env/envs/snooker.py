@@ -27,12 +27,15 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
     * **Task.** "visit" (default): a break until the first stroke that pots nothing, a foul or a clearance; "frame",
       against ``opponent``: a step is a stroke and all of the opponent's after it; "match": the best of ``frames``.
-    * **Action.** ``Box(-1, 1, (4,), float32)``: cue speed, 0.2 to 7 m/s; side and top, tip offsets up to 0.5 R right
-      and up, in a disc; aim, up to 180 deg anticlockwise from +x, or with ``aim="target"`` 3 deg left (right: -1) of
-      the line of the best pot. Longer with ``elevation``, ``placement`` and ``says``.
+    * **Action.** ``Box(-1, 1, (4,), float32)``: cue speed, 0.8 to 4.6 m/s; side and top, tip offsets up to 0.2 R right
+      and 0.4 R up; the pot, 0 the widest, the further from 0 the narrower, its aim solved. All 0: the widest pot, no spin.
+      With ``aim="absolute"``: 0.2 to 7 m/s; offsets up to 0.5 R, in a disc; up to 180 deg anticlockwise from +x; with
+      "target" 3 deg left (right: -1) of the line of the best pot. Longer with ``elevation``, ``placement`` and ``says``.
       What is up to 1e-6 outside is clipped, as rounding; more is refused. ``action="discrete"``: ``Discrete(540)``
       or more, ((pot * 9 + speed) * 3 + side) * 5 + top, its aim solved for; ``action_masks()`` are the available ones.
-    * **Observation.** ``Box(-1.1, 1.1, (121,), float32)``: for the cue ball, 15 reds and yellow to black x / 0.889 m,
+    * **Observation.** Of a visit ``Box(-1.1, 1.1, (61,), float32)``: for the four widest pots chance, log10 of it / 2, cut,
+      tolerance, value, place of the ball, direction and distance of the ghost ball, place of the pocket; the cue ball; the
+      state. Of a frame, or "flat", ``Box(-1.1, 1.1, (121,), float32)``: for the cue ball, 15 reds and yellow to black x / 0.889 m,
       y / 1.7845 m, on the table, value / 7, ball on; then reds / 15, the ball on (8, one-hot), in hand, break / 155. A
       frame appends 19 numbers, a miss rule 66 more. "balls": the same as ``Dict(balls=(22, 5), state=(11,))``.
       "masked", of discrete actions: ``Dict(observations, action_mask)``.
@@ -56,7 +59,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     Examples
     --------
     >>> import gymnasium, snooker_env
-    >>> env = gymnasium.make("Snooker-v0", aim="target", noise="club")
+    >>> env = gymnasium.make("Snooker-v0", noise="club")
     >>> observation, info = env.reset(seed=1)
     >>> observation, reward, terminated, truncated, info = env.step([0.2, 0.0, 0.0, 0.0])
     """
@@ -125,12 +128,12 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     def action_masks(self) -> Bools:
         """Return the choices, bool (540,) or longer, for maskable algorithms; ValueError with "box"."""
         if not isinstance(self.options.rules.actions, Choices):
-            raise refuse("action", "box", 'must be "discrete": a Box has no masks')
+            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
         return self.tables.action_masks()[0]
 
     def _arrange(self, out: StepOutput) -> Observation:
         masks = out.masks[0] if len(out.masks) else None
-        return observations.arrange(self.options.observation, out.observations[0], masks)
+        return observations.arrange(self.options.rules.observation, out.observations[0], masks)
 
     def _watch(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
         super()._watch(k, buffers, j, mine)

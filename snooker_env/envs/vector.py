@@ -75,7 +75,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     >>> observations, infos = envs.reset(seed=1)
     >>> observations, rewards, terminations, truncations, infos = envs.step(np.zeros((8, 4)))
     >>> observations.shape, rewards.shape
-    ((8, 121), (8,))
+    ((8, 61), (8,))
     """
 
     metadata: dict[str, Any] = SnookerEnv.metadata
@@ -203,7 +203,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     def action_masks(self) -> Bools:
         """Return the available choices, bool (num_envs, 540) or wider. ValueError with ``action="box"``."""
         if not isinstance(self.options.rules.actions, Choices):
-            raise refuse("action", "box", 'must be "discrete": a Box has no masks')
+            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:
@@ -287,11 +287,11 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def _arrange(self, written):
         """The observations in the environment's kind."""
-        return observations.arrange(self.options.observation, written.observations, written.masks)
+        return observations.arrange(self.options.rules.observation, written.observations, written.masks)
 
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
-        each = observations.arrange(self.options.observation, out.last_observations, out.last_masks)
+        each = observations.arrange(self.options.rules.observation, out.last_observations, out.last_masks)
         if isinstance(each, dict):
             each = [dict(zip(each, parts, strict=True)) for parts in zip(*each.values(), strict=True)]
         final = np.fromiter(each, object, self.num_envs)

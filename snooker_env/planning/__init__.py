@@ -12,6 +12,7 @@ The caller assigns a value to each afterstate; ``prospects_of`` is a rule of thu
 returns the best strokes as a judge sees them, of visits (``VisitJudge``) or of frames (``FrameJudge``).
 """
 
+from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
 from ..tasks.threads import processors
 from .aims import pot_aim
 from .frame_judge import FrameJudge
@@ -20,7 +21,7 @@ from .position import Position
 from .positions import Positions
 from .pot_geometry import Pots, clear_paths, obstructions, pots
 from .proposals import Proposals, at_pots
-from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
+from .prospects import prospects_of, spread_of
 from .search import Ranked, Search
 from .strokes import Strokes, action_masks
 from .visit_judge import VisitJudge

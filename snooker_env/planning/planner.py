@@ -14,7 +14,6 @@ from .._lib.types import Environment, Floats, Integers, Ints, Scalars, Vectors, 
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..tasks.noise import Noise, NoiseLike
-from ..tasks.observations import OBSERVATIONS
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
 from ..tasks.tables import I_FIRST, I_PENALTY, I_POINTS
@@ -43,7 +42,7 @@ class Outcomes(NamedTuple):
     afterstates : Positions
         n rows: the balls at rest, with colours respotted, and the ball on for the next stroke.
     observations : numpy.ndarray
-        float32 (n, 121). The flat observation of each afterstate, as with ``task="visit"``.
+        float32 (n, 121). The flat observation of each afterstate, as ``observation="flat"`` of a visit.
 
     Examples
     --------
@@ -106,7 +105,7 @@ class Planner:
     ):
         rules = options_in(env_or_options).rules
         errors = rules.noise if noise is None else Noise.of(noise)
-        plain = {"reward": REWARDS[0], "one_stroke": False, "observation": OBSERVATIONS[0]}
+        plain = {"reward": REWARDS[0], "one_stroke": False, "observation": "flat"}
         self._rules = replace(rules, noise=errors, **plain)
         usual = min(1024, processors())
         self._threads = Threads(usual if threads is None else integer("threads", threads, 1, 1024))

@@ -15,7 +15,7 @@ from ..game.frame import MOST_BREAK
 from ..game.sides import as_visits, strikers_own
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.table import Table
-from ..tasks.observations import SIZE
+from ..tasks.observations import FLAT, SIZE
 from ..tasks.options import Rules
 from ..tasks.tables import Tables
 from ..tasks.visit import observe
@@ -243,9 +243,9 @@ class Positions:
         return out
 
     def observations(self) -> NDArray[np.float32]:
-        """The flat observation of each position, as ``task="visit"`` returns it: float32 (m, 121)."""
+        """The flat observation of each position, as ``observation="flat"`` of a visit: float32 (m, 121)."""
         out, game = np.empty((len(self), SIZE), np.float32), self.as_visits().game
-        observe(np.arange(len(self)), self.positions, self.on_table, game, out)
+        observe(np.arange(len(self)), self.positions, self.on_table, game, FLAT, out)
         return out
 
 

@@ -2,80 +2,37 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from math import atan2, exp, radians
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._lib.jit import entry, kernel
+from .._lib.jit import entry
 from .._lib.types import Floats
-from ..game.balls import N_BALLS, VALUES, BallOn, balls_on_kernel, bits
-from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, find_pots
+from ..game.balls import balls_on_kernel, bits
+from ..game.pots import POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS
-from ..physics.cue_room import NO_RAILS, STEEPEST, least_elevation
+from ..physics.cue_room import NO_RAILS
 from ..physics.parameters import PhysicsLike
 from ..tasks.discrete_actions import POTS
-from ..tasks.noise import TWICE, Noise, Spread, widen
+from ..tasks.noise import Noise, Spread
+from ..tasks.rule_of_thumb import RULE_OF_THUMB, points_left, worth_of_pots
 from .positions import Positions
-from .pot_chance import FAR, chance_of, length_of
 
-_ANY_COLOUR = int(BallOn.ANY_COLOUR)
 WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost
-FOLLOWS = 25.0
-"""Points to expect after a made pot from the rest of the visit; fewer if fewer are left on the table."""
-SECOND, THIRD = 0.15, 0.05
-"""Shares of the second and third best pot that count: they leave a choice of where to play next."""
-DISTANT = 0.09
-"""Decay of what a pot is worth per metre of both balls' paths [1/m], beside its chance: from far the cue ball is hard to place."""
-RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, DISTANT)
-"""Constants of ``prospects_of`` for a player with execution errors: the four numbers above."""
-SURE = (1e4, 1e-3, 0.0, -FAR)
-"""Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left: the
-last one undoes the loss that the chance has by the paths."""
-
-
-@kernel
-def raised_spread(spread, side, top, aim, positions, on_table, rails):
-    """``spread`` of a stroke whose cue, pointing in the direction ``aim`` [rad], must be raised: errors grow with the
-    elevation (``tasks.noise``)."""
-    if rails.shape[0] == 0:
-        return spread
-    least = least_elevation((side, top, aim, 0.0), positions, on_table, rails, BALL_RADIUS)
-    return widen(spread, 1.0 + min(least, STEEPEST) / TWICE)  # a tip goes up before a cue does further
 
 
 @entry(what="the value of positions", seconds=1)
 def _prospects(positions, on_table, ball_on, spread, constants, rails, values, chances):
     """Fill ``values`` (n,) and ``chances`` (n, most) of ``prospects_of``."""
     lines = np.empty((16, POT_COLUMNS))
-    follows, second, third, distant = constants
     for k in range(len(values)):
         chances[k, :] = 0.0
-        values[k] = 0.0
         p, on = positions[k], balls_on_kernel(ball_on[k], bits(on_table[k]))
         many = find_pots(p, on_table[k], on, BALL_RADIUS, lines) if on_table[k, 0] else 0
-        # points: a black with each red, and one after a red just potted
-        left = 7.0 if ball_on[k] == _ANY_COLOUR else 0.0
-        for i in range(1, N_BALLS):
-            if on_table[k, i]:
-                left += 8.0 if VALUES[i] == 1 else VALUES[i]
-        a = b = c = 0.0
-        for j in range(many):
-            ball = int(lines[j, POT_BALL])
-            aim = atan2(lines[j, GHOST_Y] - p[0, 1], lines[j, GHOST_X] - p[0, 0])
-            chance = chance_of(p, lines[j], raised_spread(spread, 0.0, 0.0, aim, p, on_table[k], rails))
-            if j < chances.shape[1]:
-                chances[k, j] = chance
-            rest = max(0.0, left - VALUES[ball])
-            worth = chance * (VALUES[ball] + follows * (1.0 - exp(-rest / follows)))
-            worth *= exp(-distant * length_of(p, lines[j]))
-            if worth > a:
-                a, b, c = worth, a, b
-            elif worth > b:
-                b, c = worth, b
-            elif worth > c:
-                c = worth
-        values[k] = a + second * b + third * c
+        left = points_left(on_table[k], ball_on[k])
+        values[k], _, _ = worth_of_pots(
+            lines, many, p, on_table[k], left, spread, constants, rails, chances[k]
+        )
 
 
 def in_parts(n: int, threads: int, fill: Callable[[slice], None]) -> None:
@@ -111,7 +68,7 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> Spread:
     >>> round(spread_of(LEVELS["olympiad"]).core * 1e3, 2)
     2.6
     """
-    return Spread(max(1e-5, radians(noise.direction_deg(physics))), noise.lapse, noise.lapse_factor)
+    return noise.spread(physics)
 
 
 def prospects_of(

@@ -19,10 +19,19 @@ from ..physics.cue import squirt
 from ..physics.cue_room import NO_RAILS
 from ..physics.parameters import Physics
 from ..tasks import stroke
-from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions
+from ..tasks.box_actions import (
+    FASTEST,
+    MAX_SPEED,
+    MIN_SPEED,
+    MOST_SIDE,
+    MOST_TOP,
+    SLOWEST,
+    TARGET_SPAN,
+    Actions,
+)
 from ..tasks.carry_out import sayings
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
-from ..tasks.discrete_actions import SIZE, masks
+from ..tasks.discrete_actions import POTS, SIZE, masks
 from ..tasks.kernel_arrays import C_END_MASS, pack_cue
 from ..tasks.options import Options, Rules
 from ..tasks.stroke import ShotBuffers, row_of
@@ -37,6 +46,8 @@ CODES: dict[str, tuple[int, ...]] = {
     "decision": (PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE),
     "declare": (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS),
 }  # the codes of what is said with a stroke
+EVERY = "an environment with **snooker_env.players.VISITS, or in frames **snooker_env.players.FRAMES, reads every stroke"
+SAME = 1e-6  # how little two strokes differ that are one
 
 
 @dataclass(frozen=True)
@@ -153,16 +164,16 @@ class Strokes:
         """Convert to actions of an environment, with all that is said: float64 (n, k) in [-1, 1].
 
         ``options``: of the environment, with ``action="box"``. ``positions``: n of them, see ``Positions.of``, on which the
-        meaning of a place, a nomination and an aim from a target line depends. ValueError if the environment reads other actions, or a
-        stroke, a decision or a declaration that they do not hold; a place and a nomination that they do not hold are
-        left out."""
+        meaning of a place, a nomination, a pot and an aim from a target line depends. ValueError if the environment reads
+        other actions, or a stroke, a decision or a declaration that they do not hold: with ``aim="pot"`` they hold
+        strokes along its lines alone. A place and a nomination that they do not hold are left out."""
         box, at = options.rules.actions, Positions.of(positions)
         if len(at) != len(self):
             raise refuse_what(
                 "positions", f"{len(at)} positions", f"must be {len(self)}, one for each stroke"
             )
         if not isinstance(box, Actions):
-            raise refuse("options.action", options.action, 'must be "box": choices hold a few strokes only')
+            raise refuse("options.action", options.action, f'must be "box": {EVERY}')
         turns = self.aim / np.pi
         parts = [
             2.0 * (self.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0,
@@ -170,16 +181,20 @@ class Strokes:
             2.0 * self.top,
             turns - 2.0 * np.round(0.5 * turns),
         ]
+        if box.aim == "pot":
+            logs = np.log(np.maximum(self.speed, MIN_SPEED) / SLOWEST) / np.log(FASTEST / SLOWEST)
+            parts[:3] = 2.0 * logs - 1.0, self.side / MOST_SIDE, self.top / MOST_TOP
         for name, holds, least in (
             ("elevation", box.elevation, 0.0),
             ("decision", "decision" in box.says, PLAY),
             ("declare", box.declares, SAYS_NOTHING),
         ):
             if not holds and ((part := getattr(self, name)) > least).any():
-                raise refuse(name, part.max().item(), "must be left out: the actions do not hold it")
+                allowed = "must be left out: the actions do not hold it"
+                raise refuse(name, part.max().item(), allowed if name == "declare" else f"{allowed}; {EVERY}")
         if box.elevation:
             if (steep := self.elevation.max(initial=0.0)) > box.steepest + 1e-9:
-                allowed = f"must be at most {box.steepest:.3g} rad, as the option elevation says"
+                allowed = f"must be at most {box.steepest:.3g} rad, as the option elevation says; {EVERY}"
                 raise refuse("elevation", float(steep), allowed)
             parts.append(2.0 * self.elevation / box.steepest - 1.0)
         if box.placement:
@@ -195,21 +210,34 @@ class Strokes:
         actions = np.stack(parts, axis=1)
         if box.aim == "target":
             actions[:, 3] = self._off_target(options.rules, at, actions)
-        return np.clip(actions, -1.0, 1.0)  # removes rounding errors
+        actions = np.clip(actions, -1.0, 1.0)  # removes rounding errors
+        if box.aim == "pot":
+            actions[:, 3] = self._picks(options.rules, at, actions)
+        return actions
 
     def _off_target(self, rules: Rules, at: Positions, actions: Floats) -> Floats:
         """The component of an aim from the target line, on which an action with 0 there is played."""
-        level = actions.clip(-1.0, 1.0)
-        level[:, 3] = 0.0
-        nominated = sayings(rules, level, at.game)[0] if at.of_frames else None
-        lines = decode(rules, at, np.arange(len(at)), level, nominated)[0][:, AIM]
-        off = self.aim - lines
-        off = (off - 2.0 * np.pi * np.round(off / (2.0 * np.pi))) / TARGET_SPAN
+        lines = _read_with(0.0, rules, at, actions.clip(-1.0, 1.0))[:, AIM]
+        off = _wrap(self.aim - lines) / TARGET_SPAN
         if (far := np.abs(off) > 1.0 + 1e-9).any():
             k = int(np.argmax(far))
-            allowed = f"must be within 3 degrees of the target line, {lines[k]:.6g} rad"
+            allowed = f"must be within 3 degrees of the target line, {lines[k]:.6g} rad; {EVERY}"
             raise refuse(f"aim[{k}]", float(self.aim[k]), allowed)
         return off
+
+    def _picks(self, rules: Rules, at: Positions, actions: Floats) -> Floats:
+        """The component that picks the line of each stroke, the first on which an action is that stroke."""
+        picks = np.full(len(self), np.nan)
+        for line in range(POTS):
+            rows, pick = np.flatnonzero(np.isnan(picks)), (line + 0.5) / POTS
+            off = _read_with(pick, rules, at[rows], actions[rows]) - self.values[rows]
+            off[:, AIM] = _wrap(off[:, AIM])
+            picks[rows[(np.abs(off) < SAME).all(axis=1)]] = pick
+        if (lost := np.isnan(picks)).any():
+            k = int(np.argmax(lost))
+            allowed = f'must be a stroke along one of the lines of aim="pot"; {EVERY}'
+            raise refuse(f"strokes[{k}]", self.values[k].round(6).tolist(), allowed)
+        return picks
 
     def _place(self, at: Positions) -> list[Floats]:
         """The two components of the place."""
@@ -245,6 +273,19 @@ def _off_the_tip(strokes, cues):
     """Turn the aims of strikes, the cue's, into the directions in which the cue ball leaves the tip [rad]."""
     for j in range(strokes.shape[0]):
         strokes[j, AIM] += squirt(strokes[j, SIDE], cues[row_of(j, cues), C_END_MASS])
+
+
+def _wrap(angles: Floats) -> Floats:
+    """The same angles within [-pi, pi]."""
+    return angles - 2.0 * np.pi * np.round(angles / (2.0 * np.pi))
+
+
+def _read_with(aim: float, rules: Rules, at: Positions, actions: Floats) -> Floats:
+    """The strokes (n, 5) that checked actions mean with this component of the aim."""
+    actions = actions.copy()
+    actions[:, 3] = aim
+    nominated = sayings(rules, actions, at.game)[0] if at.of_frames else None
+    return decode(rules, at, np.arange(len(at)), actions, nominated)[0]
 
 
 def decode(

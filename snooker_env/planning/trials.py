@@ -57,7 +57,7 @@ class Struck(Tables):
     kick: float = 0.0  # the probability of a kick in strokes with ``errors``
 
     def __init__(self, rules: Rules, n: int):
-        super().__init__(replace(rules, drawn=False, observed=False), n)
+        super().__init__(replace(rules, drawn=False, observed=False, observation="flat"), n)
 
     def lay(self, after: Positions, streams: Words, errors: Floats | None = None) -> None:
         """Put positions on the tables, with their own constants if they have any; they are played in place."""

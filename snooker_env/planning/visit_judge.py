@@ -14,11 +14,12 @@ from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
 from ..tasks.noise import Noise, NoiseLike, Spread
 from ..tasks.options import Options, Rules
+from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
 from .aims import Dynamics
 from .planner import Planner, options_in
 from .positions import Positions
 from .proposals import Proposals, Propose, at_balls, over_cushions
-from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
+from .prospects import prospects_of, spread_of
 from .search import Plan, Proposed, Search
 from .stroke_columns import COLUMNS
 

@@ -23,7 +23,7 @@ from ..game.in_hand import place_cue
 from ..game.rule_sets import RULES, RulesName, rule_set
 from ..planning.position import Position
 from ..planning.positions import Positions, of_tables
-from ..players import Strokes
+from ..players import FRAMES, Strokes
 from ..players.luck import expect_win, luck_of
 from ..players.table_report import nominations_of, visit_of
 from ..tasks.frames import Frames, Seat
@@ -68,7 +68,7 @@ class Session:
     def __init__(
         self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
     ):
-        box = Options(task="frame", placement=True, says=["decision"], elevation=True, max_strokes=None)
+        box = Options(task="frame", max_strokes=None, **FRAMES)
         if flight:
             box = box.but(elevation=70, physics={"flight": True})
         self._options = box.but(miss="clear_path", layout=layout, cue=cue)

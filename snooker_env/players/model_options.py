@@ -18,7 +18,7 @@ LEFT_OUT = "must be left out: it is for models of Stable-Baselines3"
 def check_model_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
     """These options as a dict, {} for None; ValueError for others than ``KEYS`` or for values that they cannot have."""
     if not isinstance(options, Mapping | None):
-        raise refuse("options", options, 'must be a dict such as {"aim": "target"}')
+        raise refuse("options", options, 'must be a dict such as {"aim": "absolute"}')
     read = dict(options or {})
     for key in read:
         choice("key of options", key, KEYS)
@@ -27,7 +27,7 @@ def check_model_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
 
 
 def options_of_words(words: Sequence[str]) -> dict[str, Any]:
-    """Options from words like "aim=target", "placement=True" and "says=decision,lot"; ValueError for others."""
+    """Options from words like "aim=absolute", "placement=True" and "says=decision,lot"; ValueError for others."""
     options: dict[str, Any] = {}
     for word in words:
         name, equals, value = word.partition("=")
@@ -49,7 +49,7 @@ def _value(text: str) -> Any:
 def add_model_options(parser: ArgumentParser) -> None:
     """Add ``--trust`` and ``--options`` to a command that takes a model's file."""
     parser.add_argument("--trust", action="store_true", help="let the pickled code in a model's file run")
-    how = "how the actions of a model of Stable-Baselines3 are read, as aim=target"
+    how = "how the actions of a model of Stable-Baselines3 are read, as aim=absolute"
     parser.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
 
 
@@ -65,8 +65,8 @@ def say_assumption(path: str | Path, options: Mapping[str, Any]) -> None:
     """Say on stderr, once in a process, that nobody told how the aim of a model with these options is read."""
     if options.get("action", "box") == "box" and "aim" not in options and not _SAID:
         _SAID.append(str(path))
-        told = 'to a model trained with that give --options aim=target, or options={"aim": "target"}'
-        say(f"{path}: aim=absolute is assumed, as in Snooker-v0; {told}")
+        told = 'for another aim give --options aim=absolute, or options={"aim": "absolute"}'
+        say(f"{path}: aim=pot is assumed, as in Snooker-v0; {told}")
 
 
 _SAID: list[str] = []  # the model of which that was said

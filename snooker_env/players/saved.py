@@ -10,6 +10,7 @@ from .._lib.check import refuse
 from .._lib.types import Bools, Ints, Observation
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options
+from ..tasks.stroke_menu import Menu
 from .model_options import say_assumption
 from .saved_models import SavedModel, by_train, entries, one_thread, outline
 from .seen import SeenPlayer
@@ -26,9 +27,11 @@ class FittingModel:
     def of(cls, path: str | Path, options: dict[str, Any], field: str = "player") -> "FittingModel":
         """Read the description in a model's file; ValueError, naming ``field``, if its spaces are others."""
         saved = SavedModel.of(path, field)
-        options = ({"action": "discrete"} if saved.action[0] == "Discrete" else {}) | options
+        menus = [outline(Menu(frame=frame).space) for frame in (False, True)]
+        chosen = {"action": "strokes" if saved.action in menus else "discrete"}
+        options = (chosen if saved.action[0] == "Discrete" else {}) | options
         for frame, replaced in ((False, False), (True, False), (True, True)):
-            for kind in OBSERVATIONS:
+            for kind in OBSERVATIONS[frame:]:
                 task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
                 told = {name: options[name] for name in options if frame or name != "says"}
                 model = cls(saved, told | task | {"observation": kind})

@@ -130,9 +130,10 @@ class SeenPlayer(BoundPlayer):
     def _actions(self, at: Positions, keys: Ints) -> Floats:
         """Its checked actions in n positions; errors name it."""
         n, rules = len(at), self._rules
-        tables: Any = (Frames if self.frames else Visits)(rules, 0)
+        tables: Any = (Frames if self.frames else Visits)(rules, n if rules.drawn else 0)
         tables.n, tables.positions, tables.on_table, tables.game = n, at.positions, at.on_table, at.game
-        tables.conditions = _known_conditions(at, rules)
+        if rules.drawn:
+            tables.set_conditions(np.arange(n), _known_conditions(at, rules))
         if self.frames:
             none = np.zeros_like(at.positions), np.zeros_like(at.on_table)
             tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved

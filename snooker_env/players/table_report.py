@@ -15,10 +15,10 @@ from ..game.snookered import is_snookered
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS, POCKETS
 from ..physics.table import Table
 from ..planning.positions import Positions
-from ..planning.pot_chance import pot_chances
 from ..planning.pot_geometry import obstructions, pots
 from ..planning.prospects import spread_of
 from ..tasks.noise import LEVELS
+from ..tasks.pot_chance import pot_chances
 
 MOST = 126  # largest number of lines: from 21 balls to 6 pockets
 

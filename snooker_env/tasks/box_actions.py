@@ -1,7 +1,7 @@
 """What shot does an action mean? A vector in [-1, 1]^k as speed, tip offset, aim, elevation, place."""
 
 from collections.abc import Collection
-from math import atan2, hypot, pi, radians, sqrt
+from math import atan2, exp, hypot, log, pi, radians, sqrt
 
 import numpy as np
 from gymnasium import spaces
@@ -12,19 +12,26 @@ from .._lib.types import Action, Floats
 from ..game.pots import GHOST_X, GHOST_Y, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
-from .declarations import A_ELEVATION, A_TARGET, DECLARES, SAYS
-from .lines import aim_along, find_lines
+from .declarations import A_AIM, A_ELEVATION, DECLARES, SAYS
+from .lines import aim_along, aim_on, find_lines, list_lines
 from .pot_aim import swerved_aim
 
-AIMS = ("absolute", "target")
+AIMS = ("pot", "absolute", "target")
+"""What the aim of a box action can mean."""
+_POT, _TARGET = AIMS.index("pot"), AIMS.index("target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
 """Cue speeds [m/s] for -1 and +1 of an action: from a ball just rolled to the hardest power shot."""
+SLOWEST, FASTEST = 0.8, 4.6
+"""The same with ``aim="pot"``, in equal ratios: 0 means 1.92 m/s."""
+MOST_SIDE, MOST_TOP = 0.2, 0.4
+"""Tip offsets over R for 1 with ``aim="pot"``: what a player uses."""
 TARGET_SPAN = radians(3.0)
 """With ``aim="target"``: angle off the target line for +-1 [rad], more than any throw or error."""
 ROUNDING = 1e-6
 """How far outside [-1, 1] a component may be, and is clipped: float rounding of a policy's own limits."""
 MAX_ELEVATION, STEEPEST = radians(30.0), radians(70.0)
 """The highest elevation of an action, by default and at the most that a person can do [rad]."""
+_RATIO = log(FASTEST / SLOWEST)
 _BOUNDS = "must be finite and within [-1, 1]; gymnasium.wrappers.ClipAction clips what a policy draws outside"
 
 
@@ -51,7 +58,7 @@ def place_anywhere_of(a, options):
 
 
 @kernel(uses=(aim_along,))
-def _target(positions, on_table, on, stroke, law, work):
+def _target_line(positions, on_table, on, stroke, law, work):
     """Direction [rad] from which ``aim="target"`` is measured: the widest pot's line, else the first line."""
     lines = work.lines
     if find_pots(positions, on_table, on, BALL_RADIUS, lines[:1]):
@@ -61,18 +68,31 @@ def _target(positions, on_table, on, stroke, law, work):
     return aim_along(lines[0], stroke, positions, on_table, on, law, work)
 
 
-@kernel(uses=(_target,))
+@kernel(uses=(aim_on,))
+def _on_picked_line(a, positions, on_table, on, elevation, law, work):
+    """``shot_of`` of an action that picks a pot or, where there is none, another line."""
+    speed = SLOWEST * exp(0.5 * (a[0] + 1.0) * _RATIO)
+    side, top = tip_on_disc(MOST_SIDE * a[1], MOST_TOP * a[2], law.max_offset)
+    many, pots = list_lines(positions, on_table, on, work.lines)
+    k, stroke = min(int(abs(a[3]) * many), many - 1), (speed, side, top, elevation)
+    aim = aim_on(k, pots, stroke, positions, on_table, on, law, work)
+    return speed, side, top, aim - squirt(side, law.end_mass_ratio), elevation
+
+
+@kernel(uses=(_target_line, _on_picked_line))
 def shot_of(a, positions, on_table, on, options, law, work):
     """(speed, side, top, aim of the cue, elevation) of an action (k,); ``options``: of ``Actions.pack``."""
+    elevation = 0.5 * (a[4] + 1.0) * options[A_ELEVATION] if options[A_ELEVATION] else 0.0
+    if options[A_AIM] == _POT:
+        return _on_picked_line(a, positions, on_table, on, elevation, law, work)
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], law.max_offset)
-    elevation = 0.5 * (a[4] + 1.0) * options[A_ELEVATION] if options[A_ELEVATION] else 0.0
     direction = pi * a[3]
-    if options[A_TARGET]:
+    if options[A_AIM] == _TARGET:
         # without rails a line is aimed as for a level cue
         raised = elevation if law.rails.shape[0] else 0.0
         direction = (
-            _target(positions, on_table, on, (speed, side, top, raised), law, work) + TARGET_SPAN * a[3]
+            _target_line(positions, on_table, on, (speed, side, top, raised), law, work) + TARGET_SPAN * a[3]
         )
     return speed, side, top, direction - squirt(side, law.end_mass_ratio), elevation
 
@@ -148,6 +168,6 @@ class Actions:
         for holds in ("nominate" in self.says, "decision" in self.says, self.declares):
             where.append(at if holds else -1)
             at += holds
-        kind = self.aim == "target", self.steepest, self.placement
+        kind = AIMS.index(self.aim), self.steepest, self.placement
         declares = (name in self.says for name in DECLARES)
         return np.array([*kind, False, *where, *declares], np.float64)

@@ -7,16 +7,20 @@ from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
 from ..game.fouls import AUTO
 
 # Columns of the options that kernels take: what an action holds and says.
-A_TARGET = 0  # whether the aim of a box action is measured from a line at a ball
+A_AIM = 0  # what the aim of a box action means: the index in ``box_actions.AIMS``
 A_ELEVATION = 1  # the elevation that 1 means [rad]; 0: an action holds none
 A_PLACEMENT = 2  # whether a box action holds the place of a cue ball in hand
-A_DISCRETE = 3  # whether an action is a choice
+A_DISCRETE = 3  # whether an action is a choice: 0 not, 1 of ``discrete_actions``, ``MENU`` of a menu
 A_NOMINATE = 4  # of a box action, the component that nominates; of choices 0; -1: none
 A_DECISION = 5  # the component that decides after a foul; -1: none
 A_DECLARATION = 6  # the component that declares; -1: none
 A_CONCEDE = 7  # whether an action can concede
 A_CLAIM = 8  # whether it can claim the frame
 A_LOT = 9  # whether it can let the other player begin after the lot
+
+MENU = 2
+MENU_STROKES, FRAME_STROKES = 60, 108
+"""Strokes on the menu of a visit, and of a frame, whose two last choices are decisions after a foul."""
 
 SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
 DECLARES = SAYS[2:]
@@ -71,7 +75,11 @@ def decision_of(a, options, row, rules):
     the offender plays again; above 1/3: from the position before, or the striker from anywhere, where that may be."""
     if options[A_DECISION] < 0 or row[columns.PHASE] != columns.CHOICE:
         return columns.PLAY
-    x = a[int(options[A_DECISION])]
+    if options[A_DISCRETE]:
+        what = int(a[0]) - FRAME_STROKES  # below 0: a stroke
+        x = 0.0 if what < 0 else 2.0 * what - 1.0
+    else:
+        x = a[int(options[A_DECISION])]
     if x < -1.0 / 3.0:
         return columns.PLAY_AGAIN
     return columns.allowed_choice(row, columns.REPLACE, rules) if x > 1.0 / 3.0 else columns.PLAY

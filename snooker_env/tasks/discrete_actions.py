@@ -14,15 +14,14 @@ from .._lib.jit import entry, kernel
 from .._lib.types import Action, Floats
 from ..game.balls import N_BALLS, bits
 from ..game.frame_columns import strikeable
-from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
-from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
+from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS
+from ..geometry import BALL_RADIUS
 from ..physics.cue import squirt
 from ..physics.cue_room import EDGE, EDGE_AXIS, EDGE_LEVEL, EDGE_SIDE, RAIL, STEEPEST, TIP, least_elevation
 from . import declarations
 from .escapes import LINE_AIM
 from .kernel_arrays import C_END_MASS, C_RAILS
-from .lines import LINE_ROWS, POTS, aim_along, count_lines, find_lines
-from .pot_aim import solved_aim
+from .lines import LINE_ROWS, POTS, aim_on, count_lines, list_lines
 
 SPEEDS = (0.9, 1.3, 1.8, 2.3, 2.9, 3.6, 4.4, 5.3, 6.3)
 """The cue speeds to choose from [m/s]."""
@@ -68,25 +67,17 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
     return pot * STROKES + (speed * len(SIDES) + side) * len(TOPS) + top
 
 
-@kernel(seconds=1, uses=(solved_aim, aim_along))
+@kernel(seconds=1, uses=(aim_on,))
 def solve_choice(index, positions, on_table, on, law, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``."""
-    lines = work.lines
     # ``declarations`` reads what else the choice says; what may not be said now is played as a stroke
     index = index % SIZE
     pot, stroke = index // STROKES, index % STROKES
     speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
     side, top = SIDES[stroke // len(TOPS) % len(SIDES)], TOPS[stroke % len(TOPS)]
-    many = find_pots(positions, on_table, on, BALL_RADIUS, lines[:POTS])
-    if many == 0:
-        line = lines[min(pot, find_lines(positions, on_table, on, lines) - 1)]
-        aim = aim_along(line, (speed, side, top, 0.0), positions, on_table, on, law, work)
-    else:
-        line = lines[min(pot, many - 1)]
-        pocket, ghost = int(line[POT_POCKET]), (line[GHOST_X], line[GHOST_Y])
-        target = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
-        stroke, ball = (speed, side, top, 0.0), int(line[POT_BALL])
-        aim = solved_aim(positions, on_table, ball, target, ghost, stroke, law, work)
+    many, pots = list_lines(positions, on_table, on, work.lines)
+    played = speed, side, top, 0.0
+    aim = aim_on(min(pot, many - 1), pots, played, positions, on_table, on, law, work)
     return speed, side, top, aim - squirt(side, law.end_mass_ratio), 0.0
 
 
@@ -113,7 +104,7 @@ def _lacks_room(positions, on_table, rails, ax, ay):
 
 @kernel
 def _without_room(positions, on_table, cue, rows, pots, many, out):
-    """Of the ``many`` lines in ``rows``, of which ``pots`` are pots (all or none), clear the choices in ``out`` (SIZE,)
+    """Of the ``many`` lines in ``rows``, which are ``pots`` or not, clear the choices in ``out`` (SIZE,)
     whose cue must be steeper than ``STEEPEST``, unless none were left."""
     rails, x, y, left = cue[C_RAILS:], positions[0, 0], positions[0, 1], 0
     for line in range(many):
@@ -147,12 +138,11 @@ def masks(which, positions, on_table, game, options, cue, out):
             if parts > 1:
                 on = declarations.playable(row, mask, declarations.nominated_ball(n, row))
                 available = declarations.may_nominate(n, row)
-            p, here, many, pots = positions[k], on_table[k], 1, 0
+            p, here, many, pots = positions[k], on_table[k], 1, False
             chooses = available and here[0]
             crowded = chooses and _lacks_room(p, here, cue[C_RAILS:], 0.0, 0.0)
             if crowded:  # the lines themselves are asked for
-                pots = find_pots(p, here, on, BALL_RADIUS, rows[:POTS])
-                many = pots if pots else find_lines(p, here, on, rows)
+                many, pots = list_lines(p, here, on, rows)
             elif chooses:
                 many = count_lines(p, here, on, rows)
             for c in range(SIZE):

@@ -35,13 +35,15 @@ from . import frame_kernels
 from .box_actions import Actions
 from .carry_out import carry_out
 from .discrete_actions import Choices
+from .foreseen import Errors
 from .frame_kernels import AGENT
 from .noise import Noise
-from .observations import FRAME_SIZE, REPLACED_SIZE
+from .observations import BALLS_SIZE, FRAME_SIZE, REPLACED_SIZE, STROKE_SIZE
 from .options import NEVER, Options, Rules
 from .rewards import FRAMES_PAID, MATCH_REWARDS
 from .states import FrameState, check_frame_state
 from .stroke import ShotBuffers
+from .stroke_menu import MENU_SIZES
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 from .visit import Visits
 
@@ -104,7 +106,10 @@ class Frames(Tables):
         self._saved_on_table = np.zeros((n, N_BALLS), np.bool_)
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, (self.due, self.through) = np.full(n, AUTO, np.int64), np.zeros((2, n), np.bool_)
-        self.SIZE += REPLACED_SIZE if rules.misses else 0
+        if rules.observation == "strokes":
+            self.SIZE += STROKE_SIZE * MENU_SIZES[1] - BALLS_SIZE
+        elif rules.misses:
+            self.SIZE += REPLACED_SIZE
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         game, won = rules.rule_set, rules.frames // 2 + 1
         limits = limit, rules.max_strokes, rules.one_stroke, won, game.clock
@@ -122,6 +127,7 @@ class Frames(Tables):
         """Assign the seats: one, or two."""
         self.seats = tuple(seats)
         self._own = tuple(seat.pack(self.rules) for seat in self.seats)
+        self._errors = tuple(Errors.of(seat.noise, self.rules.physics) for seat in self.seats)
         # the winner of the lot is asked if either player can say who begins
         self._lot = any("lot" in seat.actions.says for seat in self.seats)
 
@@ -298,6 +304,7 @@ class Frames(Tables):
     def _finish(self, which, out):
         counted = self.due, self.through, self._replies, self._played
         frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, *counted, out.arrays)
+        self.show_strokes(which, which, out.observations)
         self.show_conditions(which, out)
 
     def _reply(self, which, out, crew):
@@ -350,6 +357,7 @@ class Frames(Tables):
     def _show(self, which, out, *, fresh):
         tables = self.arrays, self.saved_arrays, self._setting
         frame_kernels.show(which, fresh, *tables, self._replies, out.arrays, out.last)
+        self.show_strokes(which, which, out.observations)
         self.show_conditions(which, out)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
@@ -371,6 +379,7 @@ class Frames(Tables):
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
         rows = np.empty((len(which), self.SIZE), np.float32)
         frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
+        self.show_strokes(which, np.arange(len(which)), rows, player)
         if self.rules.observed:
             rows[:, -CONDITIONS:] = scale_to_unit(self.conditions[which])
         return rows

@@ -1,7 +1,7 @@
 """Along which lines may the cue ball be sent? To the direct pots, else to what it sees, or over cushions.
 
-``action="discrete"`` chooses among up to ``POTS`` lines; ``aim="target"`` is measured from the first. Without
-a direct pot they are, best first: at the start of a frame, thin at the end red of either side, the break-off;
+``action="discrete"`` and ``aim="pot"`` choose among up to ``POTS`` lines; ``aim="target"`` is measured from the first.
+Without a direct pot they are, best first: at the start of a frame, thin at the end red of either side, the break-off;
 where hardly anything is seen, escapes, whose aim is found for the stroke; the middle of the widest window of
 directions in which a ball on is met first, its two edges, thin, and the middles of other windows."""
 
@@ -12,19 +12,21 @@ import numpy as np
 from .._lib.jit import entry, kernel
 from ..game.balls import N_BALLS, N_REDS, SPOTS, touching_balls
 from ..game.first_contact import find_first_ball
-from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, count_pots, find_pots
-from ..geometry import BALL_RADIUS
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, count_pots, find_pots
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cloth import COLUMNS
 from ..physics.impact.polynomial import WORK
 from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, escape_aim, find_escapes
 from .kernel_arrays import Work
-from .pot_aim import swerved_aim
+from .pot_aim import solved_aim, swerved_aim
 from .windows import HIGH, LOW, MOST_EDGES, half_width, open_windows, room, towards, wrap_angle
 
 POTS = 4
 """Number of pots, or of other lines where there is no direct pot, to choose from."""
-LINE_ROWS = POTS + MOST_EDGES
-"""Rows of the work space of lines: up to ``POTS`` lines, then room for windows."""
+SAFE_LINES = 6
+"""Number of lines of safeties."""
+LINE_ROWS = SAFE_LINES + MOST_EDGES
+"""Rows of the work space of lines: up to ``SAFE_LINES`` lines, then room for windows."""
 THIN = 0.62  # of a thin contact: how far the path of the cue ball passes the centre of the ball, over 2 R
 EASY, NARROW, _SLIT, _APART = 0.01, 0.25 * 0.01, 1e-6, 2e-3
 """Half windows [rad]: a sure one; below it an escape is better; none. Least difference of two lines."""
@@ -85,7 +87,7 @@ def nearest(positions, on_table, on):
 @kernel
 def _add(lines, count, aim, space):
     """Append a line at ``aim``, unless it is there or leaves no room for error; returns the number."""
-    if count == POTS or space < _SLIT:
+    if count == lines.shape[0] or space < _SLIT:
         return count
     for k in range(count):
         if abs(wrap_angle(aim - lines[k, LINE_AIM])) < _APART:
@@ -96,28 +98,35 @@ def _add(lines, count, aim, space):
 
 
 @kernel
+def _add_thin(positions, on_table, lines, window, count):
+    """Append a thin contact at either edge of a window."""
+    half = 0.5 * (window[HIGH] - window[LOW])
+    middle = window[LOW] + half
+    for sign in (-1.0, 1.0):
+        edge = middle + sign * (half - _SLIT)
+        ball = find_first_ball(
+            positions, on_table, positions[0, 0], positions[0, 1], cos(edge), sin(edge), 1e9
+        )
+        thin = (1.0 - THIN) * (half_width(positions, ball) if ball else 0.5 * pi)
+        if thin < 0.6 * half:
+            count = _add(lines, count, middle + sign * (half - thin), thin)
+    return count
+
+
+@kernel
 def _add_windows(positions, on_table, lines, windows, many, count):
     """Append the middle of the widest window, a thin contact at either edge of it, and the other middles."""
-    x, y = positions[0, 0], positions[0, 1]
     for k in range(many):
         half = 0.5 * (windows[k, HIGH] - windows[k, LOW])
-        middle = windows[k, LOW] + half
-        count = _add(lines, count, middle, half)
-        if k > 0:
-            continue
-        for sign in (-1.0, 1.0):
-            edge = middle + sign * (half - _SLIT)
-            ball = find_first_ball(positions, on_table, x, y, cos(edge), sin(edge), 1e9)
-            thin = (1.0 - THIN) * (half_width(positions, ball) if ball else 0.5 * pi)
-            if thin < 0.6 * half:
-                count = _add(lines, count, middle + sign * (half - thin), thin)
+        count = _add(lines, count, windows[k, LOW] + half, half)
+        if k == 0:
+            count = _add_thin(positions, on_table, lines, windows[k], count)
     return count
 
 
 @kernel(uses=(find_escapes,))
-def find_lines(positions, on_table, on, rows):
-    """Write up to ``POTS`` lines into ``rows`` (LINE_ROWS, POT_COLUMNS); returns the number, >= 1."""
-    lines, windows = rows[:POTS], rows[POTS:]
+def _begin_lines(positions, on_table, on, lines, windows):
+    """The number of ``windows``, and of lines that come first: thin at the end reds of a rack, escapes."""
     touching, end_red, count = touching_balls(positions, on_table), end_red_of_rack(positions, on_table), 0
     many = open_windows(positions, on_table, on, touching, windows)
     if end_red:
@@ -128,11 +137,41 @@ def find_lines(positions, on_table, on, rows):
             count = _add(lines, count, aim, space if space > NARROW else 0.0)
     if many == 0 or windows[0, HIGH] - windows[0, LOW] < 2.0 * NARROW:
         count = find_escapes(positions, on_table, on & ~touching, lines, count)
-    count = _add_windows(positions, on_table, lines, windows, many, count)
-    if count == 0:  # nothing is known to succeed
+    return many, count
+
+
+@kernel
+def _any_line(positions, on_table, on, lines, count):
+    """At least one line, where nothing is known to succeed."""
+    if count == 0:
         lines[0, LINE_AIM], lines[0, LINE_ROOM] = nearest(positions, on_table, on), 0.0
         lines[0, LINE_SPEED], lines[0, LINE_WORTH] = 1.0, 0.0
     return max(1, count)
+
+
+@kernel(uses=(find_escapes,))
+def find_lines(positions, on_table, on, rows):
+    """Write up to ``POTS`` lines into ``rows`` (LINE_ROWS, POT_COLUMNS); returns the number, >= 1."""
+    lines, windows = rows[:POTS], rows[POTS:]
+    many, count = _begin_lines(positions, on_table, on, lines, windows)
+    count = _add_windows(positions, on_table, lines, windows, many, count)
+    return _any_line(positions, on_table, on, lines, count)
+
+
+@kernel(uses=(find_escapes,))
+def find_safe_lines(positions, on_table, on, rows):
+    """The same for safeties, up to ``SAFE_LINES`` of them: thin contacts before full ones, at the edges of all windows."""
+    lines, windows = rows[:SAFE_LINES], rows[SAFE_LINES:]
+    many, count = _begin_lines(positions, on_table, on, lines, windows)
+    for k in range(many):
+        count = _add_thin(positions, on_table, lines, windows[k], count)
+        if k == 0:
+            half = 0.5 * (windows[0, HIGH] - windows[0, LOW])
+            count = _add(lines, count, windows[0, LOW] + half, half)
+    for k in range(1, many):
+        half = 0.5 * (windows[k, HIGH] - windows[k, LOW])
+        count = _add(lines, count, windows[k, LOW] + half, half)
+    return _any_line(positions, on_table, on, lines, count)
 
 
 @kernel
@@ -187,3 +226,23 @@ def aim_along(line, stroke, positions, on_table, on, law, work):
     if line[LINE_SPEED] == 0.0:
         return aim_at_ball(line[LINE_AIM], stroke, positions, on_table, law, work)
     return escape_aim(line[LINE_AIM], stroke, positions, on_table, on, law, work)
+
+
+@kernel(uses=(find_escapes,))
+def list_lines(positions, on_table, on, rows):
+    """Write the lines to choose from, as ``find_lines``: direct pots, else others; their number, and whether they are pots."""
+    many = find_pots(positions, on_table, on, BALL_RADIUS, rows[:POTS])
+    if many:
+        return many, True
+    return find_lines(positions, on_table, on, rows), False
+
+
+@kernel(uses=(solved_aim, aim_along))
+def aim_on(k, pots, stroke, positions, on_table, on, law, work):
+    """Direction [rad] of the stroke (speed, side, top, elevation) on line ``k`` of ``list_lines``, in ``work.lines``."""
+    line = work.lines[k]
+    if not pots:
+        return aim_along(line, stroke, positions, on_table, on, law, work)
+    pocket, ghost, ball = int(line[POT_POCKET]), (line[GHOST_X], line[GHOST_Y]), int(line[POT_BALL])
+    target = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
+    return solved_aim(positions, on_table, ball, target, ghost, stroke, law, work)

@@ -228,6 +228,11 @@ class Noise:
         slow = hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))
         return slow * hypot(1.0, self.growth * speed)
 
+    def spread(self, physics: PhysicsLike = None, *, speed: float = POT_SPEED) -> Spread:
+        """The law of ``direction_deg``, whose standard deviation ``core`` is at least 1e-5 rad."""
+        core = max(1e-5, radians(self.direction_deg(physics, speed=speed)))
+        return Spread(core, self.lapse, self.lapse_factor)
+
     def pack(self, R: float, *, real: bool = False) -> Floats:
         """Return float64 (11,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]; ``real``:
         whether the errors of tip and aim grow with the elevation."""

@@ -1,20 +1,27 @@
-"""What does the agent observe? The balls and the state of the game, as float32 arrays."""
+"""What does the agent observe? The balls, or the pots, and the state of the game, as float32 arrays."""
 
-from typing import Any
+from math import acos, hypot, log10, pi
+from typing import Any, NamedTuple
 
 import numpy as np
 from gymnasium import spaces
 
 from .._lib.check import choice, refuse
 from .._lib.jit import kernel
-from .._lib.types import Bools, Masks, Observation, ObservationKind, Singles
+from .._lib.types import Bools, Floats, Masks, Observation, ObservationKind, Singles
 from ..game.balls import N_BALLS, REDS_MASK, VALUES, BallOn, bits, count
-from ..geometry import HALF_LENGTH, HALF_WIDTH
+from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, TOLERANCE, find_pots
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ..physics.conditions import COLUMNS as CONDITIONS_SIZE
 from .declarations import STROKE_CHOICES
+from .lines import POTS
+from .noise import Spread
+from .pot_chance import plain_chance
+from .stroke_menu import MENU_SIZES
 
-OBSERVATIONS = ("flat", "balls", "masked")
-"""The kinds of observations: one array; a dict of two; a dict of the flat one and the available choices."""
+OBSERVATIONS = ("pots", "flat", "balls", "masked", "strokes")
+"""The kinds of observations: one array of pots, or of balls; a dict of two; a dict of the flat one and the available
+choices; one array of strokes. "pots" is of visits alone."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
 """Columns of the table of balls: x / 0.889 m and y / 1.7845 m (0 when off the table), 1 if on the table,
 value / 7, 1 if it may be struck first (a ball on; with a free ball every colour)."""
@@ -46,6 +53,38 @@ FRAME_SIZE = SIZE + len(FRAME_ENTRIES)  # numbers in the flat observation of a f
 REPLACED_SIZE = N_BALLS * len(REPLACED_COLUMNS)
 """Numbers that a miss rule adds to it (66): the layout that "replace" restores."""
 _SIZES = SIZE, FRAME_SIZE, FRAME_SIZE + REPLACED_SIZE
+POT_ENTRIES = (
+    *("chance", "log_chance", "cut", "tolerance", "value"),
+    *("x", "y", "cos", "sin", "distance", "pocket_x", "pocket_y"),
+)
+"""Entries of each of the ``POTS`` widest pots, widest first, as ``find_pots`` lists them; where there is none 0, log_chance
+-1. The chance of a stroke at ``SHOWN_SPEED`` in the middle of the cue ball, and log10 of it / 2, at least -1; the cut, to the
+left above 0, / 90 degrees; the tolerance t [rad] as t / (t + 0.01); value / 7; the ball's place as in ``BALL_COLUMNS``;
+direction (x, y) and distance / 4 m of the ghost ball from the cue ball; the pocket's place."""
+SHOWN_SPEED = 2.0
+"""The cue speed whose chances observations show [m/s]."""
+POTS_SIZE = POTS * len(POT_ENTRIES) + 2 + len(STATE_ENTRIES)
+"""Numbers in the observation "pots" (61): the pots, the cue ball's place (0 when off the table), the state of the game."""
+STROKE_ENTRIES = (
+    *("there", "pot", "chance", "log_chance", "points", "speed", "top", "cut", "tolerance"),
+    *("x", "y", "noses", "balls", "run", "lost", "missed", "near", "reach"),
+    *("prospects", "best", "second", "foul", "promise"),
+)
+"""Entries of each stroke on the menu, of which ``foreseen`` writes them; docs/environment/specification.md says what they are."""
+STROKE_SIZE = len(STROKE_ENTRIES)
+_FAR, _HALF = 4.0, 0.01  # longer than any path of the cue ball [m]; a middling tolerance [rad]
+
+
+class View(NamedTuple):
+    """How visits are observed."""
+
+    pots: bool  # whether pots are, in place of the balls
+    spread: Spread  # of the player, at ``SHOWN_SPEED``
+    rails: Floats  # as in a cue's row
+
+
+FLAT = View(False, Spread(1.0), np.empty(0))
+"""The balls."""
 
 
 def space(
@@ -60,9 +99,10 @@ def space(
 
     Parameters
     ----------
-    kind : {"flat", "balls", "masked"}
-        "flat": a Box (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,); "masked": a Dict
-        of the boxes "observations", that of "flat", and "action_mask" (choices,), int8 in {0, 1}.
+    kind : {"pots", "flat", "balls", "masked", "strokes"}
+        "pots": a Box (61,), of visits alone; "flat": a Box (121,); "balls": a Dict of the boxes "balls" (22, 5) and
+        "state" (11,); "masked": a Dict of the boxes "observations", that of "flat", and "action_mask" (choices,),
+        int8 in {0, 1}; "strokes": a Box (1391,), of a frame (2560,).
     frame, replaced : bool, optional
         Whether the 19 entries of a frame or match follow, shapes (140,) and (30,), and whether the layout
         that "replace" restores, as with a miss rule: (206,), or the box "replaced" (22, 3). Default False.
@@ -84,7 +124,7 @@ def space(
     >>> observation_space("flat").shape
     (121,)
     """
-    choice("observation", kind, OBSERVATIONS)
+    choice("observation", kind, OBSERVATIONS[frame:])
     entries = len(STATE_ENTRIES) + (len(FRAME_ENTRIES) if frame else 0)
     balls = spaces.Box(-REACH, REACH, (N_BALLS, len(BALL_COLUMNS)), np.float32)
     state = spaces.Box(-1.0, 1.0, (entries,), np.float32)
@@ -95,11 +135,26 @@ def space(
         if conditions:
             parts["conditions"] = spaces.Box(-1.0, 1.0, (CONDITIONS_SIZE,), np.float32)
         return spaces.Dict(parts)
-    more = REPLACED_SIZE * replaced + CONDITIONS_SIZE * conditions
-    flat = spaces.Box(-REACH, REACH, (BALLS_SIZE + entries + more,), np.float32)
+    more = REPLACED_SIZE * (replaced and kind != "strokes") + CONDITIONS_SIZE * conditions
+    size = {"pots": POTS_SIZE, "strokes": STROKE_SIZE * MENU_SIZES[frame] + entries}.get(
+        kind, BALLS_SIZE + entries
+    )
+    flat = spaces.Box(-REACH, REACH, (size + more,), np.float32)
     if kind == "masked":
         return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})
     return flat
+
+
+@kernel
+def observe_state_into(row, at, on_table, ball_on, in_hand, points):
+    """Write ``STATE_ENTRIES`` from the place ``at`` on."""
+    for c in range(at, at + len(STATE_ENTRIES)):
+        row[c] = 0.0
+    row[at] = count(bits(on_table) & REDS_MASK) / 15.0
+    if ball_on >= 0:
+        row[at + 1 + ball_on] = 1.0
+    row[at + 9] = in_hand
+    row[at + 10] = points / 155.0
 
 
 @kernel
@@ -112,18 +167,44 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
         row[at + 2] = 1.0 if here else 0.0
         row[at + 3] = VALUES[i] / 7.0
         row[at + 4] = (on >> i) & 1
-    for at in range(BALLS_SIZE, SIZE):
-        row[at] = 0.0
-    row[BALLS_SIZE] = count(bits(on_table) & REDS_MASK) / 15.0
-    if ball_on >= 0:
-        row[BALLS_SIZE + 1 + ball_on] = 1.0
-    row[BALLS_SIZE + 9] = in_hand
-    row[BALLS_SIZE + 10] = points / 155.0
+    observe_state_into(row, BALLS_SIZE, on_table, ball_on, in_hand, points)
+
+
+@kernel
+def observe_pots_into(row, positions, on_table, ball_on, on, in_hand, points, view, pots):
+    """Write the observation "pots" (POTS_SIZE,); ``pots`` (POTS, POT_COLUMNS): work space."""
+    size, cx, cy = len(POT_ENTRIES), positions[0, 0], positions[0, 1]
+    many = find_pots(positions, on_table, on, BALL_RADIUS, pots) if on_table[0] else 0
+    for k in range(POTS):
+        at = k * size
+        for c in range(at, at + size):
+            row[c] = 0.0
+        row[at + 1] = -1.0
+        if k >= many:
+            continue
+        ball, pocket = int(pots[k, POT_BALL]), int(pots[k, POT_POCKET])
+        chance = plain_chance(positions, on_table, pots[k], view.spread, view.rails)
+        x, y, px, py = positions[ball, 0], positions[ball, 1], pots[k, GHOST_X] - cx, pots[k, GHOST_Y] - cy
+        tx, ty, far = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y], hypot(px, py)
+        cut, left = acos(min(1.0, pots[k, COS_CUT])), px * (ty - y) - py * (tx - x) > 0.0
+        row[at], row[at + 1] = chance, max(-1.0, 0.5 * log10(max(chance, 1e-9)))
+        row[at + 2] = (cut if left else -cut) / (0.5 * pi)
+        row[at + 3], row[at + 4] = pots[k, TOLERANCE] / (pots[k, TOLERANCE] + _HALF), VALUES[ball] / 7.0
+        row[at + 5], row[at + 6], row[at + 7], row[at + 8] = (
+            x / HALF_WIDTH,
+            y / HALF_LENGTH,
+            px / far,
+            py / far,
+        )
+        row[at + 9], row[at + 10], row[at + 11] = far / _FAR, tx / HALF_WIDTH, ty / HALF_LENGTH
+    at, here = POTS * size, on_table[0]
+    row[at], row[at + 1] = cx / HALF_WIDTH if here else 0.0, cy / HALF_LENGTH if here else 0.0
+    observe_state_into(row, at + 2, on_table, ball_on, in_hand, points)
 
 
 def arrange(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = None) -> Observation:
-    """Flat observations (..., k) in a kind of ``space``: "flat" is ``rows`` itself, "balls" has new arrays."""
-    if kind == "flat":
+    """Observations (..., k) in a kind of ``space``: "pots" and "flat" are ``rows`` itself, "balls" has new arrays."""
+    if kind in ("pots", "strokes", "flat"):
         return rows
     if kind == "masked":
         if masks is None:

@@ -26,6 +26,7 @@ from .discrete_actions import Choices
 from .kernel_arrays import Packed, pack_cue
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
+from .stroke_menu import Menu
 from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
@@ -33,7 +34,7 @@ MOST_TIME = 15.0
 """The most time to play [s]: the longest shot clock. With more no stroke would ever be in time."""
 TIME_TO_PLAY = 9.0
 """Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
-ACTIONS = ("box", "discrete")
+ACTIONS = ("box", "discrete", "strokes")
 CONDITIONS = ("fixed", "drawn")
 CUES = ("free", "real")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
@@ -135,13 +136,16 @@ class Options:
         "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
     action : str, default "box"
         "box": numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540)
-        unless ``says`` adds more.
-    aim : str, default "absolute"
-        From where a box action's aim is measured. "absolute": from +x. "target": from the best pot's line, else from a
-        fair stroke's.
-    observation : str, default "flat"
-        "flat": one array. "balls": a dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the
-        available choices.
+        unless ``says`` adds more. "strokes": one integer that means a stroke on a menu for the position, in [0, 60), in a
+        frame [0, 110).
+    aim : str, default "pot"
+        What the aim of a box action means. "pot": it picks a pot, else a fair stroke's line, for which the aim is solved.
+        "absolute": a direction from +x. "target": an angle from the best pot's line, else from a fair stroke's.
+    observation : str, default "default"
+        "pots", of a visit: one array of the four widest pots. "flat": one array of all balls. "balls": the same as a
+        dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the available choices. "strokes": one
+        array of what is foreseen of each stroke on the menu.
+        "default": "pots", in a frame "flat".
     noise : str, dict or Noise, default "none"
         Execution errors: "none", "professional", "amateur", "club", "robot", "olympiad", or standard deviations as a
         dict of the fields of ``snooker_env.tasks.Noise``.
@@ -204,9 +208,9 @@ class Options:
 
     task: Literal["visit", "frame", "match"] = "visit"
     layout: str = "default"
-    action: Literal["box", "discrete"] = "box"
-    aim: Literal["absolute", "target"] = "absolute"
-    observation: ObservationKind = "flat"
+    action: Literal["box", "discrete", "strokes"] = "box"
+    aim: Literal["pot", "absolute", "target"] = "pot"
+    observation: Literal["default"] | ObservationKind = "default"
     noise: NoiseLike = "none"
     reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = "points"
     elevation: bool | float = False
@@ -243,9 +247,9 @@ class Options:
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
             layout = f"break_off:{rule_set(self.game).reds}"
         plan = fit_plan(layout, table)
-        kind = choice("observation", self.observation, observations.OBSERVATIONS)
+        kind = self._observation()
         if kind == "masked" and not isinstance(actions, Choices):
-            allowed = 'must be "flat" or "balls" with action="box": a Box has no masks'
+            allowed = 'must be "pots", "flat" or "balls" with action="box": a Box has no masks'
             raise refuse("observation", self.observation, allowed)
         truth("trust", self.trust)
         drawn, observed = self._conditions(physics)
@@ -274,11 +278,17 @@ class Options:
                 raise refuse("opponent", self.opponent, allowed)
             object.__setattr__(self, "opponent", str(self.opponent))
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
-        world = actions, noise, physics, table, fidelity, plan, self.reward, self.observation
+        world = actions, noise, physics, table, fidelity, plan, self.reward, kind
         read = Rules(
             *world, self.miss, limit, one_stroke, frames, self.game, pause, drawn, observed, self.cue
         )
         object.__setattr__(self, "rules", read)
+
+    def _observation(self) -> ObservationKind:
+        """The kind of observations; ValueError for one that the task has not."""
+        kinds = observations.OBSERVATIONS[self.task != "visit" :]
+        kind = choice("observation", self.observation, ("default", *kinds))
+        return kinds[0] if kind == "default" else kind
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
@@ -304,15 +314,17 @@ class Options:
         return drawn, observed
 
     def _actions(self) -> Actions | Choices:
-        if choice("action", self.action, ACTIONS) == "box":
+        if (kind := choice("action", self.action, ACTIONS)) == "box":
             return Actions(self.aim, self.elevation, self.placement, self.says)
         for name in ("elevation", "placement"):
             if getattr(self, name) is not False:
-                raise refuse(name, getattr(self, name), 'must be False with action="discrete"')
+                raise refuse(name, getattr(self, name), f'must be False with action="{kind}"')
+        if kind == "strokes" and self.says:
+            raise refuse("says", self.says, 'must be () with action="strokes"')
         if "decision" in self.says:
             raise refuse("says", self.says, 'must not hold "decision" with action="discrete"')
         choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
-        return Choices(self.says)
+        return Menu(frame=self.task != "visit") if kind == "strokes" else Choices(self.says)
 
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""
@@ -350,7 +362,7 @@ def observation_space_of(
     actions = rules.actions if actions is None else actions
     choices = actions.choices if isinstance(actions, Choices) else 0
     more = {"replaced": rules.misses, "conditions": rules.observed}
-    return observations.space(options.observation, frame=frame, choices=choices, **more)
+    return observations.space(rules.observation, frame=frame, choices=choices, **more)
 
 
 def options_of(options: Options | None, keywords: Mapping[str, Any]) -> Options:

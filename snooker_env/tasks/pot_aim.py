@@ -162,9 +162,9 @@ def swerved_aim(line, far, stroke, positions, on_table, law, work):
 
 
 @kernel(seconds=5, uses=(collide_balls,))
-def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
-    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised
-    as it must be."""
+def aim_from(begin, enough, positions, on_table, ball, target, ghost, stroke, law, work):
+    """``solved_aim``, sought from the direction ``begin`` on [rad] until the ball passes the target by no more than
+    ``enough`` [rad]."""
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)
@@ -174,7 +174,7 @@ def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
     cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)
     slope = -far / (2.0 * law.phys[0] * max(cut, 0.05))
     squirted = cue.squirt(stroke[1], law.end_mass_ratio)
-    begin, raised_at, played = line, line, stroke_in_room(line, stroke, positions, on_table, law)
+    raised_at, played = begin, stroke_in_room(begin, stroke, positions, on_table, law)
     if law.rails.shape[0] and stroke[1] != 0.0:
         # a raised cue with side bends the path: by more than a thin cut or a soft stroke would show
         begin -= _off(played, line, max(far, law.phys[P_R]), positions, law, work)
@@ -189,7 +189,7 @@ def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
         if abs(aim - raised_at) <= _SAME_ROOM:
             if abs(off) < abs(least):
                 best, least = aim, off
-            if abs(off) <= _ENOUGH:
+            if abs(off) <= enough:
                 break
         if off == 9.0:  # missed, or it never arrived: turn towards the ball's middle
             middle = atan2(by - cy, bx - cx)
@@ -206,3 +206,11 @@ def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
         limit = 0.5 * _WIDEST
         aim = min(begin + _WIDEST, max(begin - _WIDEST, aim + min(limit, max(-limit, step))))
     return best
+
+
+@kernel(uses=(aim_from,))
+def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
+    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised
+    as it must be."""
+    line = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0])
+    return aim_from(line, _ENOUGH, positions, on_table, ball, target, ghost, stroke, law, work)

@@ -24,11 +24,12 @@ from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from ..simulation.count import count
 from . import discrete_actions
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
-from .declarations import A_DISCRETE, A_PLACEMENT, playable
+from .declarations import A_DISCRETE, A_PLACEMENT, MENU, playable
 from .kernel_arrays import C_E_T, C_END_MASS, C_MAX_OFFSET, C_MU_S, C_RAILS, CueLaw, StruckArrays
 from .lines import new_work
 from .noise import execute_stroke, kick_of
 from .options import Rules
+from .stroke_menu import solve_menu_stroke
 
 AT_ONCE = 1e-9  # contacts within this time [s] are simultaneous
 # Columns of a strike: the cue ball's velocity and spin after it, intended speed, the strike with errors; what its
@@ -172,7 +173,11 @@ def _same_constants(k, before, cues, phys):
     return differ == 0
 
 
-@entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.solve_choice, shot_of))
+@entry(
+    what="the strokes of the environment",
+    seconds=3,
+    uses=(discrete_actions.solve_choice, solve_menu_stroke, shot_of),
+)
 def address(which, actions, tables, shots, packed, fidelity):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike; ``packed``: of ``Tables``."""
     positions, on_table, game, streams, nominated = tables
@@ -193,7 +198,10 @@ def address(which, actions, tables, shots, packed, fidelity):
             before, new = which[max(0, j - 1)], j == 0 or a[0] != solved[0] or mask != mask_before
             new = new or not _same_constants(k, before, cues, phys)
             if new or not _same_table(p, on, positions[before], on_table[before]):
-                chosen = discrete_actions.solve_choice(int(a[0]), p, on, mask, law, work)
+                if options[A_DISCRETE] == MENU:
+                    chosen = solve_menu_stroke(int(a[0]), p, on, mask, law, work)
+                else:
+                    chosen = discrete_actions.solve_choice(int(a[0]), p, on, mask, law, work)
                 solved[0], mask_before = a[0], mask
                 solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
             intended = (solved[1], solved[2], solved[3], solved[4], solved[5])

@@ -20,11 +20,13 @@ from ..simulation.shot import Shot
 from . import discrete_actions, stroke
 from .box_actions import Actions
 from .discrete_actions import Choices
+from .foreseen import Errors, foresee
 from .kernel_arrays import C_END_MASS, Packed
 from .noise import Noise
 from .options import NEVER, Rules
 from .played import Played, judgement_of, room_of, strike_of
 from .states import FrameState, State
+from .stroke_menu import Menu, menu_masks
 
 REALS = ("points", "break", "seconds")
 COUNTS = ("penalty", "pots", "fouls", "ball_on", "first_ball", "events")
@@ -178,13 +180,14 @@ class Tables(ABC):
         self.reals = self.REALS
         self.conditions = np.empty((0, CONDITIONS))
         options, self.cues, errors, self.phys = rules.pack()
+        self._errors: tuple[Errors, ...] = (Errors.of(rules.noise, rules.physics),)  # of each seat
         self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)  # of each seat
         if rules.drawn:
             self.reals = (*self.REALS, *CONDITION_NAMES)
             self.conditions = np.tile(nominal(rules.physics), (n, 1))
             self.cues, self.phys = np.repeat(self.cues, n, axis=0), np.tile(rules.physics.pack(), (n, 1))
         if rules.observed:
-            self.SIZE = type(self).SIZE + CONDITIONS
+            self.SIZE += CONDITIONS
 
     def pack(self, side: int = 0) -> Packed:
         """The rules for the kernels, with the actions and errors of the seat ``side``."""
@@ -257,6 +260,10 @@ class Tables(ABC):
         """``action_masks`` of one space of actions."""
         choices = actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE
         out = np.empty((len(which), choices), np.bool_)
+        if isinstance(actions, Menu):
+            code = self.rules.rule_set.code
+            menu_masks(which, self.positions, self.on_table, self.game, code, out)
+            return out
         reads = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY, self.rules.cue_row
         discrete_actions.masks(which, self.positions, self.on_table, self.game, *reads, out)
         return out
@@ -265,6 +272,15 @@ class Tables(ABC):
         """Write the available choices of the tables ``which`` into ``masks``; nothing if it has no rows."""
         if len(masks) and len(which):
             masks[which] = self.action_masks(which)
+
+    def show_strokes(self, which: Ints, at: Ints, rows: Singles, player: int = 0) -> None:
+        """Write what ``player`` foresees of the strokes on the menus of the tables ``which`` into ``rows[at]``, which hold the
+        flat observation; nothing unless that is observed."""
+        if self.rules.observation == "strokes":
+            tables = self.positions, self.on_table, self.game
+            law = self.rules.rule_set.code, self.cues, self.phys, *self.rules.fidelity
+            errors = self._errors[min(player, len(self._errors) - 1)]
+            foresee(which, at, player, tables, law, errors, rows)
 
     def are_over(self) -> Bools:
         """Which tables have no stroke left to play: bool (n,)."""

@@ -13,30 +13,49 @@ from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
 from ..game.fouls import FLAG, VISIT
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
 from ..game.layouts import deal_tables
+from ..game.pots import POT_COLUMNS
 from ..geometry import BALL_RADIUS
+from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import scale_to_unit
 from ..physics.engine import Status
-from .kernel_arrays import OutputArrays, PlayedArrays
-from .observations import SIZE, observe_into
+from .kernel_arrays import C_RAILS, OutputArrays, PlayedArrays
+from .lines import POTS
+from .observations import (
+    POTS_SIZE,
+    SHOWN_SPEED,
+    SIZE,
+    STATE_ENTRIES,
+    STROKE_SIZE,
+    View,
+    observe_into,
+    observe_pots_into,
+)
+from .options import NEVER, Rules
 from .rewards import REWARDS, reward_of
 from .states import State, check_visit
 from .stroke import JUMPED, ShotBuffers, see, write_ruling
+from .stroke_menu import MENU_SIZES
 from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_info, write_stroke_info
 
 _OK = int(Status.OK)
 
 
 @kernel
-def _observe(out, positions, on_table, state):
-    """Write the flat observation of one table."""
+def _observe(out, positions, on_table, state, view, pots):
+    """Write the observation of one table; ``pots``: work space."""
     on = balls_on_kernel(state[BALL_ON], bits(on_table))
-    observe_into(out, positions, on_table, state[BALL_ON], on, state[IN_HAND], state[POINTS])
+    seen = positions, on_table, state[BALL_ON], on, state[IN_HAND], state[POINTS]
+    if view.pots:
+        observe_pots_into(out, *seen, view, pots)
+    else:
+        observe_into(out, *seen)
 
 
 @entry(what="the referee of visits", seconds=4)
-def _conclude(which, positions, on_table, game, shots, rules, output):
+def _conclude(which, positions, on_table, game, shots, rules, view, output):
     """Judge the shots that came to rest, write all results. ``rules``: reward, limit of steps, one stroke."""
     shots, out, (reward, limit, one_stroke) = PlayedArrays(*shots), OutputArrays(*output), rules
+    view, pots = View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
             continue
@@ -54,15 +73,16 @@ def _conclude(which, positions, on_table, game, shots, rules, output):
         state[OVER] = one_stroke or ruling.visit_end != VISIT.CONTINUES
         out.rewards[k] = reward_of(reward, ruling.points, ruling.penalty)
         out.terminated[k], out.truncated[k] = state[OVER], state[STEPS] >= limit
-        _observe(out.observations[k], p, on, state)
+        _observe(out.observations[k], p, on, state, view, pots)
         write_stroke_info(k, out, j, shots, ball_on, ruling)
         out.reals[k, I_BREAK] = state[POINTS]
 
 
 @entry(what="the start of a visit", seconds=1)
-def _begin(which, fresh, in_hand, tables, output, last):
+def _begin(which, fresh, in_hand, tables, view, output, last):
     """Write the results of a reset; ``fresh``: start visits, already dealt; ``last`` keeps the old rows."""
     (positions, on_table, game, _, _), out = tables, OutputArrays(*output)
+    view, pots = View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
         mask, state = bits(on_table[k]), game[k]
@@ -70,24 +90,32 @@ def _begin(which, fresh, in_hand, tables, output, last):
             keep_last(k, out, last)
             state[BALL_ON], state[IN_HAND] = next_on_kernel(mask), in_hand
             state[POINTS] = state[OVER] = state[STEPS] = 0
-        _observe(out.observations[k], positions[k], on_table[k], state)
+        _observe(out.observations[k], positions[k], on_table[k], state, view, pots)
         write_empty_info(k, out, state[BALL_ON])
         out.reals[k, I_BREAK] = state[POINTS]
 
 
 @entry
-def observe(which, positions, on_table, game, out):
-    """The flat observations of the tables ``which``: one row of ``out`` each."""
+def observe(which, positions, on_table, game, view, out):
+    """The observations of the tables ``which``: one row of ``out`` each."""
+    view, pots = View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
-        _observe(out[j], positions[k], on_table[k], game[k])
+        _observe(out[j], positions[k], on_table[k], game[k], view, pots)
 
 
 class Visits(Tables):
     """n tables, each in the middle of its own visit."""
 
-    SIZE = SIZE
     COLUMNS = VISIT_COLUMNS
+
+    def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
+        self.SIZE = {"pots": POTS_SIZE, "strokes": STROKE_SIZE * MENU_SIZES[0] + len(STATE_ENTRIES)}.get(
+            rules.observation, SIZE
+        )
+        super().__init__(rules, n, limit=limit)
+        spread, rails = rules.noise.spread(rules.physics, speed=SHOWN_SPEED), rules.cue_row[C_RAILS:]
+        self._view: View = View(rules.observation == "pots", spread, rails)
 
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
@@ -120,7 +148,9 @@ class Visits(Tables):
 
     def _conclude(self, which: Ints, b: ShotBuffers, out: StepOutput) -> None:
         rules = REWARDS.index(self.rules.reward), self.limit, self.rules.one_stroke
-        _conclude(which, self.positions, self.on_table, self.game, b.played, rules, out.arrays)
+        tables = self.positions, self.on_table, self.game
+        _conclude(which, *tables, b.played, rules, self._view, out.arrays)
+        self.show_strokes(which, which, out.observations)
 
     def _begin(self, which: Ints, out: StepOutput, *, fresh: bool = True) -> None:
         if len(which):
@@ -128,7 +158,8 @@ class Visits(Tables):
             if fresh:
                 deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
                 self.draw_conditions(which)
-            _begin(which, fresh, plan.in_hand, self.arrays, out.arrays, out.last)
+            _begin(which, fresh, plan.in_hand, self.arrays, self._view, out.arrays, out.last)
+            self.show_strokes(which, which, out.observations)
             self.show_conditions(which, out)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
@@ -143,9 +174,10 @@ class Visits(Tables):
 
     def observe(self, which: Ints, player: int = 0) -> Singles:
         rows = np.empty((len(which), self.SIZE), np.float32)
-        observe(which, self.positions, self.on_table, self.game, rows)
+        observe(which, self.positions, self.on_table, self.game, self._view, rows)
+        self.show_strokes(which, np.arange(len(which)), rows)
         if self.rules.observed:
-            rows[:, SIZE:] = scale_to_unit(self.conditions[which])
+            rows[:, -CONDITIONS:] = scale_to_unit(self.conditions[which])
         return rows
 
     def get_state(self, k: int) -> dict[str, Any]:

@@ -17,7 +17,7 @@ class Soft:
     options: ClassVar = {"action": "discrete"}
 
     def act(self, observations, masks, seeds):
-        assert observations.shape == (1, 121) and masks.shape == (1, 540)
+        assert observations.shape == (1, 61) and masks.shape == (1, 540)
         return np.array([choice_of(0, 0, 1, 2)])
 
 

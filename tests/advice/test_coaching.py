@@ -246,7 +246,7 @@ def test_an_error_grows_as_strokes_under_that_noise_do():
 
 
 def test_strokes_as_fast_as_a_lapse_makes_them_are_read():
-    env = sn.SnookerEnv(noise={"speed_rel": 2.0})
+    env = sn.SnookerEnv(noise={"speed_rel": 2.0}, aim="absolute")
     env.keep_history, fastest = True, 0.0
     for seed in range(20):
         env.reset(seed=seed)

@@ -69,7 +69,7 @@ evaluate --agent random --resamples 5 | resamples = 5: must be an integer in
 evaluate --agent random --options aim=target | 'aim=target': must be left out: it is for models that train.py did not make
 evaluate --agent random --options noise=club | options = 'noise=club': must be KEY=VALUE, KEY once each of action
 evaluate --agent random --options aim=target aim=target | must be KEY=VALUE, KEY once each of action
-evaluate --agent random --options aim=up | aim = 'up': must be one of 'absolute', 'target'
+evaluate --agent random --options aim=up | aim = 'up': must be one of 'pot', 'absolute', 'target'
 evaluate --agent random --ray host: | ray = 'host:': must be local, auto, or HOST:PORT
 tournament ghost_ball | players = 'ghost_ball': must be two or more
 tournament ghost_ball nobody | agent = 'nobody': must be random,

@@ -31,6 +31,7 @@ SAID = {"says": ["nominate", "concede", "claim", "lot"]}
 FULL = TARGET | {"noise": "club", "placement": True, "says": ["decision"]}
 FRAME = FULL | {"task": "frame"}
 VISITS = {
+    "pots, a real cue": {"noise": "club", "cue": "real", "layout": "random:5"},
     "errors": TARGET | {"noise": "club", "layout": "random:5", "reward": "points_and_fouls"},
     "long actions": TARGET
     | {"layout": "break_off", "placement": True, "elevation": True, "observation": "balls"}

@@ -80,7 +80,7 @@ def test_an_episode_keeps_its_table_and_the_next_one_has_another(task):
 
 
 def test_shots_have_the_constants_of_their_table():
-    env = begun(sn.SnookerEnv(**DRAWN), 2)
+    env = begun(sn.SnookerEnv(aim="absolute", **DRAWN), 2)
     start, here = env.positions, env.on_table
     env.step(MIDDLE)
     shot = env.last_shot
@@ -117,7 +117,7 @@ def _planned(env, options, strokes):
 
 
 def test_plans_are_made_with_the_constants_of_the_table():
-    options = sn.Options(elevation=True, **DRAWN)
+    options = sn.Options(aim="absolute", elevation=True, **DRAWN)
     env = begun(sn.SnookerEnv(options), 8)
     strokes = np.array([[3.0, 0.3, 0.1, 1.2, 0.0]])
     at, own, physics = Positions.of(env), _planned(env, options, strokes), env.physics

@@ -17,11 +17,12 @@ from tests.tables import begun
 
 ARGUMENTS = """
 env(task=?) | task | ? | must be one of 'visit', 'frame' | ''; None; b'x'; 'frames'; 'Visit'; ['visit']; {}
-env(aim=?) | aim | ? | must be one of 'absolute', 'target' | ''; 3; True; 'relative'; 'Target'; ['target']; {}
+env(aim=?) | aim | ? | must be one of 'pot', 'absolute', 'target' | ''; 3; True; 'relative'; 'Target'; ['target']; {}
 env(action=?) | action | ? | must be one of 'box', 'discrete' | ''; None; b'x'; 'plain'; 'Box'; ['box']; {}
-env(observation=?) | observation | ? | must be one of 'flat', 'balls' | ''; 3; True; 'pixels'; 'Flat'; ['flat']; {}
-env(observation=?) | observation | ? | must be "flat" or "balls" with action="box": a Box has no masks | 'masked'
-env(task="frame", observation=?) | observation | ? | must be "flat" or "balls" with action="box" | 'masked'
+env(observation=?) | observation | ? | must be one of 'default', 'pots', 'flat', 'balls' | ''; 3; True; 'pixels'; 'Flat'; ['flat']; {}
+env(observation=?) | observation | ? | must be "pots", "flat" or "balls" with action="box": a Box has no masks | 'masked'
+env(task="frame", observation=?) | observation | ? | must be "pots", "flat" or "balls" with action="box" | 'masked'
+env(task="frame", observation=?) | observation | ? | must be one of 'default', 'flat', 'balls', 'masked' | 'pots'
 env(reward=?) | reward | ? | must be one of 'points', 'points_and_fouls', 'pots', 'legal' | ''; 3; None; 'score'; ['points']; 'win'
 frame(reward=?) | reward | ? | must be one of 'points', 'win' | 'pots'; 'wins'; 'frames'
 env(layout=?) | layout | ? | or "break_off:N" with N from 0 to 15 | ''; 3; 'Opened'; 'pots:'; 'pots:Easy'
@@ -224,7 +225,7 @@ WAYS = {
 @pytest.mark.parametrize("component", range(4))
 def test_rounding_outside_the_bounds_is_clipped_and_more_is_refused(way, component):
     def action(x):
-        a = [-0.5, 0.0, 0.0, 0.25]
+        a = [0.5, 0.0, 0.0, 0.25]
         a[component] = x
         return a
 

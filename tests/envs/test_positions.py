@@ -14,7 +14,7 @@ from tests.tables import begun, plain
 BALLS = {"cue": (0.1, -0.6), "reds": [(0.3, 0.5), (-0.2, 0.9)], "blue": (0.0, 0.0), "black": (0.0, 1.4605)}
 MID_BREAK = sn.Position(**BALLS, on="any colour", points=33)
 IN_HAND = sn.Position(reds=[(0.3, 0.5)], black=(0.0, 1.4605), in_hand=True)
-OPTIONS = {"noise": "professional", "aim": "target"}
+OPTIONS = {"noise": "professional", "aim": "target", "observation": "flat"}
 
 
 def start(position, **more):

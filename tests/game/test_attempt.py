@@ -137,7 +137,7 @@ def test_a_shut_in_striker_attempts_what_would_reach_a_ball_on_without_the_balls
     cage, speed, aim, miss
 ):
     """S3 R14(a). Straight away the cue ball would come back to the red; it is not played toward it."""
-    env = frame_state(sn.match_env(miss="attempt"), cage, {"ball_on": BallOn.RED})
+    env = frame_state(sn.match_env(aim="absolute", miss="attempt"), cage, {"ball_on": BallOn.RED})
     a = 2 * (speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1
     env.step(np.array([a, 0, 0, aim / 180, 0, 0, 0], np.float32))
     assert env.frame.phase == "choice" and env.frame.scores[1] >= 4
@@ -147,6 +147,6 @@ def test_a_shut_in_striker_attempts_what_would_reach_a_ball_on_without_the_balls
 def test_a_striker_who_can_get_out_must_come_near():
     """One ball less in the cage: there is a way over cushions, so the blow at the balls between is a miss."""
     cage = {ball: at for ball, at in (CAGES[0] | ring(0.09)).items() if ball != 19}
-    env = frame_state(sn.match_env(miss="attempt"), cage, {"ball_on": BallOn.RED})
+    env = frame_state(sn.match_env(aim="absolute", miss="attempt"), cage, {"ball_on": BallOn.RED})
     env.step(np.array([0.7, 0, 0, 0.5, 0, 0, 0], np.float32))
     assert env.frame.miss_called

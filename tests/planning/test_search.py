@@ -84,10 +84,10 @@ def test_strokes_under_errors_are_those_of_the_table_under_the_same_errors(noise
     """
     at, rng, m = some(20), np.random.default_rng(1), 300
     rows, keys, strokes = rng.integers(0, 20, m), np.arange(1000, 1000 + m), random_strokes(m, rng)
-    options = {"noise": noise, "fidelity": "fast"}
+    options = {"noise": noise, "fidelity": "fast", "aim": "absolute"}
     errors = Noise.of(noise).errors_of(np.stack([keys, np.zeros(m, int)], 1).astype(np.uint64))
     kept = strokes.copy(), errors.copy()
-    actions = Strokes(strokes).actions(Options(), at[rows])
+    actions = Strokes(strokes).actions(Options(aim="absolute"), at[rows])
     planner = Planner(options, threads=1)
     played = planner.play_strokes(at, rows, strokes, errors=errors)
     table = planner.play(at, rows, actions, keys)

@@ -38,6 +38,9 @@ def test_a_stroke_of_a_speed_and_a_direction_is_what_it_says():
         {"aim": "absolute", "elevation": True, "layout": "break_off"},
         {"aim": "target", "placement": True, "elevation": True, "layout": "break_off"},
         {"aim": "target", "cue": "real", "layout": "random:6"},
+        {"cue": "real", "layout": "random:6"},
+        {"placement": True, "elevation": True, "layout": "break_off"},
+        {"task": "frame", "says": ["nominate", "decision"]},
         {"aim": "target", "task": "frame", "placement": True, "says": ["decision"]},
     ],
 )

@@ -43,9 +43,7 @@ def test_what_is_assumed_of_the_aim_is_said_once(model, capsys, nothing_said):
         sn.player(model, trust=True)
     said = capsys.readouterr().err
     assert (
-        said.count("\n") == 1
-        and f"{model}: aim=absolute is assumed" in said
-        and "--options aim=target" in said
+        said.count("\n") == 1 and f"{model}: aim=pot is assumed" in said and "--options aim=absolute" in said
     )
 
 

@@ -7,6 +7,7 @@ import snooker_env as sn
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position
 from snooker_env.planning.worth import apply_decision, last_of, lead_of, left_of
+from snooker_env.players import FRAMES
 from snooker_env.players.tactician import Tactician
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from tests.planning.test_frame_judge import frame_of
@@ -41,7 +42,7 @@ def test_the_lot_is_decided_by_the_worth_of_the_black():
     far.game[:, columns.PHASE], far.game[:, columns.RESPOTTED_BLACK] = columns.LOT, 1
     silent = sn.player("tactician_30").at(OPTIONS).play(far, [3])
     assert silent.declare.tolist() == [SAYS_NOTHING]
-    silent.actions(sn.Options(**OPTIONS), far)  # an environment without lots reads it
+    silent.actions(sn.Options(**OPTIONS | FRAMES), far)  # an environment without lots reads it
     told = OPTIONS | {"says": ["decision", "lot"]}
     said = sn.player("tactician_30").at(told).play(far, [3]).declare.tolist()
     worth = sn.player("tactician_30").at(told).judge.worth(far)

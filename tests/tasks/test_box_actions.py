@@ -17,7 +17,7 @@ from tests.tables import after_strike, begun, speed_of, table_state
 
 def standing(**options):
     """A table with little on it."""
-    env = SnookerEnv(render_mode="ansi", **options)
+    env = SnookerEnv(**{"aim": "absolute", "render_mode": "ansi"} | options)
     table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
     return env
 
@@ -73,7 +73,7 @@ def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
 @pytest.mark.parametrize("mu_s", [0.21, 0.1])
 def test_elevation_lengthens_the_action_and_takes_speed(a, degrees, mu_s):
     env = standing(elevation=True, physics={"mu_s": mu_s})
-    assert env.action_space.shape == (5,) and SnookerEnv().action_space.shape == (4,)
+    assert env.action_space.shape == (5,) and SnookerEnv(aim="absolute").action_space.shape == (4,)
     v, w = after_strike(env, [0.0, 1.0, 0.0, 0.0, a])
     angle = math.radians(degrees)
     assert math.radians(30) == MAX_ELEVATION
@@ -92,7 +92,9 @@ def test_elevation_lengthens_the_action_and_takes_speed(a, degrees, mu_s):
 )
 def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
     """The yellow and the green stand on the D's corners, the brown between them: no place overlaps a ball."""
-    env = SnookerEnv(layout="break_off", placement=True, elevation=elevation, render_mode="ansi")
+    env = SnookerEnv(
+        observation="flat", layout="break_off", placement=True, elevation=elevation, render_mode="ansi"
+    )
     assert env.action_space.shape == (6 + elevation,)
     obs, _ = env.reset(seed=1)
     assert obs[-2] == 1.0  # in hand
@@ -111,7 +113,7 @@ def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
 
 
 def test_placement_is_for_a_ball_in_hand_only():
-    env = SnookerEnv(layout="random:4", placement=True, render_mode="ansi")
+    env = SnookerEnv(aim="absolute", layout="random:4", placement=True, render_mode="ansi")
     ends = set()
     for place in ((0.0, 0.0), (0.7, -0.3), (-1.0, 1.0)):
         env.reset(seed=3)
@@ -120,7 +122,7 @@ def test_placement_is_for_a_ball_in_hand_only():
         assert np.array_equal(env.last_shot.at(0.0)[0][CUE], here)
     assert len(ends) == 1
     # without placement the ball lies where the layout put it
-    plain = begun(SnookerEnv(layout="break_off", render_mode="ansi"), 3)
+    plain = begun(SnookerEnv(aim="absolute", layout="break_off", render_mode="ansi"), 3)
     here = plain.positions[CUE].copy()
     plain.step([0, 0, 0, 0.5])
     assert np.array_equal(plain.last_shot.at(0.0)[0][CUE], here)

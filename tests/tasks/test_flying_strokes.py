@@ -19,7 +19,7 @@ R = sn.Physics().R
 
 
 def environment(**options):
-    return kept(**{"physics": FLYING, "elevation": 70, **options})
+    return kept(**{"aim": "absolute", "physics": FLYING, "elevation": 70, **options})
 
 
 def kept(**options):

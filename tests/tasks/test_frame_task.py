@@ -21,7 +21,8 @@ def test_gymnasium_checks_a_match():
 
 
 def test_the_spaces_grow_and_those_of_a_visit_do_not():
-    assert SnookerEnv().observation_space.shape == (121,) and SnookerEnv().action_space.shape == (4,)
+    assert SnookerEnv().observation_space.shape == (61,) and SnookerEnv().action_space.shape == (4,)
+    assert SnookerEnv(observation="flat").observation_space.shape == (121,)
     assert frame_env().observation_space.shape == (140,) and frame_env().action_space.shape == (7,)
     assert frame_env(miss="clear_path").observation_space.shape == (206,)
     assert frame_env(observation="balls").observation_space["state"].shape == (30,)

@@ -22,7 +22,7 @@ FRICTION = 0.2  # docs/physics/limits.md
 
 def throw(noise, physics="paper", across=0.03, fidelity="reference", action=ACTION):
     """The direction of the black after the contact [rad], and the shot; ``across`` of its line [m]."""
-    env = sn.SnookerEnv(noise=noise, physics=physics, fidelity=fidelity)
+    env = sn.SnookerEnv(aim="absolute", noise=noise, physics=physics, fidelity=fidelity)
     env.keep_history = True
     env.reset(seed=1, options={"position": sn.Position(cue=(0.0, 0.0), black=(across, 0.6))})
     env.step(action)
@@ -65,7 +65,7 @@ def test_kicks_are_as_frequent_as_asked(share, n):
 def test_without_kicks_nothing_is_drawn_for_them():
     assert (throw("none")[1].positions == throw({"kick": 0.0})[1].positions).all()
     for kick, blocks in ((0.0, 0), (1e-9, 4)):  # errors have three, the kick one, in every stroke
-        env = begun(sn.SnookerEnv(noise={"kick": kick}))
+        env = begun(sn.SnookerEnv(aim="absolute", noise={"kick": kick}))
         state = env.get_state()
         for _ in range(2):
             env.set_state(state)
@@ -80,7 +80,9 @@ def test_kicks_are_independent_of_the_errors_and_of_each_other():
     n, share = 3000, 0.3
     errors = {"aim_deg": 0.05, "speed_rel": 0.02, "offset_mm": 0.1, "elevation_deg": 0.1}
     drawn, kicked = [], []
-    envs = [sn.SnookerVectorEnv(n, noise=errors | {"kick": p}, threads=1) for p in (0.0, share)]
+    envs = [
+        sn.SnookerVectorEnv(n, aim="absolute", noise=errors | {"kick": p}, threads=1) for p in (0.0, share)
+    ]
     for seed in (1, 10_001):  # the second time in the same work space
         ends = []
         for env in envs:

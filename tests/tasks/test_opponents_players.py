@@ -156,7 +156,7 @@ def test_without_a_place_in_its_action_it_stands_where_ghost_ball_would(anywhere
 
 def test_with_a_free_ball_any_colour_is_on_for_a_player_of_visits():
     """Snookered by a foul on the only red: a player blind to the free ball strikes at the hidden red."""
-    one = Sees(action="discrete")
+    one = Sees(action="discrete", observation="flat")
     env = frame_state(
         frame_env(opponent=SeenPlayer(one)), HIDDEN, {"striker": 0, "phase": "choice", "free_ball": True}
     )

@@ -73,7 +73,7 @@ def test_the_highest_break():
 )
 def test_reward_kinds(name, rewards):
     assert set(REWARDS) == {"points", "points_and_fouls", "pots", "legal"}
-    env, got, near = SnookerEnv(reward=name), [], (0.6, 0.3)
+    env, got, near = SnookerEnv(aim="absolute", reward=name), [], (0.6, 0.3)
     shots = (BESIDE, STUN), (near, [-0.9, 0, 0, 0.25]), (near, [-0.9, 0, 0, 1.0])  # a pot, a miss, a foul
     for black, action in shots:
         places = {CUE: (0.3, 0.0), YELLOW: (-0.6, -1.2), 1: (-0.6, 1.5), BLACK: black}
@@ -87,7 +87,7 @@ AWAY, INTO, GRAZE = 1.0, 0.0, 0.5
 
 def touching(gap):
     """The cue ball touches a red on its right."""
-    env = SnookerEnv(reward="points_and_fouls")
+    env = SnookerEnv(aim="absolute", reward="points_and_fouls")
     table_state(env, {CUE: (0.0, 0.3), 1: (2 * R + gap, 0.3), BLUE: (0.4, 1.2)}, BallOn.RED)
     return env, env.positions[1].copy()
 
@@ -137,7 +137,7 @@ TOUCHED = {
 
 @pytest.mark.parametrize(("places", "speed", "aim", "foul", "worth", "first"), TOUCHED.values(), ids=TOUCHED)
 def test_what_a_touching_ball_allows(places, speed, aim, foul, worth, first):
-    env = SnookerEnv(reward="points_and_fouls")
+    env = SnookerEnv(aim="absolute", reward="points_and_fouls")
     table_state(env, {CUE: (0.0, 0.3), BLUE: (-0.4, 1.2)} | places, BallOn.RED)
     info = env.step([speed, 0.0, 0.0, aim])[4]
     assert info["penalty"] == worth and first in (None, info["first_ball"])

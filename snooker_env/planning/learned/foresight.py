@@ -7,6 +7,7 @@ import numpy as np
 
 from ..._lib.types import Bools, Floats, Ints
 from ...game.balls import N_BALLS, VALUES
+from ...tasks import cue_ball_path as path
 from ...tasks.options import Rules
 from ..aims import Dynamics, law_of
 from ..positions import Positions
@@ -14,7 +15,6 @@ from ..prospects import in_parts
 from ..sobol import normal_points
 from ..stroke_columns import COLUMNS
 from ..worth import pass_after_miss
-from . import cue_ball_path as path
 from .learned_worth import LearnedWorth
 
 SAMPLES = 4

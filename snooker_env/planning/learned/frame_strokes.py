@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..._lib.types import Bools, Floats, Integers, Ints
 from ...game import frame_columns as columns
 from ...game.balls import BLACK, PINK, VALUES
+from ...tasks import cue_ball_path as path
 from ...tasks.noise import Spread
 from ...tasks.options import Rules
 from ..aims import Dynamics
@@ -22,7 +23,6 @@ from ..search import Ranked
 from ..stroke_columns import COLUMNS, SIDE, SPEED, TOP
 from ..strokes import Strokes
 from ..worth import SPREAD, Chance, breaks_off, lead_of, left_of, pass_after_miss
-from . import cue_ball_path as path
 from .dense_layers import Layers
 from .foresight import FOUL as FOUL
 from .foresight import POTTED as POTTED

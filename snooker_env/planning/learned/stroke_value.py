@@ -14,6 +14,7 @@ from ..._lib.types import Floats, Ints
 from ...game.balls import N_BALLS, VALUES
 from ...game.frame_columns import BALL_ON, VISIT_COLUMNS
 from ...geometry import AIM_X, AIM_Y, IS_MIDDLE, POCKET_AIMS
+from ...tasks import cue_ball_path as path
 from ...tasks.discrete_actions import STROKES
 from ...tasks.noise import Noise
 from ..aims import Dynamics, law_of
@@ -24,7 +25,6 @@ from ..prospects import in_parts
 from ..sobol import normal_points
 from ..stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 from ..worth import SPREAD
-from . import cue_ball_path as path
 from .dense_layers import Layers
 from .learned_value import LearnedValue
 from .policy_proposals import PolicyProposals, draw_choices

@@ -20,7 +20,7 @@ from ...geometry import (
     IS_MIDDLE,
     POCKET_AIMS,
 )
-from ..pot_chance import pot_chance
+from ...tasks.pot_chance import pot_chance
 from ..prospects import in_parts
 
 POTS_SEEN = 6

@@ -53,7 +53,7 @@ def foreign(tmp_path_factory):
     ],
 )
 def test_a_foreign_model_plays_what_it_would_play_itself(foreign, name, maker, options, read):
-    file, kind = foreign / f"{name}.zip", name if name in ("balls", "masked") else "flat"
+    file, kind = foreign / f"{name}.zip", name if name in ("balls", "masked") else "pots"
     model, player = maker.load(file, device="cpu"), saved_player(file, options, True)
     assert player.sees == read | {"observation": kind}
     at_work = {"layout": "held_out", "threads": 1, **read}

@@ -6,7 +6,6 @@ import numpy as np
 import snooker_env as sn
 from snooker_env.planning import Position, Positions
 from snooker_env.planning.aims import law_of
-from snooker_env.planning.learned import cue_ball_path as path
 from snooker_env.planning.learned.frame_strokes import POT_SIZE, SAFETIES, SHARED
 from snooker_env.planning.learned.stroke_value import LOOKS
 from snooker_env.planning.proposals import safeties
@@ -15,6 +14,7 @@ from snooker_env.players.stroke_value_player import StrokeValuePlayer
 from snooker_env.players.tactician import Tactician
 from snooker_env.players.weights import StrokeLayers, learned_strokes
 from snooker_env.tasks import Noise
+from snooker_env.tasks import cue_ball_path as path
 
 OPTIONS = {"task": "frame", "noise": "none", "cue": "real", **sn.players.FRAMES}
 

@@ -36,7 +36,7 @@ def pot_entries(positions, pot):
 
 @pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
 def test_every_pot_is_shown_entry_by_entry(ball_on):
-    env = tables(30, layout="random:5", seed=1)
+    env = tables(30, layout="random:5", seed=1, observation="flat")
     states = [state | {"ball_on": int(ball_on)} for state in env.get_state()]
     observations, _ = env.reset(options={"states": states})
     at, pockets = Positions.of(env), set()
@@ -56,7 +56,7 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
 
 
 def test_pot_view_shows_the_line_that_the_aim_is_read_against():
-    table = SnookerEnv(aim="target", layout="held_out")
+    table = SnookerEnv(aim="target", observation="flat", layout="held_out")
     for seed in range(20):
         observation = pot_view.with_pots(table.reset(seed=seed)[0][None])[0]
         rows = observation[SIZE:].reshape(-1, pot_view.POT_ENTRIES)

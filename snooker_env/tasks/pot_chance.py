@@ -1,14 +1,15 @@
 """How likely is a pot? The chance that an error of the cue ball's direction stays within what the pot allows."""
 
-from math import exp, hypot
+from math import atan2, exp, hypot
 
 import numpy as np
 
 from .._lib.jit import entry, kernel
 from .._lib.types import Floats
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, TOLERANCE
-from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
-from ..tasks.noise import Spread, chance_within
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
+from ..physics.cue_room import STEEPEST, least_elevation
+from .noise import TWICE, Spread, chance_within, widen
 
 FAR = 0.01  # decay of the chance per metre of both balls' paths [1/m]: the width alone nearly tells it
 
@@ -35,6 +36,29 @@ def length_of(positions, pot):
 def chance_of(positions, pot, spread):
     """The chance of a row of ``find_pots`` for a stroke with this ``Spread``."""
     return pot_chance(pot[TOLERANCE], length_of(positions, pot), spread)
+
+
+@kernel
+def at_elevation(spread, elevation):
+    """``spread`` of a stroke whose cue is raised to ``elevation`` [rad]: errors grow with it (``tasks.noise``)."""
+    return widen(spread, 1.0 + min(elevation, STEEPEST) / TWICE)  # a tip goes up before a cue does further
+
+
+@kernel
+def raised_spread(spread, side, top, aim, positions, on_table, rails):
+    """``spread`` of a stroke whose cue, pointing in the direction ``aim`` [rad], must be raised."""
+    if rails.shape[0] == 0:
+        return spread
+    return at_elevation(
+        spread, least_elevation((side, top, aim, 0.0), positions, on_table, rails, BALL_RADIUS)
+    )
+
+
+@kernel
+def plain_chance(positions, on_table, pot, spread, rails):
+    """The chance of a row of ``find_pots`` for a stroke in the middle of the cue ball, raised as it must be."""
+    aim = atan2(pot[GHOST_Y] - positions[0, 1], pot[GHOST_X] - positions[0, 0])
+    return chance_of(positions, pot, raised_spread(spread, 0.0, 0.0, aim, positions, on_table, rails))
 
 
 @entry

@@ -10,20 +10,20 @@ from math import cos, hypot, sin, sqrt
 
 import numpy as np
 
-from ..._lib.jit import entry, kernel
-from ...game.balls import N_BALLS, SPOTS, VALUES, bits, touching_balls
-from ...game.frame_columns import strikeable
-from ...geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
-from ...physics import cloth
-from ...physics.arrays import Law
-from ...physics.columns import P_E_B, P_G, P_MU_R, P_R
-from ...physics.impact.contact import collide_balls, collide_cushion, cushion_restitution
-from ...tasks.box_actions import tip_on_disc
-from ...tasks.kernel_arrays import CueLaw
-from ...tasks.lines import new_work
-from ...tasks.noise import with_errors
-from ...tasks.pot_aim import meets, stroke_in_room
-from ...tasks.stroke import row_of
+from .._lib.jit import entry, kernel
+from ..game.balls import N_BALLS, SPOTS, VALUES, bits, touching_balls
+from ..game.frame_columns import strikeable
+from ..geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from ..physics import cloth
+from ..physics.arrays import Law
+from ..physics.columns import P_E_B, P_G, P_MU_R, P_R
+from ..physics.impact.contact import collide_balls, collide_cushion, cushion_restitution
+from .box_actions import tip_on_disc
+from .kernel_arrays import CueLaw
+from .lines import new_work
+from .noise import with_errors
+from .pot_aim import meets, stroke_in_room
+from .stroke import row_of
 
 X, Y, NOSES, BALLS, LENGTH, LOST, HIT, NEAR, MISSED, REACH, OBJECT, ASIDE = range(12)
 SEEN = 12
@@ -142,8 +142,8 @@ def _run(positions, on_table, skip, law, work, out):
 
 @kernel(seconds=1)
 def _meet(stroke, ball, positions, on_table, cue_law, work, out):
-    """The cue ball of a stroke (5,) meets ``ball``, past all others: whether it does, and the velocity and the spin that
-    the ball leaves with. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
+    """The cue ball of a stroke (5,) meets ``ball``, past all others: whether it does, the velocity and the spin that
+    the ball leaves with, and the elevation of the cue. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
@@ -157,23 +157,24 @@ def _meet(stroke, ball, positions, on_table, cue_law, work, out):
     if not met:
         out[X], out[Y] = x, y
         out[MISSED] = 1.0 if hypot(x - cx, y - cy) < hypot(bx - cx, by - cy) else 2.0
-        return False, still, still
+        return False, still, still, played[4]
     nx, ny = bx - x, by - y
     away = hypot(nx, ny)
     own, w, other, spin, _ok = collide_balls(
         (v[0], v[1], 0.0), w, still, still, (nx / away, ny / away), law, phys[P_E_B], work.series
     )
     cloth.begin(motion, state, 0, t, (x, y), (own[0], own[1]), w, phys)
-    return True, other, spin
+    return True, other, spin, played[4]
 
 
 @kernel(seconds=1, uses=(_meet, _run))
-def _foresee(stroke, pot, positions, on_table, cue_law, work, out):
-    """What is predicted of a stroke (5,) at a pot, of ball and pocket; fills ``out`` (SEEN,)."""
+def foresee_pot(stroke, pot, positions, on_table, cue_law, work, out):
+    """What is predicted of a stroke (5,) at a pot, of ball and pocket; fills ``out`` (SEEN,), and returns the elevation of
+    the cue [rad]."""
     phys, (ball, pocket) = cue_law.phys, pot
-    met, other, _spin = _meet(stroke, ball, positions, on_table, cue_law, work, out)
+    met, other, _spin, raised = _meet(stroke, ball, positions, on_table, cue_law, work, out)
     if not met:
-        return
+        return raised
     px = POCKET_AIMS[pocket, AIM_X] - positions[ball, 0]
     py = POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
     run, speed = hypot(px, py), hypot(other[0], other[1])
@@ -182,6 +183,7 @@ def _foresee(stroke, pot, positions, on_table, cue_law, work, out):
     rolls = (25.0 / 49.0) * speed * speed / (2.0 * phys[P_MU_R] * phys[P_G])
     out[REACH] = min(FAREST, rolls / run)
     _run(positions, on_table, ball, Law(phys, cue_law.fidelity, cue_law.n_steps), work, out)
+    return raised
 
 
 @kernel
@@ -200,7 +202,7 @@ def _first_in_way(stroke, positions, on_table, d):
 
 
 @kernel(seconds=1, uses=(_meet, _run))
-def _contact(stroke, positions, on_table, cue_law, work, out, its):
+def foresee_contact(stroke, positions, on_table, cue_law, work, out, its):
     """What is predicted of a stroke (5,) and of the ball that lies in its way; fills ``out`` and ``its`` (SEEN,), and
     returns that ball, 0 if there is none."""
     phys, motion, state = cue_law.phys, work.motion, work.state
@@ -211,7 +213,7 @@ def _contact(stroke, positions, on_table, cue_law, work, out, its):
     out[MISSED], its[NEAR] = 2.0, 9.0
     if ball == 0:
         return 0
-    met, other, spin = _meet(stroke, ball, positions, on_table, cue_law, work, out)
+    met, other, spin, _raised = _meet(stroke, ball, positions, on_table, cue_law, work, out)
     if not met:
         return 0
     _run(positions, on_table, ball, law, work, out)
@@ -229,7 +231,28 @@ def _with_error(meant, error, noise, most, tried):
     tried[1], tried[2] = tip_on_disc(played[1], played[2], most)
 
 
-@entry(what="the paths of cue balls", seconds=2, uses=(_foresee,))
+@kernel
+def leave(ball, ball_on, positions, on_table, after, there):
+    """What is left if ``ball`` is potted: fills ``after`` and ``there``, and returns the ball on or ``NONE``."""
+    reds = False
+    for i in range(N_BALLS):
+        after[i, 0], after[i, 1], there[i] = positions[i, 0], positions[i, 1], on_table[i]
+        reds = reds or (0 < i < 16 and on_table[i] and i != ball)
+    if VALUES[ball] > 1 and ball_on == 0:
+        after[ball, 0], after[ball, 1] = SPOTS[ball, 0], SPOTS[ball, 1]
+    else:
+        there[ball] = False
+    if VALUES[ball] == 1:
+        return 0
+    if reds:
+        return 1
+    for i in range(16, N_BALLS):
+        if there[i]:
+            return VALUES[i]
+    return NONE
+
+
+@entry(what="the paths of cue balls", seconds=2, uses=(foresee_pot,))
 def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
     """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,), each under standard normal
     ``errors`` (k, 5): fills ``out`` (n k, SEEN), and with what they leave if the ball is potted ``left``: positions,
@@ -243,25 +266,12 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
         own, ball, p, here = row_of(k, phys), pots[i, 0], positions[k], on_table[k]
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
-        _foresee(tried, (ball, pots[i, 1]), p, here, its, work, out[j])
-        reds = False
-        for i in range(N_BALLS):
-            after[j, i, 0], after[j, i, 1], there[j, i] = p[i, 0], p[i, 1], here[i]
-            reds = reds or (0 < i < 16 and here[i] and i != ball)
+        foresee_pot(tried, (ball, pots[i, 1]), p, here, its, work, out[j])
+        on[j] = leave(ball, ball_on[k], p, here, after[j], there[j])
         after[j, 0, 0], after[j, 0, 1] = out[j, X], out[j, Y]
-        if VALUES[ball] > 1 and ball_on[k] == 0:
-            after[j, ball, 0], after[j, ball, 1] = SPOTS[ball, 0], SPOTS[ball, 1]
-        else:
-            there[j, ball] = False
-        on[j] = 0 if VALUES[ball] == 1 else 1
-        if VALUES[ball] > 1 and not reds:
-            on[j] = NONE
-            for i in range(N_BALLS - 1, 15, -1):
-                if there[j, i]:
-                    on[j] = VALUES[i]
 
 
-@entry(what="the paths of both balls", seconds=2, uses=(_contact,))
+@entry(what="the paths of both balls", seconds=2, uses=(foresee_contact,))
 def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
     """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors``
     (k, 5): fills ``out`` (n k, 2, SEEN), of the cue ball and of the first ball in its way, and ``left``: positions,
@@ -276,7 +286,7 @@ def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
         near = touching_balls(p, here)
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
-        ball = met[j] = _contact(tried, p, here, its, work, out[j, 0], out[j, 1])
+        ball = met[j] = foresee_contact(tried, p, here, its, work, out[j, 0], out[j, 1])
         fair = strikeable(game[k], bits(here) & ~1)
         # away from a touching ball on all is fair; into a touching one is a push
         legal[j] = ball > 0 and (not (near >> ball) & 1) and (near & fair or (fair >> ball) & 1)

@@ -6,11 +6,10 @@ import pytest
 import snooker_env as sn
 from snooker_env.planning import Planner, Position, Positions, pots
 from snooker_env.planning.aims import Dynamics, law_of
-from snooker_env.planning.learned import cue_ball_path
 from snooker_env.planning.learned.value_features import value_features
 from snooker_env.planning.stroke_columns import AIM
 from snooker_env.players import VISITS
-from snooker_env.tasks import STROKES, Noise
+from snooker_env.tasks import STROKES, Noise, cue_ball_path
 from snooker_env.tasks.noise import Spread
 
 

@@ -1,0 +1,242 @@
+"""What does ``observation="strokes"`` show? Of each stroke on the menu what a player foresees of it, by closed forms: no shot is
+simulated and nothing is learned. One kernel for one table and a thousand."""
+
+from math import acos, atan2, log10, pi
+from typing import NamedTuple
+
+import numpy as np
+
+from .._lib.jit import entry, kernel
+from .._lib.types import Floats
+from ..game import frame_columns as columns
+from ..game.balls import N_BALLS, VALUES, balls_on_kernel, bits, next_on_kernel, touching_balls
+from ..game.open_runs import MOST_RUNS, RUN_COLUMNS, list_runs, pots_along
+from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from ..physics.parameters import Physics
+from . import cue_ball_path as path
+from .cue_ball_path import foresee_contact, foresee_pot, leave
+from .declarations import FRAME_STROKES, MENU_STROKES
+from .escapes import LINE_ROOM
+from .kernel_arrays import C_END_MASS, C_MAX_OFFSET, C_RAILS, CueLaw
+from .lines import aim_on, end_red_of_rack, find_safe_lines, list_lines, new_work
+from .noise import POT_SPEED, Noise, Spread
+from .observations import BALLS_SIZE, FRAME_ENTRIES, STATE_ENTRIES, STROKE_SIZE
+from .pot_aim import aim_from
+from .pot_chance import at_elevation, length_of, pot_chance
+from .rule_of_thumb import RULE_OF_THUMB, points_left, worth_of_pots
+from .stroke import row_of
+from .stroke_menu import ALONG, MENU_SIZES, SAFE_ALONG, SPEEDS, TOPS, decisions_of, menu_stroke, safe_stroke
+
+F_THERE, F_POT, F_CHANCE, F_LOG, F_POINTS, F_SPEED, F_TOP, F_CUT, F_TOLERANCE = range(9)
+F_X, F_Y, F_NOSES, F_BALLS, F_RUN, F_LOST, F_MISSED, F_NEAR, F_REACH = range(9, 18)
+F_PROSPECTS, F_BEST, F_SECOND, F_FOUL, F_PROMISE = range(18, STROKE_SIZE)
+_LEFT = 4  # widest pots of a position that is left, of which it is judged
+_ENOUGH = 1e-4
+"""What is foreseen is foreseen of an aim at which the ball passes the pocket's aim point by no more than that [rad]."""
+_HALF = 0.01  # a middling tolerance [rad]
+_ASTRAY = 0.02  # sine of an angle by which a ball that is sent off its line misses any pocket
+_STATES = (
+    len(STATE_ENTRIES),
+    len(STATE_ENTRIES) + len(FRAME_ENTRIES),
+)  # numbers of the state of a visit, of a frame
+_MOST_WORTH, _MOST_PROMISE = 35.0, 42.0  # what a position, and a stroke, may promise [points]
+
+
+class Errors(NamedTuple):
+    """The law of a player's direction at each speed of the menu and, last, at ``POT_SPEED``."""
+
+    cores: Floats
+    lapse: float
+    factor: float
+
+    @classmethod
+    def of(cls, noise: Noise, physics: Physics) -> "Errors":
+        """Of a player."""
+        each = [noise.spread(physics, speed=speed) for speed in (*SPEEDS, POT_SPEED)]
+        return cls(np.array([one.core for one in each]), each[0].lapse, each[0].factor)
+
+
+class Desk(NamedTuple):
+    """Work space: what is predicted of both balls, the stroke, the table that is left, its open runs and pots, the aims."""
+
+    seen: Floats
+    its: Floats
+    stroke: Floats
+    after: Floats
+    there: np.ndarray
+    runs: Floats
+    pots: Floats
+    chances: Floats
+    aims: Floats
+
+
+@kernel
+def _observe_path_into(row, seen):
+    """What both kinds of strokes show of the way of the cue ball."""
+    row[F_X], row[F_Y] = seen[path.X] / HALF_WIDTH, seen[path.Y] / HALF_LENGTH
+    row[F_NOSES], row[F_BALLS] = min(1.0, seen[path.NOSES] / 5.0), min(1.0, seen[path.BALLS] / 5.0)
+    row[F_RUN], row[F_LOST], row[F_MISSED] = (
+        min(1.0, seen[path.LENGTH] / 8.0),
+        seen[path.LOST],
+        0.5 * seen[path.MISSED],
+    )
+    row[F_NEAR], row[F_REACH] = min(1.0, seen[path.NEAR] / 0.3), seen[path.REACH] / path.FAREST
+
+
+@kernel
+def _judge(ball_on, left, many, law, errors, desk, one):
+    """What the table on the desk leaves to whoever is next, with ``many`` open runs; returns its worth [points]."""
+    usual = Spread(errors.cores[len(SPEEDS)], errors.lapse, errors.factor)
+    found = pots_along(desk.runs, many, desk.after, desk.there, BALL_RADIUS, desk.pots)
+    table = desk.after, desk.there, left, usual, RULE_OF_THUMB, law.rails, desk.chances
+    worth, one[F_BEST], one[F_SECOND] = worth_of_pots(desk.pots, found, *table)
+    one[F_PROSPECTS] = worth / _MOST_WORTH
+    return worth
+
+
+@kernel(seconds=1, uses=(aim_from, foresee_pot))
+def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
+    """The strokes at a row of ``find_pots``, into their ``rows``."""
+    ball, pocket, seen, stroke, rails = (
+        int(pot[POT_BALL]),
+        int(pot[POT_POCKET]),
+        desk.seen,
+        desk.stroke,
+        law.rails,
+    )
+    free = row.shape[0] > columns.FREE_BALL and row[columns.FREE_BALL] != 0
+    free = free and not (balls_on_kernel(row[columns.BALL_ON], 1 << ball)) >> ball & 1
+    points = max(1, row[columns.BALL_ON]) if free else VALUES[ball]
+    if free:  # as the ball on; it comes back
+        ball_on = leave(ball, 0, positions, on_table, desk.after, desk.there)
+        ball_on = 0 if row[columns.BALL_ON] == 1 else row[columns.BALL_ON]
+    else:
+        ball_on = leave(ball, row[columns.BALL_ON], positions, on_table, desk.after, desk.there)
+    left, on = points_left(desk.there, ball_on), balls_on_kernel(ball_on, bits(desk.there))
+    many = list_runs(desk.after, desk.there, on, BALL_RADIUS, desk.runs)
+    ghost, target = (pot[GHOST_X], pot[GHOST_Y]), (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y])
+    aim, length = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0]), length_of(positions, pot)
+    for index in range(ALONG):
+        level, height = index // len(TOPS), index % len(TOPS)
+        one = rows[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
+        _, speed, side, top = menu_stroke(index)
+        stroke[0], stroke[1], stroke[2] = speed, side, top
+        if level:  # from the same tip at the last speed
+            aim = desk.aims[height]
+        lies = positions, on_table, ball, target, ghost, (speed, side, top, 0.0), law, work
+        aim = desk.aims[height] = stroke[3] = aim_from(aim, _ENOUGH, *lies)
+        raised = foresee_pot(stroke, (ball, pocket), positions, on_table, law, work, seen)
+        spread = Spread(errors.cores[level], errors.lapse, errors.factor)
+        if rails.shape[0]:
+            spread = at_elevation(spread, raised)
+        chance = pot_chance(pot[TOLERANCE], length, spread)
+        _observe_path_into(one, seen)
+        one[F_THERE] = one[F_POT] = 1.0
+        one[F_SPEED], one[F_TOP] = speed / SPEEDS[-1], top / TOPS[-1]
+        one[F_CHANCE], one[F_LOG] = chance, max(-1.0, 0.5 * log10(max(chance, 1e-9)))
+        one[F_POINTS], one[F_CUT] = points / 7.0, acos(min(1.0, pot[COS_CUT])) / (0.5 * pi)
+        one[F_TOLERANCE] = pot[TOLERANCE] / (pot[TOLERANCE] + _HALF)
+        lost = seen[path.LOST] > 0.0 or seen[path.MISSED] > 0.0
+        one[F_FOUL], worth = 1.0 if lost else 0.0, 0.0
+        if lost or seen[path.REACH] < 1.0 or abs(seen[path.ASIDE]) > _ASTRAY:
+            continue
+        if ball_on != path.NONE:
+            desk.after[0, 0], desk.after[0, 1] = seen[path.X], seen[path.Y]
+            worth = _judge(ball_on, left, many, law, errors, desk, one)
+        one[F_PROMISE] = chance * (points + worth) / _MOST_PROMISE
+
+
+@kernel(seconds=1, uses=(foresee_contact,))
+def _foresee_line(room, positions, on_table, on, in_frame, law, errors, work, desk, one):
+    """The stroke on the desk along a line without a pot, into its row; in a frame with what it leaves the other player."""
+    seen, its, after, there = desk.seen, desk.its, desk.after, desk.there
+    touching = touching_balls(positions, on_table)
+    ball = foresee_contact(desk.stroke, positions, on_table, law, work, seen, its)
+    _observe_path_into(one, seen)
+    fair = ball > 0 and not (touching >> ball) & 1 and (touching & on or (on >> ball) & 1)
+    lost = seen[path.LOST] > 0.0
+    one[F_THERE], one[F_FOUL] = 1.0, 0.0 if fair and not lost else 1.0
+    one[F_SPEED], one[F_TOP] = desk.stroke[0] / SPEEDS[-1], desk.stroke[2] / TOPS[-1]
+    one[F_TOLERANCE], one[F_POINTS] = room / (room + _HALF), VALUES[ball] / 7.0
+    one[F_REACH] = its[path.LOST] if ball else 0.0
+    if not in_frame or lost:
+        return
+    for i in range(N_BALLS):
+        after[i, 0], after[i, 1], there[i] = positions[i, 0], positions[i, 1], on_table[i]
+    after[0, 0], after[0, 1] = seen[path.X], seen[path.Y]
+    if ball:
+        after[ball, 0], after[ball, 1], there[ball] = its[path.X], its[path.Y], its[path.LOST] == 0.0
+    ball_on = next_on_kernel(bits(there) & ~1)
+    many = list_runs(after, there, balls_on_kernel(ball_on, bits(there)), BALL_RADIUS, desk.runs)
+    _judge(ball_on, points_left(there, ball_on), many, law, errors, desk, one)
+
+
+@kernel
+def _repeat_last(rows, many, size):
+    """What is not there shows what is played for it: the last ``size`` numbers of the first ``many``."""
+    for c in range(many, rows.shape[0]):
+        rows[c] = rows[many - size + (c - many) % size] if c % STROKE_SIZE != F_THERE else 0.0
+
+
+@entry(
+    what="what is foreseen of strokes", seconds=4, uses=(aim_on, _foresee_pots, _foresee_line, safe_stroke)
+)
+def foresee(which, at, player, tables, rules, errors, out):
+    """What ``player`` foresees on the tables ``which``, into the rows ``at`` of ``out``, which hold the flat observation.
+    ``rules``: the code of the rule set, cues and constants, one row or one a table, fidelity."""
+    (positions, on_table, game), (code, cues, phys, fidelity, n_steps) = tables, rules
+    work, in_frame = new_work(), game.shape[1] > columns.STRIKER
+    kind = 1 if in_frame else 0
+    table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
+    wide = (
+        np.empty((MOST_RUNS, RUN_COLUMNS)),
+        np.empty((_LEFT, POT_COLUMNS)),
+        np.empty(0),
+        np.empty(len(TOPS)),
+    )
+    desk = Desk(np.empty(path.SEEN), np.empty(path.SEEN), np.zeros(5), *table, *wide)
+    for j in range(which.shape[0]):
+        k, rows = which[j], out[at[j]]
+        p, here, row, stroke = positions[k], on_table[k], game[k], desk.stroke
+        end, state = STROKE_SIZE * MENU_SIZES[kind], _STATES[kind]
+        for c in range(state):
+            rows[end + c] = rows[BALLS_SIZE + c]
+        for c in range(end):
+            rows[c] = 0.0
+        if row[columns.OVER] or not here[0] or (in_frame and row[columns.STRIKER] != player):
+            continue
+        cue_row = cues[row_of(k, cues)]
+        phys_row, rails, most = phys[row_of(k, phys)], cue_row[C_RAILS:], cue_row[C_MAX_OFFSET]
+        law = CueLaw(phys_row, cue_row[C_END_MASS], fidelity, n_steps, most, rails)
+        on = columns.strikeable(row, bits(here))
+        many, pots = list_lines(p, here, on, work.lines)
+        for line in range(many):
+            its = rows[line * ALONG * STROKE_SIZE : (line + 1) * ALONG * STROKE_SIZE]
+            if pots:
+                _foresee_pots(work.lines[line], p, here, row, law, errors, work, desk, its)
+                continue
+            for index in range(ALONG):
+                _, stroke[0], stroke[1], stroke[2] = menu_stroke(index)
+                played = stroke[0], stroke[1], stroke[2], 0.0
+                stroke[3] = aim_on(line, pots, played, p, here, on, law, work)
+                one = its[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
+                _foresee_line(
+                    work.lines[line, LINE_ROOM], p, here, on, in_frame, law, errors, work, desk, one
+                )
+        _repeat_last(rows[: MENU_STROKES * STROKE_SIZE], many * ALONG * STROKE_SIZE, ALONG * STROKE_SIZE)
+        if not in_frame:
+            continue
+        many, end_red = find_safe_lines(p, here, on, work.lines), end_red_of_rack(p, here)
+        for index in range(MENU_STROKES, MENU_STROKES + many * SAFE_ALONG):
+            line, safe = (index - MENU_STROKES) // SAFE_ALONG, (p, here, on, law, work)
+            stroke[0], stroke[1], stroke[2], stroke[3] = safe_stroke(index, end_red, work.lines, *safe)
+            one = rows[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
+            _foresee_line(work.lines[line, LINE_ROOM], p, here, on, in_frame, law, errors, work, desk, one)
+        safeties = rows[MENU_STROKES * STROKE_SIZE : FRAME_STROKES * STROKE_SIZE]
+        _repeat_last(safeties, many * SAFE_ALONG * STROKE_SIZE, SAFE_ALONG * STROKE_SIZE)
+        again, back = decisions_of(row, code)
+        decisions = rows[FRAME_STROKES * STROKE_SIZE : end]
+        decisions[F_THERE], decisions[STROKE_SIZE + F_THERE] = again, back
+        decisions[F_POT], decisions[STROKE_SIZE + F_POT] = -1.0, -1.0
+        decisions[F_SPEED], decisions[STROKE_SIZE + F_SPEED] = -1.0, 1.0
