@@ -10,9 +10,9 @@ VECTOR_ENTRY_POINT = "snooker_env.envs.vector:SnookerVectorEnv"
 _TASKS = "snooker_env.benchmark.environments"
 _NAMES = ("Break", "BreakClub", "Escape", "Safety", "Frame")
 FORMS: dict[str, dict[str, Any]] = {  # of Break, for scripts that take an id alone
-    "SnookerBreakDiscrete-v0": {"action": "discrete"},
+    "SnookerBreakDiscrete-v0": {"action": "discrete", "observation": "flat"},
     "SnookerBreakMasked-v0": {"action": "discrete", "observation": "masked"},
-    "SnookerBreakTarget-v0": {"aim": "target"},
+    "SnookerBreakTarget-v0": {"aim": "target", "observation": "flat"},
 }
 ENTRY_POINTS = {  # of each id the environment of one table, and that of many
     ID: (ENTRY_POINT, VECTOR_ENTRY_POINT),

@@ -80,6 +80,12 @@ def test_counts_agree_with_the_summary():
     assert f["next_pot_after_a_pot"] > 0.4 and np.all(c["strokes"] - c["pots"] == 1 - c["clearances"])
 
 
+def test_a_player_plays_alike_however_actions_are_read_and_whatever_is_seen():
+    forms = {}, {"aim": "target", "observation": "balls"}, {"action": "discrete", "observation": "masked"}
+    played = [play_visits("ghost_ball", 3, layout="colours", **form).points.tolist() for form in forms]
+    assert played[0] == played[1] == played[2] and sum(played[0]) > 0
+
+
 def test_no_table_comes_twice_or_mirrored():
     seeds = tables_of("held_out", 100)
     assert seeds == sorted(set(seeds)) and seeds[0] == HELD_OUT_SEED
