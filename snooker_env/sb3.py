@@ -4,6 +4,8 @@ from snooker_env.sb3 import SnookerVecEnv
 MaskablePPO("MlpPolicy", SnookerVecEnv(64, action="discrete")).learn(100_000)"""
 
 import time
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from gymnasium.vector import AutoresetMode
@@ -22,18 +24,19 @@ except ModuleNotFoundError as error:
     raise missing("snooker_env.sb3 needs Stable-Baselines3", "train") from error
 
 try:
-    from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy as _ActorCritic
+    from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
+
+    _ActorCritic: Any = MaskableActorCriticPolicy
 except ModuleNotFoundError as error:
     if (error.name or "").split(".")[0] != "sb3_contrib":
         raise
     _ActorCritic = ActorCriticPolicy
 
-from collections.abc import Sequence
-from typing import Any
-
-from ._lib.check import choice, integer, refuse
+from ._lib.check import choice, integer, refuse, refuse_what
 from ._lib.types import Bools, Floats, Ints, Observation, Singles
 from .envs.vector import SnookerVectorEnv
+from .tasks.observations import STROKE_SIZE
+from .tasks.stroke_menu import MENU_SIZES
 
 __all__ = ["SnookerVecEnv", "StrokesPolicy", "StrokesQPolicy"]
 
@@ -228,6 +231,19 @@ class StrokesNet(torch.nn.Module):
         return self.judge(*self.read(features))
 
 
+def _net_of(observations: Any, actions: Any) -> StrokesNet:
+    """The network for an environment; ValueError for spaces of another one."""
+    choices = int(getattr(actions, "n", 0))
+    shape = observations.shape or (0,)
+    if choices not in MENU_SIZES or len(shape) != 1 or shape[0] // choices != STROKE_SIZE:
+        given, allowed = (
+            f"{observations} and {actions}",
+            'must be those of action="strokes", observation="strokes"',
+        )
+        raise refuse_what("spaces", given, allowed)
+    return StrokesNet(choices, shape[0])
+
+
 class StrokesPolicy(_ActorCritic):
     """The policy of PPO and MaskablePPO for ``action="strokes", observation="strokes"``.
 
@@ -254,7 +270,7 @@ class StrokesPolicy(_ActorCritic):
 
     def _build(self, lr_schedule: Any) -> None:
         """Make the network, in place of that of the base class, and its optimizer."""
-        self.mlp_extractor = StrokesNet(self.action_space.n, self.observation_space.shape[0])
+        self.mlp_extractor = _net_of(self.observation_space, self.action_space)
         self.action_net, self.value_net = torch.nn.Identity(), torch.nn.Linear(HIDDEN, 1)
         self.optimizer = self.optimizer_class(self.parameters(), lr=lr_schedule(1), **self.optimizer_kwargs)
 
@@ -262,7 +278,7 @@ class StrokesPolicy(_ActorCritic):
 class _StrokesQ(QNetwork):
     def __init__(self, *args: Any, **kwargs: Any):
         super().__init__(*args, **kwargs)
-        self.q_net = StrokesNet(self.action_space.n, self.observation_space.shape[0])
+        self.q_net = _net_of(self.observation_space, self.action_space)
 
     def forward(self, obs: Any) -> torch.Tensor:
         net = self.q_net

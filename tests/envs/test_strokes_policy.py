@@ -80,3 +80,8 @@ model = PPO(StrokesPolicy, env, n_steps=2, batch_size=4, device="cpu")
 print(model.predict(env.reset())[0].shape)
 """
     assert "(2,)" in python(code)[0]
+
+
+def test_other_spaces_are_refused_with_what_is_allowed():
+    with pytest.raises(ValueError, match=r'must be those of action="strokes", observation="strokes"'):
+        PPO(StrokesPolicy, SnookerVecEnv(8, action="strokes", threads=1), **SMALL)
