@@ -16,7 +16,10 @@ from .practice import Practice, one_position, practice_of
 from .stroke_words import against_words
 from .suggestions import Advice, Suggestion
 
-AGENT, OF_FRAMES = "planner_500", "tactician_1000"  # who is asked if nobody is named: in a visit, and in a frame
+AGENT, OF_FRAMES = (
+    "planner_500",
+    "tactician_1000",
+)  # who is asked if nobody is named: in a visit, and in a frame
 INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices
 RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with
 SELDOM = 0.05  # chance of a pot below which it is no suggestion
