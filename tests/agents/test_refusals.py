@@ -25,10 +25,10 @@ train --seed 4294967296 | --seed is 4294967296, must be an integer in [0, 429496
 train --start nowhere | start = 'nowhere'
 train --start pyproject.toml | pyproject.toml
 train --start x --imitate 5 | imitate = 5: must be 0 or left out with --start
-train --agent ppo_target --imitate 100 | imitate = 100: must be 0 for ppo_target
-train --imitate 0 | imitate = 0: must be 1 or more for ppo_value without --start
+train --imitate 100 | imitate = 100: must be 0 for strokes
+train --agent ppo_value --imitate 0 | imitate = 0: must be 1 or more for ppo_value without --start
 train --agent ppo_target --observe-conditions | observe_conditions = True: must be False with conditions="fixed"
-train --imitate 8 --conditions drawn --observe-conditions | observe_conditions = True: must be left out for ppo_value
+train --agent ppo_value --imitate 8 --conditions drawn --observe-conditions | observe_conditions = True: must be left out for ppo_value
 train --set gamma | gamma
 train --set charm=2 | 'charm=2': must be KEY=VALUE with KEY one of env_kwargs, n_steps
 train --set gamma=abc | gamma = 'abc': must be a finite number in [0, 1]
