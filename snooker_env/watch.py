@@ -35,7 +35,8 @@ FRAME = {"task": "frame", "cue": "real", "miss": "clear_path"}  # options of a f
 def play_episode(who: Player, seed: int, **options: object) -> SnookerEnv:
     """A ``SnookerEnv`` after a whole visit or frame, with its history; a visit is that of ``play_visits``."""
     reads = VISITS if options.get("task", "visit") == "visit" else FRAMES
-    env = SnookerEnv(**options | {"action": "box", "observation": "flat"} | reads)
+    every: dict[str, Any] = {**options, "action": "box", "observation": "flat", **reads}
+    env = SnookerEnv(**every)
     bound, decision = who.at(env), 0
     env.keep_history = True
     env.reset(seed=seed)

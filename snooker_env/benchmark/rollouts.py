@@ -146,8 +146,9 @@ def play_visits(
     [0, 1, 2]
     """
     seeds = list(range(first_seed, first_seed + visits)) if isinstance(first_seed, int) else list(first_seed)
-    usual, reads = {"layout": "held_out", "noise": "professional"}, {"action": "box", "observation": "flat"}
-    tables = SnookerVectorEnv(visits, threads=threads, **usual | options | reads | VISITS)
+    every: dict[str, Any] = {"layout": "held_out", "noise": "professional", **options}
+    every |= {"action": "box", "observation": "flat", **VISITS}
+    tables = SnookerVectorEnv(visits, threads=threads, **every)
     decide, log, ball_on = Decider(player, tables, seeds, seed), [], np.empty(0, np.int64)
     luck, before = Luck(tables, "points"), np.zeros(visits)
 

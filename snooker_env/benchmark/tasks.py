@@ -127,12 +127,12 @@ def _task(name: str, title: str, layout: str, score: str, judged: str = "", **mo
     return Task(id=f"Snooker{name}-v0", title=title, score=score, **more)
 
 
-_BALLS = {"observation": "flat"}  # where there may be no pots to see
-_LEGAL = _BALLS | {"changes": {"reward": "legal", "one_stroke": True}}
+_BALLS: dict[str, Any] = {"observation": "flat"}  # where there may be no pots to see
+_LEGAL: dict[str, Any] = _BALLS | {"changes": {"reward": "legal", "one_stroke": True}}
 _FRAME = {"task": "frame", "opponent": "planner", "miss": "clear_path"}
 _CLUB = {"changes": {"noise": "club"}, "thresholds": _BREAK}
-_SAFE = _BALLS | {"changes": _FRAME | {"one_stroke": True}, "thresholds": _LEAD}
-_WIN = _BALLS | {"changes": _FRAME | {"reward": "win"}}
+_SAFE: dict[str, Any] = _BALLS | {"changes": _FRAME | {"one_stroke": True}, "thresholds": _LEAD}
+_WIN: dict[str, Any] = _BALLS | {"changes": _FRAME | {"reward": "win"}}
 _ALL = (
     _task("Break", "build a break on an opened table", "opened", "points", "held_out", thresholds=_BREAK),
     _task("BreakClub", "the same with a club player's errors", "opened", "points", "held_out", **_CLUB),

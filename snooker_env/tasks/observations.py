@@ -19,7 +19,7 @@ from .noise import Spread
 from .pot_chance import plain_chance
 from .stroke_menu import MENU_SIZES
 
-OBSERVATIONS = ("pots", "flat", "balls", "masked", "strokes")
+OBSERVATIONS: tuple[ObservationKind, ...] = ("pots", "flat", "balls", "masked", "strokes")
 """The kinds of observations: one array of pots, or of balls; a dict of two; a dict of the flat one and the available
 choices; one array of strokes. "pots" is of visits alone."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")

@@ -287,8 +287,8 @@ class Options:
     def _observation(self) -> ObservationKind:
         """The kind of observations; ValueError for one that the task has not."""
         kinds = observations.OBSERVATIONS[self.task != "visit" :]
-        kind = choice("observation", self.observation, ("default", *kinds))
-        return kinds[0] if kind == "default" else kind
+        choice("observation", self.observation, ("default", *kinds))
+        return kinds[0] if self.observation == "default" else self.observation
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)

@@ -45,7 +45,7 @@ def no_display(monkeypatch):
     [(name, None) for name in IDS] + list(product(("Snooker-v0",), SHOWN)) + [("SnookerFrame-v0", "human")],
 )
 @pytest.mark.parametrize(
-    ("observation", "aim"), zip(observations.OBSERVATIONS, (*AIMS, "absolute"), strict=True)
+    ("observation", "aim"), zip(observations.OBSERVATIONS, (*AIMS, "absolute", "pot"), strict=True)
 )
 def test_gymnasium_checks_it(name, render_mode, observation, aim, screen, strict):
     arguments = {**viewed(observation), "render_mode": render_mode, "aim": aim, "layout": "random:2"}
@@ -78,6 +78,7 @@ ALLOWED = {
     "pots": set(),
     "flat": set(),
     "masked": set(),
+    "strokes": set(),
     "balls": {"Your observation balls has an unconventional shape"},
 }
 """Stable-Baselines3 warns of a table of balls, which is neither a vector nor an image, but meant so."""

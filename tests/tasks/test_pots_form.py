@@ -36,7 +36,7 @@ def stroke_of(a, at, direct, cue):
 def test_an_action_picks_a_pot_and_its_aim_is_solved(layout, cue, elevation):
     env, picked = tables(60, layout=layout, cue=cue, elevation=elevation), set()
     at, rng = Positions.of(env), np.random.default_rng(3)
-    actions = rng.uniform(-1.0, 1.0, (60, *env.single_action_space.shape))
+    actions = rng.uniform(-1.0, 1.0, (60, 4 + elevation))
     values, _ = Planner(env).strokes_of(at, np.arange(60), actions)
     for k in range(60):
         direct = pots(at[[k]])
