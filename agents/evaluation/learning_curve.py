@@ -52,7 +52,7 @@ class LearningCurve(NamedTuple):
     def draw(self, file, seconds):
         """Write it as a picture; ``seconds``: how long the training took."""
         last, (low, end, high) = self.points[-1]["steps"], interval(self.figures["trained"])
-        title = f"{self.agent}: {last:,} shots of training, from nothing, in {seconds / 60:.1f} minutes"
+        title = f"{self.agent}: {last:,} shots of training in {seconds / 60:.1f} minutes"
         note = (
             "Line: its last 1,000 visits in training, where it tries choices. Dot: the trained agent, with its 95 % interval,\n"
             f"and the other players, on {self.figures['trained']['visits']} held-out tables, adjusted for luck."

@@ -30,6 +30,8 @@ train --agent ppo_value --imitate 0 | imitate = 0: must be 1 or more for ppo_val
 train --agent ppo_target --observe-conditions | observe_conditions = True: must be False with conditions="fixed"
 train --agent ppo_value --imitate 8 --conditions drawn --observe-conditions | observe_conditions = True: must be left out for ppo_value
 train --set gamma | gamma
+train --set "env_kwargs={'action': 'strokes'}" | observation = None: must be 'strokes' for this agent
+train --agent ppo_value --set "env_kwargs={'action': 'discrete', 'observation': 'balls'}" | observation = 'balls': must be left out for this agent
 train --set charm=2 | 'charm=2': must be KEY=VALUE with KEY one of env_kwargs, n_steps
 train --set gamma=abc | gamma = 'abc': must be a finite number in [0, 1]
 train --set gamma=2 | gamma = 2: must be a finite number in [0, 1]
