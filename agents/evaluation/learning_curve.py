@@ -52,10 +52,12 @@ class LearningCurve(NamedTuple):
     def draw(self, file, seconds):
         """Write it as a picture; ``seconds``: how long the training took."""
         last, (low, end, high) = self.points[-1]["steps"], interval(self.figures["trained"])
+        visits = self.figures["trained"]["visits"]
+        few = "".join(f" ({n}: {one['visits']})" for n, one in self.figures.items() if one["visits"] < visits)
         title = f"{self.agent}: {last:,} shots of training in {seconds / 60:.1f} minutes"
         note = (
             "Line: its last 1,000 visits in training, where it tries choices. Dot: the trained agent, with its 95 % interval,\n"
-            f"and the other players, on {self.figures['trained']['visits']} held-out tables, adjusted for luck."
+            f"and the other players, on {visits} held-out tables{few}, adjusted for luck."
         )
         with drawing() as plt:
             figure, axes = page(plt, 3.6, title, note, rows=1)
