@@ -56,8 +56,8 @@ class LearningCurve(NamedTuple):
         few = "".join(f" ({n}: {one['visits']})" for n, one in self.figures.items() if one["visits"] < visits)
         title = f"{self.agent}: {last:,} shots of training in {seconds / 60:.1f} minutes"
         note = (
-            "Line: its last 1,000 visits in training, where it tries choices. Dot: the trained agent, with its 95 % interval,\n"
-            f"and the other players, on {visits} held-out tables{few}, adjusted for luck."
+            "Line: its last 1,000 visits in training, where it tries choices. Dot: the trained agent, with its 95 %\n"
+            f"interval, and the other players, on {visits} held-out tables{few}, adjusted for luck."
         )
         with drawing() as plt:
             figure, axes = page(plt, 3.6, title, note, rows=1)
