@@ -7,7 +7,8 @@ import sys
 from contextlib import ExitStack
 from dataclasses import asdict, replace
 
-import tensorboard  # noqa: F401 - imported here so that a missing package is reported before anything starts
+import matplotlib  # noqa: F401 - imported here so that a missing package is reported before anything starts
+import tensorboard  # noqa: F401 - as well
 import torch
 
 import snooker_env
@@ -15,6 +16,7 @@ from agents._lib.files import write_atomic
 from agents._lib.lifecycle import command, python
 from agents._lib.provenance import commit, software
 
+from .evaluation.learning_curve import LearningCurve
 from .evaluation.training_summary import conclusion, evaluate, held_out, show
 from .learning.agent_training import AgentTraining
 from .learning.learn_strokes import AGENT, StrokeTraining
@@ -61,6 +63,10 @@ def judge_agent(training, loop):
     write_atomic(training.out / "model.zip", zip_model(model))
     figures = evaluate(training.recipe, model, settings.eval_visits, loop)
     learned = conclusion(settings.agent, model.num_timesteps, model.imitated, figures, model.start)
+    if training.ppo.curve:
+        learning = LearningCurve(settings.agent, training.ppo.curve, figures)
+        print("", *learning.text(), sep="\n")
+        learning.draw(training.out / "curve.png", training.ppo.seconds)
     curve = expert.curve if expert else []
     simulated = [
         model.num_timesteps,
@@ -75,7 +81,7 @@ def judge_agent(training, loop):
         "curve": training.ppo.curve,
         "imitation": curve,
     }
-    best = f"planner@{training.out}" if "planner" in figures else str(training.out)
+    best = f"planner@{training.out}" if "search" in figures else str(training.out)
     return learned, figures, results, best, training.recipe.env_kwargs.get("noise", "none")
 
 
@@ -104,7 +110,7 @@ def report(training, learned, figures, results, best, noise):
     write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
     show(figures)
     # half of the longest break: other visits than those of the evaluation are played to find it
-    points = figures["planner" if "planner" in figures else "trained"]["longest_break"] // 2
+    points = figures["planner" if "search" in figures else "trained"]["longest_break"] // 2
     words = ["--agent", best, "--noise", str(noise), "--at-least", str(points)]
     watch = shlex.join([python(), "-m", "snooker_env.watch", *words])
     shots = results["simulated_shots"]

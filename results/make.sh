@@ -37,8 +37,8 @@ pictures() {
 
 models() { # name, then the options of train.py
     local long="--imitate 153600 --steps 1507328"
-    for seed in 0 1 2 3 4; do echo "ppo_value-$seed --seed $seed $long"; done
-    for noise in none amateur club; do echo "ppo_value_$noise --noise $noise $long"; done
+    for seed in 0 1 2 3 4; do echo "ppo_value-$seed --agent ppo_value --seed $seed $long"; done
+    for noise in none amateur club; do echo "ppo_value_$noise --agent ppo_value --noise $noise $long"; done
 }
 
 train() {

@@ -18,33 +18,46 @@ def evaluate(recipe, model, visits, loop):
     """Figures of held-out visits of agent, ``ghost_ball`` and ``random``, under the training's noise and physics.
 
     The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also
-    those of the planner with it and of the search by the rule of thumb (``search``). The tables are the first
-    of ``agents.evaluate``; ValueError if there are too few. ``loop``: that of the training.
+    those of the planner with it and of the search by the rule of thumb (``search``); beside others the package's planner
+    plays a fifth of the visits. The tables are the first of ``agents.evaluate``; ValueError if there are too few.
+    ``loop``: that of the training.
     """
     trained = player_of_model(model)
     players = {"trained": trained, "ghost_ball": player("ghost_ball"), "random": player("random")}
     if trained.learned is not None:
         players |= {"planner": SearchPlayer("planner", learned=trained.learned), "search": player("search")}
+        few = {}
+    else:
+        players["planner"], few = player("planner"), {"planner": max(2, visits // 5)}
     chosen = {key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS}
     shared: dict[str, Any] = {"noise": "none"} | chosen
     # some learn on "fast" to save time, and are meant to play on the usual fidelity
     if not recipe.fidelity_given:
         shared.pop("fidelity", None)
-    return held_out(players, visits, loop, **shared)
+    return held_out(players, visits, loop, few, **shared)
 
 
-def held_out(players, visits, loop, **shared):
-    """Figures of held-out visits of players {name: player} under environment options; the loop's last part."""
-    seeds = tables_of("held_out", visits)
-    figures = {}
-    with loop.progress("evaluation", visits * len(players), "visits") as progress:
-        for k, (name, one) in enumerate(players.items()):
+def held_out(players, visits, loop, few=None, **shared):
+    """Figures of held-out visits of players {name: player} under environment options; the loop's last part. ``few``:
+    {name: visits} of those who play fewer."""
+    figures, done = {}, 0
+    many = {name: (few or {}).get(name, visits) for name in players}
+    with loop.progress("evaluation", sum(many.values()), "visits") as progress:
+        for name, one in players.items():
+            done += many[name]
 
-            def each(going, done=(k + 1) * visits, name=name):
+            def each(going, done=done, name=name):
                 progress.at(done - going, name)
 
-            figures[name] = summary(play_visits(one, visits, first_seed=seeds, each=each, **shared))
+            seeds = tables_of("held_out", many[name])
+            figures[name] = summary(play_visits(one, many[name], first_seed=seeds, each=each, **shared))
     return figures
+
+
+def interval(figures):
+    """Points a visit, less luck, with their 95 % interval over visits: low, mean, high."""
+    mean, error = figures["adjusted_a_visit"], figures["adjusted_a_visit_se"]
+    return mean - 1.96 * error, mean, mean + 1.96 * error
 
 
 def _better(a, b):
@@ -87,7 +100,7 @@ def _of_the_agent(agent, steps, imitated, figures, start):
 
 def _of_the_planner(figures):
     """What learning is worth to the planner; nothing for an agent without a value of positions."""
-    if "planner" not in figures:
+    if "search" not in figures:
         return ""
     learned, rule = figures["planner"], figures["search"]
     points = f"{learned['points_a_visit']:.2f} points a visit against {rule['points_a_visit']:.2f}"
@@ -106,13 +119,20 @@ def show(figures):
     for name, f in figures.items():
         means = ("pots_a_visit", "points_a_visit", "fouls_a_visit")
         cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in means]
+        cells.insert(2, "{1:.1f} [{0:.1f}, {2:.1f}]".format(*interval(f)))
         shares = (f["pot_rate"], f["next_pot_after_a_pot"])
         cells += ["-" if share is None else f"{100 * share:.1f} %" for share in shares]
         rows.append([name, *cells, str(f["longest_break"])])
-    title = f"Means of {figures['random']['visits']} held-out visits on the same tables (± standard error)"
-    table = text_table(["agent", "pots", "points", "fouls", "pot rate", "next pot", "best"], rows)
-    print("", title, *table, "", sep="\n")
+    visits = figures["random"]["visits"]
+    few = [f"{name}: the first {f['visits']}" for name, f in figures.items() if f["visits"] < visits]
+    title = f"Means of {', '.join([f'{visits} held-out visits on the same tables', *few])} (± standard error)"
+    head = ["agent", "pots", "points", "less luck [95 %]", "fouls", "pot rate", "next pot", "best"]
+    print("", title, *text_table(head, rows), "", sep="\n")
     print("ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots.")
     if "planner" in figures:
-        shots = f"{BUDGET} simulated shots a decision, by what was learned"
-        print(f"planner: {shots}; search: the same by a rule of thumb.")
+        by = (
+            "what was learned; search: the same by a rule of thumb"
+            if "search" in figures
+            else "the package's weights"
+        )
+        print(f"planner: {BUDGET} simulated shots a decision, by {by}.")

@@ -1,4 +1,5 @@
-"""What does an agent see of a table? The flat observation with its pots; to train as a ``VecEnv``."""
+"""What does an agent see of a table? The ``observation`` that its recipe's ``env_kwargs`` name, as it is; where they name
+none, the flat one with its pots. To train as a ``VecEnv``."""
 
 import numpy as np
 from gymnasium import spaces
@@ -11,10 +12,22 @@ OBSERVED_SIZE = spaces.flatdim(observation_space("flat", conditions=True))
 """Numbers in a flat observation with the constants of the table."""
 
 
-def space_of(constants=False):
-    """The space of what ``seen_of`` returns; ``constants``: with those of the table."""
-    size = SHOWN + (OBSERVED_SIZE - OBSERVATION_SIZE) * bool(constants)
+def shown(env_kwargs):
+    """How an environment shows tables to an agent with these ``env_kwargs``, and what the agent sees of n observations."""
+    named = env_kwargs.get("observation")
+    return (named, _as_they_are) if named else ("flat", seen_of)
+
+
+def space_of(tables, env_kwargs):
+    """The space of what an agent with these ``env_kwargs`` sees of one of these tables."""
+    if shown(env_kwargs)[1] is _as_they_are:
+        return tables.single_observation_space
+    size = SHOWN + (OBSERVED_SIZE - OBSERVATION_SIZE) * bool(tables.options.observe_conditions)
     return spaces.Box(-1.0, 1.0, (size,), np.float32)
+
+
+def _as_they_are(observations):
+    return observations
 
 
 def seen_of(observations):
@@ -25,12 +38,13 @@ def seen_of(observations):
 
 
 def training_tables(n, threads=None, **options):
-    """n tables of ``SnookerVecEnv`` that show their pots: an SB3 ``VecEnv``."""
+    """n tables of ``SnookerVecEnv`` as an agent with these ``env_kwargs`` sees them: an SB3 ``VecEnv``."""
     from stable_baselines3.common.vec_env import VecEnvWrapper
 
     from snooker_env.sb3 import SnookerVecEnv
 
-    base = SnookerVecEnv(n, threads=threads, observation="flat", **options)
+    observation, see = shown(options)
+    base = SnookerVecEnv(n, threads=threads, **options | {"observation": observation})
 
     class Seen(VecEnvWrapper):
         """All tables at once."""
@@ -39,7 +53,7 @@ def training_tables(n, threads=None, **options):
         """Values [points] of ``Positions``, added to rewards where the visit goes on; or None."""
 
         def reset(self):
-            return seen_of(self.venv.reset())
+            return see(self.venv.reset())
 
         def step_wait(self):
             observations, rewards, done, infos = self.venv.step_wait()
@@ -49,9 +63,9 @@ def training_tables(n, threads=None, **options):
             ended = [info for info in infos if "terminal_observation" in info]
             if ended:
                 last = np.stack([info["terminal_observation"] for info in ended])
-                for info, row in zip(ended, seen_of(last), strict=True):
+                for info, row in zip(ended, see(last), strict=True):
                     info["terminal_observation"] = row
-            return seen_of(observations), rewards, done, infos
+            return see(observations), rewards, done, infos
 
         @property
         def running(self):
@@ -62,4 +76,4 @@ def training_tables(n, threads=None, **options):
         def running(self, sums):
             base.episode_returns[:], base.episode_lengths[:] = sums
 
-    return Seen(base, space_of(base.tables.options.observe_conditions))
+    return Seen(base, space_of(base.tables, options))

@@ -68,6 +68,8 @@ class PolicyGradient(Part):
         between = _Between(self, rest, None if fresh else self.running)
         left = self._steps - self.done
         self._model.learn(left, between, tb_log_name=self._recipe.name, reset_num_timesteps=fresh)
+        if self.done >= self.total:
+            self.note()
 
     def note(self):
         """Add a point to the curve if it is time."""

@@ -22,8 +22,8 @@ ACTION_OPTIONS = Options.group("action", "visit")
 """Options of the environment that say how actions are read, with its defaults: they belong to the agent."""
 SHOT_OPTIONS = tuple(Options.group("shot"))
 """Options that decide the outcome of a shot: the same in training and evaluation."""
-SEEN_OPTIONS = ("observe_conditions",)
-"""Options that say what the agent observes: they belong to the agent."""
+SEEN_OPTIONS = ("observation", "observe_conditions")
+"""Options that say what the agent observes, see ``features.observed``: they belong to the agent."""
 TRAINING_OPTIONS = ("layout", "reward")
 """Options of training alone."""
 ENV_OPTIONS = (*ACTION_OPTIONS, *SHOT_OPTIONS, *SEEN_OPTIONS, *TRAINING_OPTIONS)
@@ -175,10 +175,14 @@ def _options(options, more, usual, policy):
     for key in options:
         choice("key of env_kwargs", key, ENV_OPTIONS)
     options = options | more
-    for key in ("action",) if policy == "MlpPolicy" else ACTION_OPTIONS:
-        value, wanted = (some.get(key, ACTION_OPTIONS[key]) for some in (options, usual))
+    for key in ("action", "observation") if policy == "MlpPolicy" else (*ACTION_OPTIONS, "observation"):
+        value, wanted = (some.get(key, ACTION_OPTIONS.get(key)) for some in (options, usual))
         if value != wanted:
-            raise refuse(key, value, f"must be {wanted!r} for this agent")
+            raise refuse(
+                key,
+                value,
+                f"must be {wanted!r} for this agent" if wanted else "must be left out for this agent",
+            )
     not_held_out(options.get("layout"))
     return options
 
@@ -201,7 +205,9 @@ def algorithm_class(name):
 
 
 def policy(name):
-    """A policy class of ``networks``, or a name of SB3's own."""
+    """A policy class of ``networks`` or of ``snooker_env.sb3``, or a name of SB3's own."""
+    from snooker_env import sb3
+
     from . import networks
 
-    return getattr(networks, name, name)
+    return getattr(networks, name, getattr(sb3, name, name))

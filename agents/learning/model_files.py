@@ -111,7 +111,7 @@ def _network(path, described, seen):
         recipe = Recipe.of(described["recipe"], env_kwargs=described["env_options"])
         tables = SnookerVectorEnv(1, **described["env_options"])
         with torch.random.fork_rng(devices=[]):  # the initial weights are replaced below
-            space = space_of(tables.options.observe_conditions)
+            space = space_of(tables, described["env_options"])
             network = recipe.new_network(space, tables.single_action_space)
     except ImportError:
         raise

@@ -22,9 +22,7 @@ def option(default, text, **more):
 class Settings:
     """The settings of a run."""
 
-    agent: str = option(
-        "ppo_value", "the agent: a file of agents/hyperparams, or stroke_value", choices=AGENTS
-    )
+    agent: str = option("strokes", "the agent: a file of agents/hyperparams, or stroke_value", choices=AGENTS)
     steps: int = option(0, "total number of shots, rounded up to whole rollouts; 0: the recipe's")
     envs: int = option(0, "number of parallel tables; 0: the recipe's")
     parallel: str = option(

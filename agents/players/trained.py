@@ -11,7 +11,7 @@ from snooker_env.players.choices import shares
 from snooker_env.players.saved_models import by_train, entries, one_thread
 from snooker_env.players.weights import learned_of
 
-from ..features.observed import seen_of
+from ..features.observed import seen_of, shown
 from ..learning.hyperparameters import ACTION_OPTIONS, SEEN_OPTIONS
 from ..learning.models import file_of, load_trained
 from ..learning.policy_files import read_policy
@@ -42,36 +42,37 @@ class PolicyPlayer(ChoicePlayer):
         return shares(scores)
 
 
-class BoxModel:
-    """A model with box actions as a ``Seen``: its deterministic actions, a table at a time."""
+class ActingModel:
+    """A model of box actions or of the menu as a ``Seen``: its deterministic actions, a table at a time."""
 
     def __init__(self, model):
         self.model, belong = model, (*ACTION_OPTIONS, *SEEN_OPTIONS)
         own = {key: model.env_options[key] for key in belong if key in model.env_options}
-        self.options = {"observation": "flat"} | own
+        observation, self._see = shown(own)
+        self.options = own | {"observation": observation}
 
     def act(self, observations, masks, seeds):
-        """The actions (n, k)."""
-        seen = seen_of(observations)
+        """The actions (n, k), or choices (n,)."""
+        seen = self._see(observations)
         with one_thread():
             actions = [self.model.policy.predict(row, deterministic=True)[0] for row in seen]
         return np.array(actions).reshape(len(seen), *self.model.policy.action_space.shape)
 
 
-class BoxPlayer(SeenPlayer):
-    """The player of a ``BoxModel``."""
+class ActingPlayer(SeenPlayer):
+    """The player of an ``ActingModel``."""
 
     learned = None
 
     def __init__(self, model):
-        super().__init__(BoxModel(model), name=model.recipe)
+        super().__init__(ActingModel(model), name=model.recipe)
         self.model = model
 
 
 def player_of_model(trained):
     """The player of a ``Trained`` model or policy."""
     discrete = isinstance(trained.policy, Layers) or trained.env_options.get("action") == "discrete"
-    return PolicyPlayer(trained) if discrete else BoxPlayer(trained)
+    return PolicyPlayer(trained) if discrete else ActingPlayer(trained)
 
 
 def load_player(path, field="agent"):

@@ -25,11 +25,13 @@ train --seed 4294967296 | --seed is 4294967296, must be an integer in [0, 429496
 train --start nowhere | start = 'nowhere'
 train --start pyproject.toml | pyproject.toml
 train --start x --imitate 5 | imitate = 5: must be 0 or left out with --start
-train --agent ppo_target --imitate 100 | imitate = 100: must be 0 for ppo_target
-train --imitate 0 | imitate = 0: must be 1 or more for ppo_value without --start
+train --imitate 100 | imitate = 100: must be 0 for strokes
+train --agent ppo_value --imitate 0 | imitate = 0: must be 1 or more for ppo_value without --start
 train --agent ppo_target --observe-conditions | observe_conditions = True: must be False with conditions="fixed"
-train --imitate 8 --conditions drawn --observe-conditions | observe_conditions = True: must be left out for ppo_value
+train --agent ppo_value --imitate 8 --conditions drawn --observe-conditions | observe_conditions = True: must be left out for ppo_value
 train --set gamma | gamma
+train --set "env_kwargs={'action': 'strokes'}" | observation = None: must be 'strokes'
+train --agent ppo_value --set "env_kwargs={'action': 'discrete', 'observation': 'balls'}" | observation = 'balls': must be left out
 train --set charm=2 | 'charm=2': must be KEY=VALUE with KEY one of env_kwargs, n_steps
 train --set gamma=abc | gamma = 'abc': must be a finite number in [0, 1]
 train --set gamma=2 | gamma = 2: must be a finite number in [0, 1]
@@ -41,9 +43,9 @@ train --set policy=Foo | 'policy=Foo'
 train --set n_envs=0 | (n_timesteps, n_envs, imitation have options of their own)
 train --set env_kwargs=3 | env_kwargs = 3: must be a dict
 train --set "env_kwargs={'fun':1}" | env_kwargs = 'fun': must be one of 'action'
-train --set "env_kwargs={'aim':'target'}" | action = 'box': must be 'discrete'
-train --set "env_kwargs={'action':'discrete','layout':'held_out'}" | layout = 'held_out'
-train --set "env_kwargs={'action':'discrete','fidelity':[]}" | fidelity = []
+train --set "env_kwargs={'aim':'target'}" | action = 'box': must be 'strokes'
+train --agent ppo_value --set "env_kwargs={'action':'discrete','layout':'held_out'}" | layout = 'held_out'
+train --agent ppo_value --set "env_kwargs={'action':'discrete','fidelity':[]}" | fidelity = []
 train --agent stroke_value --envs 64 | envs = 64: must be left out for stroke_value
 train --agent stroke_value --set tables=3 | tables = 3
 train --agent stroke_value --set widths=3 | must be KEY=VALUE with KEY one of rounds, tables, frame_rounds, frames, cue

@@ -12,6 +12,7 @@ from agents.learning.frame_self_play import FRAME
 from snooker_env.players import FRAMES
 from tests.agents.training import TINY, results, weights
 
+MENU = str.split("--agent strokes --envs 2 --steps 192 --eval-visits 4 --seed 3")
 EXPERT = str.split("--agent ppo_value --envs 4 --imitate 64 --steps 512 --eval-visits 4 --seed 2")
 STROKES = str.split("--agent stroke_value --eval-visits 4 --set rounds=1 tables=10 frame_rounds=1 frames=10")
 WORTH = str.split("--rounds 2 --frames 16 --budget 30 --judged 0")
@@ -41,6 +42,7 @@ TRAININGS = {
         weights,
         (2,),
     ),
+    "PPO on the menu": (start_training(MENU), go_on_training, weights, (2,)),
     "expert iteration": (start_training(EXPERT), go_on_training, weights, (1, 11, 17, 18, 19)),
     "strokes": (start_training(STROKES), go_on_training, arrays("strokes.npz"), (12,)),
     "worth": (learn, learn, arrays("worth.npz"), (2,)),

@@ -35,7 +35,7 @@ def finished(tmp_path_factory):
     return out
 
 
-FILES = {"checkpoint.pkl", "model.zip", "results.json", "settings.json", "tb"}
+FILES = {"checkpoint.pkl", "curve.png", "model.zip", "results.json", "settings.json", "tb"}
 
 
 def test_run_leaves_model_figures_and_curves(finished):
@@ -49,10 +49,11 @@ def test_run_leaves_model_figures_and_curves(finished):
     (part,) = found["parts"]
     assert (part["part"], part["unit"], part["amount"]) == ("PPO", "shots", 512)
     assert part["seconds"] == found["seconds"] and part["per_second"] == pytest.approx(512 / found["seconds"])
-    assert set(found["evaluation"]) == {"trained", "ghost_ball", "random"}
+    visits = {name: figures["visits"] for name, figures in found["evaluation"].items()}
+    assert visits == {"trained": 4, "ghost_ball": 4, "random": 4, "planner": 2}
     for figures in found["evaluation"].values():
-        assert figures["visits"] == 4
-        assert figures["pot_rate"] == pytest.approx(4 * figures["pots_a_visit"] / figures["strokes"])
+        pots = figures["visits"] * figures["pots_a_visit"]
+        assert figures["pot_rate"] == pytest.approx(pots / figures["strokes"])
         assert all(figures[name + "_se"] >= 0 for name in ("pots_a_visit", "points_a_visit", "fouls_a_visit"))
     assert "512 shots" in found["learned"]
     assert found["evaluation"]["trained"] == summary(
@@ -167,7 +168,7 @@ def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
         recipe = recipe_of(Settings(**{"agent": "ppo_value"} | settings))
         training_summary.evaluate(recipe, model, 2, Loop("", [], None, "", 1))
         seen = [{name: value for name, value in one.items() if name != "each"} for one in played]
-        assert seen == [{"first_seed": tables_of("held_out", 2)} | wanted] * 3
+        assert seen == [{"first_seed": tables_of("held_out", 2)} | wanted] * 4
         del played[:]
 
 
