@@ -54,7 +54,7 @@ def _play_environments() -> "tuple[SnookerEnv, SnookerEnv]":
     env.reset(seed=0)
     env.action_masks()
     env.step(0)
-    all_of_frames: Any = {"placement": True, "says": ["decision"], "miss": "attempt"}
+    all_of_frames: Any = {"aim": "absolute", "placement": True, "says": ["decision"], "miss": "attempt"}
     env = SnookerEnv(task="frame", opponent="ghost_ball", **all_of_frames)
     for seed in range(3):  # in one of them the opponent breaks off
         env.reset(seed=seed)
@@ -62,6 +62,12 @@ def _play_environments() -> "tuple[SnookerEnv, SnookerEnv]":
     snookered = Position(cue=(0.0, 0.0), pink=(0.0, 1.0), black=(0.0, 0.5), on="pink")
     env.reset(seed=0, options={"position": snookered})
     env.step([0.0] * 7)
+    for task in ("visit", "frame"):
+        menu: Any = {"task": task, "action": "strokes", "observation": "strokes", "cue": "real"}
+        env = SnookerEnv(**menu)
+        env.reset(seed=0)
+        env.action_masks()
+        env.step(0)
     env = SnookerEnv(task="frame", game="shoot_out")
     env.reset(seed=0)
     env.step([0.0] * 4)

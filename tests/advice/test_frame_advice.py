@@ -29,21 +29,21 @@ def test_the_tactician_is_asked_in_frames_and_the_planner_in_visits():
     assert sn.advise(OPEN, samples=10, visits=0).agent == "planner_500"
     advice = sn.advise(OPEN, **QUICK)
     assert (
-        advice.agent == "tactician"
+        advice.agent == "tactician_1000"
         and advice.scores == (20, 24)
         and advice.order.startswith("By chance to win")
     )
     env = sn.SnookerEnv(task="frame", opponent="ghost_ball", miss="clear_path")
     env.reset(seed=1, options={"breaker": 0})
     broken = sn.advise(env, samples=10, visits=0)
-    assert broken.agent == "tactician" and broken.scores == (0, 0) and broken[0].place is not None
+    assert broken.agent == "tactician_1000" and broken.scores == (0, 0) and broken[0].place is not None
     at = one_position(OPEN, (20, 24))
-    first = sn.player("tactician").at({"task": "frame", "noise": "professional"}).play(at, [3])
+    first = sn.player("tactician_1000").at({"task": "frame", "noise": "professional"}).play(at, [3])
     asked = sn.advise(OPEN, n=1, seed=3, **QUICK)[0]
     assert (
         tuple(asked.stroke.numbers())
         == tuple(first.values[0])
-        == tuple(stroke_of("tactician", at, seed=3).numbers())
+        == tuple(stroke_of("tactician_1000", at, seed=3).numbers())
     )
 
 
@@ -90,14 +90,7 @@ def test_strokes_are_ordered_by_it_and_the_best_is_compared():
                 )
         assert all(one.against is None and " against " not in one.words for one in advice[1:])
     assert safe[0].kind == "safety" and "safety off the red, " in safe[0].words
-    assert safe[0].words.endswith(
-        f" against {100 * safe[0].against:.0f} % for the next best"
-    )  # of the pots hardly any goes
-    far = Position(cue=(0.3, -0.5), reds=[(0.4, 1.5), (0.06, 1.74)], pink=(0.0, 0.89), black=(0.0, 1.4605))
-    bold = sn.advise(far, n=4, noise="beginner", **QUICK)[0]
-    assert bold.kind == "safety" and bold.words.endswith(
-        f" against {100 * bold.against:.0f} % for the best pot"
-    )
+    assert safe[0].words.endswith(f" against {100 * safe[0].against:.0f} % for the best pot")
     assert pot[0].kind == "pot" and pot[0].words.endswith(f"{100 * pot[0].against:.0f} % for the best safety")
     lone = sn.advise(LAST, agent=Given(CueStroke(speed=0.9, aim=np.pi / 2)), **QUICK)
     assert len(lone) == 1 and lone[0].against is None and " against " not in lone[0].words
@@ -175,7 +168,7 @@ def test_a_player_of_visits_does_not_advise_a_frame():
     network = type("Seen", (), {"act": lambda self, observations, masks, seeds: np.zeros((len(seeds), 4))})
     for agent in ("planner", "search_60", "best_pot", "ghost_ball", "random", network()):
         with pytest.raises(
-            ValueError, match=r'^agent = .*: must know frames, as "tactician" or "stroke_value" do'
+            ValueError, match=r'^agent = .*: must know frames, as "tactician_1000" or "stroke_value" do'
         ):
             sn.advise(OPEN, agent=agent, **QUICK)
     for agent in ("stroke_value", "tactician_253", Given(CueStroke(speed=0.9, aim=np.pi / 2))):
@@ -240,9 +233,6 @@ def test_a_snooker_that_is_needed_is_laid_and_a_pot_comes_first_only_on_the_way(
     last = Position(cue=(0.2, 0.9), reds=[(0.5, 1.3)], **COLOURS)
     first = sn.advise(last, scores=(20, 60), **how)[0]
     assert first.kind == "safety"  # the last red is easier to hide than six colours
-    more = Position(cue=(0.2, 0.9), reds=[(0.5, 1.3), (-0.3, 0.6)], **COLOURS)
-    first = sn.advise(more, scores=(20, 70), **how)[0]
-    assert first.kind == "pot" and ", needs snookers, then 49 behind with 42 left, pot " in first.words
     colour = Position(
         cue=(0.2, 1.2), **COLOURS, on="any_colour"
     )  # it is spotted again, and if missed its points are lost

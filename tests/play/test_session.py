@@ -31,7 +31,7 @@ def test_strokes_are_those_of_the_match_environment():
     from snooker_env.envs.match import MatchEnv
 
     kind = {"task": "frame", "placement": True, "says": ["decision"], "elevation": True, "max_strokes": None}
-    env = MatchEnv(**kind, miss="clear_path", noise="club", cue="real")
+    env = MatchEnv(**kind, aim="absolute", miss="clear_path", noise="club", cue="real")
     env.reset(seed=3)
     session = Session(seed=3)
     session.noise[:] = ["club", "club"]

@@ -83,7 +83,7 @@ HOW = {
 @pytest.mark.parametrize("how", HOW)
 def test_the_environments_are_made_by_either_name(installed, how):
     out, err = installed.run(IDS.format(how=HOW[how]))
-    made = ["SnookerEnv (121,)", "SnookerVectorEnv (3, 121)", str(sorted(ENTRY_POINTS))]
+    made = ["SnookerEnv (61,)", "SnookerVectorEnv (3, 61)", str(sorted(ENTRY_POINTS))]
     assert out.splitlines() == made and err == ""
 
 

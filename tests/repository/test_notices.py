@@ -105,7 +105,9 @@ planning.learned.pot_view _add_pots; planning.trials _strike; planning.pot_geome
 def test_each_long_kernel_announces_itself_and_what_others_compile_is_not_told(capsys, monkeypatch):
     monkeypatch.delenv("SNOOKER_ENV_QUIET")
     # as if nothing had been compiled yet
-    monkeypatch.setattr(notices.Cost, "_missing", lambda self: set(self.uses))
+    monkeypatch.setattr(
+        notices.Cost, "_missing", lambda self: set(self.uses).union(*(k.cost._missing() for k in self.uses))
+    )
     for module, *names in (line.split() for line in LONG.replace("\n", ";").split(";") if line):
         for name in names:
             kernel = getattr(importlib.import_module(f"snooker_env.{module}"), name)

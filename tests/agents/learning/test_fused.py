@@ -28,7 +28,7 @@ LOSS = CLIP, ENTROPY, VALUE = Loss(0.2, 0.01, 0.05)
 @pytest.fixture(scope="module")
 def met():
     """Tables met in play (N, SHOWN), some without a pot, one bare; and masks, some with choices left out."""
-    tables = SnookerVectorEnv(N, action="discrete", layout="random:6", threads=1)
+    tables = SnookerVectorEnv(N, action="discrete", observation="flat", layout="random:6", threads=1)
     observations, _ = tables.reset(seed=3)
     rng = np.random.default_rng(0)
     for _ in range(2):

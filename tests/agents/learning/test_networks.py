@@ -16,7 +16,7 @@ N = 40
 @pytest.fixture(scope="module")
 def seen():
     """Tables met in play: (N, SHOWN)."""
-    tables = SnookerVectorEnv(N, action="discrete", noise="none")
+    tables = SnookerVectorEnv(N, action="discrete", observation="flat", noise="none")
     observations, _ = tables.reset(seed=1)
     rng = np.random.default_rng(0)
     for _ in range(3):
