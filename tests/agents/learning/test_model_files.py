@@ -219,7 +219,7 @@ def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
     write_policy(tmp_path / "p.npz", WEIGHTS, **ABOUT)
     player = load_player(tmp_path / "p.npz")
     assert isinstance(player, PolicyPlayer) and player.learned is None
-    tables = SnookerVectorEnv(9, threads=1, action="discrete", layout="random:2")
+    tables = SnookerVectorEnv(9, threads=1, action="discrete", observation="flat", layout="random:2")
     rows, _ = tables.reset(seed=1)
     (first, shift), (last, end) = WEIGHTS
     scores = np.tanh(rows @ first.T + shift) @ last.T + end
