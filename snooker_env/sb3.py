@@ -180,7 +180,7 @@ HIDDEN = 64
 _AWAY = -1e8  # the score of a stroke that is not there
 
 
-class StrokesNet(torch.nn.Module):
+class _StrokesNet(torch.nn.Module):
     """Reads ``observation="strokes"``, (b, K * C + S) float32: each stroke alike, with the state, by two layers; the position
     from what they made of all strokes that are there, their mean and their largest, and from the state."""
 
@@ -231,7 +231,7 @@ class StrokesNet(torch.nn.Module):
         return self.judge(*self.read(features))
 
 
-def _net_of(observations: Any, actions: Any) -> StrokesNet:
+def _net_of(observations: Any, actions: Any) -> _StrokesNet:
     """The network for an environment; ValueError for spaces of another one."""
     choices = int(getattr(actions, "n", 0))
     shape = observations.shape or (0,)
@@ -241,7 +241,7 @@ def _net_of(observations: Any, actions: Any) -> StrokesNet:
             'must be those of action="strokes", observation="strokes"',
         )
         raise refuse_what("spaces", given, allowed)
-    return StrokesNet(choices, shape[0])
+    return _StrokesNet(choices, shape[0])
 
 
 class StrokesPolicy(_ActorCritic):

@@ -7,7 +7,7 @@ pytest.importorskip("stable_baselines3")
 import torch
 from stable_baselines3 import DQN, PPO
 
-from snooker_env.sb3 import SnookerVecEnv, StrokesNet, StrokesPolicy, StrokesQPolicy
+from snooker_env.sb3 import SnookerVecEnv, _StrokesNet, StrokesPolicy, StrokesQPolicy
 from tests.processes import python
 
 MENU = {"action": "strokes", "observation": "strokes", "threads": 1}
@@ -56,7 +56,7 @@ def test_dqn_learns():
 
 def test_each_stroke_is_read_alike():
     """Strokes that change places change their logits with them; the position is read the same."""
-    net, rng = StrokesNet(60, 60 * 23 + 11), np.random.default_rng(3)
+    net, rng = _StrokesNet(60, 60 * 23 + 11), np.random.default_rng(3)
     seen = torch.as_tensor(rng.uniform(-1.0, 1.0, (5, 60 * 23 + 11)), dtype=torch.float32)
     order = torch.as_tensor(rng.permutation(60))
     swapped = seen.clone()
