@@ -7,7 +7,7 @@ pytest.importorskip("stable_baselines3")
 import torch
 from stable_baselines3 import DQN, PPO
 
-from snooker_env.sb3 import SnookerVecEnv, _StrokesNet, StrokesPolicy, StrokesQPolicy
+from snooker_env.sb3 import SnookerVecEnv, StrokesPolicy, StrokesQPolicy, _StrokesNet
 from tests.processes import python
 
 MENU = {"action": "strokes", "observation": "strokes", "threads": 1}
