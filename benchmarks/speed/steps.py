@@ -9,6 +9,7 @@ the same time.
 
 import threading
 import time
+from typing import Any
 
 import gymnasium
 import numba
@@ -77,7 +78,10 @@ def stepper(env, seed):
     return lambda k: env.step(actions[k % 16])
 
 
-FORM = {"aim": "absolute", "observation": "flat"}  # the shot's time is measured, not that of its aim
+FORM: dict[str, Any] = {
+    "aim": "absolute",
+    "observation": "flat",
+}  # the shot's time is measured, not that of its aim
 FRAME = {"task": "frame", "layout": "opened"}
 
 
