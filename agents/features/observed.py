@@ -44,7 +44,8 @@ def training_tables(n, threads=None, **options):
     from snooker_env.sb3 import SnookerVecEnv
 
     observation, see = shown(options)
-    base = SnookerVecEnv(n, threads=threads, **options | {"observation": observation})
+    options["observation"] = observation
+    base = SnookerVecEnv(n, threads=threads, **options)
 
     class Seen(VecEnvWrapper):
         """All tables at once."""
