@@ -17,7 +17,7 @@ try:
     from stable_baselines3.common.vec_env import VecEnv
     from stable_baselines3.dqn.policies import DQNPolicy, QNetwork
 except ModuleNotFoundError as error:
-    if (error.name or "").split(".")[0] != "stable_baselines3":
+    if (error.name or "").split(".")[0] not in ("torch", "stable_baselines3"):
         raise
     from ._lib.install import missing
 
