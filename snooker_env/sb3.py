@@ -1,7 +1,7 @@
 """How does Stable-Baselines3 train on many tables? ``SnookerVecEnv``, on the native vector environment.
 
-from snooker_env.sb3 import SnookerVecEnv
-MaskablePPO("MlpPolicy", SnookerVecEnv(64, action="discrete")).learn(100_000)"""
+from snooker_env.sb3 import SnookerVecEnv, StrokesPolicy
+MaskablePPO(StrokesPolicy, SnookerVecEnv(128, action="strokes", observation="strokes"), n_steps=32).learn(100_000)"""
 
 import time
 from collections.abc import Sequence
