@@ -6,17 +6,7 @@ from math import sqrt
 from .._lib.jit import kernel
 from ..geometry import AIM_X, AIM_Y, AXIS_X, AXIS_Y, HALF_LENGTH, HALF_WIDTH, IS_MIDDLE, POCKET_AIMS
 from .balls import N_BALLS
-from .pots import (
-    COS_CUT,
-    GHOST_X,
-    GHOST_Y,
-    POT_BALL,
-    POT_COLUMNS,
-    POT_POCKET,
-    TOLERANCE,
-    clear_segment,
-    window,
-)
+from .pots import TOLERANCE, clear_segment, insert_pot, window
 
 RUN_BALL, RUN_POCKET, RUN_X, RUN_Y, RUN_DX, RUN_DY, RUN_LENGTH, RUN_WIDTH = range(8)
 """Columns of a run: ball, pocket; the ghost ball [m]; the unit vector to the pocket; length and width of the window [m]."""
@@ -75,13 +65,5 @@ def pots_along(runs, many, positions, on_table, radius, pots):
         ghost = run[RUN_X], run[RUN_Y]
         if not clear_segment(positions, on_table, (cx, cy), ghost, ball, 0, d * (1.0 - 1e-9)):
             continue
-        at = min(count, pots.shape[0] - 1)
-        while at > 0 and pots[at - 1, TOLERANCE] < tolerance:
-            for c in range(POT_COLUMNS):
-                pots[at, c] = pots[at - 1, c]
-            at -= 1
-        row = pots[at]
-        row[POT_BALL], row[POT_POCKET], row[GHOST_X], row[GHOST_Y] = ball, run[RUN_POCKET], *ghost
-        row[COS_CUT], row[TOLERANCE] = cos_cut, tolerance
-        count = min(count + 1, pots.shape[0])
+        count = insert_pot(pots, count, ball, int(run[RUN_POCKET]), ghost, cos_cut, tolerance)
     return count

@@ -139,6 +139,21 @@ def pot_at(positions, on_table, ball, k, d, least):
 
 
 @kernel
+def insert_pot(pots, count, ball, pocket, ghost, cos_cut, tolerance):
+    """Insert a pot into the first ``count`` rows of ``pots``, widest first, in place of the last if all are full; returns
+    the number of rows then."""
+    at = min(count, pots.shape[0] - 1)
+    while at > 0 and pots[at - 1, TOLERANCE] < tolerance:
+        for c in range(POT_COLUMNS):
+            pots[at, c] = pots[at - 1, c]
+        at -= 1
+    row = pots[at]
+    row[POT_BALL], row[POT_POCKET], row[GHOST_X], row[GHOST_Y] = ball, pocket, ghost[0], ghost[1]
+    row[COS_CUT], row[TOLERANCE] = cos_cut, tolerance
+    return min(count + 1, pots.shape[0])
+
+
+@kernel
 def find_pots(positions, on_table, on, radius, pots):
     """Find the direct pots of a layout, widest tolerance first. An inner kernel.
 
@@ -167,15 +182,7 @@ def find_pots(positions, on_table, on, radius, pots):
             tolerance, gx, gy, cos_cut = pot_at(positions, on_table, ball, k, 2.0 * radius, least)
             if tolerance == 0.0:
                 continue
-            at = min(count, pots.shape[0] - 1)
-            while at > 0 and pots[at - 1, TOLERANCE] < tolerance:
-                for c in range(POT_COLUMNS):
-                    pots[at, c] = pots[at - 1, c]
-                at -= 1
-            row = pots[at]
-            row[POT_BALL], row[POT_POCKET], row[GHOST_X], row[GHOST_Y] = ball, k, gx, gy
-            row[COS_CUT], row[TOLERANCE] = cos_cut, tolerance
-            count = min(count + 1, pots.shape[0])
+            count = insert_pot(pots, count, ball, k, (gx, gy), cos_cut, tolerance)
     return count
 
 
