@@ -271,6 +271,13 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
         after[j, 0, 0], after[j, 0, 1] = out[j, X], out[j, Y]
 
 
+@kernel
+def is_fair(ball, touching, on):
+    """Whether a stroke whose cue ball meets ``ball``, 0 for none, is fair, with these masks of balls that touch it and that are
+    on: away from a touching ball on all is fair; into a touching one is a push."""
+    return ball > 0 and not (touching >> ball) & 1 and (touching & on != 0 or (on >> ball) & 1 != 0)
+
+
 @entry(what="the paths of both balls", seconds=2, uses=(foresee_contact,))
 def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
     """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors``
@@ -288,8 +295,7 @@ def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
         ball = met[j] = foresee_contact(tried, p, here, its, work, out[j, 0], out[j, 1])
         fair = strikeable(game[k], bits(here) & ~1)
-        # away from a touching ball on all is fair; into a touching one is a push
-        legal[j] = ball > 0 and (not (near >> ball) & 1) and (near & fair or (fair >> ball) & 1)
+        legal[j] = is_fair(ball, near, fair)
         for b in range(N_BALLS):
             after[j, b, 0], after[j, b, 1] = p[b, 0], p[b, 1]
         if ball:

@@ -1,7 +1,7 @@
 """What does ``observation="strokes"`` show? Of each stroke on the menu what a player foresees of it, by closed forms: no shot is
 simulated and nothing is learned. One kernel for one table and a thousand."""
 
-from math import acos, atan2, log10, pi
+from math import acos, atan2, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -15,13 +15,13 @@ from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_PO
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ..physics.parameters import Physics
 from . import cue_ball_path as path
-from .cue_ball_path import foresee_contact, foresee_pot, leave
+from .cue_ball_path import foresee_contact, foresee_pot, is_fair, leave
 from .declarations import FRAME_STROKES, MENU_STROKES
 from .escapes import LINE_ROOM
 from .kernel_arrays import C_END_MASS, C_MAX_OFFSET, C_RAILS, CueLaw
 from .lines import aim_on, end_red_of_rack, find_safe_lines, list_lines, new_work
 from .noise import POT_SPEED, Noise, Spread
-from .observations import BALLS_SIZE, FRAME_ENTRIES, STATE_ENTRIES, STROKE_SIZE
+from .observations import BALLS_SIZE, FRAME_ENTRIES, STATE_ENTRIES, STROKE_SIZE, scale_log, scale_room
 from .pot_aim import aim_from
 from .pot_chance import at_elevation, length_of, pot_chance
 from .rule_of_thumb import RULE_OF_THUMB, points_left, worth_of_pots
@@ -34,7 +34,6 @@ F_PROSPECTS, F_BEST, F_SECOND, F_FOUL, F_PROMISE = range(18, STROKE_SIZE)
 _LEFT = 4  # widest pots of a position that is left, of which it is judged
 _ENOUGH = 1e-4
 """What is foreseen is foreseen of an aim at which the ball passes the pocket's aim point by no more than that [rad]."""
-_HALF = 0.01  # a middling tolerance [rad]
 _ASTRAY = 0.02  # sine of an angle by which a ball that is sent off its line misses any pocket
 _STATES = (
     len(STATE_ENTRIES),
@@ -134,9 +133,9 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
         _observe_path_into(one, seen)
         one[F_THERE] = one[F_POT] = 1.0
         one[F_SPEED], one[F_TOP] = speed / SPEEDS[-1], top / TOPS[-1]
-        one[F_CHANCE], one[F_LOG] = chance, max(-1.0, 0.5 * log10(max(chance, 1e-9)))
+        one[F_CHANCE], one[F_LOG] = chance, scale_log(chance)
         one[F_POINTS], one[F_CUT] = points / 7.0, acos(min(1.0, pot[COS_CUT])) / (0.5 * pi)
-        one[F_TOLERANCE] = pot[TOLERANCE] / (pot[TOLERANCE] + _HALF)
+        one[F_TOLERANCE] = scale_room(pot[TOLERANCE])
         lost = seen[path.LOST] > 0.0 or seen[path.MISSED] > 0.0
         one[F_FOUL], worth = 1.0 if lost else 0.0, 0.0
         if lost or seen[path.REACH] < 1.0 or abs(seen[path.ASIDE]) > _ASTRAY:
@@ -154,11 +153,10 @@ def _foresee_line(room, positions, on_table, on, in_frame, law, errors, work, de
     touching = touching_balls(positions, on_table)
     ball = foresee_contact(desk.stroke, positions, on_table, law, work, seen, its)
     _observe_path_into(one, seen)
-    fair = ball > 0 and not (touching >> ball) & 1 and (touching & on or (on >> ball) & 1)
     lost = seen[path.LOST] > 0.0
-    one[F_THERE], one[F_FOUL] = 1.0, 0.0 if fair and not lost else 1.0
+    one[F_THERE], one[F_FOUL] = 1.0, 0.0 if is_fair(ball, touching, on) and not lost else 1.0
     one[F_SPEED], one[F_TOP] = desk.stroke[0] / SPEEDS[-1], desk.stroke[2] / TOPS[-1]
-    one[F_TOLERANCE], one[F_POINTS] = room / (room + _HALF), VALUES[ball] / 7.0
+    one[F_TOLERANCE], one[F_POINTS] = scale_room(room), VALUES[ball] / 7.0
     one[F_REACH] = its[path.LOST] if ball else 0.0
     if not in_frame or lost:
         return

@@ -98,6 +98,13 @@ def _add(lines, count, aim, space):
 
 
 @kernel
+def _add_middle(lines, window, count):
+    """Append the middle of a window."""
+    half = 0.5 * (window[HIGH] - window[LOW])
+    return _add(lines, count, window[LOW] + half, half)
+
+
+@kernel
 def _add_thin(positions, on_table, lines, window, count):
     """Append a thin contact at either edge of a window."""
     half = 0.5 * (window[HIGH] - window[LOW])
@@ -117,8 +124,7 @@ def _add_thin(positions, on_table, lines, window, count):
 def _add_windows(positions, on_table, lines, windows, many, count):
     """Append the middle of the widest window, a thin contact at either edge of it, and the other middles."""
     for k in range(many):
-        half = 0.5 * (windows[k, HIGH] - windows[k, LOW])
-        count = _add(lines, count, windows[k, LOW] + half, half)
+        count = _add_middle(lines, windows[k], count)
         if k == 0:
             count = _add_thin(positions, on_table, lines, windows[k], count)
     return count
@@ -166,11 +172,9 @@ def find_safe_lines(positions, on_table, on, rows):
     for k in range(many):
         count = _add_thin(positions, on_table, lines, windows[k], count)
         if k == 0:
-            half = 0.5 * (windows[0, HIGH] - windows[0, LOW])
-            count = _add(lines, count, windows[0, LOW] + half, half)
+            count = _add_middle(lines, windows[0], count)
     for k in range(1, many):
-        half = 0.5 * (windows[k, HIGH] - windows[k, LOW])
-        count = _add(lines, count, windows[k, LOW] + half, half)
+        count = _add_middle(lines, windows[k], count)
     return _any_line(positions, on_table, on, lines, count)
 
 

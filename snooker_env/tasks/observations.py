@@ -146,6 +146,18 @@ def space(
 
 
 @kernel
+def scale_log(chance):
+    """log10 of a chance / 2, at least -1."""
+    return max(-1.0, 0.5 * log10(max(chance, 1e-9)))
+
+
+@kernel
+def scale_room(angle):
+    """A tolerance or another room for errors [rad] within [0, 1): a half for ``_HALF``."""
+    return angle / (angle + _HALF)
+
+
+@kernel
 def observe_state_into(row, at, on_table, ball_on, in_hand, points):
     """Write ``STATE_ENTRIES`` from the place ``at`` on."""
     for c in range(at, at + len(STATE_ENTRIES)):
@@ -187,9 +199,9 @@ def observe_pots_into(row, positions, on_table, ball_on, on, in_hand, points, vi
         x, y, px, py = positions[ball, 0], positions[ball, 1], pots[k, GHOST_X] - cx, pots[k, GHOST_Y] - cy
         tx, ty, far = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y], hypot(px, py)
         cut, left = acos(min(1.0, pots[k, COS_CUT])), px * (ty - y) - py * (tx - x) > 0.0
-        row[at], row[at + 1] = chance, max(-1.0, 0.5 * log10(max(chance, 1e-9)))
+        row[at], row[at + 1] = chance, scale_log(chance)
         row[at + 2] = (cut if left else -cut) / (0.5 * pi)
-        row[at + 3], row[at + 4] = pots[k, TOLERANCE] / (pots[k, TOLERANCE] + _HALF), VALUES[ball] / 7.0
+        row[at + 3], row[at + 4] = scale_room(pots[k, TOLERANCE]), VALUES[ball] / 7.0
         row[at + 5], row[at + 6], row[at + 7], row[at + 8] = (
             x / HALF_WIDTH,
             y / HALF_LENGTH,
