@@ -44,8 +44,8 @@ def training_tables(n, threads=None, **options):
     from snooker_env.sb3 import SnookerVecEnv
 
     observation, see = shown(options)
-    options["observation"] = observation
-    base = SnookerVecEnv(n, threads=threads, **options)
+    its = options | {"observation": observation, "threads": threads}
+    base = SnookerVecEnv(n, **its)
 
     class Seen(VecEnvWrapper):
         """All tables at once."""
