@@ -36,7 +36,7 @@ from ._lib.check import choice, integer, refuse, refuse_what
 from ._lib.types import Bools, Floats, Ints, Observation, Singles
 from .envs.vector import SnookerVectorEnv
 from .tasks.observations import STROKE_SIZE
-from .tasks.stroke_menu import MENU_SIZES
+from .tasks.stroke_menu import speeds_of
 
 __all__ = ["SnookerVecEnv", "StrokesPolicy", "StrokesQPolicy"]
 
@@ -235,7 +235,11 @@ def _net_of(observations: Any, actions: Any) -> _StrokesNet:
     """The network for an environment; ValueError for spaces of another one."""
     choices = int(getattr(actions, "n", 0))
     shape = observations.shape or (0,)
-    if choices not in MENU_SIZES or len(shape) != 1 or shape[0] // choices != STROKE_SIZE:
+    if (
+        not (speeds_of(choices, False) or speeds_of(choices, True))
+        or len(shape) != 1
+        or shape[0] // choices != STROKE_SIZE
+    ):
         given, allowed = (
             f"{observations} and {actions}",
             'must be those of action="strokes", observation="strokes"',

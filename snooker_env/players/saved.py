@@ -10,7 +10,7 @@ from .._lib.check import refuse
 from .._lib.types import Bools, Ints, Observation
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options
-from ..tasks.stroke_menu import Menu
+from ..tasks.stroke_menu import SPEEDS, speeds_of
 from .model_options import say_assumption
 from .saved_models import SavedModel, by_train, entries, one_thread, outline
 from .seen import SeenPlayer
@@ -27,16 +27,22 @@ class FittingModel:
     def of(cls, path: str | Path, options: dict[str, Any], field: str = "player") -> "FittingModel":
         """Read the description in a model's file; ValueError, naming ``field``, if its spaces are others."""
         saved = SavedModel.of(path, field)
-        menus = [outline(Menu(frame=frame).space) for frame in (False, True)]
-        chosen = {"action": "strokes" if saved.action in menus else "discrete"}
-        options = (chosen if saved.action[0] == "Discrete" else {}) | options
+        if saved.action[0] == "Discrete":
+            choices = int(saved.action[1])
+            speeds = speeds_of(choices, False) or speeds_of(choices, True)
+            options = (
+                {"action": "strokes", "speeds": speeds} if speeds else {"action": "discrete"}
+            ) | options
         for frame, replaced in ((False, False), (True, False), (True, True)):
             for kind in OBSERVATIONS[frame:]:
                 task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
                 told = {name: options[name] for name in options if frame or name != "says"}
                 model = cls(saved, told | task | {"observation": kind})
-                choices = getattr(model.actions, "n", 0)
-                if outline(space(kind, frame=frame, replaced=replaced, choices=choices)) == saved.observation:
+                sizes = {
+                    "choices": getattr(model.actions, "n", 0),
+                    "speeds": model.options.get("speeds", SPEEDS),
+                }
+                if outline(space(kind, frame=frame, replaced=replaced, **sizes)) == saved.observation:
                     if outline(model.actions) != saved.action:
                         told = "give the options of its training, for example placement=True"
                         raise saved.refuse_file(f"must be a model whose actions are {model.actions}: {told}")

@@ -10,17 +10,14 @@ from ..game.fouls import AUTO
 A_AIM = 0  # what the aim of a box action means: the index in ``box_actions.AIMS``
 A_ELEVATION = 1  # the elevation that 1 means [rad]; 0: an action holds none
 A_PLACEMENT = 2  # whether a box action holds the place of a cue ball in hand
-A_DISCRETE = 3  # whether an action is a choice: 0 not, 1 of ``discrete_actions``, ``MENU`` of a menu
+A_DISCRETE = 3  # whether an action is a choice
 A_NOMINATE = 4  # of a box action, the component that nominates; of choices 0; -1: none
-A_DECISION = 5  # the component that decides after a foul; -1: none
+A_DECISION = 5  # the component that decides after a foul, of a menu its first choice that does; -1: none
 A_DECLARATION = 6  # the component that declares; -1: none
 A_CONCEDE = 7  # whether an action can concede
 A_CLAIM = 8  # whether it can claim the frame
 A_LOT = 9  # whether it can let the other player begin after the lot
-
-MENU = 2
-MENU_STROKES, FRAME_STROKES = 60, 108
-"""Strokes on the menu of a visit, and of a frame, whose two last choices are decisions after a foul."""
+A_SPEEDS = 10  # of a menu, the cue speeds along each line; 0: the choices are those of ``discrete_actions``
 
 SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
 DECLARES = SAYS[2:]
@@ -76,7 +73,7 @@ def decision_of(a, options, row, rules):
     if options[A_DECISION] < 0 or row[columns.PHASE] != columns.CHOICE:
         return columns.PLAY
     if options[A_DISCRETE]:
-        what = int(a[0]) - FRAME_STROKES  # below 0: a stroke
+        what = int(a[0]) - int(options[A_DECISION])  # below 0: a stroke
         x = 0.0 if what < 0 else 2.0 * what - 1.0
     else:
         x = a[int(options[A_DECISION])]

@@ -206,4 +206,4 @@ class Choices:
         """The options for the kernels, in the columns ``A_*`` of ``declarations``."""
         where = 0 if "nominate" in self.says else -1, -1, -1
         declares = (name in self.says for name in declarations.DECLARES)
-        return np.array([False, False, False, True, *where, *declares], np.float64)
+        return np.array([False, False, False, True, *where, *declares, 0], np.float64)

@@ -15,8 +15,8 @@ from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_PO
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ..physics.parameters import Physics
 from . import cue_ball_path as path
+from .box_actions import FASTEST, SLOWEST
 from .cue_ball_path import foresee_contact, foresee_pot, is_fair, leave
-from .declarations import FRAME_STROKES, MENU_STROKES
 from .escapes import LINE_ROOM
 from .kernel_arrays import C_END_MASS, C_MAX_OFFSET, C_RAILS, CueLaw
 from .lines import aim_on, end_red_of_rack, find_safe_lines, list_lines, new_work
@@ -26,7 +26,16 @@ from .pot_aim import aim_from
 from .pot_chance import at_elevation, length_of, pot_chance
 from .rule_of_thumb import RULE_OF_THUMB, points_left, worth_of_pots
 from .stroke import row_of
-from .stroke_menu import ALONG, MENU_SIZES, SAFE_ALONG, SPEEDS, TOPS, decisions_of, menu_stroke, safe_stroke
+from .stroke_menu import (
+    DECISIONS,
+    PER_SPEED,
+    SAFE_ALONG,
+    SAFETIES,
+    TOPS,
+    decisions_of,
+    menu_stroke,
+    safe_stroke,
+)
 
 F_THERE, F_POT, F_CHANCE, F_LOG, F_POINTS, F_SPEED, F_TOP, F_CUT, F_TOLERANCE = range(9)
 F_X, F_Y, F_NOSES, F_BALLS, F_RUN, F_LOST, F_MISSED, F_NEAR, F_REACH = range(9, 18)
@@ -50,9 +59,10 @@ class Errors(NamedTuple):
     factor: float
 
     @classmethod
-    def of(cls, noise: Noise, physics: Physics) -> "Errors":
-        """Of a player."""
-        each = [noise.spread(physics, speed=speed) for speed in (*SPEEDS, POT_SPEED)]
+    def of(cls, noise: Noise, physics: Physics, speeds: int) -> "Errors":
+        """Of a player, with so many speeds."""
+        along = (*np.geomspace(SLOWEST, FASTEST, speeds).tolist(), POT_SPEED)
+        each = [noise.spread(physics, speed=speed) for speed in along]
         return cls(np.array([one.core for one in each]), each[0].lapse, each[0].factor)
 
 
@@ -86,7 +96,7 @@ def _observe_path_into(row, seen):
 @kernel
 def _judge(ball_on, left, many, law, errors, desk, one):
     """What the table on the desk leaves to whoever is next, with ``many`` open runs; returns its worth [points]."""
-    usual = Spread(errors.cores[len(SPEEDS)], errors.lapse, errors.factor)
+    usual = Spread(errors.cores[-1], errors.lapse, errors.factor)
     found = pots_along(desk.runs, many, desk.after, desk.there, BALL_RADIUS, desk.pots)
     table = desk.after, desk.there, left, usual, RULE_OF_THUMB, law.rails, desk.chances
     worth, one[F_BEST], one[F_SECOND] = worth_of_pots(desk.pots, found, *table)
@@ -116,10 +126,11 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
     many = list_runs(desk.after, desk.there, on, BALL_RADIUS, desk.runs)
     ghost, target = (pot[GHOST_X], pot[GHOST_Y]), (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y])
     aim, length = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0]), length_of(positions, pot)
-    for index in range(ALONG):
+    speeds = errors.cores.shape[0] - 1
+    for index in range(speeds * len(TOPS)):
         level, height = index // len(TOPS), index % len(TOPS)
         one = rows[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
-        _, speed, side, top = menu_stroke(index)
+        _, speed, side, top = menu_stroke(index, speeds)
         stroke[0], stroke[1], stroke[2] = speed, side, top
         if level:  # from the same tip at the last speed
             aim = desk.aims[height]
@@ -132,7 +143,7 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
         chance = pot_chance(pot[TOLERANCE], length, spread)
         _observe_path_into(one, seen)
         one[F_THERE] = one[F_POT] = 1.0
-        one[F_SPEED], one[F_TOP] = speed / SPEEDS[-1], top / TOPS[-1]
+        one[F_SPEED], one[F_TOP] = speed / FASTEST, top / TOPS[-1]
         one[F_CHANCE], one[F_LOG] = chance, scale_log(chance)
         one[F_POINTS], one[F_CUT] = points / 7.0, acos(min(1.0, pot[COS_CUT])) / (0.5 * pi)
         one[F_TOLERANCE] = scale_room(pot[TOLERANCE])
@@ -155,7 +166,7 @@ def _foresee_line(room, positions, on_table, on, in_frame, law, errors, work, de
     _observe_path_into(one, seen)
     lost = seen[path.LOST] > 0.0
     one[F_THERE], one[F_FOUL] = 1.0, 0.0 if is_fair(ball, touching, on) and not lost else 1.0
-    one[F_SPEED], one[F_TOP] = desk.stroke[0] / SPEEDS[-1], desk.stroke[2] / TOPS[-1]
+    one[F_SPEED], one[F_TOP] = desk.stroke[0] / FASTEST, desk.stroke[2] / TOPS[-1]
     one[F_TOLERANCE], one[F_POINTS] = scale_room(room), VALUES[ball] / 7.0
     one[F_REACH] = its[path.LOST] if ball else 0.0
     if not in_frame or lost:
@@ -185,7 +196,10 @@ def foresee(which, at, player, tables, rules, errors, out):
     ``rules``: the code of the rule set, cues and constants, one row or one a table, fidelity."""
     (positions, on_table, game), (code, cues, phys, fidelity, n_steps) = tables, rules
     work, in_frame = new_work(), game.shape[1] > columns.STRIKER
-    kind = 1 if in_frame else 0
+    speeds = errors.cores.shape[0] - 1
+    along, at_pots = speeds * len(TOPS), speeds * PER_SPEED
+    strokes = at_pots + (SAFETIES if in_frame else 0)
+    choices, state = strokes + (DECISIONS if in_frame else 0), _STATES[1 if in_frame else 0]
     table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
     wide = (
         np.empty((MOST_RUNS, RUN_COLUMNS)),
@@ -197,7 +211,7 @@ def foresee(which, at, player, tables, rules, errors, out):
     for j in range(which.shape[0]):
         k, rows = which[j], out[at[j]]
         p, here, row, stroke = positions[k], on_table[k], game[k], desk.stroke
-        end, state = STROKE_SIZE * MENU_SIZES[kind], _STATES[kind]
+        end = STROKE_SIZE * choices
         for c in range(state):
             rows[end + c] = rows[BALLS_SIZE + c]
         for c in range(end):
@@ -210,31 +224,31 @@ def foresee(which, at, player, tables, rules, errors, out):
         on = columns.strikeable(row, bits(here))
         many, pots = list_lines(p, here, on, work.lines)
         for line in range(many):
-            its = rows[line * ALONG * STROKE_SIZE : (line + 1) * ALONG * STROKE_SIZE]
+            its = rows[line * along * STROKE_SIZE : (line + 1) * along * STROKE_SIZE]
             if pots:
                 _foresee_pots(work.lines[line], p, here, row, law, errors, work, desk, its)
                 continue
-            for index in range(ALONG):
-                _, stroke[0], stroke[1], stroke[2] = menu_stroke(index)
+            for index in range(along):
+                _, stroke[0], stroke[1], stroke[2] = menu_stroke(index, speeds)
                 played = stroke[0], stroke[1], stroke[2], 0.0
                 stroke[3] = aim_on(line, pots, played, p, here, on, law, work)
                 one = its[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
                 _foresee_line(
                     work.lines[line, LINE_ROOM], p, here, on, in_frame, law, errors, work, desk, one
                 )
-        _repeat_last(rows[: MENU_STROKES * STROKE_SIZE], many * ALONG * STROKE_SIZE, ALONG * STROKE_SIZE)
+        _repeat_last(rows[: at_pots * STROKE_SIZE], many * along * STROKE_SIZE, along * STROKE_SIZE)
         if not in_frame:
             continue
         many, end_red = find_safe_lines(p, here, on, work.lines), end_red_of_rack(p, here)
-        for index in range(MENU_STROKES, MENU_STROKES + many * SAFE_ALONG):
-            line, safe = (index - MENU_STROKES) // SAFE_ALONG, (p, here, on, law, work)
+        safeties = rows[at_pots * STROKE_SIZE : strokes * STROKE_SIZE]
+        for index in range(many * SAFE_ALONG):
+            line, safe = index // SAFE_ALONG, (p, here, on, law, work)
             stroke[0], stroke[1], stroke[2], stroke[3] = safe_stroke(index, end_red, work.lines, *safe)
-            one = rows[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
+            one = safeties[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
             _foresee_line(work.lines[line, LINE_ROOM], p, here, on, in_frame, law, errors, work, desk, one)
-        safeties = rows[MENU_STROKES * STROKE_SIZE : FRAME_STROKES * STROKE_SIZE]
         _repeat_last(safeties, many * SAFE_ALONG * STROKE_SIZE, SAFE_ALONG * STROKE_SIZE)
         again, back = decisions_of(row, code)
-        decisions = rows[FRAME_STROKES * STROKE_SIZE : end]
+        decisions = rows[strokes * STROKE_SIZE : end]
         decisions[F_THERE], decisions[STROKE_SIZE + F_THERE] = again, back
         decisions[F_POT], decisions[STROKE_SIZE + F_POT] = -1.0, -1.0
         decisions[F_SPEED], decisions[STROKE_SIZE + F_SPEED] = -1.0, 1.0

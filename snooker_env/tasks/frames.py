@@ -43,7 +43,7 @@ from .options import NEVER, Options, Rules
 from .rewards import FRAMES_PAID, MATCH_REWARDS
 from .states import FrameState, check_frame_state
 from .stroke import ShotBuffers
-from .stroke_menu import MENU_SIZES
+from .stroke_menu import menu_size
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 from .visit import Visits
 
@@ -107,7 +107,7 @@ class Frames(Tables):
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, (self.due, self.through) = np.full(n, AUTO, np.int64), np.zeros((2, n), np.bool_)
         if rules.observation == "strokes":
-            self.SIZE += STROKE_SIZE * MENU_SIZES[1] - BALLS_SIZE
+            self.SIZE += STROKE_SIZE * menu_size(rules.speeds, True) - BALLS_SIZE
         elif rules.misses:
             self.SIZE += REPLACED_SIZE
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
@@ -127,7 +127,8 @@ class Frames(Tables):
         """Assign the seats: one, or two."""
         self.seats = tuple(seats)
         self._own = tuple(seat.pack(self.rules) for seat in self.seats)
-        self._errors = tuple(Errors.of(seat.noise, self.rules.physics) for seat in self.seats)
+        world = self.rules.physics, self.rules.speeds
+        self._errors = tuple(Errors.of(seat.noise, *world) for seat in self.seats)
         # the winner of the lot is asked if either player can say who begins
         self._lot = any("lot" in seat.actions.says for seat in self.seats)
 

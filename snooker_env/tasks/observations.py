@@ -17,7 +17,7 @@ from .declarations import STROKE_CHOICES
 from .lines import POTS
 from .noise import Spread
 from .pot_chance import plain_chance
-from .stroke_menu import MENU_SIZES
+from .stroke_menu import SPEEDS, menu_size
 
 OBSERVATIONS: tuple[ObservationKind, ...] = ("pots", "flat", "balls", "masked", "strokes")
 """The kinds of observations: one array of pots, or of balls; a dict of two; a dict of the flat one and the available
@@ -94,6 +94,7 @@ def space(
     replaced: bool = False,
     choices: int = STROKE_CHOICES,
     conditions: bool = False,
+    speeds: int = SPEEDS,
 ) -> spaces.Box | spaces.Dict:
     """Return the observation space.
 
@@ -102,7 +103,7 @@ def space(
     kind : {"pots", "flat", "balls", "masked", "strokes"}
         "pots": a Box (61,), of visits alone; "flat": a Box (121,); "balls": a Dict of the boxes "balls" (22, 5) and
         "state" (11,); "masked": a Dict of the boxes "observations", that of "flat", and "action_mask" (choices,),
-        int8 in {0, 1}; "strokes": a Box (1391,), of a frame (2560,).
+        int8 in {0, 1}; "strokes": a Box (2495,), of a frame (3664,).
     frame, replaced : bool, optional
         Whether the 19 entries of a frame or match follow, shapes (140,) and (30,), and whether the layout
         that "replace" restores, as with a miss rule: (206,), or the box "replaced" (22, 3). Default False.
@@ -111,6 +112,8 @@ def space(
     conditions : bool, optional
         Whether the 8 constants of the table follow last, in the order of ``physics.conditions.RANGES``, or the
         box "conditions" (8,). Default False.
+    speeds : int, optional
+        Cue speeds along each pot of the menu. Default 9.
 
     Returns
     -------
@@ -136,9 +139,8 @@ def space(
             parts["conditions"] = spaces.Box(-1.0, 1.0, (CONDITIONS_SIZE,), np.float32)
         return spaces.Dict(parts)
     more = REPLACED_SIZE * (replaced and kind != "strokes") + CONDITIONS_SIZE * conditions
-    size = {"pots": POTS_SIZE, "strokes": STROKE_SIZE * MENU_SIZES[frame] + entries}.get(
-        kind, BALLS_SIZE + entries
-    )
+    menu = STROKE_SIZE * menu_size(speeds, frame) + entries
+    size = {"pots": POTS_SIZE, "strokes": menu}.get(kind, BALLS_SIZE + entries)
     flat = spaces.Box(-REACH, REACH, (size + more,), np.float32)
     if kind == "masked":
         return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})

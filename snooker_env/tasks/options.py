@@ -26,7 +26,7 @@ from .discrete_actions import Choices
 from .kernel_arrays import Packed, pack_cue
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
-from .stroke_menu import Menu
+from .stroke_menu import SPEEDS, Menu
 from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
@@ -71,6 +71,7 @@ class Rules:
     drawn: bool = False  # whether each episode draws ``physics.conditions`` of its table
     observed: bool = False  # whether observations hold them
     cue: CueKind = "free"  # whether rails and balls are in the way of the cue
+    speeds: int = SPEEDS  # cue speeds along each pot of a menu
 
     @property
     def rule_set(self) -> RuleSet:
@@ -101,7 +102,7 @@ class Rules:
 
 GROUPS = {
     "task": ("task", "layout", "reward", "one_stroke", "opponent", "trust", "frames"),
-    "action": ("action", "aim", "elevation", "placement", "says"),
+    "action": ("action", "aim", "elevation", "placement", "says", "speeds"),
     "view": ("observation", "observe_conditions"),
     "shot": ("noise", "physics", "table", "fidelity", "cue", "conditions"),
     "frame": ("miss", "max_strokes", "game", "time_to_play"),
@@ -136,8 +137,8 @@ class Options:
         "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
     action : str, default "box"
         "box": numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540)
-        unless ``says`` adds more. "strokes": one integer that means a stroke on a menu for the position, in [0, 60), in a
-        frame [0, 110).
+        unless ``says`` adds more. "strokes": one integer that means a stroke on a menu for the position, in [0, 108), in a
+        frame [0, 158).
     aim : str, default "pot"
         What the aim of a box action means. "pot": it picks a pot, else a fair stroke's line, for which the aim is solved.
         "absolute": a direction from +x. "target": an angle from the best pot's line, else from a fair stroke's.
@@ -155,6 +156,8 @@ class Options:
         Whether a box action holds the elevation of the cue: up to 30 degrees, or up to a number of degrees from 5 to 70.
     placement : bool, default False
         Whether a box action holds the place of a cue ball in hand.
+    speeds : int, default 9
+        Cue speeds along each pot of the menu, from 2 to 20: it has 12 times as many strokes, in a frame 50 more.
     physics : str, dict, Physics or None, default "paper"
         "paper", "match", or a dict of overrides, as ``Physics.of`` takes them; the radius of the balls is snooker's.
     table : str or Table, default "match"
@@ -215,6 +218,7 @@ class Options:
     reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = "points"
     elevation: bool | float = False
     placement: bool = False
+    speeds: int = SPEEDS
     physics: PhysicsLike = "paper"
     table: TableLike = "match"
     fidelity: Fidelity = "standard"
@@ -280,7 +284,17 @@ class Options:
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
         world = actions, noise, physics, table, fidelity, plan, self.reward, kind
         read = Rules(
-            *world, self.miss, limit, one_stroke, frames, self.game, pause, drawn, observed, self.cue
+            *world,
+            self.miss,
+            limit,
+            one_stroke,
+            frames,
+            self.game,
+            pause,
+            drawn,
+            observed,
+            self.cue,
+            self.speeds,
         )
         object.__setattr__(self, "rules", read)
 
@@ -324,7 +338,7 @@ class Options:
         if "decision" in self.says:
             raise refuse("says", self.says, 'must not hold "decision" with action="discrete"')
         choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
-        return Menu(frame=self.task != "visit") if kind == "strokes" else Choices(self.says)
+        return Menu(self.speeds, frame=self.task != "visit") if kind == "strokes" else Choices(self.says)
 
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""
@@ -361,7 +375,7 @@ def observation_space_of(
     rules, frame = options.rules, options.task != "visit"
     actions = rules.actions if actions is None else actions
     choices = actions.choices if isinstance(actions, Choices) else 0
-    more = {"replaced": rules.misses, "conditions": rules.observed}
+    more = {"replaced": rules.misses, "conditions": rules.observed, "speeds": rules.speeds}
     return observations.space(rules.observation, frame=frame, choices=choices, **more)
 
 

@@ -24,7 +24,7 @@ from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from ..simulation.count import count
 from . import discrete_actions
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
-from .declarations import A_DISCRETE, A_PLACEMENT, MENU, playable
+from .declarations import A_DISCRETE, A_PLACEMENT, A_SPEEDS, playable
 from .kernel_arrays import C_E_T, C_END_MASS, C_MAX_OFFSET, C_MU_S, C_RAILS, CueLaw, StruckArrays
 from .lines import new_work
 from .noise import execute_stroke, kick_of
@@ -198,8 +198,9 @@ def address(which, actions, tables, shots, packed, fidelity):
             before, new = which[max(0, j - 1)], j == 0 or a[0] != solved[0] or mask != mask_before
             new = new or not _same_constants(k, before, cues, phys)
             if new or not _same_table(p, on, positions[before], on_table[before]):
-                if options[A_DISCRETE] == MENU:
-                    chosen = solve_menu_stroke(int(a[0]), p, on, mask, law, work)
+                if options[A_SPEEDS]:
+                    speeds = int(options[A_SPEEDS])
+                    chosen = solve_menu_stroke(int(a[0]), speeds, p, on, mask, law, work)
                 else:
                     chosen = discrete_actions.solve_choice(int(a[0]), p, on, mask, law, work)
                 solved[0], mask_before = a[0], mask

@@ -5,13 +5,15 @@ their own, and the decisions after a foul. The aim is solved for the stroke."""
 import numpy as np
 from gymnasium import spaces
 
+from .._lib.check import integer
 from .._lib.jit import entry, kernel
 from .._lib.types import Floats
 from ..game import frame_columns as columns
 from ..game.balls import bits
 from ..game.pots import POT_COLUMNS
 from ..physics.cue import squirt
-from .declarations import A_DECISION, A_DISCRETE, FRAME_STROKES, MENU, MENU_STROKES
+from .box_actions import FASTEST, MOST_TOP, SLOWEST
+from .declarations import A_DECISION, A_SPEEDS
 from .discrete_actions import Choices
 from .lines import (
     LINE_ROWS,
@@ -26,64 +28,72 @@ from .lines import (
     list_lines,
 )
 
-SPEEDS = tuple(round(1.1 * (4.2 / 1.1) ** (k / 4), 2) for k in range(5))
-"""The cue speeds at pots [m/s]: from 1.1 to 4.2 in equal ratios."""
-TOPS = (-0.35, 0.0, 0.35)
+SPEEDS = 9
+"""Cue speeds along each pot, by default."""
+LEAST_SPEEDS, MOST_SPEEDS = 2, 20
+TOPS = (-MOST_TOP, 0.0, MOST_TOP)
 """The tip offsets at pots, over R, upwards."""
-ALONG = len(SPEEDS) * len(TOPS)
-"""Strokes along each pot: speeds x heights of the tip."""
+PER_SPEED = POTS * len(TOPS)
+"""Strokes at pots of each cue speed."""
 SAFE_SPEEDS, SAFE_TOPS = (0.8, 1.4, 2.2, 3.4), (-0.3, 0.15)
 """The same of safeties."""
 SAFE_ALONG = len(SAFE_SPEEDS) * len(SAFE_TOPS)
-assert MENU_STROKES == POTS * ALONG and FRAME_STROKES == MENU_STROKES + SAFE_LINES * SAFE_ALONG
+SAFETIES = SAFE_LINES * SAFE_ALONG
 DECISIONS = 2
 """Choices after the strokes of a frame: the offender plays again; from the position before, or the striker from anywhere."""
-MENU_SIZES = MENU_STROKES, FRAME_STROKES + DECISIONS
-"""Choices of a visit, and of a frame."""
+
+
+def menu_size(speeds: int, frame: bool) -> int:
+    """Choices of a visit or a frame with so many ``speeds`` along each pot."""
+    return PER_SPEED * speeds + (SAFETIES + DECISIONS) * frame
+
+
+def speeds_of(choices: int, frame: bool) -> int:
+    """The speeds along each pot on a menu of so many ``choices``; 0: there is no such menu."""
+    speeds, rest = divmod(choices - menu_size(0, frame), PER_SPEED)
+    return speeds if rest == 0 and LEAST_SPEEDS <= speeds <= MOST_SPEEDS else 0
 
 
 @kernel
-def menu_stroke(index):
-    """(line, speed, side, top) of the stroke ``index`` of a menu."""
-    if index < MENU_STROKES:
-        along = index % ALONG
-        return index // ALONG, SPEEDS[along // len(TOPS)], 0.0, TOPS[along % len(TOPS)]
-    safety = index - MENU_STROKES
-    along = safety % SAFE_ALONG
-    return safety // SAFE_ALONG, SAFE_SPEEDS[along // len(SAFE_TOPS)], 0.0, SAFE_TOPS[along % len(SAFE_TOPS)]
+def cue_speed(level, speeds):
+    """The cue speed at pots number ``level`` [m/s]: from ``SLOWEST`` to ``FASTEST`` in equal ratios."""
+    return SLOWEST * (FASTEST / SLOWEST) ** (level / (speeds - 1))
 
 
 @kernel
-def breaks_off(index, end_red):
-    """Whether the stroke ``index`` is the break-off, which stands in the place of the first safety."""
-    return index == MENU_STROKES and end_red > 0
+def menu_stroke(index, speeds):
+    """(line, speed, side, top) of the stroke ``index`` at pots."""
+    line, along = index // (speeds * len(TOPS)), index % (speeds * len(TOPS))
+    return line, cue_speed(along // len(TOPS), speeds), 0.0, TOPS[along % len(TOPS)]
 
 
 @kernel(seconds=1, uses=(aim_along,))
-def safe_stroke(index, end_red, lines, positions, on_table, on, law, work):
-    """(speed, side, top, direction) of the safety ``index``, along rows of ``find_safe_lines``."""
-    if breaks_off(index, end_red):
+def safe_stroke(safety, end_red, lines, positions, on_table, on, law, work):
+    """(speed, side, top, direction) of the ``safety``, along rows of ``find_safe_lines``; the break-off is the first."""
+    if safety == 0 and end_red > 0:
         return break_off(positions, end_red)
-    line, speed, side, top = menu_stroke(index)
+    along = safety % SAFE_ALONG
+    speed, side, top = SAFE_SPEEDS[along // len(SAFE_TOPS)], 0.0, SAFE_TOPS[along % len(SAFE_TOPS)]
+    line = safety // SAFE_ALONG
     aim = aim_along(lines[line], (speed, side, top, 0.0), positions, on_table, on, law, work)
     return speed, side, top, aim
 
 
 @kernel(seconds=1, uses=(aim_on, safe_stroke))
-def solve_menu_stroke(index, positions, on_table, on, law, work):
+def solve_menu_stroke(index, speeds, positions, on_table, on, law, work):
     """(speed, side, top, aim, elevation) of the choice ``index``, as ``box_actions.shot_of``; one that is not there is the same
     stroke along the last line that is, a decision the last stroke."""
-    index = min(index, FRAME_STROKES - 1)
-    line, speed, side, top = menu_stroke(index)
-    if index < MENU_STROKES:
+    safety = min(index - speeds * PER_SPEED, SAFETIES - 1)
+    if safety < 0:
+        line, speed, side, top = menu_stroke(index, speeds)
         many, pots = list_lines(positions, on_table, on, work.lines)
         stroke = speed, side, top, 0.0
         aim = aim_on(min(line, many - 1), pots, stroke, positions, on_table, on, law, work)
     else:
         many = find_safe_lines(positions, on_table, on, work.lines)
-        index -= max(0, line - many + 1) * SAFE_ALONG
+        safety -= max(0, safety // SAFE_ALONG - many + 1) * SAFE_ALONG
         end_red = end_red_of_rack(positions, on_table)
-        speed, side, top, aim = safe_stroke(index, end_red, work.lines, positions, on_table, on, law, work)
+        speed, side, top, aim = safe_stroke(safety, end_red, work.lines, positions, on_table, on, law, work)
     return speed, side, top, aim - squirt(side, law.end_mass_ratio), 0.0
 
 
@@ -95,35 +105,37 @@ def decisions_of(row, rules):
 
 
 @entry(what="the menus of strokes", seconds=1)
-def menu_masks(which, positions, on_table, game, rules, out):
+def menu_masks(which, positions, on_table, game, speeds, rules, out):
     """What is on the menus of the tables ``which``: bool, one row of ``out`` each; ``rules``: the code of the rule set."""
-    rows = np.empty((LINE_ROWS, POT_COLUMNS))
+    rows, at_pots = np.empty((LINE_ROWS, POT_COLUMNS)), speeds * PER_SPEED
+    last = at_pots + SAFETIES
     for j in range(which.shape[0]):
         k, many, safe = which[j], 1, 1
         p, here = positions[k], on_table[k]
         on = columns.strikeable(game[k], bits(here))
         if here[0]:
             many = count_lines(p, here, on, rows)
-            if out.shape[1] > MENU_STROKES:
+            if out.shape[1] > at_pots:
                 safe = find_safe_lines(p, here, on, rows)
         for c in range(out.shape[1]):
-            out[j, c] = c < ALONG * many if c < MENU_STROKES else c < MENU_STROKES + SAFE_ALONG * safe
-        if out.shape[1] > FRAME_STROKES:
-            out[j, FRAME_STROKES], out[j, FRAME_STROKES + 1] = decisions_of(game[k], rules)
+            out[j, c] = c < many * speeds * len(TOPS) if c < at_pots else c < at_pots + SAFE_ALONG * safe
+        if out.shape[1] > last:
+            out[j, last], out[j, last + 1] = decisions_of(game[k], rules)
 
 
 class Menu(Choices):
-    """The action space of a menu: (line * 5 + speed) * 3 + height; of a frame then 60 + (line * 4 + speed) * 2 + height for
+    """The action space of a menu: (line * speeds + speed) * 3 + height; of a frame then (line * 4 + speed) * 2 + height for
     safeties, and the decisions. What is not there is played as the same stroke along the last line that is."""
 
-    def __init__(self, *, frame: bool = False) -> None:
+    def __init__(self, speeds: int = SPEEDS, *, frame: bool = False) -> None:
         super().__init__()
-        self.frame = frame
-        self.choices = MENU_SIZES[frame]
+        self.frame, self.speeds = frame, integer("speeds", speeds, LEAST_SPEEDS, MOST_SPEEDS)
+        self.choices = menu_size(speeds, frame)
         self.space = spaces.Discrete(self.choices)
 
     def pack(self) -> Floats:
         """The options for the kernels, in the columns ``A_*`` of ``declarations``."""
         packed = super().pack()
-        packed[A_DISCRETE], packed[A_DECISION] = MENU, 0 if self.frame else -1
+        packed[A_SPEEDS] = self.speeds
+        packed[A_DECISION] = self.choices - DECISIONS if self.frame else -1
         return packed

@@ -180,7 +180,9 @@ class Tables(ABC):
         self.reals = self.REALS
         self.conditions = np.empty((0, CONDITIONS))
         options, self.cues, errors, self.phys = rules.pack()
-        self._errors: tuple[Errors, ...] = (Errors.of(rules.noise, rules.physics),)  # of each seat
+        self._errors: tuple[Errors, ...] = (
+            Errors.of(rules.noise, rules.physics, rules.speeds),
+        )  # of each seat
         self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)  # of each seat
         if rules.drawn:
             self.reals = (*self.REALS, *CONDITION_NAMES)
@@ -262,7 +264,7 @@ class Tables(ABC):
         out = np.empty((len(which), choices), np.bool_)
         if isinstance(actions, Menu):
             code = self.rules.rule_set.code
-            menu_masks(which, self.positions, self.on_table, self.game, code, out)
+            menu_masks(which, self.positions, self.on_table, self.game, actions.speeds, code, out)
             return out
         reads = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY, self.rules.cue_row
         discrete_actions.masks(which, self.positions, self.on_table, self.game, *reads, out)

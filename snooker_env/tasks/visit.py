@@ -34,7 +34,7 @@ from .options import NEVER, Rules
 from .rewards import REWARDS, reward_of
 from .states import State, check_visit
 from .stroke import JUMPED, ShotBuffers, see, write_ruling
-from .stroke_menu import MENU_SIZES
+from .stroke_menu import menu_size
 from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_info, write_stroke_info
 
 _OK = int(Status.OK)
@@ -110,9 +110,8 @@ class Visits(Tables):
     COLUMNS = VISIT_COLUMNS
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
-        self.SIZE = {"pots": POTS_SIZE, "strokes": STROKE_SIZE * MENU_SIZES[0] + len(STATE_ENTRIES)}.get(
-            rules.observation, SIZE
-        )
+        menu = STROKE_SIZE * menu_size(rules.speeds, False) + len(STATE_ENTRIES)
+        self.SIZE = {"pots": POTS_SIZE, "strokes": menu}.get(rules.observation, SIZE)
         super().__init__(rules, n, limit=limit)
         spread, rails = rules.noise.spread(rules.physics, speed=SHOWN_SPEED), rules.cue_row[C_RAILS:]
         self._view: View = View(rules.observation == "pots", spread, rails)
