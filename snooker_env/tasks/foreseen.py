@@ -41,7 +41,7 @@ F_THERE, F_POT, F_CHANCE, F_LOG, F_POINTS, F_SPEED, F_TOP, F_CUT, F_TOLERANCE = 
 F_X, F_Y, F_NOSES, F_BALLS, F_RUN, F_LOST, F_MISSED, F_NEAR, F_REACH = range(9, 18)
 F_PROSPECTS, F_BEST, F_SECOND, F_FOUL, F_PROMISE = range(18, STROKE_SIZE)
 _LEFT = 4  # widest pots of a position that is left, of which it is judged
-_ENOUGH = 1e-4
+_ENOUGH = 3e-4
 """What is foreseen is foreseen of an aim at which the ball passes the pocket's aim point by no more than that [rad]."""
 _ASTRAY = 0.02  # sine of an angle by which a ball that is sent off its line misses any pocket
 _STATES = (
@@ -132,10 +132,12 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
         one = rows[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
         _, speed, side, top = menu_stroke(index, speeds)
         stroke[0], stroke[1], stroke[2] = speed, side, top
-        if level:  # from the same tip at the last speed
-            aim = desk.aims[height]
+        begin = aim
+        if level:  # from the aims of the same tip at the last two speeds
+            begin = desk.aims[0, height] + (desk.aims[0, height] - desk.aims[1, height] if level > 1 else 0.0)
         lies = positions, on_table, ball, target, ghost, (speed, side, top, 0.0), law, work
-        aim = desk.aims[height] = stroke[3] = aim_from(aim, _ENOUGH, *lies)
+        desk.aims[1, height] = desk.aims[0, height]
+        aim = desk.aims[0, height] = stroke[3] = aim_from(begin, _ENOUGH, *lies)
         raised = foresee_pot(stroke, (ball, pocket), positions, on_table, law, work, seen)
         spread = Spread(errors.cores[level], errors.lapse, errors.factor)
         if rails.shape[0]:
@@ -205,7 +207,7 @@ def foresee(which, at, player, tables, rules, errors, out):
         np.empty((MOST_RUNS, RUN_COLUMNS)),
         np.empty((_LEFT, POT_COLUMNS)),
         np.empty(0),
-        np.empty(len(TOPS)),
+        np.empty((2, len(TOPS))),
     )
     desk = Desk(np.empty(path.SEEN), np.empty(path.SEEN), np.zeros(5), *table, *wide)
     for j in range(which.shape[0]):

@@ -51,21 +51,21 @@ def test_dqn_learns():
     before = weights(model)
     model.learn(40)
     assert any(not torch.equal(value, before[name]) for name, value in weights(model).items())
-    assert model.q_net(torch.as_tensor(env.reset())).shape == (4, 60)
+    assert model.q_net(torch.as_tensor(env.reset())).shape == (4, 108)
 
 
 def test_each_stroke_is_read_alike():
     """Strokes that change places change their logits with them; the position is read the same."""
-    net, rng = _StrokesNet(60, 60 * 23 + 11), np.random.default_rng(3)
-    seen = torch.as_tensor(rng.uniform(-1.0, 1.0, (5, 60 * 23 + 11)), dtype=torch.float32)
-    order = torch.as_tensor(rng.permutation(60))
+    net, rng = _StrokesNet(108, 108 * 23 + 11), np.random.default_rng(3)
+    seen = torch.as_tensor(rng.uniform(-1.0, 1.0, (5, 108 * 23 + 11)), dtype=torch.float32)
+    order = torch.as_tensor(rng.permutation(108))
     swapped = seen.clone()
-    swapped[:, : 60 * 23] = seen[:, : 60 * 23].view(5, 60, 23)[:, order].reshape(5, -1)
+    swapped[:, : 108 * 23] = seen[:, : 108 * 23].view(5, 108, 23)[:, order].reshape(5, -1)
     (logits, position), (logits2, position2) = net(seen), net(swapped)
     assert torch.allclose(logits[:, order], logits2, atol=1e-6) and torch.allclose(
         position, position2, atol=1e-5
     )
-    assert logits.shape == (5, 60) and torch.equal(net.forward_actor(seen), logits)
+    assert logits.shape == (5, 108) and torch.equal(net.forward_actor(seen), logits)
     assert torch.equal(net.forward_critic(seen), position)
 
 

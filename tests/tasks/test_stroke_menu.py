@@ -16,13 +16,14 @@ from snooker_env.tasks.observations import BALLS_SIZE, STROKE_ENTRIES
 from snooker_env.tasks.pot_chance import pot_chances
 from tests.positions import tables
 
-SPEEDS, TOPS = (1.1, 1.54, 2.15, 3.0, 4.2), (-0.35, 0.0, 0.35)
+SPEEDS, TOPS = [0.8 * (4.6 / 0.8) ** (k / 8) for k in range(9)], (-0.4, 0.0, 0.4)
+ALONG, CHOICES = 27, 108  # strokes along a pot, and of a visit
 COLUMN = {name: k for k, name in enumerate(STROKE_ENTRIES)}
 MENU = {"action": "strokes", "observation": "strokes"}
 SIZE = len(STROKE_ENTRIES)
 
 
-def rows_of(observed, choices=60):
+def rows_of(observed, choices=CHOICES):
     """What is seen of each stroke, (n, choices, columns), and the state."""
     observed = np.atleast_2d(observed)
     return observed[:, : choices * SIZE].reshape(len(observed), choices, SIZE), observed[:, choices * SIZE :]
@@ -30,7 +31,7 @@ def rows_of(observed, choices=60):
 
 def wanted_of(at, options, pot, index):
     """The numbers of stroke ``index`` of one position, at a pot as of ``pots``: a dict."""
-    line, along = divmod(index, 15)
+    line, along = divmod(index, ALONG)
     speed, top = SPEEDS[along // 3], TOPS[along % 3]
     ball, pocket, ghost = pot.ball[:, line], pot.pocket[:, line], pot.ghost[:, line]
     to, stroke = POCKET_AIMS[pocket, :2], np.array([[speed, 0.0, top, 0.0, 0.0]])
@@ -52,7 +53,7 @@ def wanted_of(at, options, pot, index):
     cue_ball_path.predict(balls, np.zeros(1, int), stroke, at_pot, *none, law, out, left)
     seen = out[0]
     wanted = {"there": 1.0, "pot": 1.0, "chance": chance, "log_chance": max(-1.0, log10(chance) / 2.0)}
-    wanted |= {"points": max(1, ball[0] - 14) / 7.0, "speed": speed / 4.2, "top": top / 0.35}
+    wanted |= {"points": max(1, ball[0] - 14) / 7.0, "speed": speed / 4.6, "top": top / 0.4}
     wanted |= {
         "cut": pot.cut[0, line] / (pi / 2.0),
         "tolerance": pot.tolerance[0, line] / (pot.tolerance[0, line] + 0.01),
@@ -101,8 +102,8 @@ def test_what_is_foreseen_of_each_stroke_at_a_pot(options):
         many = int((pot.ball[0] >= 0).sum())
         if many == 0:
             continue
-        assert seen[k, :, 0].tolist() == [float(c < 15 * many) for c in range(60)]
-        for index in rng.choice(15 * many, 8, replace=False).tolist():
+        assert seen[k, :, 0].tolist() == [float(c < ALONG * many) for c in range(CHOICES)]
+        for index in rng.choice(ALONG * many, 8, replace=False).tolist():
             wanted, few = wanted_of(at[[k]], env.options, pot, index)
             judged += few
             names = [name for name in wanted if few or name not in ("prospects", "promise")]
@@ -117,7 +118,7 @@ def test_it_is_the_stroke_that_is_played():
     """Speed, tip and the aim of ``pot_aim``; what is not on the menu is the same stroke along the last line that is."""
     env, planner = tables(30, **MENU, cue="real"), Planner({**MENU, "cue": "real"})
     at = Positions.of(env)
-    choices = np.random.default_rng(1).integers(0, 60, 30)
+    choices = np.random.default_rng(1).integers(0, CHOICES, 30)
     values, _ = planner.strokes_of(at, np.arange(30), choices)
     masks, played = env.action_masks(), 0
     for k, choice in enumerate(choices.tolist()):
@@ -125,14 +126,14 @@ def test_it_is_the_stroke_that_is_played():
         many = int((pot.ball[0] >= 0).sum())
         if not many:
             continue
-        assert masks[k].tolist() == [c < 15 * many for c in range(60)]
-        line, along = min(choice // 15, many - 1), choice % 15
+        assert masks[k].tolist() == [c < ALONG * many for c in range(CHOICES)]
+        line, along = min(choice // ALONG, many - 1), choice % ALONG
         stroke = np.array([[SPEEDS[along // 3], 0.0, TOPS[along % 3], 0.0, 0.0]])
         to = POCKET_AIMS[pot.pocket[:, line], :2]
         (aim,) = pot_aim(at, [k], pot.ball[:, line], to, stroke, ghosts=pot.ghost[:, line], cue="real")
         assert values[k, [0, 1, 2, 4]] == pytest.approx(stroke[0, [0, 1, 2, 4]], abs=1e-12)
         assert abs(np.exp(1j * values[k, 3]) - np.exp(1j * aim)) < 1e-9
-        played += choice // 15 >= many
+        played += choice // ALONG >= many
     assert played > 0
 
 
@@ -142,14 +143,14 @@ def test_what_is_not_there_shows_and_plays_the_nearest_that_is():
     observed, _ = env.reset(options={"position": alone})
     (rows,), _ = rows_of(observed)
     there = env.action_masks()
-    many = int(there.sum()) // 15
-    assert 1 <= many < 4 and there.tolist() == [c < 15 * many for c in range(60)]
+    many = int(there.sum()) // ALONG
+    assert 1 <= many < 4 and there.tolist() == [c < ALONG * many for c in range(CHOICES)]
     assert (rows[:, 0] == there).all()
-    last = rows[15 * (many - 1) : 15 * many, 1:]
+    last = rows[ALONG * (many - 1) : ALONG * many, 1:]
     for line in range(many, 4):
-        assert np.array_equal(rows[15 * line : 15 * (line + 1), 1:], last)
+        assert np.array_equal(rows[ALONG * line : ALONG * (line + 1), 1:], last)
     ends = []
-    for choice in (15 * (many - 1) + 7, 45 + 7):
+    for choice in (ALONG * (many - 1) + 7, 3 * ALONG + 7):
         env.reset(options={"position": alone})
         env.step(choice)
         ends.append(env.positions)
@@ -165,7 +166,7 @@ def test_threads_and_vectors_change_no_bit():
         observed, rng, each = env.reset(seed=3)[0], np.random.default_rng(0), []
         for _ in range(4):
             each.append(observed)
-            observed, rewards, *_ = env.step(rng.integers(0, 60, 40))
+            observed, rewards, *_ = env.step(rng.integers(0, CHOICES, 40))
             each.append(rewards)
         seen.append(each)
     assert all(np.array_equal(a, b) for a, b in zip(*seen, strict=True))
@@ -175,7 +176,7 @@ def test_what_is_observed_and_how_one_acts_are_chosen_apart():
     assert sn.SnookerEnv(action="strokes").observation_space.shape == (61,)
     seen = sn.SnookerEnv(observation="strokes", conditions="drawn", observe_conditions=True)
     observed, info = seen.reset(seed=1)
-    assert observed.shape == (60 * SIZE + 11 + 8,) and seen.observation_space.contains(observed)
+    assert observed.shape == (CHOICES * SIZE + 11 + 8,) and seen.observation_space.contains(observed)
     assert observed[-8] == pytest.approx(2.0 * (info["mu_s"] - 0.15) / 0.1 - 1.0, abs=1.0)
     with pytest.raises(ValueError, match="says"):
         sn.SnookerEnv(task="frame", action="strokes", says=["concede"])
@@ -187,20 +188,20 @@ def test_a_frame_has_safeties_the_break_off_and_decisions():
     env = sn.match_env(**MENU, noise="none")
     env.reset(seed=1)
     first = env.agent_selection
-    (rows,), state = rows_of(env.observe(first), 110)
-    assert state.shape == (1, 30) and rows[60:108, 0].any() and not rows[108:, 0].any()
-    assert rows[60, COLUMN["speed"]] == pytest.approx(3.4 / 4.2) and rows[60, COLUMN["top"]] == pytest.approx(
-        0.1 / 0.35
+    (rows,), state = rows_of(env.observe(first), CHOICES + 50)
+    assert state.shape == (1, 30) and rows[108:156, 0].any() and not rows[156:, 0].any()
+    assert rows[108, COLUMN["speed"]] == pytest.approx(3.4 / 4.6) and rows[108, COLUMN["top"]] == pytest.approx(
+        0.1 / 0.4
     )
     other = next(name for name in env.possible_agents if name != first)
-    assert not rows_of(env.observe(other), 110)[0][..., 0].any()
-    assert env.action_mask(first)[:108].tolist() == rows[:108, 0].tolist()
-    env.step(60)
+    assert not rows_of(env.observe(other), CHOICES + 50)[0][..., 0].any()
+    assert env.action_mask(first)[:156].tolist() == rows[:156, 0].tolist()
+    env.step(108)
     assert env.last_shot is not None or env.agent_selection == other
 
 
 @pytest.mark.parametrize("miss", ["off", "clear_path"])
-@pytest.mark.parametrize("choice", [7, 108, 109])
+@pytest.mark.parametrize("choice", [7, 156, 157])
 def test_the_decisions_after_a_foul(choice, miss):
     env = sn.match_env(**MENU, miss=miss, noise="none", seats=({"action": "box", "aim": "absolute"}, {}))
     position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.3)], yellow=(-0.4, 0.2), black=(0.0, 1.3))
@@ -209,16 +210,16 @@ def test_the_decisions_after_a_foul(choice, miss):
     offender, striker = env.possible_agents
     assert env.frame.phase == "choice" and env.agent_selection == striker
     back = miss != "off"
-    (rows,), _ = rows_of(env.observe(striker), 110)
-    assert env.action_mask(striker)[108:].tolist() == rows[108:, 0].tolist() == [1, back]
-    assert rows[108:, COLUMN["speed"]].tolist() == [-1.0, 1.0] and rows[108:, COLUMN["pot"]].tolist() == [
+    (rows,), _ = rows_of(env.observe(striker), CHOICES + 50)
+    assert env.action_mask(striker)[156:].tolist() == rows[156:, 0].tolist() == [1, back]
+    assert rows[156:, COLUMN["speed"]].tolist() == [-1.0, 1.0] and rows[156:, COLUMN["pot"]].tolist() == [
         -1.0,
         -1.0,
     ]
     before, lies = env.strokes, env.positions[0]
     env.step(choice)
-    if choice == 7 or (choice == 109 and not back):
+    if choice == 7 or (choice == 157 and not back):
         assert env.strokes == before + 1
     else:
         assert env.agent_selection == offender and env.strokes == before
-        assert np.array_equal(env.positions[0], (0.0, 0.0) if choice == 109 else lies)
+        assert np.array_equal(env.positions[0], (0.0, 0.0) if choice == 157 else lies)
