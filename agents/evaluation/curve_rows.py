@@ -16,7 +16,7 @@ from snooker_env.sb3 import SnookerVecEnv, StrokesPolicy, StrokesQPolicy
 
 from ..learning.hyperparameters import Recipe
 
-GAME = {"noise": "professional", "cue": "real"}
+GAME: dict[str, Any] = {"noise": "professional", "cue": "real"}
 FORMS: dict[str, dict[str, Any]] = {
     "pot": {},  # the default
     "strokes": {"action": "strokes", "observation": "strokes"},
@@ -44,7 +44,7 @@ class Place(NamedTuple):
     @property
     def judged_options(self) -> dict[str, Any]:
         """All options of the judging."""
-        return {**self.options, **self.judged}
+        return self.options | self.judged
 
 
 def _one_stroke(task: str, words: str, form: str, **instead: str) -> Place:
@@ -83,24 +83,14 @@ class Row:
     @property
     def options(self) -> dict[str, Any]:
         """Options of the training tables."""
-        return {**PLACES[self.place].options, **FORMS[self.form]}
+        return PLACES[self.place].options | FORMS[self.form]
 
     def code(self) -> str:
         """The same in Python, as a stranger writes it."""
-        options = [
-            f'{key}="{value}"' if isinstance(value, str) else f"{key}={value}"
-            for key, value in self.options.items()
-        ]
-        first = (
-            'gymnasium.make("snooker_env:Snooker-v0"'
-            if self.tables is None
-            else f"SnookerVecEnv({self.tables}"
-        )
+        made = ("gymnasium.make", '"snooker_env:Snooker-v0"')
+        tables = _call(*(("SnookerVecEnv", str(self.tables)) if self.tables else made), **self.options)
         policy = f'"{self.policy}"' if isinstance(self.policy, str) else self.policy.__name__
-        settings = [f"{key}={value}" for key, value in self.settings.items()]
-        return (
-            f"{self.algorithm.__name__}({', '.join([policy, ', '.join([first, *options]) + ')', *settings])})"
-        )
+        return _call(self.algorithm.__name__, policy, tables, **self.settings)
 
     def agent(self, seed: int, threads: int | None) -> tuple[BaseAlgorithm, Any]:
         """That, untrained, of one training seed, and its tables."""
@@ -115,10 +105,19 @@ class Row:
         """What the deterministic policy makes of each held-out episode (visits,)."""
 
         def decide(seen: Any, tables: SnookerVectorEnv) -> np.ndarray:
-            masks = {"action_masks": tables.action_masks()} if isinstance(agent, MaskablePPO) else {}
-            return agent.predict(seen, deterministic=True, **masks)[0]
+            if isinstance(agent, MaskablePPO):
+                return agent.predict(seen, deterministic=True, action_masks=tables.action_masks())[0]
+            return agent.predict(seen, deterministic=True)[0]
 
-        return play({**self.options, **PLACES[self.place].judged}, decide, visits, threads)
+        return play(self.options | PLACES[self.place].judged, decide, visits, threads)
+
+
+def _call(name: str, *first: str, **more: object) -> str:
+    """A call in Python."""
+    keywords = [
+        f'{key}="{value}"' if isinstance(value, str) else f"{key}={value}" for key, value in more.items()
+    ]
+    return f"{name}({', '.join([*first, *keywords])})"
 
 
 def _recipe(name: str) -> dict[str, Any]:
@@ -163,7 +162,7 @@ def play(
     seeds = tables_of(options["layout"], visits)
     sums, here, steps = np.zeros(visits), np.arange(visits), 0
     tables = SnookerVectorEnv(visits, threads=threads, **options)
-    seen, _ = tables.reset(seed=seeds)
+    seen, _ = tables.reset(seed=[*seeds])
     while True:
         seen, rewards, terminated, truncated, _ = tables.step(decide(seen, tables))
         sums[here] += rewards
