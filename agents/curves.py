@@ -60,7 +60,7 @@ def parser():
     )
     add("--markdown", type=Path, metavar="FILE", help="write the tables here")
     add("--picture", type=Path, metavar="FILE", help="draw the curves of visits here")
-    add("--page", type=Path, metavar="FILE", help="write the tables between the marks of this page")
+    add("--page", type=Path, metavar="FILE", help="write picture and points of visits between its marks")
     return p
 
 

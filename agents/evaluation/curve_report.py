@@ -1,6 +1,7 @@
 """How are learning curves shown? A table for each place where agents are judged, the code of each row, and a picture."""
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -120,13 +121,18 @@ def markdown(content: dict[str, Any]) -> str:
 
 
 def fill(text: str, content: dict[str, Any], file: Path) -> str:
-    """A page's text with the tables between its marks. ValueError if it has none."""
+    """The text of a page in ``docs/agents`` with the points of visits between its marks. ValueError if it has none."""
     before, begin, rest = text.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
         raise refuse("page", str(file), f"must hold the lines {BEGIN.strip()} and {END}")
-    tables = "\n\n".join([*(table.markdown() for table in tables_of(content)), LEGEND])
-    return f"{before}{begin}\n{tables}\n\n{end}{after}"
+    made = f"{before}{begin}\n![points a visit by shots of training](../../results/pictures/curves.png)\n\n"
+    for table in islice(tables_of(content), 1):
+        shown = [0, *(k for k, head in enumerate(table.header) if head.endswith(" shots"))]
+        rows = [[row[k].partition(" ±")[0] for k in shown] for row in table.rows]
+        made += TextTable(table.title, [table.header[k] for k in shown], rows, 1, 1).markdown() + "\n\n"
+    words = "Median over training seeds [least, most]"
+    return f"{made}{words}. [All rows](../../results/agents/curves.md), with errors, rates and code.\n\n{end}{after}"
 
 
 def draw(content: dict[str, Any], file: Path) -> None:

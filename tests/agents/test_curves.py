@@ -179,9 +179,8 @@ def test_report_writes_them_and_a_page_takes_them(tmp_path, capsys):
     assert max(map(len, capsys.readouterr().out.splitlines())) <= 100
     page.write_text("before\n\n<!-- curves -->\nold\n<!-- /curves -->\n\nafter\n")
     filled = curve_report.fill(page.read_text(), CONTENT, page)
-    assert filled.startswith("before\n\n<!-- curves -->\n\n**Visit") and filled.endswith(
-        "<!-- /curves -->\n\nafter\n"
-    )
+    assert filled.startswith("before\n\n<!-- curves -->\n") and filled.endswith("<!-- /curves -->\n\nafter\n")
+    assert "| pot_ppo | 5.5 [5.0, 7.0] |  |\n| strokes_dqn_policy | 5.0 | 10.0 |\n" in filled
     assert "old" not in filled and curve_report.fill(filled, CONTENT, page) == filled
 
 
