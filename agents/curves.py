@@ -80,6 +80,9 @@ def check(args) -> dict[str, Any]:
     for name in ("out", "markdown", "picture", "page"):
         writable(name, getattr(args, name))
     content = read_curves(args.out, args.visits)
+    for name in {one["row"] for one in content["points"]}.intersection(args.rows):
+        if (code := content["rows"][name]["code"]) != ROWS[name].code():
+            raise refuse("rows", name, f"must train what {args.out} has of it, {code}: or give another --out")
     if args.page is not None:
         if not args.page.is_file():
             raise refuse("page", str(args.page), "must be a page that is there")
@@ -164,8 +167,11 @@ def main(argv=None):
         "software": software(),
     }
 
+    rows = {name: row.describe() for name, row in ROWS.items()}
+    head = {"visits": args.visits, "rows": rows, "made": made}
+
     def note(name: str, one: dict[str, Any]) -> None:
-        keep(args.out, name, one, made, args.visits)
+        keep(args.out, name, one, head)
         print(
             *(
                 f"{key} {value:.6g}" if isinstance(value, float) else f"{key} {value}"

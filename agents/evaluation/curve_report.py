@@ -11,8 +11,13 @@ from agents._lib.tables import TextTable
 from agents._lib.tables import page as text_page
 from snooker_env.checks import refuse
 
-from .curve_rows import PLACES, ROWS
-
+PLACES = {
+    "visit": ("points a visit", "{:.1f}"),
+    "hard pot": ("share of pots, one stroke", "{:.2f}"),
+    "escape": ("share of fair strokes", "{:.2f}"),
+    "safety": ("points of lead a stroke", "{:.1f}"),
+}
+"""Where agents are judged: what their points are, and how these are written."""
 TITLE = "What plain Stable-Baselines3 learns, by the form of the action"
 BEGIN, END = "<!-- curves -->\n", "<!-- /curves -->"
 """What lies between them on a page is written by ``agents.curves``."""
@@ -30,12 +35,13 @@ def _points(content: dict[str, Any], row: str, shots: int) -> list[dict[str, Any
 
 def _shots(content: dict[str, Any], place: str) -> list[int]:
     """The numbers of shots after which agents were judged there, without 0."""
-    return sorted({one["shots"] for one in content["points"] if ROWS[one["row"]].place == place} - {0})
+    known = {one["shots"] for one in content["points"] if content["rows"][one["row"]]["place"] == place}
+    return sorted(known - {0})
 
 
 def _rows(content: dict[str, Any], place: str) -> list[str]:
     known = {one["row"] for one in content["points"]}
-    return [name for name, row in ROWS.items() if row.place == place and name in known]
+    return [name for name, row in content["rows"].items() if row["place"] == place and name in known]
 
 
 def _spread(values: Sequence[float], form: str) -> str:
@@ -63,15 +69,13 @@ def _rate(content: dict[str, Any], name: str) -> str:
 
 def tables_of(content: dict[str, Any]) -> Iterator[TextTable]:
     """One for each place where agents were judged."""
-    for place, (words, *_, form) in PLACES.items():
+    for place, (words, form) in PLACES.items():
         rows, shots = [], _shots(content, place)
         for name in _rows(content, place):
-            row = ROWS[name]
-            policy = "" if row.policy == "MlpPolicy" else f", {getattr(row.policy, '__name__', row.policy)}"
             cells = [_cell(_points(content, name, k), form) for k in (0, *shots)]
             seeds = {one["seed"] for one in content["points"] if one["row"] == name}
             rows.append(
-                [name, row.algorithm.__name__ + policy, *cells, _rate(content, name), str(len(seeds))]
+                [name, content["rows"][name]["algorithm"], *cells, _rate(content, name), str(len(seeds))]
             )
         beside = ", ".join(
             f"{player} {_cell([one], form)}" for player, one in levels_at(content, place).items()
@@ -90,7 +94,7 @@ def levels_at(content: dict[str, Any], place: str) -> dict[str, dict[str, Any]]:
 def _code(content: dict[str, Any]) -> str:
     """What is trained in each row."""
     known = {one["row"] for one in content["points"]}
-    return "\n".join(f"* {name}: `{row.code()}`" for name, row in ROWS.items() if name in known)
+    return "\n".join(f"* {name}: `{row['code']}`" for name, row in content["rows"].items() if name in known)
 
 
 def title(content: dict[str, Any]) -> str:
@@ -145,7 +149,11 @@ def draw(content: dict[str, Any], file: Path) -> None:
     with drawing() as plt:
         figure, panels = page(plt, 5.2, TITLE, note, rows=1, columns=2, sharey=True)
         for axes, menu in zip(panels, (True, False), strict=True):
-            rows = [name for name in _rows(content, "visit") if (ROWS[name].form == "strokes") == menu]
+            rows = [
+                name
+                for name in _rows(content, "visit")
+                if (content["rows"][name]["form"] == "strokes") == menu
+            ]
             for name, colour in zip(rows, SERIES, strict=False):
                 at = {
                     k: [one["points"] for one in found] for k in shots if (found := _points(content, name, k))

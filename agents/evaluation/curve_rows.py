@@ -33,13 +33,10 @@ MOST_STEPS = 20
 class Place(NamedTuple):
     """Where an agent is trained and judged: options of training, and those of the judging that differ."""
 
-    words: str
     options: dict[str, Any]
     judged: dict[str, Any]
-    shots: tuple[int, ...]
+    shots: tuple[int, ...] = (100_000,)
     """The numbers of shots after which it is judged, unless others are asked for."""
-    form: str
-    """How its points are written."""
 
     @property
     def judged_options(self) -> dict[str, Any]:
@@ -47,24 +44,18 @@ class Place(NamedTuple):
         return self.options | self.judged
 
 
-def _one_stroke(task: str, words: str, form: str, **instead: str) -> Place:
+def _one_stroke(task: str, **instead: str) -> Place:
     options = {**TASKS[task].changes, "observation": TASKS[task].observation}
     judged = {key: options[key] for key in instead} | {"layout": TASKS[task].judged_layout}
-    return Place(words, options | instead, judged, (100_000,), form)
+    return Place(options | instead, judged)
 
 
 PLACES = {
-    "visit": Place("points a visit", GAME, {"layout": "held_out"}, (50_000, 200_000, 1_000_000), "{:.1f}"),
-    "hard pot": Place(
-        "share of pots, one stroke",
-        GAME | {"layout": "pots:hard", "one_stroke": True},
-        {},
-        (100_000,),
-        "{:.2f}",
-    ),
-    "escape": _one_stroke("SnookerEscape-v0", "share of fair strokes", "{:.2f}"),
+    "visit": Place(GAME, {"layout": "held_out"}, (50_000, 200_000, 1_000_000)),
+    "hard pot": Place(GAME | {"layout": "pots:hard", "one_stroke": True}, {}),
+    "escape": _one_stroke("SnookerEscape-v0"),
     # the planner's 118 shots a decision are too slow to train against
-    "safety": _one_stroke("SnookerSafety-v0", "points of lead a stroke", "{:.1f}", opponent="planner_20"),
+    "safety": _one_stroke("SnookerSafety-v0", opponent="planner_20"),
 }
 
 
@@ -91,6 +82,12 @@ class Row:
         tables = _call(*(("SnookerVecEnv", str(self.tables)) if self.tables else made), **self.options)
         policy = f'"{self.policy}"' if isinstance(self.policy, str) else self.policy.__name__
         return _call(self.algorithm.__name__, policy, tables, **self.settings)
+
+    def describe(self) -> dict[str, str]:
+        """What a file of points keeps of it."""
+        policy = "" if isinstance(self.policy, str) else f", {self.policy.__name__}"
+        name = self.algorithm.__name__ + policy
+        return {"place": self.place, "form": self.form, "algorithm": name, "code": self.code()}
 
     def agent(self, seed: int, threads: int | None) -> tuple[BaseAlgorithm, Any]:
         """That, untrained, of one training seed, and its tables."""

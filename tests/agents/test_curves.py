@@ -109,6 +109,9 @@ def test_another_file_and_other_visits_are_refused(tmp_path, refused):
     assert "must hold the lines <!-- curves -->" in refused(
         curves.main, "--out", file, "--visits", 10, "--page", page
     )
+    other = CONTENT["rows"]["pot_ppo"] | {"code": "PPO()"}
+    file.write_text(json.dumps(CONTENT | {"rows": CONTENT["rows"] | {"pot_ppo": other}}))
+    assert "rows = 'pot_ppo': must train what" in refused(curves.main, "--out", file, "--visits", 10)
     file.write_text("{}")
     assert "must be a file that agents.curves wrote" in refused(curves.main, "--out", file)
 
@@ -137,6 +140,7 @@ def point(row, seed, shots, points, error=0.5):
 CONTENT = {
     "schema": {"name": NAME, "version": 1},
     "visits": 10,
+    "rows": {name: row.describe() for name, row in ROWS.items()},
     "made": [MADE],
     "levels": [
         {"place": "visit", "player": "zero action", "points": 4.3, "error": 0.25},
@@ -231,6 +235,7 @@ def test_the_code_of_a_row_makes_its_agent(name):
 
 @pytest.mark.parametrize(("place", "task"), [("escape", "SnookerEscape-v0"), ("safety", "SnookerSafety-v0")])
 def test_tasks_are_judged_by_the_rules_of_the_benchmark(place, task):
+    assert list(curve_report.PLACES) == list(PLACES)
     assert sn.Options(**PLACES[place].judged_options) == TASKS[task].judged_options()
 
 
