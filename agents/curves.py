@@ -38,7 +38,7 @@ with needs("agents.curves"):
     from .evaluation.curve_report import draw, fill, levels_at, markdown
     from .evaluation.curve_rows import GAME, PLACES, ROWS, play_nothing
 
-SEEDS, VISITS, MOST_SEED = (0, 1, 2, 3, 4), 300, 99
+SEEDS, VISITS, MOST_SEED = (0, 1, 2, 3, 4), 300, 999
 """Training seeds, held-out tables of a point, and the largest seed: the tables of the next would reach those of the judging."""
 
 
@@ -108,7 +108,8 @@ def levels(place: str, args) -> dict[str, dict[str, float | int]]:
 
 
 def learn(name: str, seed: int, wanted: list[int], known: set[int], args):
-    """Train one seed of a row, and yield each of the ``wanted`` points that is not ``known``."""
+    """Train one seed of a row, and yield each of the ``wanted`` points that is not ``known``. Each number of shots is a
+    further ``learn``: DQN explores in the first."""
     row, seconds, processor = ROWS[name], 0.0, 0.0
     agent, tables = row.agent(seed, args.threads)
     with Progress(f"{name}, seed {seed}", wanted[-1], "shots") as progress:
@@ -120,21 +121,12 @@ def learn(name: str, seed: int, wanted: list[int], known: set[int], args):
                     callback=lambda *_: progress.at(agent.num_timesteps) or True,
                     reset_num_timesteps=False,
                 )
-                seconds, processor = (
-                    seconds + time.perf_counter() - began,
-                    processor + time.process_time() - busy,
-                )
+                seconds += time.perf_counter() - began
+                processor += time.process_time() - busy
             if shots not in known:
                 cost = {"seconds": round(seconds, 2), "processor_seconds": round(processor, 2)}
-                found = measure(row.judge(agent, args.visits, args.threads))
-                yield {
-                    "row": name,
-                    "seed": seed,
-                    "shots": shots,
-                    "played": agent.num_timesteps,
-                    **found,
-                    **cost,
-                }
+                place = {"row": name, "seed": seed, "shots": shots, "played": agent.num_timesteps}
+                yield place | measure(row.judge(agent, args.visits, args.threads)) | cost
     tables.close()
 
 
@@ -166,19 +158,13 @@ def main(argv=None):
         **provenance(),
         "software": software(),
     }
-
     rows = {name: row.describe() for name, row in ROWS.items()}
     head = {"visits": args.visits, "rows": rows, "made": made}
 
     def note(name: str, one: dict[str, Any]) -> None:
         keep(args.out, name, one, head)
-        print(
-            *(
-                f"{key} {value:.6g}" if isinstance(value, float) else f"{key} {value}"
-                for key, value in one.items()
-            ),
-            flush=True,
-        )
+        words = (value if isinstance(value, str) else f"{key} {value:g}" for key, value in one.items())
+        print(*words, flush=True)
 
     for place in dict.fromkeys(ROWS[row].place for row in args.rows):
         if not levels_at(content, place):

@@ -1,7 +1,6 @@
 """How are learning curves shown? A table for each place where agents are judged, the code of each row, and a picture."""
 
 from collections.abc import Iterator, Sequence
-from itertools import islice
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -67,23 +66,23 @@ def _rate(content: dict[str, Any], name: str) -> str:
     return f"{median(rates):,.0f}" if rates else ""
 
 
+def table_of(content: dict[str, Any], place: str) -> TextTable:
+    """The points of agents that were judged there."""
+    (words, form), rows, shots = PLACES[place], [], _shots(content, place)
+    for name in _rows(content, place):
+        cells = [_cell(_points(content, name, k), form) for k in (0, *shots)]
+        seeds = {one["seed"] for one in content["points"] if one["row"] == name}
+        algorithm = content["rows"][name]["algorithm"]
+        rows.append([name, algorithm, *cells, _rate(content, name), str(len(seeds))])
+    beside = ", ".join(f"{player} {_cell([one], form)}" for player, one in levels_at(content, place).items())
+    title = f"{place[0].upper()}{place[1:]}: {words}" + (f". Beside them: {beside}" if beside else "")
+    head = ["row", "algorithm", "untrained", *(f"{k:,} shots" for k in shots), "shots/s", "seeds"]
+    return TextTable(title, head, rows, 2, 2)
+
+
 def tables_of(content: dict[str, Any]) -> Iterator[TextTable]:
     """One for each place where agents were judged."""
-    for place, (words, form) in PLACES.items():
-        rows, shots = [], _shots(content, place)
-        for name in _rows(content, place):
-            cells = [_cell(_points(content, name, k), form) for k in (0, *shots)]
-            seeds = {one["seed"] for one in content["points"] if one["row"] == name}
-            rows.append(
-                [name, content["rows"][name]["algorithm"], *cells, _rate(content, name), str(len(seeds))]
-            )
-        beside = ", ".join(
-            f"{player} {_cell([one], form)}" for player, one in levels_at(content, place).items()
-        )
-        title = f"{place[0].upper()}{place[1:]}: {words}" + (f". Beside them: {beside}" if beside else "")
-        head = ["row", "algorithm", "untrained", *(f"{k:,} shots" for k in shots), "shots/s", "seeds"]
-        if rows:
-            yield TextTable(title, head, rows, 2, 2)
+    yield from (table_of(content, place) for place in PLACES if _rows(content, place))
 
 
 def levels_at(content: dict[str, Any], place: str) -> dict[str, dict[str, Any]]:
@@ -130,13 +129,13 @@ def fill(text: str, content: dict[str, Any], file: Path) -> str:
     _, end, after = rest.partition(END)
     if not begin or not end:
         raise refuse("page", str(file), f"must hold the lines {BEGIN.strip()} and {END}")
-    made = f"{before}{begin}\n![points a visit by shots of training](../../results/pictures/curves.png)\n\n"
-    for table in islice(tables_of(content), 1):
-        shown = [0, *(k for k, head in enumerate(table.header) if head.endswith(" shots"))]
-        rows = [[row[k].partition(" ±")[0] for k in shown] for row in table.rows]
-        made += TextTable(table.title, [table.header[k] for k in shown], rows, 1, 1).markdown() + "\n\n"
-    words = "Median over training seeds [least, most]"
-    return f"{made}{words}. [All rows](../../results/agents/curves.md), with errors, rates and code.\n\n{end}{after}"
+    table = table_of(content, "visit")
+    shown = [0, *(k for k, head in enumerate(table.header) if head.endswith(" shots"))]
+    rows = [[row[k].partition(" ±")[0] for k in shown] for row in table.rows]
+    points = TextTable(table.title, [table.header[k] for k in shown], rows, 1, 1).markdown()
+    picture = "![points a visit by shots of training](../../results/pictures/curves.png)"
+    words = "Median over training seeds [least, most]. [All rows](../../results/agents/curves.md), with errors, rates and code."
+    return "\n\n".join([before + begin.strip(), picture, points, words, end + after])
 
 
 def draw(content: dict[str, Any], file: Path) -> None:

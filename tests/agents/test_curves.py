@@ -88,7 +88,7 @@ def test_a_killed_run_goes_on_and_leaves_what_is_there(tmp_path, small, monkeypa
     [
         (["--rows", "pot_a2c"], "rows = 'pot_a2c': must be one of 'pot_ppo', "),
         (["--shots", "0"], "shots = 0: must be"),
-        (["--seeds", "100"], "seeds = 100: must be"),
+        (["--seeds", "1000"], "seeds = 1000: must be"),
         (["--visits", "1"], "visits = 1: must be"),
         (["--rows", "pot_ppo", "--visits", "5000"], "visits = 5000: must be at most"),
         (["--threads", "0"], "threads = 0: must be"),
