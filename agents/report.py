@@ -2,7 +2,7 @@
 
     python -m agents.report results/agents/*.json
 
-writes ``results/agents/*.md`` again from what agents.evaluate keeps as JSON, without playing;
+writes ``results/agents/*.md`` again from what agents.evaluate, agents.tournament and agents.curves keep as JSON, without playing;
 --show prints the tables instead.
 """
 
@@ -20,7 +20,8 @@ with needs("agents.report"):
     from snooker_env.benchmark.tasks import most_points
     from snooker_env.checks import refuse
 
-    from .evaluation import tournament_report
+    from .evaluation import curve_report, tournament_report
+    from .evaluation.curve_file import is_curves
     from .evaluation.metrics import AXES, USUAL, add_bound, main_condition
 
 SEEDS = 5
@@ -62,6 +63,13 @@ def _pick(report, **condition):
     return [r for r in report["results"] if all(r[key] == value for key, value in condition.items())]
 
 
+def _other(report):
+    """The module that shows it, if no evaluation made it."""
+    if tournament_report.is_tournament(report):
+        return tournament_report
+    return curve_report if is_curves(report) else None
+
+
 def verdict(report):
     """The points of each agent in the main condition, as one sentence; none if that was not played."""
     at = main_condition(report)
@@ -76,9 +84,9 @@ def _list(words):
 
 
 def title(report):
-    """What is compared: an axis of training and of play, or agents and where they play; or who met."""
-    if tournament_report.is_tournament(report):
-        return tournament_report.title(report)
+    """What is compared: an axis of training and of play, or agents and where they play; or who met, or what learned."""
+    if other := _other(report):
+        return other.title(report)
     p, layouts = report["protocol"], _list(report["protocol"]["layouts"])
     for axis in AXES:
         runs = [run for agent in report["agents"] for run in agent["runs"] if axis in run]
@@ -218,8 +226,8 @@ LEGEND = (
 
 def parts(report, width=WIDTH):
     """Everything in order: ``TextTable`` (none wider than ``width``) or str."""
-    if tournament_report.is_tournament(report):
-        yield from tournament_report.parts(report)
+    if other := _other(report):
+        yield from other.parts(report)
         return
     if "incomplete" in report:
         yield f"INCOMPLETE: {report['incomplete']}."
@@ -231,8 +239,8 @@ def parts(report, width=WIDTH):
 
 def markdown(report):
     """The same as a Markdown page."""
-    if tournament_report.is_tournament(report):
-        return tournament_report.markdown(report)
+    if other := _other(report):
+        return other.markdown(report)
     version = report.get("version", "of an unknown version")
     where = f"commit {report['commit']} on {report['machine']}, Python {report['python']}"
     made = f"snooker_env {version}, at {where}"
@@ -241,7 +249,9 @@ def markdown(report):
 
 def read(file):
     """The report in a JSON file. Raises ValueError."""
-    wanted = "must be what agents.evaluate writes with --json, or agents.tournament with --out"
+    wanted = (
+        "must be what agents.evaluate writes with --json, or agents.tournament or agents.curves with --out"
+    )
     report = read_json("file", file, wanted)
     try:
         list(parts(report))
@@ -255,7 +265,7 @@ def read(file):
 def main(argv=None):
     """Make the Markdown again from kept figures, or print them. Exit code 0."""
     p = parser_of("python -m agents.report", __doc__)
-    what = "what agents.evaluate wrote with --json, or agents.tournament with --out"
+    what = "what agents.evaluate wrote with --json, or agents.tournament or agents.curves with --out"
     p.add_argument("files", nargs="+", type=Path, metavar="FILE.json", help=what)
     p.add_argument("--show", action="store_true", help="print the tables, write nothing")
     args = p.parse_args(argv)

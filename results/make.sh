@@ -6,6 +6,8 @@
 #                                      pictures: films, screenshots, README's break, some minutes
 #                                      agents: trains the models of results/weights, compares all players, hours
 #                                      weights: the models of FOLDER into results/weights, those into the package
+#                                      curves [OPTION ...]: what plain Stable-Baselines3 learns, with options of
+#                                      agents.curves: days; its table goes into docs/agents/curves.md
 #                                      leaderboard [AGENT ...]: judges them all, or these alone, then its page: days
 #
 # Complete runs and files are left as they are and incomplete ones resumed; remove one to make it again.
@@ -76,6 +78,11 @@ weights() {
     python -c "from agents.learning.export import export, keep_models; keep_models('$FOLDER'); export()"
 }
 
+curves() {
+    module agents.curves --out results/agents/curves.json --markdown results/agents/curves.md \
+        --picture results/pictures/curves.png --page docs/agents/curves.md "$@"
+}
+
 judge() { # an agent's name, all simulated shots of its training; it stands on the page in any case
     labels+=("$1")
     [[ -z $wanted || " $wanted " == *" $1 "* ]] || return
@@ -131,6 +138,6 @@ leaderboard() {
 
 part=${1:-}
 case $part in
-    physics | pictures | agents | weights | leaderboard) shift && "$part" "$@" ;;
-    *) echo "PART = '$part': must be physics, pictures, agents, weights or leaderboard" >&2 && exit 2 ;;
+    physics | pictures | agents | weights | curves | leaderboard) shift && "$part" "$@" ;;
+    *) echo "PART = '$part': must be physics, pictures, agents, weights, curves or leaderboard" >&2 && exit 2 ;;
 esac

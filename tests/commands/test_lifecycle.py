@@ -58,6 +58,7 @@ runpy.{start}, run_name="__main__")
         ("yaml", "train", "agents.evaluate --agent random"),
         ("torch", "train", "agents.evaluate --agent ppo_value"),
         ("numba", "train", "agents.calibrate x"),
+        ("sb3_contrib", "train", "agents.curves"),
     ],
 )
 def test_a_command_says_what_is_missing(package, extra, command):
@@ -67,7 +68,7 @@ def test_a_command_says_what_is_missing(package, extra, command):
     assert done.stderr == f"{target}: {package} is missing; {where}\n" and done.returncode == 1
 
 
-@pytest.mark.parametrize("module", [f"agents.{name}" for name in ("evaluate", "report")])
+@pytest.mark.parametrize("module", [f"agents.{name}" for name in ("curves", "evaluate", "report")])
 def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     """And compiles nothing: the cache stays empty."""
     done = python("-m", module, "--help", NUMBA_CACHE_DIR=str(tmp_path), COLUMNS="120")

@@ -58,6 +58,7 @@ ELSEWHERE = {
     "benchmarks.real_shots": "tests/benchmarks/test_real_shots.py",
     "agents.evaluate": "tests/commands/test_lifecycle.py",
     "agents.report": "tests/commands/test_lifecycle.py",
+    "agents.curves": "tests/agents/test_curves.py",
     "agents.dataset": "tests/agents/evaluation/test_dataset.py",
     "agents.tournament": "tests/agents/evaluation/test_tournament.py",
     "agents.learn_worth": "tests/agents/learning/test_frame_worth.py",
