@@ -140,41 +140,46 @@ def _run(positions, on_table, skip, law, work, out):
     out[X], out[Y] = x, y
 
 
+@kernel
+def played_in_room(stroke, positions, on_table, cue_law):
+    """A stroke (5,), its cue raised as it must be, as ``stroke_in_room``."""
+    return stroke_in_room(
+        stroke[3], (stroke[0], stroke[1], stroke[2], stroke[4]), positions, on_table, cue_law
+    )
+
+
 @kernel(seconds=1)
-def _meet(stroke, ball, positions, on_table, cue_law, work, out):
-    """The cue ball of a stroke (5,) meets ``ball``, past all others: whether it does, the velocity and the spin that
-    the ball leaves with, and the elevation of the cue. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
+def _meet(played, ball, positions, cue_law, work, out):
+    """The cue ball of a stroke of ``stroke_in_room`` meets ``ball``, past all others: whether it does, the velocity and the spin
+    that the ball leaves with. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     for c in range(SEEN):
         out[c] = 0.0
     out[NEAR], still = 9.0, (0.0, 0.0, 0.0)
-    meant = stroke[0], stroke[1], stroke[2], stroke[4]
-    played = stroke_in_room(stroke[3], meant, positions, on_table, cue_law)
     met, t = meets(played, positions, (bx, by), cue_law, work)
     (x, y), v, w = cloth.evaluate(motion, state, 0, t if met else motion[0, cloth.T0], phys)
     if not met:
         out[X], out[Y] = x, y
         out[MISSED] = 1.0 if hypot(x - cx, y - cy) < hypot(bx - cx, by - cy) else 2.0
-        return False, still, still, played[4]
+        return False, still, still
     nx, ny = bx - x, by - y
     away = hypot(nx, ny)
     own, w, other, spin, _ok = collide_balls(
         (v[0], v[1], 0.0), w, still, still, (nx / away, ny / away), law, phys[P_E_B], work.series
     )
     cloth.begin(motion, state, 0, t, (x, y), (own[0], own[1]), w, phys)
-    return True, other, spin, played[4]
+    return True, other, spin
 
 
 @kernel(seconds=1, uses=(_meet, _run))
-def foresee_pot(stroke, pot, positions, on_table, cue_law, work, out):
-    """What is predicted of a stroke (5,) at a pot, of ball and pocket; fills ``out`` (SEEN,), and returns the elevation of
-    the cue [rad]."""
+def foresee_pot(played, pot, positions, on_table, cue_law, work, out):
+    """What is predicted of a stroke of ``stroke_in_room`` at a pot, of ball and pocket; fills ``out`` (SEEN,)."""
     phys, (ball, pocket) = cue_law.phys, pot
-    met, other, _spin, raised = _meet(stroke, ball, positions, on_table, cue_law, work, out)
+    met, other, _spin = _meet(played, ball, positions, cue_law, work, out)
     if not met:
-        return raised
+        return
     px = POCKET_AIMS[pocket, AIM_X] - positions[ball, 0]
     py = POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
     run, speed = hypot(px, py), hypot(other[0], other[1])
@@ -183,7 +188,6 @@ def foresee_pot(stroke, pot, positions, on_table, cue_law, work, out):
     rolls = (25.0 / 49.0) * speed * speed / (2.0 * phys[P_MU_R] * phys[P_G])
     out[REACH] = min(FAREST, rolls / run)
     _run(positions, on_table, ball, Law(phys, cue_law.fidelity, cue_law.n_steps), work, out)
-    return raised
 
 
 @kernel
@@ -213,7 +217,8 @@ def foresee_contact(stroke, positions, on_table, cue_law, work, out, its):
     out[MISSED], its[NEAR] = 2.0, 9.0
     if ball == 0:
         return 0
-    met, other, spin, _raised = _meet(stroke, ball, positions, on_table, cue_law, work, out)
+    played = played_in_room(stroke, positions, on_table, cue_law)
+    met, other, spin = _meet(played, ball, positions, cue_law, work, out)
     if not met:
         return 0
     _run(positions, on_table, ball, law, work, out)
@@ -266,7 +271,8 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
         own, ball, p, here = row_of(k, phys), pots[i, 0], positions[k], on_table[k]
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
-        foresee_pot(tried, (ball, pots[i, 1]), p, here, its, work, out[j])
+        played = played_in_room(tried, p, here, its)
+        foresee_pot(played, (ball, pots[i, 1]), p, here, its, work, out[j])
         on[j] = leave(ball, ball_on[k], p, here, after[j], there[j])
         after[j, 0, 0], after[j, 0, 1] = out[j, X], out[j, Y]
 

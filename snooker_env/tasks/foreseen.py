@@ -41,8 +41,8 @@ F_THERE, F_POT, F_CHANCE, F_LOG, F_POINTS, F_SPEED, F_TOP, F_CUT, F_TOLERANCE = 
 F_X, F_Y, F_NOSES, F_BALLS, F_RUN, F_LOST, F_MISSED, F_NEAR, F_REACH = range(9, 18)
 F_PROSPECTS, F_BEST, F_SECOND, F_FOUL, F_PROMISE = range(18, STROKE_SIZE)
 _LEFT = 4  # widest pots of a position that is left, of which it is judged
-_ENOUGH = 3e-4
-"""What is foreseen is foreseen of an aim at which the ball passes the pocket's aim point by no more than that [rad]."""
+_EFFORT = 3e-4, 3e-3, 6
+"""With which aims are solved, see ``aim_from``: the rest are of pots that the stroke cannot make."""
 _ASTRAY = 0.02  # sine of an angle by which a ball that is sent off its line misses any pocket
 _STATES = (
     len(STATE_ENTRIES),
@@ -107,13 +107,7 @@ def _judge(ball_on, left, many, law, errors, desk, one):
 @kernel(seconds=1, uses=(aim_from, foresee_pot))
 def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
     """The strokes at a row of ``find_pots``, into their ``rows``."""
-    ball, pocket, seen, stroke, rails = (
-        int(pot[POT_BALL]),
-        int(pot[POT_POCKET]),
-        desk.seen,
-        desk.stroke,
-        law.rails,
-    )
+    ball, pocket, seen, rails = int(pot[POT_BALL]), int(pot[POT_POCKET]), desk.seen, law.rails
     free = row.shape[0] > columns.FREE_BALL and row[columns.FREE_BALL] != 0
     free = free and not (balls_on_kernel(row[columns.BALL_ON], 1 << ball)) >> ball & 1
     points = max(1, row[columns.BALL_ON]) if free else VALUES[ball]
@@ -131,17 +125,17 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
         level, height = index // len(TOPS), index % len(TOPS)
         one = rows[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
         _, speed, side, top = menu_stroke(index, speeds)
-        stroke[0], stroke[1], stroke[2] = speed, side, top
         begin = aim
         if level:  # from the aims of the same tip at the last two speeds
             begin = desk.aims[0, height] + (desk.aims[0, height] - desk.aims[1, height] if level > 1 else 0.0)
         lies = positions, on_table, ball, target, ghost, (speed, side, top, 0.0), law, work
         desk.aims[1, height] = desk.aims[0, height]
-        aim = desk.aims[0, height] = stroke[3] = aim_from(begin, _ENOUGH, *lies)
-        raised = foresee_pot(stroke, (ball, pocket), positions, on_table, law, work, seen)
+        aim, played = aim_from(begin, _EFFORT, *lies)
+        desk.aims[0, height] = aim
+        foresee_pot(played, (ball, pocket), positions, on_table, law, work, seen)
         spread = Spread(errors.cores[level], errors.lapse, errors.factor)
         if rails.shape[0]:
-            spread = at_elevation(spread, raised)
+            spread = at_elevation(spread, played[4])
         chance = pot_chance(pot[TOLERANCE], length, spread)
         _observe_path_into(one, seen)
         one[F_THERE] = one[F_POT] = 1.0

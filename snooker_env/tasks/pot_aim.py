@@ -162,9 +162,10 @@ def swerved_aim(line, far, stroke, positions, on_table, law, work):
 
 
 @kernel(seconds=5, uses=(collide_balls,))
-def aim_from(begin, enough, positions, on_table, ball, target, ghost, stroke, law, work):
-    """``solved_aim``, sought from the direction ``begin`` on [rad] until the ball passes the target by no more than
-    ``enough`` [rad]."""
+def aim_from(begin, effort, positions, on_table, ball, target, ghost, stroke, law, work):
+    """``solved_aim``, sought from the direction ``begin`` on [rad], and the stroke as ``stroke_in_room``. ``effort``: the ball
+    may pass the target by so much [rad], a cue that turns by less keeps its elevation [rad], and the most trials."""
+    enough, same, trials = effort
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)
@@ -178,17 +179,17 @@ def aim_from(begin, enough, positions, on_table, ball, target, ghost, stroke, la
     if law.rails.shape[0] and stroke[1] != 0.0:
         # a raised cue with side bends the path: by more than a thin cut or a soft stroke would show
         begin -= _off(played, line, max(far, law.phys[P_R]), positions, law, work)
-    aim, best, least = begin, begin, 9.0
+    aim, best, least, found = begin, begin, 9.0, played
     last_aim, last = begin, 9.0
-    for k in range(_TRIALS):
-        if abs(aim - raised_at) > (_SAME_ROOM if k else _SWERVE):
+    for k in range(trials):
+        if abs(aim - raised_at) > (same if k else _SWERVE):
             played, raised_at = stroke_in_room(aim, stroke, positions, on_table, law), aim
         speed, side, top, _, elevation = played
         at_aim = speed, side, top, aim - squirted, elevation
         off = _passes(at_aim, positions, (bx, by), target, law, work)
-        if abs(aim - raised_at) <= _SAME_ROOM:
+        if abs(aim - raised_at) <= same:
             if abs(off) < abs(least):
-                best, least = aim, off
+                best, least, found = aim, off, at_aim
             if abs(off) <= enough:
                 break
         if off == 9.0:  # missed, or it never arrived: turn towards the ball's middle
@@ -205,7 +206,7 @@ def aim_from(begin, enough, positions, on_table, ball, target, ghost, stroke, la
         step = -off / slope
         limit = 0.5 * _WIDEST
         aim = min(begin + _WIDEST, max(begin - _WIDEST, aim + min(limit, max(-limit, step))))
-    return best
+    return best, found
 
 
 @kernel(uses=(aim_from,))
@@ -213,4 +214,6 @@ def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
     """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised
     as it must be."""
     line = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0])
-    return aim_from(line, _ENOUGH, positions, on_table, ball, target, ghost, stroke, law, work)
+    return aim_from(
+        line, (_ENOUGH, _SAME_ROOM, _TRIALS), positions, on_table, ball, target, ghost, stroke, law, work
+    )[0]
