@@ -40,6 +40,7 @@ pictures() {
 models() { # name, then the options of train.py
     local long="--imitate 153600 --steps 1507328"
     for seed in 0 1 2 3 4; do echo "ppo_value-$seed --agent ppo_value --seed $seed $long"; done
+    echo "strokes-0 --agent strokes --steps 1000000"
     for noise in none amateur club; do echo "ppo_value_$noise --agent ppo_value --noise $noise $long"; done
 }
 

@@ -1,27 +1,30 @@
-"""The planners' weights in the package: value and policy of the pre-trained ``ppo_value`` models as plain arrays, see
-``snooker_env.players.weights``.
+"""The weights in the package as plain arrays, see ``snooker_env.players.weights``: value and policy of the planners, from the
+pre-trained ``ppo_value`` models, and the network of ``strokes``.
 """
 
 import json
 from pathlib import Path
 
+import torch
+
 from agents._lib.files import packed_arrays, write_atomic, write_json
-from snooker_env.players.weights import FOLDER
+from snooker_env.players.weights import FOLDER, MENU
 from snooker_env.tasks import LEVELS
 
 from .model_files import pack_model
 from .models import PRETRAINED, load_trained
 from .networks import arrays_of
+from .rounds import arrays_of as arrays_of_layers
 
-LEARNED = "ppo_value"
-"""The pre-trained model of a professional's errors; those of another level have its name after it."""
+LEARNED, STROKES = "ppo_value", "strokes"
+"""The pre-trained models of a professional's errors; planners of another level have its name after theirs."""
 
 
 def keep_models(folder):
-    """Write the models of the runs FOLDER/ppo_value-0 and FOLDER/ppo_value_LEVEL, as far as they are there, into
-    results/weights: NAME.zip, and its record NAME.json."""
-    for name in map(_name_of, LEVELS):
-        run = Path(folder) / (f"{name}-0" if name == LEARNED else name)
+    """Write the models of the runs FOLDER/ppo_value-0, FOLDER/ppo_value_LEVEL and FOLDER/strokes-0, as far as they are
+    there, into results/weights: NAME.zip, and its record NAME.json."""
+    for name in (*map(_name_of, LEVELS), STROKES):
+        run = Path(folder) / (f"{name}-0" if name in (LEARNED, STROKES) else name)
         if not run.is_dir():
             continue
         results = json.loads((run / "results.json").read_text(encoding="utf-8"))
@@ -38,13 +41,26 @@ def keep_models(folder):
 
 
 def export():
-    """Write one file for each level that has a pre-trained model."""
+    """Write one file for each level that has a pre-trained model, and that of the menu."""
+    model = PRETRAINED / f"{STROKES}.zip"
+    if model.is_file():
+        write_atomic(FOLDER / MENU, packed_arrays(_layers_of_menu(load_trained(model, "agent").policy)))
     for level in LEVELS:
         model = PRETRAINED / f"{_name_of(level)}.zip"
         if model.is_file():
             path = FOLDER / f"{level}.npz"
             write_atomic(path, packed_arrays(arrays_of(load_trained(model, "agent").policy)))
             print(f"{path}  {path.stat().st_size / 1e6:.2f} MB")
+
+
+def _layers_of_menu(policy):
+    """The arrays of a ``StrokesPolicy`` that score strokes: {name: float32 array}."""
+    net = policy.mlp_extractor
+    first = torch.cat([net.of_stroke.weight, net.of_state.weight], dim=1), net.of_stroke.bias
+    layers = [first, *((one.weight, one.bias) for one in (net.second, net.score))]
+    return arrays_of_layers(
+        "menu", [(weight.detach().numpy(), bias.detach().numpy()) for weight, bias in layers]
+    )
 
 
 def _name_of(level):

@@ -21,7 +21,7 @@ from .tactician import Tactician
 
 GROUP = "snooker_env.players"  # entry points for players: NAME = MODULE:MAKER, called without arguments
 READERS = "snooker_env.models"  # entry points that read models, called with a path; None if it is not theirs
-BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician", "stroke_value")
+BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner", "tactician", "stroke_value", "strokes")
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
 PROGRAM = "program:"
 _KINDS = "best_pot|search|tactician|stroke_value|planner"
@@ -129,6 +129,11 @@ def _built_in(name: str) -> Player | None:
     """The player of the package with that name."""
     if name in (Random.name, GhostBall.name):
         return Random() if name == Random.name else GhostBall()
+    if name == "strokes":
+        from .menu_network import MenuNetwork
+        from .seen import SeenPlayer
+
+        return SeenPlayer(MenuNetwork(), name=name)
     form = _SEARCHING.fullmatch(name)
     if form is None:
         return None

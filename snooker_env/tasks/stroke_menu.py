@@ -129,9 +129,10 @@ class Menu(Choices):
 
     def __init__(self, speeds: int = SPEEDS, *, frame: bool = False) -> None:
         super().__init__()
-        self.frame, self.speeds = frame, integer("speeds", speeds, LEAST_SPEEDS, MOST_SPEEDS)
-        self.choices = menu_size(speeds, frame)
-        self.space = spaces.Discrete(self.choices)
+        self.frame: bool = frame
+        self.speeds: int = integer("speeds", speeds, LEAST_SPEEDS, MOST_SPEEDS)
+        self.choices: int = menu_size(speeds, frame)
+        self.space: spaces.Discrete[np.int64] = spaces.Discrete(self.choices)
 
     def pack(self) -> Floats:
         """The options for the kernels, in the columns ``A_*`` of ``declarations``."""

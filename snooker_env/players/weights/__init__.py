@@ -21,6 +21,7 @@ from ...tasks.noise import LEVELS, Noise
 FOLDER = Path(__file__).parent
 WORTH = "worth.npz"  # of the ``tactician``: what positions of frames are worth (python -m agents.learn_worth)
 STROKES = "strokes.npz"  # the networks of ``stroke_value`` (python train.py --agent stroke_value)
+MENU = "menu.npz"  # of ``strokes``: scores of the strokes on a menu (python train.py --steps 1000000)
 LAYERS_EACH = 3  # of each network but the policy
 
 
@@ -73,6 +74,12 @@ def learned_at(level: str) -> Learned:
 def learned_worth() -> tuple[list[tuple[Singles, Singles]], Chance]:
     """The layers of a ``LearnedWorth``, for all levels, and the chance to win."""
     return worth_in(read_npz(FOLDER / WORTH))
+
+
+@cache
+def learned_menu() -> list[tuple[Singles, Singles]]:
+    """The layers of the network of ``strokes``, which read a stroke on the menu and the state."""
+    return layers_of(read_npz(FOLDER / MENU), "menu")
 
 
 @cache

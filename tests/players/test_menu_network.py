@@ -1,0 +1,57 @@
+"""Does the package's agent of the menu play as the trained model does, without PyTorch, the same for one position or many?"""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.benchmark import play_visits, summary
+from snooker_env.players import VISITS
+from snooker_env.players.menu_network import MenuNetwork
+from tests.processes import python
+
+OPTIONS = {"noise": "professional", "cue": "real", "layout": "opened"}
+
+
+def test_it_chooses_as_the_model_that_was_trained():
+    torch = pytest.importorskip("torch")
+    from agents.learning.models import PRETRAINED, load_trained
+
+    env = sn.SnookerVectorEnv(60, action="strokes", observation="strokes", **OPTIONS)
+    observed, _ = env.reset(seed=5)
+    net = load_trained(PRETRAINED / "strokes.zip", "agent").policy.mlp_extractor
+    with torch.no_grad():
+        wanted = net.forward_actor(torch.as_tensor(observed)).argmax(dim=1).numpy()
+    masks = env.action_masks()
+    chosen = MenuNetwork().act(observed, masks, np.arange(60))
+    assert np.array_equal(chosen, wanted) and masks[np.arange(60), chosen].all() and len(set(chosen)) > 10
+
+
+def test_one_position_or_many_are_the_same_bits():
+    env = sn.SnookerVectorEnv(12, **OPTIONS, **VISITS)
+    env.reset(seed=2)
+    at, player = sn.planning.Positions.of(env), sn.player("strokes").at(env)
+    together = player.play(at, np.arange(12)).values
+    alone = [player.play(at[[k]], [k]).values[0] for k in range(12)]
+    assert np.array_equal(together, alone)
+
+
+def test_it_makes_more_than_the_widest_pot():
+    """On 96 tables; the means have errors of about 2 and 0.7 points."""
+    points = {
+        name: summary(play_visits(name, 96, layout="opened"))["points_a_visit"]
+        for name in ("strokes", "ghost_ball")
+    }
+    assert points["strokes"] > 2.0 * points["ghost_ball"]
+
+
+def test_it_plays_frames_without_pytorch():
+    code = """
+import sys
+sys.modules["torch"] = None
+import snooker_env as sn
+env = sn.match_env(seats=({}, {}), noise="none", aim="absolute")
+env.reset(seed=1)
+strokes = sn.player("strokes").at({"task": "frame"}).play(env, [1])
+print(strokes.values.shape)
+"""
+    assert "(1, 5)" in python(code)[0]
