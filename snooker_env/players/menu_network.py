@@ -22,9 +22,9 @@ class MenuNetwork:
 
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Ints:
         """The choice with the highest score for each observation (n, K * 23 + 11); ``masks`` (n, K): those on the menu."""
-        seen = np.asarray(observations)
-        n, choices = np.shape(masks)
+        seen, there = np.asarray(observations), np.asarray(masks, np.bool_)
+        n, choices = there.shape
         strokes = seen[:, : choices * STROKE_SIZE].reshape(n, choices, STROKE_SIZE)
         state = np.repeat(seen[:, None, choices * STROKE_SIZE :], choices, axis=1)
         rows = np.concatenate([strokes, state], axis=2).reshape(n * choices, -1)
-        return np.where(masks, self._layers(rows).reshape(n, choices), -np.inf).argmax(axis=1)
+        return np.where(there, self._layers(rows).reshape(n, choices), -np.inf).argmax(axis=1)

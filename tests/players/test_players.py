@@ -174,7 +174,8 @@ def test_the_planner_plays_in_the_package_alone(tmp_path):
     code = f"import sys; sys.argv[1:] = [{str(tmp_path)!r}]\n{ALONE}"
     out = python(code, at=tmp_path)[0].strip().splitlines()
     assert (
-        out[0] == "['random', 'ghost_ball', 'best_pot', 'search', 'planner', 'tactician', 'stroke_value', 'strokes']"
+        out[0]
+        == "['random', 'ghost_ball', 'best_pot', 'search', 'planner', 'tactician', 'stroke_value', 'strokes']"
         and "m/s" in "".join(out)
     )
     assert out[-1] == "True True"
