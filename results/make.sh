@@ -40,7 +40,7 @@ pictures() {
 models() { # name, then the options of train.py
     local long="--imitate 153600 --steps 1507328"
     for seed in 0 1 2 3 4; do echo "ppo_value-$seed --agent ppo_value --seed $seed $long"; done
-    echo "strokes-0 --agent strokes --steps 1000000"
+    echo "strokes --agent strokes --seed 1 --steps 1000000"
     for noise in none amateur club; do echo "ppo_value_$noise --agent ppo_value --noise $noise $long"; done
 }
 
@@ -69,7 +69,7 @@ agents() {
     train_models
     [[ -n ${ONLY:-} ]] && exit
     module agents.evaluate --layouts held_out=500 --noise professional --against search best_pot --agent \
-        planner best_pot ghost_ball search stroke_value ppo_value random \
+        planner best_pot ghost_ball search stroke_value strokes ppo_value random \
         ${RAY:+--ray "$RAY"} --json results/agents/visits.json --markdown results/agents/visits.md
     module agents.tournament random ghost_ball best_pot stroke_value search planner tactician \
         --cue real --miss clear_path --frames 40 --threads 1 --resume --out results/agents/ladder.json --markdown results/agents/ladder.md ${RAY:+--ray "$RAY"}

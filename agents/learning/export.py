@@ -21,10 +21,10 @@ LEARNED, STROKES = "ppo_value", "strokes"
 
 
 def keep_models(folder):
-    """Write the models of the runs FOLDER/ppo_value-0, FOLDER/ppo_value_LEVEL and FOLDER/strokes-0, as far as they are
+    """Write the models of the runs FOLDER/ppo_value-0, FOLDER/ppo_value_LEVEL and FOLDER/strokes, as far as they are
     there, into results/weights: NAME.zip, and its record NAME.json."""
     for name in (*map(_name_of, LEVELS), STROKES):
-        run = Path(folder) / (f"{name}-0" if name in (LEARNED, STROKES) else name)
+        run = Path(folder) / (f"{name}-0" if name == LEARNED else name)
         if not run.is_dir():
             continue
         results = json.loads((run / "results.json").read_text(encoding="utf-8"))
