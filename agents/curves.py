@@ -158,7 +158,7 @@ def main(argv=None):
         **provenance(),
         "software": software(),
     }
-    rows = {name: row.describe() for name, row in ROWS.items()}
+    rows = {name: ROWS[name].describe() for name in args.rows}
     head = {"visits": args.visits, "rows": rows, "made": made}
 
     def note(name: str, one: dict[str, Any]) -> None:
@@ -167,7 +167,7 @@ def main(argv=None):
         print(*words, flush=True)
 
     for place in dict.fromkeys(ROWS[row].place for row in args.rows):
-        if not levels_at(content, place):
+        if len(levels_at(content, place)) < (3 if place == "visit" else 1):
             for player, found in levels(place, args).items():
                 note("levels", {"place": place, "player": player, **found})
     for seed in args.seeds:

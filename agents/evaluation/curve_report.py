@@ -160,7 +160,7 @@ def draw(content: dict[str, Any], file: Path) -> None:
                 axes.plot(list(at), list(map(median, at.values())), color=colour, marker="o", label=name)
                 low, high = list(map(min, at.values())), list(map(max, at.values()))
                 axes.fill_between(list(at), low, high, color=colour, alpha=0.2, linewidth=0)
-            for (player, one), dashes in zip(others.items(), _DASHES, strict=True):
+            for (player, one), dashes in zip(others.items(), _DASHES, strict=False):
                 label = f"{player} {one['points']:.1f}"
                 axes.axhline(one["points"], color=GREY, linewidth=1.2, linestyle=dashes, label=label)
             axes.set_xscale("log")

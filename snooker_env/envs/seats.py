@@ -49,8 +49,11 @@ def match_tables(options: Options, differences: Any, n: int) -> Frames:
         for name in changes:
             choice(f"key of seats[{k}]", name, allowed)
         box_only: dict[str, Any] = {}
-        if changes.get("action") == "discrete":
-            says = tuple(name for name in options.says if name != "decision")
+        if changes.get("action", "box") != "box":
+            kept = (
+                options.says if changes["action"] == "discrete" else ()
+            )  # a menu says nothing beside its choices
+            says = tuple(name for name in kept if name != "decision")
             box_only = {"elevation": False, "placement": False, "says": says}
         try:
             seats[k] = Seat.of(options.but(**box_only | dict(changes)).rules)

@@ -8,12 +8,20 @@ import numpy as np
 
 from .._lib.check import refuse
 from .._lib.types import Bools, Ints, Observation
-from ..tasks.observations import OBSERVATIONS, space
+from ..tasks.foreseen import STATES
+from ..tasks.observations import OBSERVATIONS, STROKE_SIZE, space
 from ..tasks.options import Options
 from ..tasks.stroke_menu import SPEEDS, speeds_of
 from .model_options import say_assumption
 from .saved_models import SavedModel, by_train, entries, one_thread, outline
 from .seen import SeenPlayer
+
+
+def _speeds_seen(outlined: tuple[str, Any], frame: bool) -> int:
+    """The speeds of the menu in an observation with this outline; 0: it is no menu's."""
+    size = outlined[1][0] if outlined[0] == "Box" and len(outlined[1]) == 1 else 0
+    rows, rest = divmod(size - STATES[frame], STROKE_SIZE)
+    return 0 if rest else speeds_of(rows, frame)
 
 
 @dataclass(frozen=True)
@@ -38,6 +46,8 @@ class FittingModel:
                 task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
                 told = {name: options[name] for name in options if frame or name != "says"}
                 model = cls(saved, told | task | {"observation": kind})
+                if kind == "strokes" and not replaced:
+                    model.options.setdefault("speeds", _speeds_seen(saved.observation, frame) or SPEEDS)
                 sizes = {
                     "choices": getattr(model.actions, "n", 0),
                     "speeds": model.options.get("speeds", SPEEDS),

@@ -44,7 +44,7 @@ _LEFT = 4  # widest pots of a position that is left, of which it is judged
 _EFFORT = 3e-4, 3e-3, 6
 """With which aims are solved, see ``aim_from``: the rest are of pots that the stroke cannot make."""
 _ASTRAY = 0.02  # sine of an angle by which a ball that is sent off its line misses any pocket
-_STATES = (
+STATES = (
     len(STATE_ENTRIES),
     len(STATE_ENTRIES) + len(FRAME_ENTRIES),
 )  # numbers of the state of a visit, of a frame
@@ -83,7 +83,9 @@ class Desk(NamedTuple):
 @kernel
 def _observe_path_into(row, seen):
     """What both kinds of strokes show of the way of the cue ball."""
-    row[F_X], row[F_Y] = seen[path.X] / HALF_WIDTH, seen[path.Y] / HALF_LENGTH
+    # a cue ball that misses the ball is followed on unbounded cloth
+    row[F_X] = min(1.0, max(-1.0, seen[path.X] / HALF_WIDTH))
+    row[F_Y] = min(1.0, max(-1.0, seen[path.Y] / HALF_LENGTH))
     row[F_NOSES], row[F_BALLS] = min(1.0, seen[path.NOSES] / 5.0), min(1.0, seen[path.BALLS] / 5.0)
     row[F_RUN], row[F_LOST], row[F_MISSED] = (
         min(1.0, seen[path.LENGTH] / 8.0),
@@ -125,13 +127,11 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
         level, height = index // len(TOPS), index % len(TOPS)
         one = rows[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
         _, speed, side, top = menu_stroke(index, speeds)
-        begin = aim
-        if level:  # from the aims of the same tip at the last two speeds
-            begin = desk.aims[0, height] + (desk.aims[0, height] - desk.aims[1, height] if level > 1 else 0.0)
+        if level:  # from the same tip at the last speed
+            aim = desk.aims[height]
         lies = positions, on_table, ball, target, ghost, (speed, side, top, 0.0), law, work
-        desk.aims[1, height] = desk.aims[0, height]
-        aim, played = aim_from(begin, _EFFORT, *lies)
-        desk.aims[0, height] = aim
+        aim, played = aim_from(aim, _EFFORT, *lies)
+        desk.aims[height] = aim
         foresee_pot(played, (ball, pocket), positions, on_table, law, work, seen)
         spread = Spread(errors.cores[level], errors.lapse, errors.factor)
         if rails.shape[0]:
@@ -195,13 +195,13 @@ def foresee(which, at, player, tables, rules, errors, out):
     speeds = errors.cores.shape[0] - 1
     along, at_pots = speeds * len(TOPS), speeds * PER_SPEED
     strokes = at_pots + (SAFETIES if in_frame else 0)
-    choices, state = strokes + (DECISIONS if in_frame else 0), _STATES[1 if in_frame else 0]
+    choices, state = strokes + (DECISIONS if in_frame else 0), STATES[1 if in_frame else 0]
     table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
     wide = (
         np.empty((MOST_RUNS, RUN_COLUMNS)),
         np.empty((_LEFT, POT_COLUMNS)),
         np.empty(0),
-        np.empty((2, len(TOPS))),
+        np.empty(len(TOPS)),
     )
     desk = Desk(np.empty(path.SEEN), np.empty(path.SEEN), np.zeros(5), *table, *wide)
     for j in range(which.shape[0]):

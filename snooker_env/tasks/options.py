@@ -26,7 +26,7 @@ from .discrete_actions import Choices
 from .kernel_arrays import Packed, pack_cue
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
-from .stroke_menu import SPEEDS, Menu
+from .stroke_menu import LEAST_SPEEDS, MOST_SPEEDS, SPEEDS, Menu
 from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
@@ -102,8 +102,8 @@ class Rules:
 
 GROUPS = {
     "task": ("task", "layout", "reward", "one_stroke", "opponent", "trust", "frames"),
-    "action": ("action", "aim", "elevation", "placement", "says", "speeds"),
-    "view": ("observation", "observe_conditions"),
+    "action": ("action", "aim", "elevation", "placement", "says"),
+    "view": ("observation", "speeds", "observe_conditions"),
     "shot": ("noise", "physics", "table", "fidelity", "cue", "conditions"),
     "frame": ("miss", "max_strokes", "game", "time_to_play"),
 }
@@ -244,6 +244,7 @@ class Options:
         for name, read in (("physics", physics), ("noise", noise)):
             if isinstance(getattr(self, name), dict):  # a dict may change later
                 object.__setattr__(self, name, read)
+        integer("speeds", self.speeds, LEAST_SPEEDS, MOST_SPEEDS)
         actions = self._actions()
         choice("cue", self.cue, CUES)
         default = isinstance(self.layout, str) and self.layout == "default"

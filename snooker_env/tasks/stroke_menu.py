@@ -5,7 +5,6 @@ their own, and the decisions after a foul. The aim is solved for the stroke."""
 import numpy as np
 from gymnasium import spaces
 
-from .._lib.check import integer
 from .._lib.jit import entry, kernel
 from .._lib.types import Floats
 from ..game import frame_columns as columns
@@ -130,7 +129,7 @@ class Menu(Choices):
     def __init__(self, speeds: int = SPEEDS, *, frame: bool = False) -> None:
         super().__init__()
         self.frame: bool = frame
-        self.speeds: int = integer("speeds", speeds, LEAST_SPEEDS, MOST_SPEEDS)
+        self.speeds: int = speeds
         self.choices: int = menu_size(speeds, frame)
         self.space: spaces.Discrete[np.int64] = spaces.Discrete(self.choices)
 

@@ -38,9 +38,9 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     lines = listed(tmp_path)
     runs = [line[2:] for line in lines if line[1] == "train.py"]
     comparisons = [line[3:] for line in lines if line[2] == "agents.evaluate"]
-    assert len(runs) == 8 and len(comparisons) == 1 and len(runs) + 2 == len(lines)
+    assert len(runs) == 9 and len(comparisons) == 1 and len(runs) + 2 == len(lines)
     recipes = {recipe_of(Settings(**parse(run)[1])).name for run in runs}
-    assert recipes == {"ppo_value"}
+    assert recipes == {"ppo_value", "strokes"}
     for comparison in comparisons:
         parsed = parser().parse_args(comparison)
         assert parsed.json.suffix == ".json" and parsed.markdown.with_suffix(".json") == parsed.json

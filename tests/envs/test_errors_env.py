@@ -20,6 +20,7 @@ env(task=?) | task | ? | must be one of 'visit', 'frame' | ''; None; b'x'; 'fram
 env(aim=?) | aim | ? | must be one of 'pot', 'absolute', 'target' | ''; 3; True; 'relative'; 'Target'; ['target']; {}
 env(action=?) | action | ? | must be one of 'box', 'discrete' | ''; None; b'x'; 'plain'; 'Box'; ['box']; {}
 env(observation=?) | observation | ? | must be one of 'default', 'pots', 'flat', 'balls' | ''; 3; True; 'pixels'; 'Flat'; ['flat']; {}
+env(speeds=?) | speeds | ? | must be an integer in [2, 20] | 1; 21; 9.5; None; '9'; True
 env(observation=?) | observation | ? | must be "pots", "flat" or "balls" with action="box": a Box has no masks | 'masked'
 env(task="frame", observation=?) | observation | ? | must be "pots", "flat" or "balls" with action="box" | 'masked'
 env(task="frame", observation=?) | observation | ? | must be one of 'default', 'flat', 'balls', 'masked' | 'pots'

@@ -258,7 +258,7 @@ def test_options_hold_text_and_objects_come_beside_them():
 def test_groups_hold_every_option_once():
     groups = [sn.Options.group(name) for name in ("task", "action", "view", "shot", "frame")]
     names = [name for group in groups for name in group]
-    assert len(names) == len(set(names)) == 24
+    assert len(names) == len(set(names)) == 25
     assert set(sn.Options.group("action", "visit")) == {"action", "aim", "elevation", "placement"}
     assert all(getattr(sn.Options(), name) == default for group in groups for name, default in group.items())
 

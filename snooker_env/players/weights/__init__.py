@@ -21,7 +21,9 @@ from ...tasks.noise import LEVELS, Noise
 FOLDER = Path(__file__).parent
 WORTH = "worth.npz"  # of the ``tactician``: what positions of frames are worth (python -m agents.learn_worth)
 STROKES = "strokes.npz"  # the networks of ``stroke_value`` (python train.py --agent stroke_value)
-MENU = "menu.npz"  # of ``strokes``: scores of the strokes on a menu (python train.py --steps 1000000)
+MENU = (
+    "menu.npz"  # of ``strokes``: scores of the strokes on a menu (python train.py --seed 1 --steps 1000000)
+)
 LAYERS_EACH = 3  # of each network but the policy
 
 
