@@ -1,7 +1,7 @@
 """How is an agent trained to play Snooker-v0? Train one, evaluate it on held-out tables beside simple
 players, and report the result.
 
-    python train.py                          five minutes on two cores: MaskablePPO on the menu of strokes, from nothing
+    python train.py                          three minutes on two cores: MaskablePPO on the menu of strokes, from nothing
     python train.py --steps 8192             a first try, in half a minute
     python train.py --agent ppo_value --steps 1507328 --imitate 153600   policy and value of the planner: 17 minutes
     python train.py --agent stroke_value     a player that simulates no shot, in 15 minutes
