@@ -230,7 +230,7 @@ def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
 
 def test_the_command_writes_the_markdown_beside(tmp_path, capsys, refused):
     file = tmp_path / "r.json"
-    file.write_bytes(KEPT[1].read_bytes())
+    file.write_bytes((ROOT / "results" / "agents" / "visits.json").read_bytes())
     assert report.main([str(file)]) == 0 and capsys.readouterr().out == f"{tmp_path / 'r.md'}\n"
     read = report.read(file)
     assert (tmp_path / "r.md").read_text() == report.markdown(read)
