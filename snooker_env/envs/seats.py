@@ -50,10 +50,8 @@ def match_tables(options: Options, differences: Any, n: int) -> Frames:
             choice(f"key of seats[{k}]", name, allowed)
         box_only: dict[str, Any] = {}
         if changes.get("action", "box") != "box":
-            kept = (
-                options.says if changes["action"] == "discrete" else ()
-            )  # a menu says nothing beside its choices
-            says = tuple(name for name in kept if name != "decision")
+            menu = changes["action"] == "strokes"  # it says nothing beside its choices
+            says = tuple(name for name in options.says if name != "decision" and not menu)
             box_only = {"elevation": False, "placement": False, "says": says}
         try:
             seats[k] = Seat.of(options.but(**box_only | dict(changes)).rules)

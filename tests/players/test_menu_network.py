@@ -44,6 +44,17 @@ def test_it_makes_more_than_the_widest_pot():
     assert points["strokes"] > 2.0 * points["ghost_ball"]
 
 
+def test_a_model_that_saw_another_menu_is_read_by_its_size(tmp_path):
+    PPO = pytest.importorskip("stable_baselines3").PPO
+    from snooker_env.sb3 import SnookerVecEnv
+
+    for frame in ({}, {"task": "frame"}):
+        tables = SnookerVecEnv(2, observation="strokes", speeds=5, threads=1, **frame)
+        PPO("MlpPolicy", tables, n_steps=4, batch_size=8, device="cpu").save(tmp_path / "box.zip")
+        sees = sn.player(tmp_path / "box.zip", trust=True).sees
+        assert (sees["observation"], sees["speeds"]) == ("strokes", 5)
+
+
 def test_it_plays_frames_without_pytorch():
     code = """
 import sys

@@ -197,6 +197,13 @@ def test_what_is_observed_and_how_one_acts_are_chosen_apart():
         sn.SnookerEnv(action="strokes", elevation=True)
 
 
+def test_one_seat_alone_may_have_a_menu():
+    env = sn.match_env(seats=({"action": "strokes"}, {}), noise="none")
+    env.reset(seed=1)
+    one, other = env.possible_agents
+    assert (env.action_space(one).n, env.action_space(other).shape) == (CHOICES + 50, (7,))
+
+
 def test_a_frame_has_safeties_the_break_off_and_decisions():
     env = sn.match_env(**MENU, noise="none")
     env.reset(seed=1)
