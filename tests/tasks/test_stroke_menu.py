@@ -97,6 +97,12 @@ def test_what_is_foreseen_of_each_stroke_at_a_pot(options):
     seen, state = rows_of(env.reset(seed=2)[0])
     at = Positions.of(env)
     assert np.array_equal(state, at.observations()[:, BALLS_SIZE:])
+    chance, points, prospects, promise = (
+        seen[..., COLUMN[name]] for name in ("chance", "points", "prospects", "promise")
+    )
+    told = promise > 0.0
+    assert told.any()
+    assert promise[told] == pytest.approx((chance * (7.0 * points + 35.0 * prospects) / 42.0)[told], rel=1e-5)
     for k in range(24):
         pot = pots(at[[k]])
         many = int((pot.ball[0] >= 0).sum())
