@@ -97,16 +97,16 @@ judge_seeds() { # the same of five training seeds, the first of which is the pac
     judge "$1" "$2" "$1=$3,$(seq -s, -f "$4$FOLDER/ppo_value-%g" 1 4)"
 }
 
-judge_each() { # the same of five models that are trained on each task
+judge_each() { # name, form and shots of agents.baseline: five models that are trained on each task
     labels+=("$1")
     [[ -z $wanted || " $wanted " == *" $1 "* ]] || return
     tasks=$(python -c "from snooker_env.benchmark import TASKS; print(*TASKS)") || exit 1
     for task in $tasks; do
         file=results/leaderboard/$task.$1.json
         if [ -e "$file" ] && grep -q '"incomplete": null' "$file"; then continue; fi
-        python -m agents.baseline "$task" || return
-        models=$(seq -s, -f "runs/baseline/$task.%g.zip" 0 4)
-        $bench run "$task" --agent "$1=$models" --trust --training-shots "$2" --out "$file" --resume
+        python -m agents.baseline "$task" --form "$2" --shots "$3" || return
+        models=$(seq -s, -f "runs/baseline/$task.$2.$3.%g.zip" 0 4)
+        $bench run "$task" --agent "$1=$models" --trust --training-shots "$3" --out "$file" --resume
     done
 }
 
@@ -125,13 +125,17 @@ leaderboard() {
     # The values of three levels, the worth of the tactician, and 13 million shots of its own: strokes that are tried,
     # play, and its opponents.
     judge stroke_value 96000000
+    judge strokes 1000000
     judge ppo_value 18403328
     # planner and ppo_value from five training seeds, all with a professional's errors: those of planner above are the
     # task's.
     judge_seeds planner_seeds 46101376 planner@professional planner@
     judge_seeds ppo_value_seeds 18403328 ppo_value ""
-    # Plain PPO, five training seeds.
-    judge_each ppo_50k 49152
+    # A stranger's agents, five training seeds.
+    judge_each ppo_50k pot 50000
+    judge_each menu_50k strokes 50000
+    judge_each ppo_1m pot 1000000
+    judge_each menu_1m strokes 1000000
     # What looks at nothing, beside them: it must win no task.
     [[ -n $wanted ]] || $bench degenerate --out results/leaderboard || exit 1
     $bench table results/leaderboard/*.json --markdown docs/leaderboard.md --awaited "${labels[@]}"

@@ -281,11 +281,14 @@ def afresh(
 
 
 def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes) -> list[str]:
-    """Is it called model-free, and simulates shots?"""
-    if record["agent"]["class"] != "model_free" or not played.simulated:
-        return []
-    shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
-    return [f"agent.class = 'model_free': must be 'planning': {who} simulated {shots}"]
+    """Is it called a player without simulated shots, or without foresight, and is not?"""
+    agent, wrong = record["agent"], []
+    if agent["class"] in ("model_free", "foresight") and played.simulated:
+        shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
+        wrong.append(f"agent.class = {agent['class']!r}: must be 'planning': {who} simulated {shots}")
+    if agent["foresees"] != played.foresees:
+        wrong.append(f"agent.foresees = {agent['foresees']}: must be {played.foresees}, as of {who}")
+    return wrong
 
 
 def _by(agent: Agent, result: dict[str, Any], seeds: Sequence[int], threads: int | None) -> PlayedEpisodes:

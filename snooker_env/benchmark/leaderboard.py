@@ -11,6 +11,7 @@ from .tasks import TASKS, Task
 WIDTH = 100
 CLASSES = {
     "model_free": "model-free",
+    "foresight": "foresight",
     "planning": "planning",
     "undeclared": "undecl.",
     "degenerate": "degenerate",

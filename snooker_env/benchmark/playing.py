@@ -13,6 +13,8 @@ from .._lib.types import Bools, Floats, Ints
 from ..envs.vector import SnookerVectorEnv
 from ..players import FRAMES, VISITS, Player, ask_player, decision_seeds
 from ..players import player as player_named
+from ..players.seen import SeenPlayer
+from ..players.stroke_value_player import StrokeValuePlayer
 from ..simulation.count import count_shots
 from .luck_counter import Decide, Luck
 from .tasks import Task
@@ -35,11 +37,20 @@ class PlayedEpisodes:
     decisions: int = 0  # of the player
     seconds: float = 0.0  # time of all of them [s]
     simulated: int = 0  # shots that this process simulated for them
+    foresees: bool = False  # whether the player knows what its strokes do, see ``foresees``
 
     def add(self, more: "PlayedEpisodes") -> None:
         """Add episodes that were played after these."""
         for name in ("rows", "strokes", "decisions", "seconds", "simulated"):
             setattr(self, name, getattr(self, name) + getattr(more, name))
+        self.foresees |= more.foresees
+
+
+def foresees(player: Player) -> bool:
+    """Whether closed forms tell a player what each of its strokes would do: on a menu, or by its own prediction."""
+    return isinstance(player, StrokeValuePlayer) or (
+        isinstance(player, SeenPlayer) and player.sees.get("observation") == "strokes"
+    )
 
 
 class Decider:
@@ -129,7 +140,8 @@ def play_episodes(
     decide = Decider(player, tables, seeds, run)
     rows = rows_of(task, tables, seeds, decide, run, lucky=lucky)
     strokes = decide.strokes() if decide.decisions else [np.empty((0, 0), np.float32)] * len(seeds)
-    return PlayedEpisodes(rows, strokes, decide.decisions, decide.seconds, decide.simulated)
+    cost = decide.decisions, decide.seconds, decide.simulated
+    return PlayedEpisodes(rows, strokes, *cost, foresees(decide.player))
 
 
 def rows_of(

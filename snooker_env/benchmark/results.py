@@ -101,7 +101,8 @@ def complete(record: dict[str, Any], task: Task) -> dict[str, Any]:
     # counted, unless it cannot be, or a higher number is declared
     if by_word := agent["sources"][0].startswith(PROGRAM) or (declared is not None and declared > mean):
         mean = None if declared is None else float(declared)
-    name = "undeclared" if mean is None else "planning" if mean > 0 else "model_free"
+    name = "foresight" if agent["foresees"] else "model_free"
+    name = "undeclared" if mean is None else "planning" if mean > 0 else name
     name = "degenerate" if all(map(is_degenerate, agent["sources"])) else name
     made = {"class": name, "simulated_shots": mean, "declared": by_word}
     made["budget"] = budget_of(agent["training_shots"])
@@ -122,7 +123,7 @@ def result_of(
     """The record of a run. ``alone``: played on one table; ``about``: "command", "load", "incomplete"."""
     shots, why = agent.shots_declared, about["incomplete"]
     who: dict[str, Any] = {"label": agent.label, "sources": agent.texts, "budget": None}
-    who["training_shots"] = agent.training_shots
+    who |= {"training_shots": agent.training_shots, "foresees": played.foresees}
     one_table = 1e3 * alone.seconds / alone.decisions if alone.decisions else None
     record = {
         "schema": {},

@@ -127,4 +127,5 @@ def _read_earlier(
         raise refuse("out", str(path), f"must be a result of {what} to go on with")
     strokes, timing = strokes_of(result), result["timing"]
     decisions, shots = sum(map(len, strokes)), timing["simulated_shots"]
-    return result, PlayedEpisodes(result["rows"], strokes, decisions, timing["seconds"], shots)
+    cost = decisions, timing["seconds"], shots
+    return result, PlayedEpisodes(result["rows"], strokes, *cost, result["agent"]["foresees"])

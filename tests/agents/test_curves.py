@@ -11,10 +11,11 @@ import stable_baselines3
 from sb3_contrib import MaskablePPO
 
 import snooker_env as sn
-from agents import curves, report
+from agents import baseline, curves, report
 from agents.evaluation import curve_report
 from agents.evaluation.curve_file import NAME
 from agents.evaluation.curve_rows import PLACES, ROWS, Row, play, play_nothing
+from snooker_env.benchmark import Agent, count_shots, faults, judge
 from snooker_env.benchmark.tasks import TASKS, tables_of
 from snooker_env.sb3 import SnookerVecEnv, StrokesPolicy, StrokesQPolicy
 from tests.docs.pages import DOCS, blocks
@@ -278,3 +279,21 @@ KEPT = ROOT / "results/agents/curves.json"
 @pytest.mark.skipif(not KEPT.exists(), reason="no curves are kept")
 def test_the_tables_of_the_page_are_those_of_the_kept_points():
     assert curve_report.fill(PAGE, report.read(KEPT), KEPT) == PAGE
+
+
+@pytest.mark.parametrize(
+    ("task", "form", "kind"),
+    [("SnookerBreak-v0", "pot", "model_free"), ("SnookerSafety-v0", "strokes", "foresight")],
+)
+def test_a_baseline_keeps_its_budget_and_is_judged(tmp_path, small, monkeypatch, task, form, kind):
+    monkeypatch.setitem(baseline.FORMS, form, ROWS["pot_ppo" if form == "pot" else "strokes_maskable"])
+    before = count_shots()
+    arguments = [task, "--form", form, "--shots", "100", "--seeds", "1", "--out", str(tmp_path)]
+    baseline.main(arguments)
+    file = tmp_path / f"{task}.{form}.100.0.zip"
+    assert 50 < count_shots() - before <= 100
+    made = file.read_bytes()
+    baseline.main(arguments)
+    assert file.read_bytes() == made  # it is left as it is
+    result = judge(TASKS[task], Agent.of(str(file), label="x", trust=True, training_shots=100), episodes=2)
+    assert (result["agent"]["class"], result["agent"]["budget"]) == (kind, "50k") and faults(result) == []

@@ -175,6 +175,14 @@ def test_a_known_planner_is_not_model_free(name, training):
     assert kind.startswith(f"agent.class = 'model_free': must be 'planning': '{name}' simulated ")
 
 
+def test_a_player_of_the_menu_is_a_class_of_its_own():
+    """A menu shows what its strokes do, and a file cannot deny that."""
+    record = judge(HARD, Agent.of("strokes", training_shots=10**6), episodes=3)
+    assert faults(record) == [] and record["agent"]["class"] == "foresight"
+    record["agent"]["foresees"] = False
+    assert faults(complete(record, HARD)) == ["agent.foresees = False: must be True, as of 'strokes'"]
+
+
 @pytest.mark.parametrize(
     ("name", "training", "says"),
     [
