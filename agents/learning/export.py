@@ -5,6 +5,7 @@ pre-trained ``ppo_value`` models, and the network of ``strokes``.
 import json
 from pathlib import Path
 
+import numpy as np
 import torch
 
 from agents._lib.files import packed_arrays, write_atomic, write_json
@@ -16,7 +17,7 @@ from .models import PRETRAINED, load_trained
 from .networks import arrays_of
 from .rounds import arrays_of as arrays_of_layers
 
-LEARNED, STROKES = "ppo_value", "strokes"
+LEARNED, STROKES, SELF_PLAYED = "ppo_value", "strokes", "self_play.pt"
 """The pre-trained models of a professional's errors; planners of another level have its name after theirs."""
 
 
@@ -42,9 +43,11 @@ def keep_models(folder):
 
 def export():
     """Write one file for each level that has a pre-trained model, and that of the menu."""
-    model = PRETRAINED / f"{STROKES}.zip"
-    if model.is_file():
-        write_atomic(FOLDER / MENU, packed_arrays(_layers_of_menu(load_trained(model, "agent").policy)))
+    model, state = PRETRAINED / f"{STROKES}.zip", PRETRAINED / SELF_PLAYED
+    if model.is_file() and state.is_file():
+        arrays = arrays_of_layers("visits", layers_of_menu(load_trained(model, "agent").policy.state_dict()))
+        arrays |= arrays_of_layers("frames", layers_of_menu(torch.load(state, weights_only=True)))
+        write_atomic(FOLDER / MENU, packed_arrays(arrays))
     for level in LEVELS:
         model = PRETRAINED / f"{_name_of(level)}.zip"
         if model.is_file():
@@ -53,14 +56,12 @@ def export():
             print(f"{path}  {path.stat().st_size / 1e6:.2f} MB")
 
 
-def _layers_of_menu(policy):
-    """The arrays of a ``StrokesPolicy`` that score strokes: {name: float32 array}."""
-    net = policy.mlp_extractor
-    first = torch.cat([net.of_stroke.weight, net.of_state.weight], dim=1), net.of_stroke.bias
-    layers = [first, *((one.weight, one.bias) for one in (net.second, net.score))]
-    return arrays_of_layers(
-        "menu", [(weight.detach().numpy(), bias.detach().numpy()) for weight, bias in layers]
-    )
+def layers_of_menu(state):
+    """Weight and bias of each layer of a ``StrokesPolicy`` that scores strokes, from its ``state_dict``."""
+    part = {name.removeprefix("mlp_extractor."): one.detach().numpy().copy() for name, one in state.items()}
+    first = np.concatenate([part["of_stroke.weight"], part["of_state.weight"]], axis=1)
+    layers = [(part[f"{name}.weight"], part[f"{name}.bias"]) for name in ("second", "score")]
+    return [(first, part["of_stroke.bias"]), *layers]
 
 
 def _name_of(level):

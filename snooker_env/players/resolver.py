@@ -130,10 +130,9 @@ def _built_in(name: str) -> Player | None:
     if name in (Random.name, GhostBall.name):
         return Random() if name == Random.name else GhostBall()
     if name == "strokes":
-        from .menu_network import MenuNetwork
-        from .seen import SeenPlayer
+        from .menu_network import MenuPlayer
 
-        return SeenPlayer(MenuNetwork(), name=name)
+        return MenuPlayer()
     form = _SEARCHING.fullmatch(name)
     if form is None:
         return None

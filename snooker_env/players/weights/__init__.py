@@ -21,9 +21,7 @@ from ...tasks.noise import LEVELS, Noise
 FOLDER = Path(__file__).parent
 WORTH = "worth.npz"  # of the ``tactician``: what positions of frames are worth (python -m agents.learn_worth)
 STROKES = "strokes.npz"  # the networks of ``stroke_value`` (python train.py --agent stroke_value)
-MENU = (
-    "menu.npz"  # of ``strokes``: scores of the strokes on a menu (python train.py --seed 1 --steps 1000000)
-)
+MENU = "menu.npz"  # of ``strokes``: of visits (python train.py --seed 1 --steps 1000000), of frames (examples.self_play)
 LAYERS_EACH = 3  # of each network but the policy
 
 
@@ -79,9 +77,9 @@ def learned_worth() -> tuple[list[tuple[Singles, Singles]], Chance]:
 
 
 @cache
-def learned_menu() -> list[tuple[Singles, Singles]]:
-    """The layers of the network of ``strokes``, which read a stroke on the menu and the state."""
-    return layers_of(read_npz(FOLDER / MENU), "menu")
+def learned_menu(of: str) -> list[tuple[Singles, Singles]]:
+    """The layers of the network of ``strokes`` for "visits" or "frames", which read a stroke on the menu and the state."""
+    return layers_of(read_npz(FOLDER / MENU), of)
 
 
 @cache
