@@ -198,8 +198,8 @@ class Run:
                 self.optimizer.step()
 
 
-def main(argv=None):
-    """Train, judge, write results.json and the weights."""
+def parse(argv) -> argparse.Namespace:
+    """The options of a command line."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -212,7 +212,12 @@ def main(argv=None):
     add("--seed", type=int, default=0)
     add("--fresh", action="store_true", help="begin with nothing")
     add("--out", type=Path, default=Path("runs", "self_play"), help="folder of the run [runs/self_play]")
-    args = parser.parse_args(argv)
+    return parser.parse_args(argv)
+
+
+def main(argv=None):
+    """Train, judge, write results.json and the weights."""
+    args = parse(argv)
     args.out.mkdir(parents=True, exist_ok=True)
     torch.set_num_threads(1)
     run = Run(args)

@@ -7,6 +7,7 @@ import snooker_env as sn
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.players import VISITS
 from snooker_env.players.menu_network import MenuNetwork
+from snooker_env.players.weights import learned_menu
 from tests.processes import python
 
 OPTIONS = {"noise": "professional", "cue": "real", "layout": "opened"}
@@ -22,7 +23,7 @@ def test_it_chooses_as_the_model_that_was_trained():
     with torch.no_grad():
         wanted = net.forward_actor(torch.as_tensor(observed)).argmax(dim=1).numpy()
     masks = env.action_masks()
-    chosen = MenuNetwork().act(observed, masks, np.arange(60))
+    chosen = MenuNetwork(learned_menu("visits"), "visit").act(observed, masks, np.arange(60))
     assert np.array_equal(chosen, wanted) and masks[np.arange(60), chosen].all() and len(set(chosen)) > 10
 
 
