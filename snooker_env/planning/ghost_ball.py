@@ -12,6 +12,7 @@ from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.rule_sets import SHOOT_OUT
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
+from ..tasks.box_actions import MIN_SPEED
 from ..tasks.declarations import nominated_ball
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, ROLL, ROLLING, find_escapes
 from ..tasks.lines import BREAK_X, EASY, LINE_ROWS, NARROW, POTS, break_off, end_red_of_rack, nearest
@@ -229,6 +230,9 @@ def geometric_turn(positions, on_table, row, rules, rows, stream):
     placed = row[columns.IN_HAND]
     speed, side, top, aim = stroke_at(positions, on_table, mask, placed, failed, drive, rows, stream)
     speed *= 1.0 + (0.04 if placed and end_red_of_rack(positions, on_table) else 0.2) * (jitter - 0.5)
+    speed = max(
+        MIN_SPEED, speed
+    )  # a ball a few millimetres away would be struck more softly than anybody can
     return speed, side, top, aim, nominate_on_line(positions, on_table, row, aim) if frame else AUTO, decision
 
 

@@ -196,3 +196,12 @@ def test_a_player_of_choices_says_what_its_scores_lack():
         Short().at({}).play(at, [1])
     with pytest.raises(NotImplementedError, match=r"Missing must have scores\(at, seeds\)"):
         Missing().at({}).rank(at, [1])
+
+
+def test_ghost_ball_strikes_no_more_softly_than_anybody_can():
+    """A red 0.3 mm away, where all but a stun shot would go in-off: as found in frames of ``examples.self_play``."""
+    position = sn.Position(
+        cue=(-0.86, 0.0189), reds=[(-0.82954, 0.06201), (-0.77107, 0.03743)], black=(0.0, 1.4605)
+    )
+    strokes = sn.player("ghost_ball").at({}).play(sn.Positions.of([position] * 20), range(20))
+    assert strokes.values[:, 0].tolist() == [0.2] * 20
