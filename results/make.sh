@@ -68,6 +68,7 @@ train_models() { # those whose names begin as ONLY says
 agents() {
     train_models
     [[ -n ${ONLY:-} ]] && exit
+    module examples.self_play --out "$FOLDER/self_play"
     module agents.evaluate --layouts held_out=500 --noise professional --against search best_pot --agent \
         planner best_pot ghost_ball search stroke_value strokes ppo_value random \
         ${RAY:+--ray "$RAY"} --json results/agents/visits.json --markdown results/agents/visits.md
