@@ -109,6 +109,7 @@ def report(service: Service) -> dict[str, Any]:
         "advisers": seats.advisers(session.practice),
         "level": seats.level(session),
         "noise": list(session.noise),
+        "choice_wins": service.choice_chances(session),
         "paused": service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
         "undo": session.at > 1,

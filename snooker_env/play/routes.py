@@ -192,7 +192,9 @@ def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading(_revision(fields)) as session:  # at once: it does not wait for long questions
         twin = session.twin()
-    return twin.room(take_stroke(twin, fields)).to_dict()
+    stroke = take_stroke(twin, fields)
+    room = twin.room(stroke).to_dict()
+    return room | questions.leaving(twin, stroke) if twin.frame.phase == "stroke" else room
 
 
 def _revision(fields: dict[str, Any]) -> int | None:

@@ -188,6 +188,11 @@ class Service:
         parts = [(Frame.from_dict(frame), np.array(at), np.array(on)) for at, on, frame in tables]
         return win_chances(judge, [Standing(*one) for one in parts])
 
+    def choice_chances(self, session: Session, noise: NoiseName | None = None) -> list[float | None]:
+        """How likely the striker wins after each choice that it has after a foul; as ``win_chances``."""
+        chances = self.win_chances([session.twin().choose(what) for what in session.frame.choices], noise)
+        return [one if one is None or session.frame.striker == 0 else 1.0 - one for one in chances]
+
     def wait(self, revision: int, seconds: float) -> None:
         """Return when the revision has changed, or after that time."""
         until = monotonic() + min(seconds, LONGEST_WAIT)
