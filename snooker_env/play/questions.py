@@ -46,7 +46,9 @@ def leaving(session: Session, stroke: CueStroke) -> dict[str, Any]:
     """Which ball the stroke strikes first without errors, and the direction in which it leaves [rad], throw included."""
     events = (shot := exact(session, stroke)).events
     hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)][:1]
-    heads = [atan2(*shot.at(at)[1][ball, 1::-1].tolist()) for at, ball in zip(hits["time"], hits["j"], strict=True)]
+    heads = [
+        atan2(*shot.at(at)[1][ball, 1::-1].tolist()) for at, ball in zip(hits["time"], hits["j"], strict=True)
+    ]
     return {"first": NAMES[hits["j"][0]] if heads else None, "heads": heads[0] if heads else None}
 
 

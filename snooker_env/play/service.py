@@ -38,6 +38,7 @@ class Seats:
     who: list[str]  # ``PERSON`` or the name of an agent, for each seat
 
     def __init__(self, agents: Mapping[str, Player]):
+        self.named: list[str] = list(agents)
         self.players: dict[str, Player] = dict(agents)
         for name in OFFERED:
             self.players.setdefault(name, player(name))
@@ -182,7 +183,7 @@ class Service:
 
     def win_chances(self, acts: Sequence[Act], noise: NoiseName | None = None) -> list[float] | list[None]:
         """How likely seat 0 was to win after each of some acts; None for nobody says it. ``noise``: see ``judge``."""
-        if (judge := self.judge(noise)) is None:
+        if (judge := self.judge(noise)) is None or not acts:
             return [None] * len(acts)
         tables = [(act.state["positions"], act.state["on_table"], act.state["frame"]) for act in acts]
         parts = [(Frame.from_dict(frame), np.array(at), np.array(on)) for at, on, frame in tables]
