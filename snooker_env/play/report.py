@@ -119,6 +119,9 @@ def report(service: Service) -> dict[str, Any]:
     if service.agent_to_play():
         waits = "waits: press Continue." if service.paused else "is thinking."
         state["words"] = service.trouble or f"{seats.label(frame.striker)} {waits}"
+    fair = act.played is not None and not (act.played.fouls or act.played.points)
+    if fair and state["snookered"]:
+        state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
     if state["phase"] == "over":
         state["words"] = " ".join([state["words"], *_say_luck(service)])
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]

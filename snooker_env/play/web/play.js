@@ -94,7 +94,7 @@ class Page {
     by("next").onclick = () => this.once(() => this.go("new", { next: true, seed: seed() }));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
-    by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
+    by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html", undefined, `?${new URLSearchParams({ one: this.state.labels[0], other: this.state.labels[1] })}`), "text/html"); });
     by("load").onclick = () => this.sure("Leave this frame and load a file?", "Load", () => by("file").click());
     by("file").onchange = () => this.try(() => this.load());
     by("labels").checked = kept.get("labels", false);
