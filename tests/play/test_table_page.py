@@ -1,6 +1,5 @@
 """Does the table of the page help where a person decides? Chances, names, the object line, hints on a phone, set-up."""
 
-import threading
 from math import atan2, hypot, pi
 
 import numpy as np
@@ -8,29 +7,12 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.advice import POCKET_WORDS
-from snooker_env.play.server import PlayServer
-from snooker_env.play.service import Seats, Service
-from snooker_env.play.session import Session
 from tests.play.test_page import SETTLED, Shown
-from tests.playing import COVERED, Line
+from tests.playing import COVERED
 from tests.web.chromium import chromium  # noqa: F401
 
 CUT = {"cue": [0.0, 0.3], "reds": [[0.3, 1.0], [-0.6, 0.2], [0.5, -0.4]], "black": [0.0, 1.4605]}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
-
-
-@pytest.fixture(scope="module")
-def line():
-    """A server that was started with an agent by name."""
-    service = Service(Session(seed=1), Seats({"planner": sn.player("planner")}))
-    server = PlayServer(service)
-    thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05}, daemon=True)
-    thread.start()
-    yield Line(server)
-    server.shutdown()
-    server.server_close()
-    service.close()
-    thread.join()
 
 
 @pytest.fixture
@@ -53,6 +35,7 @@ def test_each_choice_after_a_foul_shows_its_chance_and_the_best_is_marked(shown)
     assert [kind for _, kind in buttons] == ["best" if win == max(wins) else "" for win in wins]
     asked = shown.line("api/advise", {"n": 1, "samples": 20})[1]["choices"]
     assert [one["win"] for one in asked] == wins and len(set(wins)) == 3
+    assert shown.line("api/replay?one=Ada&other=Bo")[1]["players"] == ["Ada", "Bo"]
 
 
 @pytest.mark.parametrize(
@@ -140,7 +123,10 @@ def test_set_up_snaps_undoes_and_mirrors(shown):
     assert not shown("page.state.in_hand")
 
 
-def test_the_agent_that_was_named_stays_in_the_menu(shown):
+def test_the_agent_that_was_named_stays_in_the_menu(chromium, line):  # noqa: F811
+    seats = line.server.service.seats
+    seats.named, seats.players["planner"] = ["planner"], sn.player("planner")
+    shown = Shown(chromium, line)
     shown.set_up(CUT)
     shown.page.click("#start summary")
     for name, who in (("amateur", "tactician_500"), ("planner", "planner"), ("perfect", "tactician_500")):
@@ -149,6 +135,7 @@ def test_the_agent_that_was_named_stays_in_the_menu(shown):
         assert shown.page.input_value("#level") == name
     tables = shown("[...document.querySelectorAll('#layout option')].map(one => one.innerText)")
     assert not [words for words in tables if ":" in words or "_" in words]
+    shown.close()
 
 
 def test_loupe_and_tutorial_keep_off_what_matters(chromium, line):  # noqa: F811
