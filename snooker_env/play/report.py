@@ -6,7 +6,7 @@ from typing import Any
 from ..advice import POCKET_WORDS
 from ..game.frame import Frame
 from ..game.rule_sets import RULES
-from ..geometry import POCKET_AIMS
+from ..geometry import POCKET_AIMS, POCKETS
 from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
 from ..planning.stroke_columns import FARTHEST
 from ..players.table_report import report_game, report_turn, say_score, say_table
@@ -28,15 +28,16 @@ def scene(service: Service) -> dict[str, Any]:
         rules = session.options_with("none").rules
     assert isinstance(rules.actions, Actions)
     limits = {"speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, rules.actions.steepest]}
-    pockets = zip(POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
+    pockets = zip(POCKETS, POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
     return {
         "scene": scene_data(rules.table),
         "R": rules.physics.R,
         "spin_decel": rules.physics.spin_decel,
         "cue": {"tip": TIP, "butt": BUTT, "length": LENGTH, "rail": RAIL},
         "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
-        "pockets": [{"name": name, "x": x, "y": y} for name, (x, y) in pockets],
+        "pockets": [{"key": key, "name": name, "x": x, "y": y} for key, name, (x, y) in pockets],
         "players": service.seats.names,
+        "named": service.seats.named,
         "noise": ERRORS,
         "cues": list(CUES),
         "games": list(RULES),
@@ -109,6 +110,7 @@ def report(service: Service) -> dict[str, Any]:
         "advisers": seats.advisers(session.practice),
         "level": seats.level(session),
         "noise": list(session.noise),
+        "choice_wins": service.choice_chances(session),
         "paused": service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
         "undo": session.at > 1,
@@ -117,6 +119,9 @@ def report(service: Service) -> dict[str, Any]:
     if service.agent_to_play():
         waits = "waits: press Continue." if service.paused else "is thinking."
         state["words"] = service.trouble or f"{seats.label(frame.striker)} {waits}"
+    fair = act.played is not None and not (act.played.fouls or act.played.points)
+    if fair and state["snookered"]:
+        state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
     if state["phase"] == "over":
         state["words"] = " ".join([state["words"], *_say_luck(service)])
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]

@@ -14,6 +14,7 @@ from ..game.frame import MOST_BREAK
 from ..planning.position import Position
 from ..players.requests import STROKE, read_colour, read_place, read_stroke
 from ..replays import Replay
+from ..replays.document import check_text
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
@@ -192,7 +193,9 @@ def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading(_revision(fields)) as session:  # at once: it does not wait for long questions
         twin = session.twin()
-    return twin.room(take_stroke(twin, fields)).to_dict()
+    stroke = take_stroke(twin, fields)
+    room = twin.room(stroke).to_dict()
+    return room | questions.leaving(twin, stroke) if twin.frame.phase == "stroke" else room
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
@@ -210,7 +213,9 @@ def _errors(fields: dict[str, Any], samples: int, noise: str) -> dict[str, Any]:
 def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], Any]) -> Any:
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
-        labels, judge = service.labels, service.judge()
+        one, other = service.labels
+        labels = check_text("one", fields.get("one", one)), check_text("other", fields.get("other", other))
+        judge = service.judge()
         luck = session.luck if judge is not None and any(session.luck) else None
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
@@ -223,8 +228,8 @@ GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
-    "replay": Route(partial(_replay, form=Replay.to_dict)),
-    "replay.html": Route(partial(_replay, form=Replay.html)),
+    "replay": Route(partial(_replay, form=Replay.to_dict), ("one", "other")),
+    "replay.html": Route(partial(_replay, form=Replay.html), ("one", "other")),
 }
 POST: dict[str, Route] = {
     "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision")),

@@ -38,6 +38,7 @@ class Seats:
     who: list[str]  # ``PERSON`` or the name of an agent, for each seat
 
     def __init__(self, agents: Mapping[str, Player]):
+        self.named: list[str] = list(agents)
         self.players: dict[str, Player] = dict(agents)
         for name in OFFERED:
             self.players.setdefault(name, player(name))
@@ -182,11 +183,16 @@ class Service:
 
     def win_chances(self, acts: Sequence[Act], noise: NoiseName | None = None) -> list[float] | list[None]:
         """How likely seat 0 was to win after each of some acts; None for nobody says it. ``noise``: see ``judge``."""
-        if (judge := self.judge(noise)) is None:
+        if (judge := self.judge(noise)) is None or not acts:
             return [None] * len(acts)
         tables = [(act.state["positions"], act.state["on_table"], act.state["frame"]) for act in acts]
         parts = [(Frame.from_dict(frame), np.array(at), np.array(on)) for at, on, frame in tables]
         return win_chances(judge, [Standing(*one) for one in parts])
+
+    def choice_chances(self, session: Session, noise: NoiseName | None = None) -> list[float | None]:
+        """How likely the striker wins after each choice that it has after a foul; as ``win_chances``."""
+        chances = self.win_chances([session.twin().choose(what) for what in session.frame.choices], noise)
+        return [one if one is None or session.frame.striker == 0 else 1.0 - one for one in chances]
 
     def wait(self, revision: int, seconds: float) -> None:
         """Return when the revision has changed, or after that time."""

@@ -294,7 +294,7 @@ def test_the_bar_shows_who_is_likely_to_win_and_moves_with_the_strokes(shown):
 
     def said(chance):
         first = min(99, max(1, round(100 * chance)))
-        return [f"{first} %", "chance to win", f"{100 - first} %"]
+        return [f"{first} %", "chance to win with an amateur's mistakes", f"{100 - first} %"]
 
     before = shown("page.state.win_chance")
     assert bar() == said(before)
@@ -307,7 +307,7 @@ def test_the_bar_shows_who_is_likely_to_win_and_moves_with_the_strokes(shown):
     assert shown(edge) == pytest.approx(100 * before)
     shown.played(1)
     assert bar() == said(after) and shown(edge) == pytest.approx(100 * after)
-    about = "chance to win, both with an amateur's mistakes: Player 1 "
+    about = "chance to win with an amateur's mistakes: Player 1 "
     assert shown.page.get_attribute("#win", "aria-label").startswith(about)
     shown.page.click("#undo")
     shown.until("page.state.strokes === 0 && page.settled === page.state.revision")

@@ -25,13 +25,16 @@ const LEVELS = {
 };
 const OWN = "own";
 const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
-/** Slow motion, zoom, time of a call [ms]. */
-const SLOW = 0.2, ZOOM = 2, CALLED = 1600;
+/** Slow motion, zoom, time of a call [ms], how long an agent's cue is seen before its stroke [s]. */
+const SLOW = 0.2, ZOOM = 2, CALLED = 1600, AGENTS_LEAD = 1;
 /** Keys that go on while they are held: after [ms], by so many steps [1/ms]. */
 const STEPS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", ..."wsadeq"], HOLD = 300, RATE = 0.03;
-/** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels]. */
-const LOUPE = 0.24, SMALL = 9;
-const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "escape", "safety", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
+/** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels], and what is about lies so many of its breadths off its corner. */
+const LOUPE = 0.24, SMALL = 9, CLEAR = 1.5;
+const LAYOUTS = {
+  break_off: "break-off", opened: "opened pack", line_up: "line-up", colours: "colours only", snookered: "snookered", escape: "hard escape", safety: "safety battle",
+  "random:3": "three reds anywhere", "random:6": "six reds anywhere", "random:10": "ten reds anywhere", "pots:easy": "one easy pot", "pots:medium": "one fair pot", "pots:hard": "one hard pot",
+};
 const CUES = { real: "can be blocked", free: "never blocked" };
 /** What may be chosen after the foul of a player with this name. */
 const CHOICES = { play: () => "Play the table as it lies", play_again: who => `${who} plays again from here`, replace: who => `Put the balls back: ${who} plays again`, anywhere: () => "Put the cue ball anywhere" };
@@ -91,13 +94,13 @@ class Page {
     by("next").onclick = () => this.once(() => this.go("new", { next: true, seed: seed() }));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
-    by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
+    by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html", undefined, `?${new URLSearchParams({ one: this.state.labels[0], other: this.state.labels[1] })}`), "text/html"); });
     by("load").onclick = () => this.sure("Leave this frame and load a file?", "Load", () => by("file").click());
     by("file").onchange = () => this.try(() => this.load());
     by("labels").checked = kept.get("labels", false);
     by("labels").onchange = () => { kept.set("labels", by("labels").checked); this.redraw(); };
     fill(by("rules"), this.games);
-    by("rules").onchange = () => fill(by("layout"), by("rules").value === "six_red" ? ["break_off", "colours"] : LAYOUTS);
+    by("rules").onchange = () => fill(by("layout"), by("rules").value === "six_red" ? ["break_off", "colours"] : Object.keys(LAYOUTS), undefined, name => LAYOUTS[name]);
     by("rules").onchange();
     fill(by("best-of"), BEST_OF.map(String), "1", n => (n === "1" ? "one frame" : `best of ${n}`));
     by("level").onchange = () => this.level();
@@ -191,7 +194,9 @@ class Page {
     if (this.state && state.revision <= this.state.revision) return;
     const first = this.state === null, fresh = state.begun !== this.state?.begun, level = state.players[0] === "person" && Object.entries(LEVELS).find(([, [who, noise]]) => who === state.players[1] && noise === state.noise[1])?.[0];
     this.state = state;
-    this.strength = level || OWN;
+    const other = state.players[1], own = state.players[0] === "person" && this.named.includes(other);
+    if (own) this.errs = { ...this.errs, [other]: state.noise[1] };
+    this.strength = level || (own ? other : OWN);
     this.alias = [state.labels[1], state.labels[1]];
     if (level && state.players[1] !== "person") this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
     if (first) { this.put(state); this.drills.resume(); }
@@ -345,7 +350,7 @@ class Page {
   move(data, rate = 1) {
     const stroke = decode({ format: "snooker-replay", version: 2, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     return new Promise(done => {
-      this.moving = { stroke, rate, at: -0.4, now: null, done };
+      this.moving = { stroke, rate, at: this.state.players[stroke.player] === "person" || rate < 1 ? -0.4 : -AGENTS_LEAD, now: null, done };
       if (this.near) this.fit();
       if (this.state.players[stroke.player] === "person") this.compact();
       this.stats.turn(false);
@@ -436,7 +441,7 @@ class Page {
 
   /** Seat an opponent of the chosen strength; it errs as its level says, the person as before. */
   level() {
-    const [who, noise] = LEVELS[by("level").value] ?? [];
+    const name = by("level").value, [who, noise] = LEVELS[name] ?? [this.named.includes(name) && name, this.errs?.[name] ?? "professional"];
     if (who) this.go("players", { players: ["person", who], noise: [this.state.noise[0], noise], practice: false });
   }
 
@@ -464,7 +469,7 @@ class Page {
     if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
     if (event.altKey && !key.startsWith("Arrow")) return;
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, tip = (x, y) => aim.tip(aim.wish.side + x, aim.wish.top + y);
-    const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end() } : {
+    const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end(), u: () => this.setup.undo() } : {
       " ": () => (event.shiftKey ? this.hurry() : this.skip()), Escape: () => (aim.held === "cue" ? aim.up(false) : this.skip()), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
       z: () => this.zoom(), f: () => this.full(), m: () => this.sound.flip(),
       "?": () => this.help(),
@@ -506,7 +511,7 @@ class Page {
       by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
       by(`side-${k}`).querySelector(".frames").textContent = state.best_of > 1 ? `(${state.frames[k]})` : "";
     }
-    fill(by("level"), [...Object.keys(LEVELS), OWN], this.strength);
+    fill(by("level"), [...Object.keys(LEVELS), ...this.named, OWN], this.strength);
     const own = by("level").lastChild;
     own.hidden = this.strength !== OWN;
     own.textContent = `${state.labels[1]}, mistakes: ${this.noise[state.noise[1]]}`;
@@ -533,8 +538,9 @@ class Page {
     if (choosing && by("choices").dataset.for !== String(state.revision)) {
       by("choices").dataset.for = state.revision;
       by("panel").scrollTop = 0;
-      by("choices").replaceChildren(...state.choices.map(choice => {
-        const button = make("button", { textContent: choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice](state.labels[1 - state.striker]) });
+      const wins = state.choice_wins, best = wins.indexOf(Math.max(...wins));
+      by("choices").replaceChildren(...state.choices.map((choice, k) => {
+        const button = make("button", { className: k === best ? "best" : "" }, choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice](state.labels[1 - state.striker]), make("small", { textContent: wins[k] === null ? "" : `win ${Math.round(100 * wins[k])} %` }));
         button.dataset.choice = choice;
         button.onclick = () => this.once(() => this.send({ choice }));
         return button;
@@ -571,7 +577,7 @@ class Page {
       by(`side-${k}`).querySelector("b").textContent = table.scores[k];
       by(`side-${k}`).classList.toggle("turn", table.striker === k && table.phase !== "over");
     }
-    showChance(by("win"), table.win_chance, this.state.labels, `, both with ${this.noise[this.state.level]} mistakes`);
+    showChance(by("win"), table.win_chance, this.state.labels, ` with ${this.noise[this.state.level]} mistakes`);
     put("n-break", "break ", make("b", { textContent: table.break }));
     if (!on) put("n-on", "frame over");
     else {
@@ -623,7 +629,8 @@ class Page {
     const [px, py] = view.toScreen(x, y), [ix, iy] = view.toScreen(this.balls.x[0], this.balls.y[0]), { style } = by("loupe");
     const aim = this.aim.wish.aim, cue = view.toScreen(this.balls.x[0] - 0.5 * Math.cos(aim), this.balls.y[0] - 0.5 * Math.sin(aim)), busy = [[px, py], [ix, iy], cue, to ? view.toScreen(...to) : cue];
     const room = ([left, top]) => Math.min(...busy.map(([x_, y_]) => Math.hypot(x_ - left * box.clientWidth, y_ - top * box.clientHeight)));
-    const [[left, top]] = [[0, 1], [1, 1], [0, 0], [1, 0]].sort((a, b) => room(b) - room(a));
+    if (!this.corner || room(this.corner) < CLEAR * by("loupe").clientWidth) [this.corner] = [[0, 1], [1, 1], [0, 0], [1, 0]].sort((a, b) => room(b) - room(a));  // it stays until it is in the way
+    const [left, top] = this.corner;
     Object.assign(style, { left: left ? "auto" : "8px", right: left ? "8px" : "auto", top: top ? "auto" : "8px", bottom: top ? "8px" : "auto" });
     by("room").classList.toggle("up", Boolean(top));
     if (loupe.canvas.width < 2 || loupe.canvas.clientWidth * loupe.ratio !== loupe.canvas.width) loupe.resize();
@@ -650,7 +657,7 @@ class Page {
       frame.side = stroke.flies(t);
       frame.turns = Array.from({ length: stroke.n }, (_, ball) => (frame.on[ball] ? stroke.turn(ball, t) : undefined));
       if (t < 0.3 && stroke.cue) {
-        const lead = Math.min(1, moving.at / 0.4 + 1), { cue } = stroke;
+        const lead = Math.max(0, Math.min(1, moving.at / 0.4 + 1)), { cue } = stroke;
         const pull = t > 0 ? -Math.min(0.16, t * cue.speed * 0.4) : 0.02 + (0.02 + 0.02 * cue.speed) * Math.sin(Math.PI * lead);
         frame.cue = { x: stroke.first[0], y: stroke.first[1], aim: cue.aim, pull, elevation: cue.elevation, alpha: t > 0 ? 1 - t / 0.3 : 1 };
       }
@@ -659,7 +666,8 @@ class Page {
       else this.redraw();
     } else if (this.setup.open) {
       const { balls, wrong } = this.setup, rings = wrong >= 0 && balls.on[wrong] ? [wrong] : [];
-      this.view.draw({ x: balls.x, y: balls.y, on: balls.on, labels, highlight: rings });
+      const spots = this.scene.lines.spots.map(([x, y], k) => ({ x, y, ball: 16 + k, alpha: 0.12 }));
+      this.view.draw({ x: balls.x, y: balls.y, on: balls.on, labels, highlight: rings, rings: spots });
     } else if (this.state) {
       const frame = { x: this.balls.x, y: this.balls.y, on: this.balls.on, labels, lines: [], rings: [], heat: [] };
       if (this.aiming) {

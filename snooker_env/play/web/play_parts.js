@@ -41,8 +41,6 @@ export function setting(id, words, otherwise, changed) {
   select.onchange = event => { kept.set(id, select.value); changed(event); };
 }
 
-export const pocketWords = (text, upright) => (upright ? text : text.replace("right middle", "lower middle").replace("left middle", "upper middle")
-  .replace("top right", "lower right").replace("top left", "upper right"));
 
 export function confirmed(question, yes) {
   const box = by("confirm");
