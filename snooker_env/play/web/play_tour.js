@@ -18,7 +18,8 @@ export class Tour {
     by("tour-open").onclick = () => this.go(0);
     by("tour-next").onclick = () => this.go(this.step + 1);
     by("tour-skip").onclick = () => this.go(STEPS.length);
-    if (!kept.get("toured", false)) this.go(0);
+    if (app.me !== "person") STEPS.splice(4);  // the host alone has what comes then
+    if (!kept.get("toured", false) && app.me !== "watcher") this.go(0);
   }
 
   go(step) {
