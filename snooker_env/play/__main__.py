@@ -107,12 +107,12 @@ def _server(service: "Service", port: int | None, host: str | None = None) -> "P
 def _invite(server: "PlayServer") -> None:
     """Print the addresses for other devices, and the one for the host's own phone as a QR code."""
     print("In the same network, unencrypted, so pass them on in one that you trust:\n")
-    words = {"person": "your own phone", "friend": "a friend, seat 2", "watcher": "watchers"}
-    for one in server.service.invites:
-        for address in one.addresses:
-            print(f"    {words[one.who]:16}  {address}")
-    colours = sys.stdout.isatty()
-    print(f"\n{server.service.invites[0].drawn(colours=colours)}\n")
+    for one, words in zip(server.service.invites, ("you, on a phone", "a friend", "watchers"), strict=True):
+        print(*(f"    {words:16} {address}" for address in one.addresses), sep="\n")
+    if sys.stdout.isatty():
+        rows = server.service.invites[0].drawn.splitlines()
+        print("", *(f"\x1b[97;40m{row}\x1b[0m" for row in rows), sep="\n")
+    print()
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -13,11 +13,11 @@ import secrets
 import socket
 import sys
 import threading
-from collections.abc import Collection, Iterable
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from ipaddress import IPv4Address
 from pathlib import Path
+from socketserver import TCPServer
 from time import monotonic, sleep
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
@@ -27,7 +27,7 @@ from .._lib.files import strict_json
 from ..players.requests import read_object
 from ..replays.web import table_js
 from ..simulation import SimulationError
-from .invites import Invite, address_of, addresses_here
+from .invites import addresses_here, invite
 from .routes import GET, POST, answer, parts_of
 from .service import FRIEND, PERSON, WATCHER, BusyError, Service
 
@@ -37,10 +37,10 @@ FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_BODY = 131_072  # largest body of a request [bytes]; a replay has about 200 for each stroke
 IDLE = 20.0  # how long a connection waits for the next byte, and for a whole request [s]
-MOST_AT_ONCE = 32
+MOST_AT_ONCE = 64
 """Largest number of connections; a browser keeps six. One that waits gives way to a further one."""
-MOST_EACH = 12  # of one client, where others than this machine are served
-FREE, DELAY, FORGET = 10, 1.0, 60.0
+MOST_EACH = 20  # of one client, where others than this machine are served
+FREE, DELAY, FORGET = 10, 0.5, 60.0
 """So many wrong tokens of a client are answered at once, further ones after DELAY [s], until it shows none for FORGET [s]."""
 MOST_KNOWN = 1024  # clients with wrong tokens that are remembered
 LOCAL = ("127.0.0.1", "localhost", "[::1]")
@@ -170,9 +170,8 @@ class PlayHandler(BaseHTTPRequestHandler):
             if name in methods[other]:
                 raise self._last(405, f"the method must be {other}", Allow=other)
             raise self._last(404, "there is nothing of that name")
-        if self.command == "POST" and (
-            self.who == WATCHER or (self.who == FRIEND and not POST[name[4:]].friend)
-        ):
+        friendly = self.who == FRIEND and self.command == "POST" and POST[name[4:]].friend
+        if self.command == "POST" and self.who != PERSON and not friendly:
             raise self._last(403, "the host alone may do this")
         if "Transfer-Encoding" in head:
             raise self._last(411, "a body must come with its Content-Length")
@@ -182,7 +181,7 @@ class PlayHandler(BaseHTTPRequestHandler):
 
     def _hosts(self) -> set[str]:
         """The names by which this connection may call the server: the address that it came to, no name that may lead anywhere."""
-        names = LOCAL if self._is_local() else self.connection.getsockname()[:1]
+        names = (self.connection.getsockname()[0], *(LOCAL if self._is_local() else ()))
         return {f"{name}:{self.server.server_port}" for name in names}
 
     def _is_local(self) -> bool:
@@ -245,7 +244,9 @@ class PlayHandler(BaseHTTPRequestHandler):
     def _send(self, status: int, body: bytes, kind: str, more: dict[str, str] | None = None) -> None:
         self.send_response(status)
         about = {"Content-Type": kind, "Content-Length": str(len(body))}
-        own = {"Cross-Origin-Opener-Policy": "same-origin"} if self._is_local() else {}  # others' addresses lack TLS
+        own = (
+            {"Cross-Origin-Opener-Policy": "same-origin"} if self._is_local() else {}
+        )  # others' addresses lack TLS
         for name, value in (HEADERS | own | (more or {}) | about).items():
             self.send_header(name, value)
         if self.close_connection:
@@ -262,41 +263,38 @@ class PlayServer(ThreadingHTTPServer):
     request_queue_size = MOST_AT_ONCE
 
     def __init__(self, service: Service, port: int = 0, host: str | None = None):
-        listens = "127.0.0.1" if host is None else address_of(host)
         try:
-            super().__init__((listens, port), PlayHandler)
+            super().__init__(("127.0.0.1" if host is None else host, port), PlayHandler)
         except OSError as error:
-            if error.errno == errno.EADDRNOTAVAIL:
+            if error.errno == errno.EADDRNOTAVAIL or isinstance(error, socket.gaierror):
                 raise refuse("host", host, "must be an IPv4 address of this machine") from error
             allowed = f"must be free ({error.strerror}): choose another with --port, or leave it out for any that is"
             raise refuse("port", port, allowed) from error
         doors = [PERSON] if host is None else [PERSON, FRIEND, WATCHER]
         self.service, self.tokens = service, {who: secrets.token_urlsafe(24) for who in doors}
+        self.token: str = self.tokens[PERSON]
         self._most = MOST_AT_ONCE if host is None else MOST_EACH
         self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
-        self._clients: dict[socket.socket, str] = {}
+        self._clients: dict[socket.socket, str] = {}  # of each connection
         self._wrong: dict[str, tuple[int, float]] = {}  # wrong tokens of a client, and when the last one came
         self._lock = threading.Lock()
         self.waiting: dict[socket.socket, tuple[bool, float]] = {}
         """The connections without a whole request that shows a token: whether one did so before, and since when."""
-        everywhere = listens == "0.0.0.0"
-        self.host: str = "127.0.0.1" if everywhere else listens
-        found = [] if host is None else (addresses_here() if everywhere else []) or [self.host]
-        service.invites = [Invite(who, [self.address_for(who, at) for at in found]) for who in doors if found]
-
-    @property
-    def token(self) -> str:
-        """The host's token."""
-        return self.tokens[PERSON]
-
-    @property
-    def address(self) -> str:
+        everywhere = self.server_name == "0.0.0.0"
+        here = "127.0.0.1" if everywhere else self.server_name
+        self.address: str = self._address(PERSON, here)
         """Address of the host's page; the protocol is at its ``api/``."""
-        return self.address_for(PERSON, self.host)
+        if host is not None:
+            found = (addresses_here() if everywhere else []) or [here]
+            service.invites = [invite(who, [self._address(who, at) for at in found]) for who in doors]
 
-    def address_for(self, who: str, at: str) -> str:
-        """Address of the page for the host, a friend or a watcher, at one of this machine's addresses."""
+    def _address(self, who: str, at: str) -> str:
         return f"http://{at}:{self.server_port}/{self.tokens[who]}/"
+
+    def server_bind(self) -> None:
+        """Bind, without asking for the machine's name: that might ask a server outside."""
+        TCPServer.server_bind(self)
+        self.server_name, self.server_port = str(self.server_address[0]), self.server_address[1]
 
     def whose(self, token: str) -> str:
         """Who holds a token, or ""; every token is compared, in constant time."""
@@ -316,16 +314,14 @@ class PlayServer(ThreadingHTTPServer):
 
     def service_actions(self) -> None:
         """Close the connections that have sent no whole request for too long, slowly or not at all."""
-        late = monotonic() - IDLE
-        _cut(one for one, (_, since) in self.waiting.copy().items() if since < late)
+        for one, (_, since) in self.waiting.copy().items():
+            if since < monotonic() - IDLE:
+                _cut(one)
 
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection in its own thread, unless there are too many that do not wait."""
-        theirs = [one for one, client in self._clients.copy().items() if client == client_address[0]]
-        within = len(theirs) < self._most or self._make_room(theirs)
-        if not within or not (
-            self._free.acquire(blocking=False) or (self._make_room() and self._free.acquire(timeout=1.0))
-        ):
+        theirs = list(self._clients.copy().values()).count(client_address[0])
+        if theirs >= self._most or not (self._free.acquire(blocking=False) or self._make_room()):
             with suppress(OSError):
                 request.settimeout(1.0)
                 request.sendall(FULL)
@@ -334,12 +330,11 @@ class PlayServer(ThreadingHTTPServer):
         self.waiting[request], self._clients[request] = (False, monotonic()), client_address[0]
         super().process_request(request, client_address)
 
-    def _make_room(self, among: Collection[socket.socket] | None = None) -> bool:
+    def _make_room(self) -> bool:
         """Close the connection that has waited longest, of those that never showed a token if there are any."""
-        waiting = [item for item in self.waiting.copy().items() if among is None or item[0] in among]
-        for one, _ in sorted(waiting, key=lambda item: item[1])[:1]:
-            _cut([one])
-            return True
+        for one, _ in sorted(self.waiting.copy().items(), key=lambda item: item[1])[:1]:
+            _cut(one)
+            return self._free.acquire(timeout=1.0)
         return False
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
@@ -357,8 +352,7 @@ class PlayServer(ThreadingHTTPServer):
             super().handle_error(request, client_address)
 
 
-def _cut(connections: Iterable[socket.socket]) -> None:
-    """End connections; their threads notice it."""
-    for one in connections:
-        with suppress(OSError):
-            one.shutdown(socket.SHUT_RDWR)
+def _cut(connection: socket.socket) -> None:
+    """End a connection; its thread notices it."""
+    with suppress(OSError):
+        connection.shutdown(socket.SHUT_RDWR)

@@ -29,10 +29,7 @@ from .invites import Invite
 from .session import DECLINED, Act, Session
 
 PERSON = "person"  # who sits at the page of the host
-FRIEND, WATCHER = (
-    "friend",
-    "watcher",
-)  # whose pages are on other devices: one plays a seat, the other plays none
+FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
 OPPONENT = "tactician_500"  # who plays against a person unless someone is named
 OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
 
@@ -44,15 +41,10 @@ class Seats:
 
     def __init__(self, agents: Mapping[str, Player], *, friends: bool = False):
         self.players: dict[str, Player] = dict(agents)
-        self.persons: list[str] = [PERSON, FRIEND] if friends else [PERSON]
         for name in OFFERED:
             self.players.setdefault(name, player(name))
+        self.names: list[str] = [PERSON, *[FRIEND] * friends, *self.players]  # who may sit down
         self.who = [PERSON, PERSON]
-
-    @property
-    def names(self) -> list[str]:
-        """The players that may sit down: persons and the agents."""
-        return [*self.persons, *self.players]
 
     def advisers(self, practice: bool) -> list[str]:
         """The agents that may be asked for advice: alone at the table all, in a frame those that know frames."""
@@ -80,8 +72,8 @@ class Seats:
 
     def seen_by(self, me: str) -> list[str]:
         """Who sits on both seats, as one of the persons sees it: itself as ``PERSON``, another as ``FRIEND``."""
-        persons = [PERSON if who == me else FRIEND for who in self.who]
-        return [self.who[k] if self.is_agent(k) else persons[k] for k in (0, 1)]
+        persons = {PERSON: FRIEND, FRIEND: FRIEND, me: PERSON}
+        return [persons.get(who, who) for who in self.who]
 
     def label(self, seat: int, me: str = PERSON) -> str:
         """The player's name on the page of ``me``."""
