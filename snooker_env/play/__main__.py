@@ -22,11 +22,14 @@ PORT = 8147  # unless another is named: always the same, since a browser keeps s
 
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
     about = """Play snooker in the browser: against yourself or an agent, from any position, with an advisor.
-        Programs can play too, by the protocol in the documentation. The server listens on 127.0.0.1 only, and
-        requires the address that it prints."""
+        Programs can play too, by the protocol in the documentation. The server listens on 127.0.0.1 only, unless
+        --host is given, and requires an address that it prints."""
     parser = argparse.ArgumentParser(prog="python -m snooker_env.play", description=about)
     add = parser.add_argument
     add("--port", type=int, help=f"port to listen on (default: {PORT} if it is free, else any)")
+    host = """play on a phone and with a friend in the same network: listen on all addresses of this machine, or on
+        ADDRESS, and print the addresses to pass on"""
+    add("--host", nargs="?", const="", metavar="ADDRESS", help=host)
     add("--no-browser", action="store_true", help="only print the address")
     agent = """an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or
         MODULE:CLASS; the first one is your opponent (default: tactician_500), and your adviser if it knows frames;
@@ -59,7 +62,7 @@ def service_of(args: argparse.Namespace) -> "Service":
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
     players = players_of(args.agent, args.trust, options_of_words(args.options))
     agents = dict(zip(shown, players, strict=True))
-    seats = Seats(agents)
+    seats = Seats(agents, friends=args.host is not None)
     seats.sit([PERSON, next(iter(agents), OPPONENT)])
     session.noise[1] = args.noise
     if args.position is not None:
@@ -87,18 +90,29 @@ def warm_up(service: "Service") -> None:
         report(service)
 
 
-def _server(service: "Service", port: int | None) -> "PlayServer":
+def _server(service: "Service", port: int | None, host: str | None = None) -> "PlayServer":
     """The server on a port; by default on ``PORT``, where a browser finds again what it has kept, unless it is taken."""
     from .server import PlayServer
 
     if port is not None:
         integer("port", port, 0, 65535)
     try:
-        return PlayServer(service, PORT if port is None else port)
+        return PlayServer(service, PORT if port is None else port, host)
     except ValueError:
         if port is not None:
             raise
-        return PlayServer(service)
+        return PlayServer(service, 0, host)
+
+
+def _invite(server: "PlayServer") -> None:
+    """Print the addresses for other devices, and the one for the host's own phone as a QR code."""
+    print("In the same network, unencrypted, so pass them on in one that you trust:\n")
+    for one, words in zip(server.service.invites, ("you, on a phone", "a friend", "watchers"), strict=True):
+        print(*(f"    {words:16} {address}" for address in one.addresses), sep="\n")
+    if sys.stdout.isatty():
+        rows = server.service.invites[0].drawn.splitlines()
+        print("", *(f"\x1b[97;40m{row}\x1b[0m" for row in rows), sep="\n")
+    print()
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -115,7 +129,7 @@ def main(argv: list[str] | None = None) -> int:
     args = _arguments(argv)
     try:
         service = service_of(args)
-        server = _server(service, args.port)
+        server = _server(service, args.port, args.host)
         print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
         warm_up(service)
     except (ValueError, OSError, OverflowError) as error:
@@ -126,6 +140,8 @@ def main(argv: list[str] | None = None) -> int:
         return 130
     try:
         print(f"Snooker is played at\n\n    {server.address}\n")
+        if args.host is not None:
+            _invite(server)
         print("Programs play at its api/ (docs: The protocol). Ctrl-C ends it and the game.", flush=True)
         if not args.no_browser and not webbrowser.open(server.address):
             print(f"No browser was found: open {server.address} in one.", flush=True)

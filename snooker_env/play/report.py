@@ -16,7 +16,7 @@ from ..replays.referee_words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
-from .service import Service
+from .service import PERSON, Service
 from .session import Act
 
 STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
@@ -41,6 +41,8 @@ def scene(service: Service) -> dict[str, Any]:
         "noise": ERRORS,
         "cues": list(CUES),
         "games": list(RULES),
+        "me": service.me,
+        "invites": [one._asdict() for one in service.invites] if service.me == PERSON else [],
     }
 
 
@@ -99,26 +101,29 @@ def report(service: Service) -> dict[str, Any]:
     frame, act = session.frame, session.acts[session.at - 1]
     before = session.acts[session.at - 2] if session.at > 1 else None
     state = table_after(act, labels, service.win_chances([act])[0], before)
+    host = service.me == PERSON
     table, noise = session.tables.rules.table, session.noise[frame.striker]
     turn, lines = report_turn(frame, session.position, table, noise)
     of_session = ("begun", "practice", "game", "best_of", "frames", "match_over", "cue")
     state |= turn | {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
     state |= {
-        "players": list(seats.who),
+        "players": seats.seen_by(service.me),
         "labels": list(labels),
         "advisers": seats.advisers(session.practice),
         "level": seats.level(session),
         "noise": list(session.noise),
         "choice_wins": service.choice_chances(session),
-        "paused": service.paused and service.agent_to_play(),
+        "paused": host and service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
-        "undo": session.at > 1,
-        "redo": session.at < len(session.acts),
+        "undo": host and session.at > 1,
+        "redo": host and session.at < len(session.acts),
     }
     if service.agent_to_play():
-        waits = "waits: press Continue." if service.paused else "is thinking."
-        state["words"] = service.trouble or f"{seats.label(frame.striker)} {waits}"
+        waits = (
+            "waits: press Continue." if state["paused"] else "waits." if service.paused else "is thinking."
+        )
+        state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
     fair = act.played is not None and not (act.played.fouls or act.played.points)
     if fair and state["snookered"]:
         state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."

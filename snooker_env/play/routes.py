@@ -32,6 +32,7 @@ class Route(NamedTuple):
 
     handler: Handler
     fields: tuple[str, ...] = ()
+    friend: bool = False  # whether not the host alone may post it, but a friend, too
 
 
 def _state(service: Service, fields: dict[str, Any]) -> None:
@@ -148,6 +149,7 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(any_turn=True) as session:
         if "players" in fields:
             service.seats.sit(fields["players"])
+            service.vacant = False
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
@@ -232,18 +234,19 @@ GET: dict[str, Route] = {
     "replay.html": Route(partial(_replay, form=Replay.html), ("one", "other")),
 }
 POST: dict[str, Route] = {
-    "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision")),
-    "place": Route(_place, ("place",)),
-    "advise": Route(_advise, ("agent", "n", *ERRORS)),
-    "destinations": Route(_destinations, (*STROKE, *ERRORS)),
-    "room": Route(_room, (*STROKE, "revision")),
+    "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision"), True),
+    "place": Route(_place, ("place",), True),
+    "advise": Route(_advise, ("agent", "n", *ERRORS), True),
+    "destinations": Route(_destinations, (*STROKE, *ERRORS), True),
+    "room": Route(_room, (*STROKE, "revision"), True),
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
     "undo": Route(partial(_move, move=Session.undo)),
     "redo": Route(partial(_move, move=Session.redo)),
     "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
-    "concede": Route(_concede),
+    "concede": Route(_concede, friend=True),
+    "sit": Route(lambda service, fields: service.sit_down(), friend=True),
     "save": Route(_save, ("acts",)),
     "load": Route(_load, ("saved",)),
 }

@@ -25,29 +25,27 @@ from ..replays.chances import ChanceJudge, Standing, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS, Noise
+from .invites import Invite
 from .session import DECLINED, Act, Session
 
-PERSON = "person"
+PERSON = "person"  # who sits at the page of the host
+FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
 OPPONENT = "tactician_500"  # who plays against a person unless someone is named
 OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
 
 
 class Seats:
-    """The two seats, and the players that may take them: ``OFFERED``, and ``agents`` by name."""
+    """The two seats, and the players that may take them: ``OFFERED``, ``agents`` by name, and ``friends``."""
 
-    who: list[str]  # ``PERSON`` or the name of an agent, for each seat
+    who: list[str]  # ``PERSON``, ``FRIEND`` or the name of an agent, for each seat
 
-    def __init__(self, agents: Mapping[str, Player]):
+    def __init__(self, agents: Mapping[str, Player], *, friends: bool = False):
         self.named: list[str] = list(agents)
         self.players: dict[str, Player] = dict(agents)
         for name in OFFERED:
             self.players.setdefault(name, player(name))
+        self.names: list[str] = [PERSON, *[FRIEND] * friends, *self.players]  # who may sit down
         self.who = [PERSON, PERSON]
-
-    @property
-    def names(self) -> list[str]:
-        """The players that may sit down: "person" and the agents."""
-        return [PERSON, *self.players]
 
     def advisers(self, practice: bool) -> list[str]:
         """The agents that may be asked for advice: alone at the table all, in a frame those that know frames."""
@@ -71,19 +69,22 @@ class Seats:
 
     def is_agent(self, seat: int) -> bool:
         """Whether an agent has this seat."""
-        return self.who[seat] != PERSON
+        return self.who[seat] not in (PERSON, FRIEND)
 
-    def label(self, seat: int) -> str:
-        """The player's name on the page."""
+    def seen_by(self, me: str) -> list[str]:
+        """Who sits on both seats, as one of the persons sees it: itself as ``PERSON``, another as ``FRIEND``."""
+        persons = {PERSON: FRIEND, FRIEND: FRIEND, me: PERSON}
+        return [persons.get(who, who) for who in self.who]
+
+    def label(self, seat: int, me: str = PERSON) -> str:
+        """The player's name on the page of ``me``."""
+        seen = self.seen_by(me)
         if self.is_agent(seat):
-            name = self.who[seat].replace("_", " ")  # as the page lists it
-            return name if self.who[0] != self.who[1] else f"{name} {seat + 1}"
-        return "You" if self.is_agent(1 - seat) else f"Player {seat + 1}"
-
-    @property
-    def labels(self) -> tuple[str, str]:
-        """The names of both."""
-        return self.label(0), self.label(1)
+            name = seen[seat].replace("_", " ")  # as the page lists it
+            return name if seen[0] != seen[1] else f"{name} {seat + 1}"
+        if seen.count(PERSON) != 1:
+            return f"Player {seat + 1}"
+        return "You" if seen[seat] == PERSON else "Friend"
 
     def decide(self, name: str, session: Session) -> Strokes:
         """What an agent does in the frame: a decision, a declaration or a stroke, without changing it."""
@@ -108,6 +109,7 @@ class StaleError(RuntimeError):
 class Service:
     """One game, its seats, and the thread in which agents think."""
 
+    me: str = PERSON  # who asks: see ``asked_by``
     paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
     trouble: str  # why the last agent did not play, or ""
 
@@ -117,6 +119,8 @@ class Service:
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
         self.revision: int = 0
         self.paused, self.trouble = False, ""
+        self.invites: list[Invite] = []  # what the host may pass on, if others can come to the table
+        self.vacant: bool = True  # whether a friend may sit down without having been chosen
         self._changed = threading.Condition(threading.RLock())
         self._asking = threading.BoundedSemaphore(2)
         self._closed = False
@@ -129,11 +133,37 @@ class Service:
             self._closed = True
             self._changed.notify_all()
 
+    def asked_by(self, me: str) -> "Service":
+        """The same game for requests of the host (``PERSON``), of the ``FRIEND`` or of a ``WATCHER``."""
+        other = object.__new__(_Asked)
+        other.__dict__, other.me = self.__dict__, me
+        return other
+
     @property
     def labels(self) -> tuple[str, str]:
-        """The names of both players; alone at the table a person is "You"."""
-        one, other = self.seats.labels
-        return ("You" if self.session.practice and not self.seats.is_agent(0) else one), other
+        """The names of both players, as seen by ``me``; alone at the table a person is "You"."""
+        alone = self.session.practice and self.seats.who[0] == self.me
+        return "You" if alone else self.seats.label(0, self.me), self.seats.label(1, self.me)
+
+    def sit_down(self) -> None:
+        """Seat the friend as the second player, unless somebody has played or the host has chosen who sits there."""
+        if FRIEND in self.seats.who:
+            return
+        with self.acting(any_turn=True) as session:
+            if FRIEND not in self.seats.names:
+                raise refuse("seat", 2, "must be open to friends: start the game with --host")
+            if not self.vacant or session.strokes or session.practice:
+                allowed = "must be free: ask your host to choose you as the opponent, under New game"
+                raise refuse("seat", 2, allowed)
+            self.seats.who[1], session.noise[1] = FRIEND, session.noise[0]
+
+    def check_turn(self) -> None:
+        """ValueError unless whoever asks is to play."""
+        striker = self.session.frame.striker
+        if self.agent_to_play():
+            raise refuse("turn", self.labels[striker], "must be a person's: an agent is to play")
+        if self.seats.who[striker] != self.me and self.session.frame.phase != "over":
+            raise refuse("turn", self.labels[striker], "must be yours: the other player is to play")
 
     @contextmanager
     def reading(self, revision: int | None = None) -> Iterator[Session]:
@@ -150,9 +180,8 @@ class Service:
         """The game, for changing it: after an exception it is as it was before. ``pause``: agents then wait; ``any_turn``:
         also in an agent's turn."""
         with self.reading(revision) as session:
-            if not any_turn and self.agent_to_play():
-                whose = self.seats.label(session.frame.striker)
-                raise refuse("turn", whose, "must be a person's: an agent is to play")
+            if not any_turn:
+                self.check_turn()
             with session.as_a_whole():
                 yield session
             self.paused, self.trouble = pause, ""
@@ -165,6 +194,8 @@ class Service:
             raise BusyError("other questions are being answered")
         try:
             with self.reading(revision) as session:
+                if self.me != PERSON:
+                    self.check_turn()  # a guest's questions do not hold up those of the player
                 twin = session.twin()
             yield twin
         finally:
@@ -277,6 +308,12 @@ class Service:
             nominated == DECLINED and session.frame.free_ball
         )
         session.play(stroke, nominated=nominated if sensible else AUTO)
+
+
+class _Asked(Service):
+    """A service that shares all but ``me`` with another."""
+
+    __slots__ = ("me",)
 
 
 def _size(noise: Noise) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from snooker_env.play.server import FILES
-from tests.playing import COVERED, EASY, FROZEN, STRAIGHT, Line
+from tests.playing import COVERED, EASY, FROZEN, STRAIGHT, Line, served
 from tests.web.chromium import Watched, chromium  # noqa: F401
 
 AWAY = 2.0
@@ -27,8 +27,8 @@ class Shown(Watched):
 
     names = "const page = window.page ?? {}"
 
-    def __init__(self, browser, line: Line, *, new=False, **options):
-        self.line, address = line, line.server.address
+    def __init__(self, browser, line: Line, *, new=False, address="", **options):
+        self.line, address = line, address or line.server.address
         if not new:  # the tutorial has been seen, and the stroke is drawn with all that is known of it
             kept = {"name": "snooker", "value": json.dumps({"toured": True, "guide": "spread"})}
             origin = {"origin": f"http://127.0.0.1:{line.server.server_port}", "localStorage": [kept]}
@@ -733,3 +733,48 @@ def test_the_page_is_small(line):
     """Everything that a browser loads, without the game's data: under 170 kB."""
     files = [body for name in FILES for status, body, _ in [line(name)] if status == 200]
     assert len(files) == len(FILES) and sum(map(len, files)) < 170_000
+
+
+def test_a_friend_plays_from_a_phone_and_a_third_person_watches(chromium):  # noqa: F811
+    with served("127.0.0.1") as line:
+        line.server.service.seats.sit(["person", "ghost_ball"])
+        host = Shown(chromium, line)
+        assert host.page.inner_text("#side-1 .name") == "ghost ball"
+        host.page.click("#invite-open")
+        host.until("[...document.querySelectorAll('#invites img')].every(one => one.naturalWidth)")
+        sources = host("[...document.querySelectorAll('#invites section')].map(one => one.innerText)")
+        mine, theirs, only = (re.findall(r"http://\S+", words.replace("\n", " "))[0] for words in sources)
+        assert mine == line.server.address
+        host.page.keyboard.press("Escape")
+        phone = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
+        friend = Shown(chromium, line, address=theirs, **phone)
+        friend.until("page.door.seated")
+        watcher = Shown(chromium, line, address=only)
+        host.until("page.state.labels[1] === 'Friend'")
+        assert friend("page.state.labels") == ["Friend", "You"] and not friend("page.aiming")
+        assert friend.page.inner_text("#seat") == "Friend is at the table." and not friend.page.is_visible(
+            "#play"
+        )
+        assert watcher.page.inner_text("#seat") == "You watch. Player 1 is at the table."
+        for one in ("#stroke", "#ask", "#undo", "#start", "#set", "#concede"):
+            assert not watcher.page.is_visible(one)
+        line("api/position", {"position": EASY, "striker": 1})
+        for one in (host, friend, watcher):
+            one.until("page.state.striker === 1 && page.settled === page.state.revision")
+        assert host.page.inner_text("#seat") == "Friend is at the table." and not host("page.aiming")
+        friend("page.aim.set({aim: argument, speed: 2})", STRAIGHT)
+        friend.page.click("#play")
+        for one in (friend, host, watcher):
+            one.played(1)
+        assert "You: Red potted" in friend.page.inner_text("#last") and friend("page.aiming")
+        assert "Friend: Red potted" in host.page.inner_text("#last") and not host("page.aiming")
+        assert "Player 2: Red potted" in watcher.page.inner_text("#last")
+        friend("page.fold(false)")
+        friend.page.click("#concede")
+        friend.page.click("#confirm-yes")
+        for one, words in ((host, "You"), (friend, "Friend"), (watcher, "Player 1")):
+            one.until("!document.getElementById('over').hidden")
+            assert one.page.inner_text("#over-who") == f"{words} won the frame"
+            assert one.page.is_visible("#next") is (one is host)
+        for one in (host, friend, watcher):
+            one.close()

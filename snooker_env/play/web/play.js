@@ -8,9 +8,10 @@
 import { decode, showChance, TableView } from "./table.js";
 import { Aim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
+import { Door } from "./play_door.js";
 import { Drills } from "./play_drill.js";
 import { firstAim } from "./play_first.js";
-import { ask, by, confirmed, DOWN, fill, keep, kept, Latest, make } from "./play_parts.js";
+import { ask, by, confirmed, DOWN, fill, isPerson, keep, kept, Latest, make } from "./play_parts.js";
 import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 import { Share } from "./play_share.js";
@@ -71,6 +72,7 @@ class Page {
     PHONE.onchange = () => this.fold(PHONE.matches);
     this.compact();
     new ResizeObserver(() => this.fit()).observe(by("stage"));
+    this.door = new Door(this, LEVELS);
     this.wire();
     this.tour = new Tour(this);
   }
@@ -198,7 +200,7 @@ class Page {
     if (own) this.errs = { ...this.errs, [other]: state.noise[1] };
     this.strength = level || (own ? other : OWN);
     this.alias = [state.labels[1], state.labels[1]];
-    if (level && state.players[1] !== "person") this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
+    if (level && !isPerson(state.players[1])) this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
     if (first) { this.put(state); this.drills.resume(); }
     if (fresh || state.strokes < this.played) { this.still(); this.stats.key = null; }
     if (fresh && !first) {
@@ -245,10 +247,10 @@ class Page {
   }
 
   /** Do two agents play, with a stroke to come? The page lets them go on when the last one has been shown. */
-  get agentsAlone() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
+  get agentsAlone() { return this.door.host && !this.state.players.some(isPerson) && this.state.phase !== "over"; }
 
   /** Has the frame ended, and been shown? */
-  get ended() { return this.state?.phase === "over" && !this.behind && !this.drills.now; }
+  get ended() { return this.state?.phase === "over" && !this.behind && !this.drills.now && this.door.host; }
 
   /** Does the game wait for Continue? */
   get waits() { return this.agentsAlone && this.held || !this.behind && this.state.paused; }
@@ -447,7 +449,7 @@ class Page {
 
   /** Send the players; a new agent gets a professional's errors, a person none. */
   seats(changed = -1) {
-    if (changed >= 0) by(`noise-${changed}`).value = by(`who-${changed}`).value === "person" ? "none" : "professional";
+    if (changed >= 0) by(`noise-${changed}`).value = isPerson(by(`who-${changed}`).value) ? "none" : "professional";
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
     this.held = false;
     this.try(() => ask("players", { players, noise, practice: by("practice").checked, cue: by("cue").value }));
@@ -552,7 +554,7 @@ class Page {
     by("stroke").classList.toggle("idle", !mine);
     by("skip").hidden = !this.moving;
     by("turn").hidden = !this.moving || !this.replay && (state.players[table.striker] === "person" || !state.players.includes("person"));
-    by("play").hidden = Boolean(this.moving) || choosing || !by("go").hidden;
+    by("play").hidden = this.door.show() || Boolean(this.moving) || choosing || !by("go").hidden;
     if (!mine) by("odds").textContent = "";
     by("advise").disabled = !mine && !choosing;
     by("aim-out").textContent = this.aim.words;

@@ -24,6 +24,9 @@ export function fill(select, values, chosen = select.value, words = value => val
   if (values.includes(chosen)) select.value = chosen;
 }
 
+/** Is this who sits on a seat: a person, at this page or another? */
+export const isPerson = who => who === "person" || who === "friend";
+
 /** What this browser keeps of the player, by name. Without storage it lasts as long as the page. */
 export const kept = {
   all: (() => { try { return JSON.parse(localStorage.getItem("snooker")) ?? {}; } catch { return {}; } })(),

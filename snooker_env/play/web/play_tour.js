@@ -20,7 +20,8 @@ export class Tour {
     by("tour-skip").onclick = () => this.go(STEPS.length);
     new ResizeObserver(() => this.aside()).observe(by("stage"));
     app.started.then(() => this.aside());
-    if (!kept.get("toured", false)) this.go(0);
+    if (app.me !== "person") STEPS.splice(4);  // the host alone has what comes then
+    if (!kept.get("toured", false) && app.me !== "watcher") this.go(0);
   }
 
   go(step) {
