@@ -1,13 +1,13 @@
 """What did the strokes of a frame cost, by the choice of them and by their errors? In the chance to win, as ``advise`` sees it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._lib.check import refuse, refuse_what
+from .._lib.check import integer, refuse, refuse_what
 from .._lib.text_tables import text_table
 from ..game.frame import Frame
 from ..physics.parameters import Physics
@@ -32,21 +32,28 @@ ROUGH, FEW = (
     "tactician_100",
     50,
 )  # who is asked in the first look at all strokes, and how often each is played
+SAMPLES = 500  # how often each is played then, unless another number is asked for
 LITTLE = 0.005  # share of the chance to win that is not worth a word
-SAMPLES = 500  # unless another number is asked for
-JUDGE = "tactician"
 
 
 class Turn(NamedTuple):
-    """A stroke of a frame as it was played, the frame before and after it, and the options but for the noise."""
+    """A stroke of a frame as it was played, and the options but for the noise."""
 
     number: int
     player: int
-    standings: list[Standing]
+    standings: list[Standing]  # the frame before and after it
     seen: Positions  # both, as the player sees them
     meant: CueStroke  # where nobody knows it, as it was played
     noise: Noise
     options: dict[str, Any]
+
+
+class FrameRecord(NamedTuple):
+    """The strokes of a frame, the names of the players, and the luck of each stroke if it is known."""
+
+    turns: list[Turn]
+    players: Sequence[str]
+    luck: Sequence[float] | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,25 +76,23 @@ class Reviewed:
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON types, with words."""
-        both = {"meant": self.meant.to_dict(), "best": self.best.to_dict(), "words": str(self)}
-        return vars(self) | both | {"names": [name_stroke(self.meant), name_stroke(self.best)]}
+        both = {"meant": self.meant.to_dict(), "best": self.best.to_dict()}
+        return vars(self) | both | {"name": name_stroke(self.meant), "words": str(self)}
 
     def __str__(self) -> str:
-        costs = []
+        costs, better, best, meant = [], "", name_stroke(self.best), name_stroke(self.meant)
         if self.choice >= LITTLE:
             costs.append(f"{percent(self.choice)} thrown away by the choice")
+            article = (
+                "the" if self.best.kind == "pot" and best[:3] != "red" else "a" + "n" * (best[0] in "aei")
+            )
+            how = [one for one in _parts(self.best) if one not in _parts(self.meant) and "%" not in one][:2]
+            idea = f"{article} {best}" if best != meant else ", ".join(["the same", *how])
+            better = f"; the best was {idea}, {percent(self.best.figure)}"
         if abs(self.execution) >= LITTLE:
-            what = "lost" if self.execution > 0.0 else "gained"
-            costs.append(f"{percent(abs(self.execution))} {what} by the execution")
-        said = f"stroke {self.number}, {name_stroke(self.meant)}: {', '.join(costs) or 'nothing lost'}"
-        best = name_stroke(self.best)
-        article = (
-            "the"
-            if self.best.kind == "pot" and not best.startswith("red")
-            else "a" + "n" * (best[0] in "aei")
-        )
-        better = f"; the best was {article} {best}, {percent(self.best.figure)}"
-        return said + better * (self.choice >= LITTLE)
+            way = "lost" if self.execution > 0.0 else "gained"
+            costs.append(f"{percent(abs(self.execution))} {way} by the execution")
+        return f"stroke {self.number}, {meant}: {', '.join(costs) or 'nothing lost'}{better}"
 
 
 class Side(NamedTuple):
@@ -104,8 +109,8 @@ class Side(NamedTuple):
 class Review:
     """What is known of a frame: strokes in their order, so far as they were looked at, and both players' sums."""
 
-    strokes: tuple[Reviewed, ...]
-    sides: tuple[Side, ...]
+    strokes: list[Reviewed]
+    sides: tuple[Side, Side]
     win_chance: list[float]  # of the first player, before the first stroke and after each
     result: float  # 1 if the first player won, else its last chance
     agent: str
@@ -126,38 +131,48 @@ class Review:
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON types."""
-        own = {"adjusted": self.adjusted, "costliest": [one.number for one in self.costliest]}
-        own |= {"sides": [one._asdict() for one in self.sides]}
-        return vars(self) | own | {"strokes": [one.to_dict() for one in self.strokes]}
+        lists = {
+            "strokes": [one.to_dict() for one in self.strokes],
+            "sides": [x._asdict() for x in self.sides],
+        }
+        return (
+            vars(self) | lists | {"adjusted": self.adjusted, "costliest": [x.number for x in self.costliest]}
+        )
 
     def __str__(self) -> str:
-        head = ["stroke", "player", "meant", "best", "wins", "wins", "choice", "execution", "left"]
-        rows = []
+        head, rows = ["stroke", "player", "meant", "wins", "best", "choice", "execution", "left"], []
         for one in self.strokes:
-            shares = (one.meant.figure, one.best.figure, one.choice, one.execution, one.after)
-            names = self.sides[one.player].name, name_stroke(one.meant), name_stroke(one.best)
-            rows.append([str(one.number), *names, *map(percent, shares)])
-        lines = [*text_table(head, rows, 4), "", *map(str, self.costliest[:3]), ""]
+            shares = one.meant.figure, one.best.figure, one.choice, one.execution, one.after
+            said = [percent(round(share, 2) + 0.0) for share in shares]  # no "-0 %"
+            rows.append([str(one.number), self.sides[one.player].name, name_stroke(one.meant), *said])
+        lines = [*text_table(head, rows, 3), "", *map(str, self.costliest[:3]), ""]
         for one in self.sides:
-            sums = f"choice cost {percent(one.choice)}, execution {percent(one.execution)} in {one.strokes} strokes"
-            luck = "not known" if one.luck is None else f"{100.0 * one.luck:+.0f} %"
-            lines.append(f"{one.name}: luck {luck}" + f"; {sums}" * (one.strokes > 0))
-        if self.adjusted is not None:
-            lines.append(
-                f"{self.sides[0].name}: result {percent(self.result)}, without luck {percent(self.adjusted)}"
+            costs = (
+                f"; choice cost {percent(one.choice)}, execution {percent(one.execution)}"
+                if one.strokes
+                else ""
             )
-        return "\n".join(lines)
+            lines.append(
+                f"{one.name}: luck {'not known' if one.luck is None else f'{100 * one.luck:+.0f} %'}{costs}"
+            )
+        known = "" if self.adjusted is None else f", without luck {percent(self.adjusted)}"
+        return "\n".join([*lines, f"{self.sides[0].name}: result {percent(self.result)}{known}"])
 
 
 def name_stroke(one: Suggestion) -> str:
     """What a stroke does, in few words."""
-    words = one.words.removeprefix("no fair stroke found: ").split("; ")[0].split(", ")
+    words = _parts(one)
     return f"{words[0]} to the {words[1]}" if one.kind == "pot" else words[0]
 
 
+def _parts(one: Suggestion) -> list[str]:
+    """The words of a stroke, part by part."""
+    return one.words.removeprefix("no fair stroke found: ").split("; ")[0].split(", ")
+
+
 def go_through(
-    kept: Mapping[str, Any],
-    players: tuple[int, ...] = (0, 1),
+    frame: FrameRecord,
+    players: Sequence[int] = (0, 1),
     *,
     winner: int | None = None,
     agent: Any = None,
@@ -165,47 +180,43 @@ def go_through(
     samples: int = SAMPLES,
     seed: int = 0,
 ) -> Iterator[tuple[int, int, Review]]:
-    """Review a replay's data; yield how many steps are done, of how many, and what is known.
+    """Review a frame; yield how many steps are done, of how many, and what is known.
 
-    A first, rough look at the strokes of the ``players``, with errors of its own, gives their order: the costliest are then
-    judged first, as ``advise`` does with ``n=1`` and ``visits=0``."""
-    turns = read_turns(kept)
-    mine = [one for one in turns if one.player in players]
+    A rough look at all strokes of the ``players``, with errors of its own, gives their order. Then the costliest first are
+    judged as ``advise`` does with ``n=1`` and ``visits=0``."""
+    trials = Trials(integer("samples", samples, 1, 100_000), 0, integer("seed", seed, 0, 2**62))
+    turns, mine = frame.turns, [one for one in frame.turns if one.player in players]
     if not mine:
-        raise refuse("player", players[0], "must have played a stroke of the frame")
+        raise refuse("player", *players[:1], "must have played a stroke of the frame")
     errors = common_noise([one.noise for one in mine]) if noise is None else Noise.of(noise)
     name, asked = name_player(agent, mine[0].seen[:1])
-    judge: Any = player_of(JUDGE).at(practice_of(errors, mine[0].options, of_frames=True).options)
+    judge: Any = player_of("tactician").at(practice_of(errors, mine[0].options, of_frames=True).options)
     chances = win_chances(judge, [turns[0].standings[0], *(one.standings[1] for one in turns)])
     found: dict[int, Reviewed] = {}
 
     def sum_up(player: int) -> Side:
         own = [one for one in found.values() if one.player == player]
-        # of errors as they were played the execution tells the luck by more samples
-        lucks = {k: luck for k, luck in enumerate(kept["luck"] or (), 1) if turns[k - 1].player == player}
-        lucks |= {
-            one.number: -one.execution for one in own if lucks and turns[one.number - 1].noise == errors
-        }
+        lucks = {k: luck for k, luck in enumerate(frame.luck or (), 1) if turns[k - 1].player == player}
+        # under the errors that were made, the execution tells the luck by more samples
+        lucks |= {one.number: -one.execution for one in own if turns[one.number - 1].noise == errors}
         choice, execution = (sum(getattr(one, part) for one in own) for part in ("choice", "execution"))
-        luck = sum(lucks.values()) if kept["luck"] else None
-        return Side(
-            name=kept["players"][player], strokes=len(own), choice=choice, execution=execution, luck=luck
-        )
+        luck = None if frame.luck is None else sum(lucks.values())
+        return Side(frame.players[player], len(own), choice, execution, luck)
 
     def sum_all() -> Review:
-        strokes = tuple(found[number] for number in sorted(found))
-        result = chances[-1] if winner is None else 1.0 - winner
+        strokes, result = (
+            [found[number] for number in sorted(found)],
+            chances[-1] if winner is None else 1.0 - winner,
+        )
         how: dict[str, Any] = {"agent": name, "noise": noise_data(errors), "samples": samples, "seed": seed}
-        sides = sum_up(0), sum_up(1)
-        return Review(strokes=strokes, sides=sides, win_chance=chances, result=result, **how)
+        return Review(strokes=strokes, sides=(sum_up(0), sum_up(1)), win_chance=chances, result=result, **how)
 
     yield 0, 2 * len(mine), sum_all()
     for done, one in enumerate(mine, 1):
         found[one.number] = _judge(one, player_of(ROUGH), errors, Trials(FEW, 0, seed + 1), True)
         yield done, 2 * len(mine), sum_all()
     for done, rough in enumerate(sum_all().costliest, 1 + len(mine)):
-        one = turns[rough.number - 1]
-        found[one.number] = _judge(one, asked, errors, Trials(samples, 0, seed), False)
+        found[rough.number] = _judge(turns[rough.number - 1], asked, errors, trials, False)
         yield done, 2 * len(mine), sum_all()
 
 
@@ -216,37 +227,36 @@ def _judge(turn: Turn, agent: Player, noise: Noise, trials: Trials, rough: bool)
     (meant,) = judge_strokes(practice, intend(practice, at, [turn.meant]), trials)
     after = float(practice.judge.value_of(lead_of(at), turn.seen[1:].known_to(practice.options.rules))[0, 0])
     costs = {"choice": best.figure - meant.figure, "execution": meant.figure - after}
-    own: dict[str, Any] = {"number": turn.number, "player": turn.player, "rough": rough}
-    return Reviewed(meant=meant, best=best, after=after, **costs, **own)
+    return Reviewed(
+        number=turn.number, player=turn.player, meant=meant, best=best, after=after, rough=rough, **costs
+    )
 
 
 def common_noise(errors: list[Noise]) -> Noise:
     """The largest errors, and at least a professional's, for whom the tactician has learned; who makes none errs by hand, as
     an amateur."""
-    least = LEVELS["amateur" if any(one.silent for one in errors) else "professional"]
-    return max(
-        *errors,
-        least,
-        key=lambda one: one.direction_deg() * sqrt(1.0 + one.lapse * (one.lapse_factor**2 - 1.0)),
-    )
+
+    def size(one: Noise) -> float:
+        return one.direction_deg() * sqrt(1.0 + one.lapse * (one.lapse_factor**2 - 1.0))
+
+    return max(*errors, LEVELS["amateur" if any(one.silent for one in errors) else "professional"], key=size)
 
 
-def read_turns(kept: Mapping[str, Any]) -> list[Turn]:
-    """The strokes of a replay's data; ValueError unless all are of a frame."""
+def read_frame(kept: Mapping[str, Any]) -> FrameRecord:
+    """The frame of a replay's data; ValueError unless all strokes are of a frame."""
     if kept["physics"] is None:
         raise refuse("physics", None, "must be the same for all strokes")
     where, out = {"physics": kept["physics"], "table": table_from(kept["table"])}, []
-    for k, one in enumerate(kept["strokes"], 1):
+    for k, one in enumerate(kept["strokes"]):
         if one.get("frames") is None:
-            raise refuse_what(f"strokes[{k - 1}]", "none of a frame", "must be one: nobody wins a visit")
+            raise refuse_what(f"strokes[{k}]", "none of a frame", "must be one: nobody wins a visit")
+        before, after = (Frame.from_dict(frame) for frame in one["frames"])
         start, rest, _ = read_balls(one)
-        frames = [Frame.from_dict(frame) for frame in one["frames"]]
-        standings = [Standing(*both) for both in ((frames[0], *start), (frames[1], *rest))]
-        player = frames[0].striker
-        seen = positions_of(standings, np.full(2, player), np.array([k - 1, k]))
+        standings = [Standing(before, *start), Standing(after, *rest)]
+        seen = positions_of(standings, np.full(2, before.striker), np.array([k, k + 1]))
         cue = one["meant"] or one["cue"] | {"aim": direction_of(one["cue"], Physics.of(where["physics"]))}
-        numbers = np.clip([cue[name] for name in CUE_PARTS], LEAST, MOST)
-        (meant,) = cue_strokes(Strokes(numbers[None], np.full((1, 2), np.nan)), seen[:1])
-        options = {**where, "cue": one["cue_kind"], "miss": frames[0].miss, "game": frames[0].rules}
-        out.append(Turn(k, player, standings, seen, meant, Noise.of(one["noise"]), options))
-    return out
+        numbers = np.clip([[cue[name] for name in CUE_PARTS]], LEAST, MOST)
+        (meant,) = cue_strokes(Strokes(numbers, np.full((1, 2), np.nan)), seen[:1])
+        options = {**where, "cue": one["cue_kind"], "miss": before.miss, "game": before.rules}
+        out.append(Turn(k + 1, before.striker, standings, seen, meant, Noise.of(one["noise"]), options))
+    return FrameRecord(out, kept["players"], kept["luck"])
