@@ -187,7 +187,7 @@ def go_through(
     trials = Trials(integer("samples", samples, 1, 100_000), 0, integer("seed", seed, 0, 2**62))
     turns, mine = frame.turns, [one for one in frame.turns if one.player in players]
     if not mine:
-        raise refuse("player", *players[:1], "must have played a stroke of the frame")
+        raise refuse("player", players[0], "must have played a stroke of the frame")
     errors = common_noise([one.noise for one in mine]) if noise is None else Noise.of(noise)
     name, asked = name_player(agent, mine[0].seen[:1])
     judge: Any = player_of("tactician").at(practice_of(errors, mine[0].options, of_frames=True).options)
@@ -235,11 +235,14 @@ def _judge(turn: Turn, agent: Player, noise: Noise, trials: Trials, rough: bool)
 def common_noise(errors: list[Noise]) -> Noise:
     """The largest errors, and at least a professional's, for whom the tactician has learned; who makes none errs by hand, as
     an amateur."""
+    return max(
+        *errors, LEVELS["amateur" if any(one.silent for one in errors) else "professional"], key=size_of
+    )
 
-    def size(one: Noise) -> float:
-        return one.direction_deg() * sqrt(1.0 + one.lapse * (one.lapse_factor**2 - 1.0))
 
-    return max(*errors, LEVELS["amateur" if any(one.silent for one in errors) else "professional"], key=size)
+def size_of(noise: Noise) -> float:
+    """The root mean square error of the direction [deg], lapses included."""
+    return noise.direction_deg() * sqrt(1.0 + noise.lapse * (noise.lapse_factor**2 - 1.0))
 
 
 def read_frame(kept: Mapping[str, Any]) -> FrameRecord:

@@ -43,6 +43,14 @@ def paths(shot: Shot) -> dict[str, Any]:
     }
 
 
+def draw(session: Session, stroke: CueStroke) -> dict[str, Any]:
+    """The paths of a stroke without errors from its own place."""
+    twin = session.twin()
+    if stroke.place is not None:
+        twin.place(*stroke.place)
+    return paths(exact(twin, stroke))
+
+
 def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any]:
     """Where cue ball and object ball stop with ``errors`` (noise, samples, seed), and the paths without them."""
     shot = exact(session, stroke)
@@ -76,12 +84,9 @@ def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors:
         best.setdefault(_idea(one), one)
     advice = replace(advice, suggestions=tuple(best.values())[:n])
     for one in advice:
-        twin = session.twin()
-        if one.place is not None:
-            twin.place(*one.place)
         names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
         names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
-        out.append(one.to_dict() | names | paths(exact(twin, one.stroke)))
+        out.append(one.to_dict() | names | draw(session, one.stroke))
     return {"agent": agent, "order": advice.order, "noise": advice.noise, "suggestions": out}
 
 

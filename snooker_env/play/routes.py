@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from .._lib.check import choice, integer, number, refuse, truth
 from ..advice import CueStroke
+from ..advice.review import SAMPLES, read_frame
 from ..game.fouls import AUTO
 from ..game.frame import MOST_BREAK
 from ..planning.position import Position
@@ -19,8 +20,9 @@ from ..tasks.options import CUES
 from ..tasks.states import MOST
 from . import questions
 from .game_record import open_game, record_game
-from .report import report, scene, stroke_report
-from .service import Service, StaleError
+from .report import report, scene, stroke_report, table_after
+from .reviewing import Reviewing
+from .service import LONGEST_WAIT, Service, StaleError
 from .session import Session
 
 Handler = Callable[[Service, dict[str, Any]], Any]
@@ -218,11 +220,65 @@ def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], A
     return form(Replay(strokes, title=title, players=labels, judge=judge, luck=luck))
 
 
+def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    """Begin a review of what was played, or stop the one that is being made."""
+    stop = truth("stop", fields.get("stop", False))
+    if service.reviewing:
+        service.reviewing.stop()
+    if not stop:
+        with service.reading() as session:
+            if session.practice:
+                raise refuse("practice", True, "must be false: alone at the table nobody wins")
+            people = [seat for seat in (0, 1) if not service.seats.is_agent(seat)]
+            errors = _errors(fields, SAMPLES, service.seats.level(session))
+            agent = fields.get("agent", "tactician")
+            if agent != "tactician":
+                agent = service.seats.players[choice("agent", agent, service.seats.advisers(False))]
+            frame = read_frame(_replay(service, {}, Replay.to_dict))
+            service.reviewing = Reviewing(session, frame, people or (0, 1), agent=agent, **errors)
+    return _tell_review(service, {})
+
+
+def _tell_review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    seconds = min(number("wait", fields.get("wait", 0.0), 0.0, 60.0), LONGEST_WAIT)
+    after = integer("after", fields.get("after", 0), 0, MOST)
+    return _reviewing(service).report(after, seconds)
+
+
+def _reviewing(service: Service) -> Reviewing:
+    if service.reviewing is None or service.reviewing.begun != service.session.begun:
+        raise refuse("review", None, "must be begun first: this game has not been reviewed")
+    return service.reviewing
+
+
+def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    """A stroke that was reviewed: its table, and both strokes drawn."""
+    one = _reviewing(service)
+    k, found = one.act_of(fields.get("stroke"))
+    played, chance = one.acts[k].played, one.found and one.found.win_chance[found.number - 1]
+    assert played is not None
+    with service.asking() as session:
+        session.cue = played.cue_kind
+        session.go_to(one.acts, k)
+        both = {"played": questions.paths(played.shot), "best": questions.draw(session, found.best.stroke)}
+        return {"table": table_after(one.acts[k - 1], service.labels, chance)} | both
+
+
+def _again(service: Service, fields: dict[str, Any]) -> None:
+    """Put the game back to before a stroke that was reviewed."""
+    one = _reviewing(service)
+    k, _ = one.act_of(fields.get("stroke"))
+    with service.acting(pause=True, any_turn=True) as session:
+        session.go_to(one.acts, k)
+
+
 ERRORS = ("noise", "samples", "seed", "revision")
 GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
+    "review": Route(_tell_review, ("after", "wait")),
+    "reviewed": Route(_reviewed, ("stroke",)),
     "replay": Route(partial(_replay, form=Replay.to_dict)),
     "replay.html": Route(partial(_replay, form=Replay.html)),
 }
@@ -241,6 +297,8 @@ POST: dict[str, Route] = {
     "concede": Route(_concede),
     "save": Route(_save, ("acts",)),
     "load": Route(_load, ("saved",)),
+    "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
+    "again": Route(_again, ("stroke",)),
 }
 
 

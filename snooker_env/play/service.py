@@ -6,7 +6,6 @@ has seen. An agent's stroke is dropped if the game has changed in the meantime."
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from math import sqrt
 from time import monotonic
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy as np
 from .._lib.check import choice, refuse, refuse_what
 from .._lib.types import NoiseName
 from ..advice.ask import AGENT
+from ..advice.review import size_of
 from ..game.fouls import AUTO
 from ..game.frame import CHOICES, Frame
 from ..game.frame_columns import STROKES
@@ -24,7 +24,8 @@ from ..players.table_report import nominations_of
 from ..replays.chances import ChanceJudge, Standing, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
-from ..tasks.noise import LEVELS, Noise
+from ..tasks.noise import LEVELS
+from .reviewing import Reviewing
 from .session import DECLINED, Act, Session
 
 PERSON = "person"
@@ -60,7 +61,7 @@ class Seats:
         people = [seat for seat in seats if not self.is_agent(seat)]
         levels: list[NoiseName] = [session.noise[seat] for seat in people or seats]
         levels.append("amateur" if people and "none" in levels else "professional")
-        return max(levels, key=lambda name: _size(LEVELS[name]))
+        return max(levels, key=lambda name: size_of(LEVELS[name]))
 
     def sit(self, who: list[str]) -> None:
         """Assign both seats; ValueError for an unknown name."""
@@ -114,6 +115,7 @@ class Service:
         self.session: Session = session
         self.seats: Seats = seats
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
+        self.reviewing: Reviewing | None = None
         self.revision: int = 0
         self.paused, self.trouble = False, ""
         self._changed = threading.Condition(threading.RLock())
@@ -127,6 +129,8 @@ class Service:
         with self._changed:
             self._closed = True
             self._changed.notify_all()
+            if self.reviewing:
+                self.reviewing.stop()
 
     @property
     def labels(self) -> tuple[str, str]:
@@ -271,8 +275,3 @@ class Service:
             nominated == DECLINED and session.frame.free_ball
         )
         session.play(stroke, nominated=nominated if sensible else AUTO)
-
-
-def _size(noise: Noise) -> float:
-    """The root mean square error of the direction [deg], lapses included."""
-    return noise.direction_deg() * sqrt(1.0 + noise.lapse * (noise.lapse_factor**2 - 1.0))

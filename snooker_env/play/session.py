@@ -341,6 +341,11 @@ class Session:
         """Redo an act that was undone; returns whether there was one."""
         return self._go(self.at + 1)
 
+    def go_to(self, acts: list[Act], at: int) -> None:
+        """The game of these acts as it stood before act ``at``: those from there on can be done again."""
+        self.acts = list(acts)
+        self._go(at)
+
     def save(self) -> dict[str, Any]:
         """The current game as JSON types."""
         game = {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
