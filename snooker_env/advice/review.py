@@ -33,7 +33,7 @@ ROUGH, FEW = (
     50,
 )  # who is asked in the first look at all strokes, and how often each is played
 SAMPLES = 500  # how often each is played then, unless another number is asked for
-LITTLE = 0.005  # share of the chance to win that is not worth a word
+LITTLE = 0.015  # share of the chance to win that is not worth a word: so much is sampling error
 
 
 class Turn(NamedTuple):
@@ -155,7 +155,7 @@ class Review:
             lines.append(
                 f"{one.name}: luck {'not known' if one.luck is None else f'{100 * one.luck:+.0f} %'}{costs}"
             )
-        known = "" if self.adjusted is None else f", without luck {percent(self.adjusted)}"
+        known = "" if self.adjusted is None else f", without luck {percent(min(1.0, max(0.0, self.adjusted)))}"
         return "\n".join([*lines, f"{self.sides[0].name}: result {percent(self.result)}{known}"])
 
 

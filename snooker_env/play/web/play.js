@@ -558,7 +558,7 @@ class Page {
     by("set").disabled = this.drills.now;
     by("again").disabled = by("slow").disabled = !state.strokes || busy;
     by("share-stroke").disabled = by("share-replay").disabled = by("replay").disabled = by("stats-open").disabled = !state.strokes;
-    by("review-open").disabled = !state.strokes || state.practice;
+    by("review-open").disabled = state.practice || !state.strokes && !this.review.kept;
     by("concede").disabled = !mine && !choosing;
     const named = mine && state.nominations.length > 0;
     by("nominate-row").classList.toggle("idle", !named);

@@ -8,10 +8,11 @@ import { ask, by, make, pocketWords } from "./play_parts.js";
 
 /** How the stroke that was played and the best one are drawn. */
 const INK = { played: { colour: "#ffffff", width: 0.005 }, best: { colour: "#ffd75e", width: 0.005, dash: [0.03, 0.02] } };
-const FIRST = 3;
+/** So many stand first; shares of the chance to win below this are sampling error. */
+const FIRST = 3, LITTLE = 0.015;
 
-const percent = share => `${Math.round(100 * share)} %`;
-const signed = share => `${share < 0 ? "−" : "+"}${percent(Math.abs(share))}`;
+const percent = share => `${Math.round(100 * share)}\u00a0%`.replace(/^-0/, "0").replace("-", "−");
+const signed = share => (share < 0 ? percent(share) : `+${percent(share)}`);
 
 export class Review {
   constructor(app) {
@@ -23,9 +24,15 @@ export class Review {
     by("review-again").onclick = () => this.again();
   }
 
-  /** Ask for a review, unless the server has made one of these strokes. */
+  /** Is there a review of this game? After "Play it again" it stands until as many strokes were played. */
+  get kept() {
+    const { begun, strokes } = this.app.state;
+    return Boolean(this.found && !this.found.trouble) && begun === this.begun && (strokes < this.length || strokes === this.length && !this.left);
+  }
+
+  /** Ask for a review, unless there is one. */
   async begin() {
-    const { app } = this, { state } = app, key = `${state.begun} ${state.strokes}`;
+    const { app } = this, { begun, strokes } = app.state;
     app.still();
     app.held = true;
     this.open = true;
@@ -35,16 +42,15 @@ export class Review {
     app.mode("review");
     by("panel").scrollTop = 0;
     by("review-close").focus({ preventScroll: true });
-    if (this.key === key && this.found && !this.found.trouble) { this.show(); this.watch(); return; }
-    Object.assign(this, { key, found: null });
+    if (this.kept) { this.show(); this.watch(); return; }
+    Object.assign(this, { begun, length: strokes, left: false, found: null, line: null });
     this.show();
     try { this.take(await ask("review", {})); this.watch(); } catch (error) { this.trouble(error); }
   }
 
   /** Follow the review until it is done or closed. */
   async watch() {
-    const { key } = this;
-    while (this.open && this.found.running && key === this.key) {
+    while (this.open && this.found.running) {
       await new Promise(done => setTimeout(done, 250));
       try { this.take(await ask("review", undefined, `?after=${this.found.version}&wait=20`)); } catch (error) { this.trouble(error); return; }
     }
@@ -54,12 +60,12 @@ export class Review {
 
   take(found) { this.found = found; if (this.open) this.show(); }
 
-  end() {
+  end(stop = true) {
     if (!this.open) return;
     this.open = false;
     const { app } = this;
     app.held = false;
-    if (this.found?.running) { this.found.running = false; this.key = null; ask("review", { stop: true }).catch(() => {}); }
+    if (stop && this.found?.running) { this.found = null; ask("review", { stop: true }).catch(() => {}); }
     app.mode("play");
     app.catchUp();
     by("review-open").focus({ preventScroll: true });
@@ -78,10 +84,10 @@ export class Review {
     by("review-bar").value = done ?? 0;
     by("review-body").hidden = !sides;
     if (sides) {
-      if (this.graphed !== this.key) this.graph(chances);
-      const rows = [["luck", one => (one.luck === null ? "–" : signed(one.luck))], ["lost by choice", one => (one.strokes ? percent(one.choice) : "–")],
-        ["lost by execution", one => (one.strokes ? percent(one.execution) : "–")], ["result", (_, k) => percent(k ? 1 - found.result : found.result)],
-        ["result without luck", (_, k) => (found.adjusted === null ? "–" : percent(k ? 1 - found.adjusted : found.adjusted))]];
+      if (!this.line) this.graph(chances);
+      const rows = [["luck", one => (one.luck === null ? "–" : signed(one.luck))], ["choice", one => (one.strokes ? signed(-one.choice) : "–")],
+        ["execution", one => (one.strokes ? signed(-one.execution) : "–")], ["result", (_, k) => percent(k ? 1 - found.result : found.result)],
+        ["without luck", (_, k) => (found.adjusted === null ? "–" : percent(Math.min(1, Math.max(0, k ? 1 - found.adjusted : found.adjusted))))]];
       const head = make("tr", {}, make("td"), ...app.state.labels.map(textContent => make("th", { scope: "col", textContent })));
       by("review-sides").replaceChildren(head, ...rows.map(([name, what]) => make("tr", {}, make("td", { textContent: name }), ...sides.map((one, k) => make("td", { textContent: what(one, k) })))));
       this.list();
@@ -96,14 +102,13 @@ export class Review {
       total: strokes.length, starts: strokes.map((_, k) => k), strokes, replay: { win_chance: chances, luck: null, players: labels },
       strokeAt: at => Math.min(strokes.length - 1, Math.max(0, Math.floor(at))), skipTo: k => this.near(k + 1),
     });
-    this.graphed = this.key;
   }
 
   list() {
     const list = by("review-list"), { order } = this, held = list.contains(document.activeElement) && document.activeElement.dataset.stroke;
     list.replaceChildren(...order.map((one, k) => {
-      const cost = Math.max(0, one.choice) + Math.max(0, one.execution), parts = [["choice", one.choice], ["execution", one.execution]].filter(([, share]) => share >= 0.005);
-      const button = make("button", {}, make("b", { textContent: cost >= 0.005 ? `−${percent(cost)}` : "" }), `${one.number}. ${this.words(one.name)}`,
+      const cost = Math.max(0, one.choice) + Math.max(0, one.execution), parts = [["choice", one.choice], ["execution", one.execution]].filter(([, share]) => share >= LITTLE);
+      const button = make("button", {}, make("b", { textContent: cost >= LITTLE ? percent(-cost) : "" }), `${one.number}. ${this.words(one.name)}`,
         make("small", { textContent: parts.map(([name, share]) => `${name} ${percent(share)}`).join(", ") || "nothing lost" }));
       button.dataset.stroke = one.number;
       button.setAttribute("aria-pressed", String(one.number === this.chosen));
@@ -113,7 +118,7 @@ export class Review {
     if (held) list.querySelector(`[data-stroke="${held}"]`)?.focus({ preventScroll: true });
   }
 
-  words(text) { return pocketWords(text, this.app.view.upright); }
+  words(text) { return pocketWords(text, this.app.view.upright).replace(/ %/g, "\u00a0%"); }
 
   say(trouble) {
     const said = by("review-said"), one = this.order.find(({ number }) => number === this.chosen), { running } = this.found ?? { running: true };
@@ -158,7 +163,8 @@ export class Review {
   again() {
     const stroke = this.chosen;
     if (stroke === null) return;
-    this.end();
+    this.left = true;
+    this.end(false);
     this.app.try(() => ask("again", { stroke }));
   }
 
