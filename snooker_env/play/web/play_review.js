@@ -52,7 +52,10 @@ export class Review {
   async watch() {
     while (this.open && this.found.running) {
       await new Promise(done => setTimeout(done, 250));
-      try { this.take(await ask("review", undefined, `?after=${this.found.version}&wait=20`)); } catch (error) { this.trouble(error); return; }
+      try {
+        const found = await ask("review", undefined, `?after=${this.found.version}&wait=20`);
+        if (this.open) this.take(found);
+      } catch (error) { this.trouble(error); return; }
     }
   }
 
