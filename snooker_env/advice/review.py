@@ -76,8 +76,8 @@ class Reviewed:
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON types, with words."""
-        both = {"meant": self.meant.to_dict(), "best": self.best.to_dict()}
-        return vars(self) | both | {"name": name_stroke(self.meant), "words": str(self)}
+        shares = {"meant": self.meant.figure, "best": self.best.figure}
+        return vars(self) | shares | {"name": name_stroke(self.meant), "words": str(self)}
 
     def __str__(self) -> str:
         costs, better, best, meant = [], "", name_stroke(self.best), name_stroke(self.meant)
@@ -155,7 +155,9 @@ class Review:
             lines.append(
                 f"{one.name}: luck {'not known' if one.luck is None else f'{100 * one.luck:+.0f} %'}{costs}"
             )
-        known = "" if self.adjusted is None else f", without luck {percent(min(1.0, max(0.0, self.adjusted)))}"
+        known = (
+            "" if self.adjusted is None else f", without luck {percent(min(1.0, max(0.0, self.adjusted)))}"
+        )
         return "\n".join([*lines, f"{self.sides[0].name}: result {percent(self.result)}{known}"])
 
 

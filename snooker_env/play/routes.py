@@ -22,7 +22,7 @@ from . import questions
 from .game_record import open_game, record_game
 from .report import report, scene, stroke_report, table_after
 from .reviewing import Reviewing
-from .service import LONGEST_WAIT, Service, StaleError
+from .service import Service, StaleError
 from .session import Session
 
 Handler = Callable[[Service, dict[str, Any]], Any]
@@ -222,27 +222,21 @@ def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], A
 
 def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     """Begin a review of what was played, or stop the one that is being made."""
-    stop = truth("stop", fields.get("stop", False))
-    if service.reviewing:
-        service.reviewing.stop()
-    if not stop:
-        with service.reading() as session:
+    with service.reading() as session:
+        if service.reviewing:
+            service.reviewing.running = False
+        if not truth("stop", fields.get("stop", False)):
             if session.practice:
                 raise refuse("practice", True, "must be false: alone at the table nobody wins")
-            people = [seat for seat in (0, 1) if not service.seats.is_agent(seat)]
-            errors = _errors(fields, SAMPLES, service.seats.level(session))
-            agent = fields.get("agent", "tactician")
-            if agent != "tactician":
-                agent = service.seats.players[choice("agent", agent, service.seats.advisers(False))]
-            frame = read_frame(_replay(service, {}, Replay.to_dict))
-            service.reviewing = Reviewing(session, frame, people or (0, 1), agent=agent, **errors)
-    return _tell_review(service, {})
-
-
-def _tell_review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    seconds = min(number("wait", fields.get("wait", 0.0), 0.0, 60.0), LONGEST_WAIT)
-    after = integer("after", fields.get("after", 0), 0, MOST)
-    return _reviewing(service).report(after, seconds)
+            advisers = service.seats.advisers(practice=False)
+            agent = service.seats.players[choice("agent", fields.get("agent", advisers[0]), advisers)]
+            people = [seat for seat in (0, 1) if not service.seats.is_agent(seat)] or (0, 1)
+            errors, frame = (
+                _errors(fields, SAMPLES, service.seats.level(session)),
+                _replay(service, {}, Replay.to_dict),
+            )
+            service.reviewing = Reviewing(session, read_frame(frame), people, agent=agent, **errors)
+    return _reviewing(service).report()
 
 
 def _reviewing(service: Service) -> Reviewing:
@@ -253,23 +247,22 @@ def _reviewing(service: Service) -> Reviewing:
 
 def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     """A stroke that was reviewed: its table, and both strokes drawn."""
-    one = _reviewing(service)
-    k, found = one.act_of(fields.get("stroke"))
-    played, chance = one.acts[k].played, one.found and one.found.win_chance[found.number - 1]
-    assert played is not None
+    reviewing = _reviewing(service)
+    k, one, chance = reviewing.act_of(fields.get("stroke"))
+    before, act = reviewing.acts[k - 1 : k + 1]
+    assert act.played is not None
     with service.asking() as session:
-        session.cue = played.cue_kind
-        session.go_to(one.acts, k)
-        both = {"played": questions.paths(played.shot), "best": questions.draw(session, found.best.stroke)}
-        return {"table": table_after(one.acts[k - 1], service.labels, chance)} | both
+        session.cue = act.played.cue_kind
+        session.go_to(reviewing.acts, k)
+        both = {"played": questions.paths(act.played.shot), "best": questions.draw(session, one.best.stroke)}
+        return both | {"table": table_after(before, service.labels, chance)}
 
 
 def _again(service: Service, fields: dict[str, Any]) -> None:
     """Put the game back to before a stroke that was reviewed."""
-    one = _reviewing(service)
-    k, _ = one.act_of(fields.get("stroke"))
+    reviewing = _reviewing(service)
     with service.acting(pause=True, any_turn=True) as session:
-        session.go_to(one.acts, k)
+        session.go_to(reviewing.acts, reviewing.act_of(fields.get("stroke"))[0])
 
 
 ERRORS = ("noise", "samples", "seed", "revision")
@@ -277,7 +270,7 @@ GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
-    "review": Route(_tell_review, ("after", "wait")),
+    "review": Route(lambda service, fields: _reviewing(service).report()),
     "reviewed": Route(_reviewed, ("stroke",)),
     "replay": Route(partial(_replay, form=Replay.to_dict)),
     "replay.html": Route(partial(_replay, form=Replay.html)),

@@ -130,7 +130,7 @@ class Service:
             self._closed = True
             self._changed.notify_all()
             if self.reviewing:
-                self.reviewing.stop()
+                self.reviewing.running = False
 
     @property
     def labels(self) -> tuple[str, str]:

@@ -733,3 +733,42 @@ def test_the_page_is_small(line):
     """Everything that a browser loads, without the game's data: under 170 kB."""
     files = [body for name in FILES for status, body, _ in [line(name)] if status == 200]
     assert len(files) == len(FILES) and sum(map(len, files)) < 170_000
+
+
+def test_a_frame_is_reviewed_on_the_page_and_played_again_from_its_costliest_stroke(shown):
+    """By keys: the list, both strokes on the table, the position again with all that belongs to it; the review waits."""
+    shown.set_up(EASY)
+    for aim in (1.5, 2.0):
+        status, _, _ = shown.line(
+            "api/stroke", {"speed": 2.0, "aim": aim, **({"choice": "play"} if aim == 2.0 else {})}
+        )
+        assert status == 200
+    shown.played(2)
+    shown("page.fold(false)")
+    shown.page.click("#review-open")
+    shown.until("page.review.found?.costliest?.length === 2 && !page.review.found.running")
+    assert shown.page.is_hidden("#stroke") and shown("page.aiming") is False
+    rows = shown.page.locator("#review-list button")
+    assert rows.count() == 2 and shown.page.locator("#review-graph svg").count() == 1
+    first = shown("page.review.found.costliest[0]")
+    assert rows.first.inner_text().splitlines()[0].startswith(f"{first}. ") or "%" in rows.first.inner_text()
+    rows.first.focus()
+    shown.page.keyboard.press("Enter")
+    shown.until("page.review.shown !== null && page.review.chosen === argument", first)
+    assert "thrown away by the choice; the best was" in shown.page.inner_text("#review-said")
+    lines = shown("page.review.overlay().lines.map(one => [one.colour, one.points.length > 1])")
+    assert {colour for colour, _ in lines} == {"#ffffff", "#ffd75e"} and all(long for _, long in lines)
+    table = shown("page.table")
+    shown.page.click("#review-again")
+    shown.until(f"page.state.strokes === argument && page.aiming && {SETTLED}", first - 1)
+    state = shown("page.state")
+    same = ("positions", "scores", "striker", "in_hand", "ball_on", "break")
+    assert {name: state[name] for name in same} == {name: table[name] for name in same if name in table} | {
+        name: state[name] for name in same if name not in table
+    }
+    assert state["redo"] and shown("page.review.kept") is True
+    shown("page.fold(false)")
+    shown.page.click("#review-open")
+    assert rows.count() == 2 and shown("page.review.found.total") == 4
+    shown.page.keyboard.press("Escape")
+    shown.until("page.aiming && !page.review.open")

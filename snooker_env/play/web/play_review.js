@@ -51,9 +51,9 @@ export class Review {
   /** Follow the review until it is done or closed. */
   async watch() {
     while (this.open && this.found.running) {
-      await new Promise(done => setTimeout(done, 250));
+      await new Promise(done => setTimeout(done, 400));
       try {
-        const found = await ask("review", undefined, `?after=${this.found.version}&wait=20`);
+        const found = await ask("review");
         if (this.open) this.take(found);
       } catch (error) { this.trouble(error); return; }
     }
