@@ -751,7 +751,7 @@ def test_a_frame_is_reviewed_on_the_page_and_played_again_from_its_costliest_str
     rows = shown.page.locator("#review-list button")
     assert rows.count() == 2 and shown.page.locator("#review-graph svg").count() == 1
     first = shown("page.review.found.costliest[0]")
-    assert rows.first.inner_text().splitlines()[0].startswith(f"{first}. ") or "%" in rows.first.inner_text()
+    assert f"{first}. " in rows.first.inner_text()
     rows.first.focus()
     shown.page.keyboard.press("Enter")
     shown.until("page.review.shown !== null && page.review.chosen === argument", first)
@@ -762,10 +762,8 @@ def test_a_frame_is_reviewed_on_the_page_and_played_again_from_its_costliest_str
     shown.page.click("#review-again")
     shown.until(f"page.state.strokes === argument && page.aiming && {SETTLED}", first - 1)
     state = shown("page.state")
-    same = ("positions", "scores", "striker", "in_hand", "ball_on", "break")
-    assert {name: state[name] for name in same} == {name: table[name] for name in same if name in table} | {
-        name: state[name] for name in same if name not in table
-    }
+    for name in ("positions", "scores", "striker", "ball_on", "break"):
+        assert state[name] == table[name], name
     assert state["redo"] and shown("page.review.kept") is True
     shown("page.fold(false)")
     shown.page.click("#review-open")
