@@ -246,8 +246,10 @@ def _reviewing(service: Service) -> Reviewing:
 
 
 def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    """A stroke that was reviewed: its table, and both strokes drawn."""
+    """The review so far, or of a stroke its table, and both strokes drawn."""
     reviewing = _reviewing(service)
+    if "stroke" not in fields:
+        return reviewing.report()
     k, one, chance = reviewing.act_of(fields.get("stroke"))
     before, act = reviewing.acts[k - 1 : k + 1]
     assert act.played is not None
@@ -270,7 +272,6 @@ GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
-    "review": Route(lambda service, fields: _reviewing(service).report()),
     "reviewed": Route(_reviewed, ("stroke",)),
     "replay": Route(partial(_replay, form=Replay.to_dict)),
     "replay.html": Route(partial(_replay, form=Replay.html)),

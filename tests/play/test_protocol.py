@@ -551,7 +551,7 @@ def test_a_frame_is_reviewed_beside_the_game_and_played_again_from_a_stroke(game
     assert game("advise", n=1, samples=5)["suggestions"] and session.state == before
     while found["running"]:
         time.sleep(0.05)
-        found = game.get("review")
+        found = game.get("reviewed")
     assert found["trouble"] == "" and found["done"] == found["total"] == 6 and found["noise"] == "club"
     assert [one["number"] for one in found["strokes"]] == [1, 2, 3] and sorted(found["costliest"]) == [
         1,
@@ -569,4 +569,4 @@ def test_a_frame_is_reviewed_beside_the_game_and_played_again_from_a_stroke(game
     assert not game("review", stop=True)["running"]
     game("new", seed=3)
     with pytest.raises(ValueError, match="must be begun first"):
-        game.get("review")
+        game.get("reviewed")

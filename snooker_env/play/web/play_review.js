@@ -53,7 +53,7 @@ export class Review {
     while (this.open && this.found.running) {
       await new Promise(done => setTimeout(done, 400));
       try {
-        const found = await ask("review");
+        const found = await ask("reviewed");
         if (this.open) this.take(found);
       } catch (error) { this.trouble(error); return; }
     }
