@@ -98,24 +98,33 @@ def advise(
     )
     at = one_position(position, scores)
     practice = practice_of(noise, options, position, of_frames=at.of_frames)
-    name, asked = _player_of(agent, at)
-    strokes = _ask(asked, practice, at, n, seed)
-    chosen, of_agent = _choose_fair(practice, strokes, n, trials), {one.stroke for one in strokes}
-    if not chosen:
-        strokes += _ask(player_of(INSTEAD), practice, at, n, seed)
-        chosen = _choose_fair(practice, strokes, n, trials) or [_choose_least_bad(practice, strokes, trials)]
+    name, asked = name_player(agent, at)
+    chosen, own = choose_strokes(practice, asked, at, n, trials)
     return Advice(
         suggestions=tuple(chosen),
         position=at[0],
         scores=tuple(at.scores[0].tolist()) if at.of_frames else None,
         agent=name,
-        own=all(one.stroke in of_agent for one in chosen),
+        own=own,
         noise=noise if isinstance(noise, str) else asdict(practice.noise),
         **trials._asdict(),
     )
 
 
-def _player_of(agent: object, at: Positions) -> tuple[str, Player]:
+def choose_strokes(
+    practice: Practice, asked: Player, at: Positions, n: int, trials: Trials, rivals: int = RIVALS
+) -> tuple[list[Suggestion], bool]:
+    """The player's strokes, best first, the first of a frame compared with so many ``rivals``; whether all are its own."""
+    strokes = _ask(asked, practice, at, n, trials.seed)
+    chosen, of_agent = _choose_fair(practice, strokes, n, trials, rivals), {one.stroke for one in strokes}
+    if not chosen:
+        strokes += _ask(player_of(INSTEAD), practice, at, n, trials.seed)
+        fair = _choose_fair(practice, strokes, n, trials, rivals)
+        chosen = fair or [_choose_least_bad(practice, strokes, trials)]
+    return chosen, all(one.stroke in of_agent for one in chosen)
+
+
+def name_player(agent: object, at: Positions) -> tuple[str, Player]:
     """The player and its name; ValueError for one that knows visits alone in a frame."""
     agent = (OF_FRAMES if at.of_frames else AGENT) if agent is None else agent
     asked = player_of(agent)
@@ -134,7 +143,9 @@ def _ask(player: Player, practice: Practice, at: Positions, n: int, seed: int) -
     return drop_alike(intend(practice, at, cue_strokes(played, at)[: max(FEWEST, CONSIDERED * n)]))
 
 
-def _choose_fair(practice: Practice, strokes: list[Intention], n: int, trials: Trials) -> list[Suggestion]:
+def _choose_fair(
+    practice: Practice, strokes: list[Intention], n: int, trials: Trials, rivals: int
+) -> list[Suggestion]:
     """The first n ideas that are fair without errors and in most samples, best first; no pot that hardly ever goes."""
     fair = [one for one in strokes if one.kind not in FOULS]
     out, waiting = _judge_fair(practice, [one for one in fair if not one.spends], n, trials)
@@ -142,11 +153,11 @@ def _choose_fair(practice: Practice, strokes: list[Intention], n: int, trials: T
         return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))[:n]
     spent, rest = _judge_fair(practice, [one for one in fair if one.spends], n, trials)
     out = _lay_first(_sort_by_win(out), _sort_by_win(spent))
-    if not out:
-        return out
-    others = [one for one in waiting + rest if (one.kind == "pot") != (out[0].kind == "pot")][:RIVALS]
-    rivals = judge_strokes(practice, others, trials._replace(visits=0)) if others else []
-    return [_compare(out, [one for one in out[1:] + rivals if _is_sensible(one)]), *out[1:n]]
+    if not (out and rivals):
+        return out[:n]
+    others = [one for one in waiting + rest if (one.kind == "pot") != (out[0].kind == "pot")][:rivals]
+    judged = judge_strokes(practice, others, trials._replace(visits=0)) if others else []
+    return [_compare(out, [one for one in out[1:] + judged if _is_sensible(one)]), *out[1:n]]
 
 
 def _judge_fair(

@@ -52,6 +52,14 @@ def leaving(session: Session, stroke: CueStroke) -> dict[str, Any]:
     return {"first": NAMES[hits["j"][0]] if heads else None, "heads": heads[0] if heads else None}
 
 
+def draw(session: Session, stroke: CueStroke) -> dict[str, Any]:
+    """The paths of a stroke without errors from its own place."""
+    twin = session.twin()
+    if stroke.place is not None:
+        twin.place(*stroke.place)
+    return paths(exact(twin, stroke))
+
+
 def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any]:
     """Where cue ball and object ball stop with ``errors`` (noise, samples, seed), and the paths without them."""
     shot = exact(session, stroke)
@@ -79,10 +87,7 @@ def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors:
         )
     advice, out = advise(at, agent=seats.players[agent], **how), []
     for one in advice:
-        twin = session.twin()
-        if one.place is not None:
-            twin.place(*one.place)
         names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
         names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
-        out.append(one.to_dict() | names | paths(exact(twin, one.stroke)))
+        out.append(one.to_dict() | names | draw(session, one.stroke))
     return {"agent": agent, "order": advice.order, "noise": advice.noise, "suggestions": out}

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from .._lib.check import choice, integer, number, refuse, truth
 from ..advice import CueStroke
+from ..advice.review import SAMPLES, read_frame
 from ..game.fouls import AUTO
 from ..game.frame import MOST_BREAK
 from ..planning.position import Position
@@ -20,7 +21,8 @@ from ..tasks.options import CUES
 from ..tasks.states import MOST
 from . import questions
 from .game_record import open_game, record_game
-from .report import report, scene, stroke_report
+from .report import report, scene, stroke_report, table_after
+from .reviewing import Reviewing
 from .service import Service, StaleError
 from .session import Session
 
@@ -225,11 +227,59 @@ def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], A
     return form(Replay(strokes, title=title, players=labels, judge=judge, luck=luck))
 
 
+def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    """Begin a review of what was played, or stop the one that is being made."""
+    with service.reading() as session:
+        if service.reviewing:
+            service.reviewing.running = False
+        if not truth("stop", fields.get("stop", False)):
+            if session.practice:
+                raise refuse("practice", True, "must be false: alone at the table nobody wins")
+            advisers = service.seats.advisers(practice=False)
+            agent = service.seats.players[choice("agent", fields.get("agent", advisers[0]), advisers)]
+            people = [seat for seat in (0, 1) if not service.seats.is_agent(seat)] or (0, 1)
+            errors, frame = (
+                _errors(fields, SAMPLES, service.seats.level(session)),
+                _replay(service, {}, Replay.to_dict),
+            )
+            service.reviewing = Reviewing(session, read_frame(frame), people, agent=agent, **errors)
+    return _reviewing(service).report()
+
+
+def _reviewing(service: Service) -> Reviewing:
+    if service.reviewing is None or service.reviewing.begun != service.session.begun:
+        raise refuse("review", None, "must be begun first: this game has not been reviewed")
+    return service.reviewing
+
+
+def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    """The review so far, or of a stroke its table, and both strokes drawn."""
+    reviewing = _reviewing(service)
+    if "stroke" not in fields:
+        return reviewing.report()
+    k, one, chance = reviewing.act_of(fields.get("stroke"))
+    before, act = reviewing.acts[k - 1 : k + 1]
+    assert act.played is not None
+    with service.asking() as session:
+        session.cue = act.played.cue_kind
+        session.go_to(reviewing.acts, k)
+        both = {"played": questions.paths(act.played.shot), "best": questions.draw(session, one.best.stroke)}
+        return both | {"table": table_after(before, service.labels, chance)}
+
+
+def _again(service: Service, fields: dict[str, Any]) -> None:
+    """Put the game back to before a stroke that was reviewed."""
+    reviewing = _reviewing(service)
+    with service.acting(pause=True, any_turn=True) as session:
+        session.go_to(reviewing.acts, reviewing.act_of(fields.get("stroke"))[0])
+
+
 ERRORS = ("noise", "samples", "seed", "revision")
 GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
+    "reviewed": Route(_reviewed, ("stroke",)),
     "replay": Route(partial(_replay, form=Replay.to_dict), ("one", "other")),
     "replay.html": Route(partial(_replay, form=Replay.html), ("one", "other")),
 }
@@ -249,6 +299,8 @@ POST: dict[str, Route] = {
     "sit": Route(lambda service, fields: service.sit_down(), friend=True),
     "save": Route(_save, ("acts",)),
     "load": Route(_load, ("saved",)),
+    "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
+    "again": Route(_again, ("stroke",)),
 }
 
 

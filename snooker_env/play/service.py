@@ -6,7 +6,6 @@ has seen. An agent's stroke is dropped if the game has changed in the meantime."
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from math import sqrt
 from time import monotonic
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy as np
 from .._lib.check import choice, refuse, refuse_what
 from .._lib.types import NoiseName
 from ..advice.ask import AGENT
+from ..advice.review import size_of
 from ..game.fouls import AUTO
 from ..game.frame import CHOICES, Frame
 from ..game.frame_columns import STROKES
@@ -24,8 +24,9 @@ from ..players.table_report import nominations_of
 from ..replays.chances import ChanceJudge, Standing, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
-from ..tasks.noise import LEVELS, Noise
+from ..tasks.noise import LEVELS
 from .invites import Invite
+from .reviewing import Reviewing
 from .session import DECLINED, Act, Session
 
 PERSON = "person"  # who sits at the page of the host
@@ -59,7 +60,7 @@ class Seats:
         people = [seat for seat in seats if not self.is_agent(seat)]
         levels: list[NoiseName] = [session.noise[seat] for seat in people or seats]
         levels.append("amateur" if people and "none" in levels else "professional")
-        return max(levels, key=lambda name: _size(LEVELS[name]))
+        return max(levels, key=lambda name: size_of(LEVELS[name]))
 
     def sit(self, who: list[str]) -> None:
         """Assign both seats; ValueError for an unknown name."""
@@ -117,6 +118,7 @@ class Service:
         self.session: Session = session
         self.seats: Seats = seats
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
+        self.reviewing: Reviewing | None = None
         self.revision: int = 0
         self.paused, self.trouble = False, ""
         self.invites: list[Invite] = []  # what the host may pass on, if others can come to the table
@@ -132,6 +134,8 @@ class Service:
         with self._changed:
             self._closed = True
             self._changed.notify_all()
+            if self.reviewing:
+                self.reviewing.running = False
 
     def asked_by(self, me: str) -> "Service":
         """The same game for requests of the host (``PERSON``), of the ``FRIEND`` or of a ``WATCHER``."""
@@ -314,8 +318,3 @@ class _Asked(Service):
     """A service that shares all but ``me`` with another."""
 
     __slots__ = ("me",)
-
-
-def _size(noise: Noise) -> float:
-    """The root mean square error of the direction [deg], lapses included."""
-    return noise.direction_deg() * sqrt(1.0 + noise.lapse * (noise.lapse_factor**2 - 1.0))

@@ -234,16 +234,18 @@ class Session:
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
         self._played, room = None, self.room(stroke)
-        asked = {**stroke.to_dict(), "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
-        asked["place"] = before["positions"][CUE] if frame.in_hand else None
+        meant = {**stroke.to_dict(), "place": before["positions"][CUE] if frame.in_hand else None}
+        asked = {**meant, "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
         asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
         tables.nominated[0] = nominated
         crew, luck = Crew(self._buffers, self._watch), self._luck(actions, striker)
         tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
+        assert self._played is not None
+        played = replace(self._played, before=frame, meant=meant)
         if self.practice:
             self._hand_back()
         words = NAMES[nominated] if nominated > CUE else ""
-        return self._did(Act("stroke", self.state, striker, self._played, words, room, asked, luck))
+        return self._did(Act("stroke", self.state, striker, played, words, room, asked, luck))
 
     def _luck(self, actions: Floats, striker: int) -> float:
         """The luck of a stroke that is about to be played, by the chance to win under the larger errors of both."""
@@ -338,6 +340,11 @@ class Session:
     def redo(self) -> bool:
         """Redo an act that was undone; returns whether there was one."""
         return self._go(self.at + 1)
+
+    def go_to(self, acts: list[Act], at: int) -> None:
+        """The game of these acts as it stood before act ``at``: those from there on can be done again."""
+        self.acts = list(acts)
+        self._go(at)
 
     def save(self) -> dict[str, Any]:
         """The current game as JSON types."""

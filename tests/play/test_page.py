@@ -778,3 +778,40 @@ def test_a_friend_plays_from_a_phone_and_a_third_person_watches(chromium):  # no
             assert one.page.is_visible("#next") is (one is host)
         for one in (host, friend, watcher):
             one.close()
+
+
+def test_a_frame_is_reviewed_on_the_page_and_played_again_from_its_costliest_stroke(shown):
+    """By keys: the list, both strokes on the table, the position again with all that belongs to it; the review waits."""
+    shown.set_up(EASY)
+    for aim in (1.5, 2.0):
+        status, _, _ = shown.line(
+            "api/stroke", {"speed": 2.0, "aim": aim, **({"choice": "play"} if aim == 2.0 else {})}
+        )
+        assert status == 200
+    shown.played(2)
+    shown("page.fold(false)")
+    shown.page.click("#review-open")
+    shown.until("page.review.found?.costliest?.length === 2 && !page.review.found.running")
+    assert shown.page.is_hidden("#stroke") and shown("page.aiming") is False
+    rows = shown.page.locator("#review-list button")
+    assert rows.count() == 2 and shown.page.locator("#review-graph svg").count() == 1
+    first = shown("page.review.found.costliest[0]")
+    assert f"{first}. " in rows.first.inner_text()
+    rows.first.focus()
+    shown.page.keyboard.press("Enter")
+    shown.until("page.review.shown !== null && page.review.chosen === argument", first)
+    assert "thrown away by the choice; the best was" in shown.page.inner_text("#review-said")
+    lines = shown("page.review.overlay().lines.map(one => [one.colour, one.points.length > 1])")
+    assert {colour for colour, _ in lines} == {"#ffffff", "#ffd75e"} and all(long for _, long in lines)
+    table = shown("page.table")
+    shown.page.click("#review-again")
+    shown.until(f"page.state.strokes === argument && page.aiming && {SETTLED}", first - 1)
+    state = shown("page.state")
+    for name in ("positions", "scores", "striker", "ball_on", "break"):
+        assert state[name] == table[name], name
+    assert state["redo"] and shown("page.review.kept") is True
+    shown("page.fold(false)")
+    shown.page.click("#review-open")
+    assert rows.count() == 2 and shown("page.review.found.total") == 4
+    shown.page.keyboard.press("Escape")
+    shown.until("page.aiming && !page.review.open")

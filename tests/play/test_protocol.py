@@ -531,3 +531,38 @@ def test_lines_agree_with_geometry():
     assert club.chance == pytest.approx(within * np.exp(-0.01 * (straight.to_ball + straight.to_pocket)))
     away = lines[1, "bottom left"]
     assert not away.open and away.why == "cut too thin"
+
+
+def test_a_frame_is_reviewed_beside_the_game_and_played_again_from_a_stroke(game):
+    """Strokes of persons alone; the game goes on meanwhile, and later stands as before a stroke, redo included."""
+    session, states = game.session, []
+    for aim in (1.5, 1.8, 1.2):
+        if session.frame.phase == "choice":
+            game("stroke", choice="play")
+        states.append(session.state)
+        game("stroke", speed=2.0, aim=aim)
+    game("players", noise=["club", "amateur"])
+    before = session.state
+    found = game("review", samples=20, agent="tactician_500")
+    assert game("advise", n=1, samples=5)["suggestions"] and session.state == before
+    while found["running"]:
+        time.sleep(0.05)
+        found = game.get("reviewed")
+    assert found["trouble"] == "" and found["done"] == found["total"] == 6 and found["noise"] == "club"
+    assert [one["number"] for one in found["strokes"]] == [1, 2, 3] and sorted(found["costliest"]) == [
+        1,
+        2,
+        3,
+    ]
+    drawn = game.get("reviewed", stroke=2)
+    assert drawn["table"]["scores"] == states[1]["frame"]["scores"] and "0" in drawn["best"]["paths"]
+    assert drawn["played"]["paths"]["0"][0] == pytest.approx(states[1]["positions"][0], abs=1e-4)
+    game("again", stroke=2)
+    assert session.state == states[1]
+    assert game("redo")["strokes"] == 2
+    with pytest.raises(ValueError, match="stroke = 4: must be"):
+        game("again", stroke=4)
+    assert not game("review", stop=True)["running"]
+    game("new", seed=3)
+    with pytest.raises(ValueError, match="must be begun first"):
+        game.get("reviewed")

@@ -12,6 +12,7 @@ import { Door } from "./play_door.js";
 import { Drills } from "./play_drill.js";
 import { firstAim } from "./play_first.js";
 import { ask, by, confirmed, DOWN, fill, isPerson, keep, kept, Latest, make } from "./play_parts.js";
+import { Review } from "./play_review.js";
 import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 import { Share } from "./play_share.js";
@@ -65,6 +66,7 @@ class Page {
     this.advisor = new Advisor(this);
     this.room = new Room(this);
     this.setup = new SetUp(this);
+    this.review = new Review(this);
     this.sound = new Sound();
     this.stats = new Stats(this);
     this.drills = new Drills(this);
@@ -203,6 +205,7 @@ class Page {
     if (level && !isPerson(state.players[1])) this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
     if (first) { this.put(state); this.drills.resume(); }
     if (fresh || state.strokes < this.played) { this.still(); this.stats.key = null; }
+    if (fresh) this.review.end();
     if (fresh && !first) {
       this.stats.times.clear();
       this.played = 0;
@@ -216,7 +219,7 @@ class Page {
 
   /** Animate all strokes that have not been shown yet, one after the other. */
   async catchUp() {
-    if (this.busy) return;
+    if (this.busy || this.review.open) return;
     this.busy = true;
     try { await this.showAll(); } catch (error) { this.played = this.state.strokes; this.trouble(error); }
     this.busy = false;
@@ -304,7 +307,7 @@ class Page {
 
   /** Show the state, and set a first aim. */
   settle() {
-    if (this.moving || this.busy) return;
+    if (this.moving || this.busy || this.review.open) return;
     const { state } = this;
     if (state.phase === "over" || state.players[state.striker] === "person") this.hurried = false;
     this.put(state);
@@ -471,7 +474,7 @@ class Page {
     if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
     if (event.altKey && !key.startsWith("Arrow")) return;
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, tip = (x, y) => aim.tip(aim.wish.side + x, aim.wish.top + y);
-    const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end(), u: () => this.setup.undo() } : {
+    const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end(), u: () => this.setup.undo() } : this.review.open ? { Escape: () => this.review.end(), ArrowUp: () => this.review.step(-1), ArrowDown: () => this.review.step(1), Enter: () => this.review.again() } : {
       " ": () => (event.shiftKey ? this.hurry() : this.skip()), Escape: () => (aim.held === "cue" ? aim.up(false) : this.skip()), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
       z: () => this.zoom(), f: () => this.full(), m: () => this.sound.flip(),
       "?": () => this.help(),
@@ -528,10 +531,10 @@ class Page {
   said(words) { return words.replaceAll(...this.alias); }
 
   show() {
-    const { state, table } = this, busy = this.behind, mine = this.aiming, setup = this.setup.open;
-    for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["act", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
+    const { state, table } = this, busy = this.behind, mine = this.aiming, review = this.review.open, setup = this.setup.open || review;
+    for (const [id, hide] of [["setup", !this.setup.open], ["review", !review], ["stroke", setup], ["ask", setup], ["act", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
     const who = state.labels[table.striker], on = table.ball_on?.replace("_", " ");
-    by("asked").textContent = setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : this.said(table.words);
+    by("asked").textContent = review ? "Review of the frame" : setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : this.said(table.words);
     if (by("last").className !== "trouble") by("last").textContent = this.said(table.last);
     by("asked").title = by("asked").textContent;
     by("last").title = by("last").textContent;
@@ -563,6 +566,7 @@ class Page {
     by("set").disabled = this.drills.now;
     by("again").disabled = by("slow").disabled = !state.strokes || busy;
     by("share-stroke").disabled = by("share-replay").disabled = by("replay").disabled = by("stats-open").disabled = !state.strokes;
+    by("review-open").disabled = state.practice || !state.strokes && !this.review.kept;
     by("concede").disabled = !mine && !choosing;
     const named = mine && state.nominations.length > 0;
     by("nominate-row").classList.toggle("idle", !named);
@@ -672,6 +676,7 @@ class Page {
       this.view.draw({ x: balls.x, y: balls.y, on: balls.on, labels, highlight: rings, rings: spots });
     } else if (this.state) {
       const frame = { x: this.balls.x, y: this.balls.y, on: this.balls.on, labels, lines: [], rings: [], heat: [] };
+      if (this.review.open) Object.assign(frame, this.review.overlay());
       if (this.aiming) {
         const own = this.aim.overlay(), asked = this.advisor.overlay();
         frame.heat = asked.heat;
