@@ -16,8 +16,8 @@ from ..replays.referee_words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
-from .service import Service
-from .session import Act
+from .service import FRIEND, PERSON, Service
+from .session import Act, Session
 
 STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
 
@@ -111,16 +111,27 @@ def report(service: Service) -> dict[str, Any]:
         "noise": list(session.noise),
         "paused": service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
-        "undo": session.at > 1,
+        "undo": session.at > 1 and FRIEND not in seats.who,
         "redo": session.at < len(session.acts),
+        "by_link": {"seat": seats.who.index(PERSON), "visit": _last_visit(session)}
+        if FRIEND in seats.who
+        else None,
     }
     if service.agent_to_play():
         waits = "waits: press Continue." if service.paused else "is thinking."
         state["words"] = service.trouble or f"{seats.label(frame.striker)} {waits}"
+    if service.friend_to_play:
+        state["words"] = "Your friend is to play: send the link."
     if state["phase"] == "over":
         state["words"] = " ".join([state["words"], *_say_luck(service)])
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
     return state | {"text": say_table(state, lines, said)}
+
+
+def _last_visit(session: Session) -> int:
+    """How many strokes were played before the last visit."""
+    players = [session.acts[k].player for k in session.strokes]
+    return max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
 
 
 def _say_chance(state: dict[str, Any]) -> list[str]:

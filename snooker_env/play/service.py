@@ -27,7 +27,7 @@ from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS, Noise
 from .session import DECLINED, Act, Session
 
-PERSON = "person"
+PERSON, FRIEND = "person", "friend"  # who plays here, and who plays by link elsewhere
 OPPONENT = "tactician_500"  # who plays against a person unless someone is named
 OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
 
@@ -35,13 +35,13 @@ OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents
 class Seats:
     """The two seats, and the players that may take them: ``OFFERED``, and ``agents`` by name."""
 
-    who: list[str]  # ``PERSON`` or the name of an agent, for each seat
+    who: list[str]  # ``PERSON``, ``FRIEND`` or the name of an agent, for each seat
 
     def __init__(self, agents: Mapping[str, Player]):
         self.players: dict[str, Player] = dict(agents)
         for name in OFFERED:
             self.players.setdefault(name, player(name))
-        self.who = [PERSON, PERSON]
+        self.who, self._before = [PERSON, PERSON], [PERSON, PERSON]
 
     @property
     def names(self) -> list[str]:
@@ -70,14 +70,22 @@ class Seats:
 
     def is_agent(self, seat: int) -> bool:
         """Whether an agent has this seat."""
-        return self.who[seat] != PERSON
+        return self.who[seat] not in (PERSON, FRIEND)
+
+    def share(self, seat: int | None) -> None:
+        """The person plays this seat, and a friend by link the other; None: those who sat there before come back."""
+        if FRIEND not in self.who:
+            self._before = self.who
+        self.who = self._before if seat is None else [PERSON if k == seat else FRIEND for k in (0, 1)]
 
     def label(self, seat: int) -> str:
         """The player's name on the page."""
+        if self.who[seat] == FRIEND:
+            return "Friend"
         if self.is_agent(seat):
             name = self.who[seat].replace("_", " ")  # as the page lists it
             return name if self.who[0] != self.who[1] else f"{name} {seat + 1}"
-        return "You" if self.is_agent(1 - seat) else f"Player {seat + 1}"
+        return "You" if self.who[1 - seat] != PERSON else f"Player {seat + 1}"
 
     @property
     def labels(self) -> tuple[str, str]:
@@ -144,14 +152,18 @@ class Service:
 
     @contextmanager
     def acting(
-        self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False
+        self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False, anew: bool = False
     ) -> Iterator[Session]:
         """The game, for changing it: after an exception it is as it was before. ``pause``: agents then wait; ``any_turn``:
-        also in an agent's turn."""
+        also in an agent's turn; ``anew``: another game begins."""
         with self.reading(revision) as session:
-            if not any_turn and self.agent_to_play():
+            if not (any_turn or anew) and self.agent_to_play():
                 whose = self.seats.label(session.frame.striker)
                 raise refuse("turn", whose, "must be a person's: an agent is to play")
+            if not (any_turn or anew) and self.friend_to_play:
+                raise refuse("turn", "Friend", "must be yours: send the link of the game")
+            if any_turn and FRIEND in self.seats.who:
+                raise refuse("game", "by link", "must stay as it is played: begin another game first")
             with session.as_a_whole():
                 yield session
             self.paused, self.trouble = pause, ""
@@ -207,6 +219,12 @@ class Service:
         """Whether it is an agent's turn."""
         frame = self.session.frame
         return frame.phase != "over" and self.seats.is_agent(frame.striker)
+
+    @property
+    def friend_to_play(self) -> bool:
+        """Whether it is the turn of a friend by link."""
+        frame = self.session.frame
+        return frame.phase != "over" and self.seats.who[frame.striker] == FRIEND
 
     @property
     def thinking(self) -> bool:
