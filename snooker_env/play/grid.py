@@ -23,14 +23,11 @@ Places: TypeAlias = Floats | list[list[float]]
 Flags: TypeAlias = Bools | list[bool]
 STEP = 2.0**-21
 """Of places [m]: two balls in contact, each moved by half a step, overlap by less than the micrometre that is allowed."""
-SPEED, TIP, TILT = (
-    512,
-    512,
-    1024,
-)  # steps of a stroke's speed a m/s, of its tip a ball's radius, of its elevation a rad
-TURN = 2**22  # directions in a turn: 0.00009 degrees, where a professional errs by 0.04
-LOW = (int(MIN_SPEED * SPEED) + 1, -int(FARTHEST * TIP), -int(FARTHEST * TIP), 0, 0)
-HIGH = (int(MAX_SPEED * SPEED), int(FARTHEST * TIP), int(FARTHEST * TIP), TURN - 1, int(STEEPEST * TILT))
+SPEED, TIP, TILT, TURN = 512, 512, 1024, 2**22
+"""Steps of a stroke: of its speed a m/s, of its tip a ball's radius, of its elevation a radian, of its direction a turn. They are
+0.00009 degrees, where a professional errs by 0.04."""
+LOW = (int(MIN_SPEED * SPEED) + 1, -int(FARTHEST * TIP), -int(FARTHEST * TIP), -TURN // 2, 0)
+HIGH = (int(MAX_SPEED * SPEED), int(FARTHEST * TIP), int(FARTHEST * TIP), TURN // 2 - 1, int(STEEPEST * TILT))
 """The ends of a stroke's numbers, as ``numbers_of`` lists them."""
 _NEAR = sorted(product(range(-4, 5), repeat=2), key=lambda shift: hypot(*shift))
 
@@ -40,14 +37,25 @@ def numbers_of(stroke: CueStroke) -> list[int]:
     speed, side, top, aim, elevation = stroke.numbers().tolist()
     steps = speed * SPEED, side * TIP, top * TIP, aim / (2.0 * pi) * TURN, elevation * TILT
     tip = int if hypot(round(steps[1]), round(steps[2])) > FARTHEST * TIP else round  # towards the middle
-    near = round(steps[0]), tip(steps[1]), tip(steps[2]), round(steps[3]) % TURN, round(steps[4])
+    near = (
+        round(steps[0]),
+        tip(steps[1]),
+        tip(steps[2]),
+        (round(steps[3]) + TURN // 2) % TURN - TURN // 2,
+        round(steps[4]),
+    )
     return [min(high, max(low, step)) for low, step, high in zip(LOW, near, HIGH, strict=True)]
 
 
 def stroke_of(numbers: list[int]) -> CueStroke:
     """The stroke that ``numbers_of`` turns into these numbers; ValueError if there is none."""
     speed, side, top, aim, elevation = numbers
-    struck = {"side": side / TIP, "top": top / TIP, "aim": aim * (2.0 * pi / TURN), "elevation": elevation / TILT}
+    struck = {
+        "side": side / TIP,
+        "top": top / TIP,
+        "aim": aim * (2.0 * pi / TURN),
+        "elevation": elevation / TILT,
+    }
     return CueStroke.of({"speed": speed / SPEED, **struck})
 
 
@@ -82,23 +90,25 @@ class Grid:
 
     def put(self, tables: Frames, ball: int) -> None:
         """Put a ball on the point of the grid nearest to it where it may lie; ValueError if there is none."""
-        positions = tables.positions[0]
-        here = steps_of(positions[ball])
+        positions, frame = tables.positions[0], tables.frame(0)
+        here, in_hand = steps_of(positions[ball]), ball == CUE and frame.in_hand
         for shift in _NEAR:
             positions[ball] = (here + shift) * STEP
-            if may_lie(tables, ball):
+            if _stays(tables, frame) if in_hand else is_sound(tables):
                 return
         raise refuse_what("place", NAMES[ball], "must have a point of the grid near it where it may lie")
 
 
-def may_lie(tables: Frames, ball: int) -> bool:
-    """Whether a ball may lie where it lies."""
-    positions, on_table, frame = tables.positions[0], tables.on_table[0], tables.frame(0)
-    if ball == CUE and frame.in_hand:
-        x, y = positions[CUE].tolist()
-        return place_cue(positions, on_table, x, y, anywhere=frame.anywhere) == (x, y)
+def _stays(tables: Frames, frame: Frame) -> bool:
+    """Whether a cue ball in hand may stand where it stands."""
+    positions, (x, y) = tables.positions[0], tables.positions[0, CUE].tolist()
+    return place_cue(positions, tables.on_table[0], x, y, anywhere=frame.anywhere) == (x, y)
+
+
+def is_sound(tables: Frames) -> bool:
+    """Whether all balls may lie where they lie."""
     try:
-        tables.rules.table.check(positions, tables.rules.physics.R, on_table=on_table)
+        tables.rules.table.check(tables.positions[0], tables.rules.physics.R, on_table=tables.on_table[0])
     except ValueError:
         return False
     return True

@@ -26,7 +26,7 @@ from ..simulation import SimulationError
 from ..tasks.frames import Frames
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
-from .grid import HIGH, LOW, STEP, Flags, Grid, Places, list_moved, may_lie, numbers_of, steps_of, stroke_of
+from .grid import HIGH, LOW, STEP, Flags, Grid, Places, is_sound, list_moved, numbers_of, steps_of, stroke_of
 from .session import DECLINED, Session
 
 T = TypeVar("T")
@@ -72,23 +72,16 @@ class Told(Grid):
 
     def settle(self, tables: Frames, before: Places) -> None:
         super().settle(tables, before)
-        if self._digits.within(0, CHECK - 1) != _sum(
-            tables.positions[0], tables.on_table[0], tables.frame(0)
-        ):
-            raise _differs()
+        here = _sum(tables.positions[0], tables.on_table[0], tables.frame(0))
+        if self._digits.within(0, CHECK - 1) != here or not is_sound(tables):
+            allowed = "must be as in the link: another processor computes otherwise, or the link was changed"
+            raise refuse_what("what it leaves", "other places or scores here", allowed)
 
     def rest(self, tables: Frames, ball: int) -> None:
         place = tables.positions[0, ball]
         for axis, here in enumerate(steps_of(place).tolist()):
             shift = (self._digits.within(0, NEAR - 1) - here + NEAR // 2) % NEAR - NEAR // 2
             place[axis] = (here + shift) * STEP
-        if not may_lie(tables, ball):
-            raise _differs()
-
-
-def _differs() -> ValueError:
-    allowed = "must be as in the link: another processor computes otherwise, or the link was changed"
-    return refuse_what("what it leaves", "other places or scores here", allowed)
 
 
 def write_link(session: Session) -> str:
@@ -254,6 +247,8 @@ def _read_link(session: Session, link: object) -> tuple[dict[str, Any], Digits]:
     try:
         first = strict_json(unpack.decompress(rest[:length], MOST_TABLE))
         first["state"]["stream"][0] = key
+        if not unpack.eof or unpack.unused_data:
+            raise ValueError
     except (zlib.error, ValueError, LookupError, TypeError):
         raise refuse_what("link", "no table at its beginning", "must begin with one") from None
     return first, Digits(int.from_bytes(rest[length:], "little"))

@@ -158,7 +158,7 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
         truth("practice", practice)
     if cue is not None:
         choice("cue", cue, CUES)
-    with service.acting(any_turn=True) as session:
+    with service.acting(any_turn=True, anew="players" in fields) as session:
         if "players" in fields:
             service.seats.sit(fields["players"])
         if noise is not None:

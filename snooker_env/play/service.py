@@ -162,7 +162,7 @@ class Service:
                 raise refuse("turn", whose, "must be a person's: an agent is to play")
             if not (any_turn or anew) and self.friend_to_play:
                 raise refuse("turn", "Friend", "must be yours: send the link of the game")
-            if any_turn and FRIEND in self.seats.who:
+            if any_turn and not anew and FRIEND in self.seats.who:
                 raise refuse("game", "by link", "must stay as it is played: begin another game first")
             with session.as_a_whole():
                 yield session
