@@ -35,28 +35,17 @@ _NEAR = sorted(product(range(-4, 5), repeat=2), key=lambda shift: hypot(*shift))
 def numbers_of(stroke: CueStroke) -> list[int]:
     """Speed, side, top, direction and elevation of a stroke as whole numbers, those nearest to them."""
     speed, side, top, aim, elevation = stroke.numbers().tolist()
-    steps = speed * SPEED, side * TIP, top * TIP, aim / (2.0 * pi) * TURN, elevation * TILT
-    tip = int if hypot(round(steps[1]), round(steps[2])) > FARTHEST * TIP else round  # towards the middle
-    near = (
-        round(steps[0]),
-        tip(steps[1]),
-        tip(steps[2]),
-        (round(steps[3]) + TURN // 2) % TURN - TURN // 2,
-        round(steps[4]),
-    )
+    tip = int if hypot(round(side * TIP), round(top * TIP)) > FARTHEST * TIP else round  # towards the middle
+    turns = (round(aim / (2.0 * pi) * TURN) + TURN // 2) % TURN - TURN // 2
+    near = round(speed * SPEED), tip(side * TIP), tip(top * TIP), turns, round(elevation * TILT)
     return [min(high, max(low, step)) for low, step, high in zip(LOW, near, HIGH, strict=True)]
 
 
 def stroke_of(numbers: list[int]) -> CueStroke:
     """The stroke that ``numbers_of`` turns into these numbers; ValueError if there is none."""
     speed, side, top, aim, elevation = numbers
-    struck = {
-        "side": side / TIP,
-        "top": top / TIP,
-        "aim": aim * (2.0 * pi / TURN),
-        "elevation": elevation / TILT,
-    }
-    return CueStroke.of({"speed": speed / SPEED, **struck})
+    aimed = {"aim": aim * (2.0 * pi / TURN), "elevation": elevation / TILT}
+    return CueStroke.of({"speed": speed / SPEED, "side": side / TIP, "top": top / TIP, **aimed})
 
 
 def steps_of(places: Places | Sequence[float]) -> Ints:
@@ -82,27 +71,19 @@ class Grid:
         still[[CUE, *moved]] = False
         tables.positions[0, still] = np.asarray(before)[still]
         for ball in moved:
-            self.rest(tables, ball)
-
-    def rest(self, tables: Frames, ball: int) -> None:
-        """Put a ball that a stroke has moved on the grid."""
-        self.put(tables, ball)
+            self.put(tables, ball)
 
     def put(self, tables: Frames, ball: int) -> None:
         """Put a ball on the point of the grid nearest to it where it may lie; ValueError if there is none."""
         positions, frame = tables.positions[0], tables.frame(0)
         here, in_hand = steps_of(positions[ball]), ball == CUE and frame.in_hand
         for shift in _NEAR:
-            positions[ball] = (here + shift) * STEP
-            if _stays(tables, frame) if in_hand else is_sound(tables):
+            positions[ball] = x, y = ((here + shift) * STEP).tolist()
+            if not in_hand and is_sound(tables):
+                return
+            if in_hand and place_cue(positions, tables.on_table[0], x, y, anywhere=frame.anywhere) == (x, y):
                 return
         raise refuse_what("place", NAMES[ball], "must have a point of the grid near it where it may lie")
-
-
-def _stays(tables: Frames, frame: Frame) -> bool:
-    """Whether a cue ball in hand may stand where it stands."""
-    positions, (x, y) = tables.positions[0], tables.positions[0, CUE].tolist()
-    return place_cue(positions, tables.on_table[0], x, y, anywhere=frame.anywhere) == (x, y)
 
 
 def is_sound(tables: Frames) -> bool:

@@ -15,7 +15,7 @@ from itertools import pairwise
 from typing import Any, TypeVar
 
 from .. import __version__
-from .._lib.check import refuse, refuse_what
+from .._lib.check import integer, refuse, refuse_what
 from .._lib.files import strict_json
 from ..advice import CueStroke
 from ..game.balls import CUE, NAMES
@@ -59,9 +59,8 @@ class Digits:
 
     def one_of(self, values: Sequence[T], value: T | None = None) -> T:
         """One of some values."""
-        return values[
-            self.within(0, len(values) - 1, 0 if value is None or self.reads else values.index(value))
-        ]
+        known = 0 if value is None or self.reads else values.index(value)
+        return values[self.within(0, len(values) - 1, known)]
 
 
 class Told(Grid):
@@ -77,7 +76,9 @@ class Told(Grid):
             allowed = "must be as in the link: another processor computes otherwise, or the link was changed"
             raise refuse_what("what it leaves", "other places or scores here", allowed)
 
-    def rest(self, tables: Frames, ball: int) -> None:
+    def put(self, tables: Frames, ball: int) -> None:
+        if ball == CUE and tables.frame(0).in_hand:  # it is placed before its stroke
+            return super().put(tables, ball)
         place = tables.positions[0, ball]
         for axis, here in enumerate(steps_of(place).tolist()):
             shift = (self._digits.within(0, NEAR - 1) - here + NEAR // 2) % NEAR - NEAR // 2
@@ -88,6 +89,7 @@ def write_link(session: Session) -> str:
     """The game from its last new table on, in letters of base64url."""
     acts, digits = session.acts[: session.at], Digits()
     acts = acts[max(k for k, act in enumerate(acts) if not act.asked) :]
+    integer("acts", len(acts), 1, MOST_ACTS)
     key, counter = acts[0].state["stream"]
     first = session.save() | {"state": acts[0].state | {"stream": [0, counter]}}
     digits.within(0, MOST_ACTS - 1, len(acts) - 1)
@@ -121,7 +123,7 @@ def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
                 asked = _code_act(digits, session.frame, first, {})
                 if agreed and _setting(asked, first, session.frame) != _setting({}, first, session.frame):
                     raise refuse(
-                        "noise", asked["noise"], "must stay as it was at the beginning, and so must the cue"
+                        "noise", asked["noise"], "must stay as it was at the beginning, as the cue must"
                     )
                 _do(session, asked)
             except (ValueError, SimulationError) as error:
@@ -150,12 +152,8 @@ def _code_act(digits: Digits, frame: Frame, first: dict[str, Any], asked: dict[s
     named = digits.one_of(["", *(["none"] if frame.free_ball else []), *colours], asked.get("nominate") or "")
     setting = _setting(asked, first, frame)
     if digits.within(0, 1, int(setting != _setting({}, first, frame))):
-        levels, cues = list(LEVELS), list(CUES)
-        setting = (
-            digits.one_of(levels, setting[0]),
-            digits.one_of((False, True), setting[1]),
-            digits.one_of(cues, setting[2]),
-        )
+        open_to = list(LEVELS), (False, True), CUES
+        setting = [digits.one_of(*one) for one in zip(open_to, setting, strict=True)]
     told = dict(zip(SETTING, setting, strict=True))
     return {**stroke.to_dict(), **told, "place": place, "nominate": named or None}
 
@@ -173,9 +171,8 @@ def _do(session: Session, asked: dict[str, Any]) -> None:
     elif "declare" in asked:
         getattr(session, asked["declare"])()
     else:
-        session.noise[session.frame.striker], session.practice, session.cue = (
-            asked[name] for name in SETTING
-        )
+        noise, session.practice, session.cue = (asked[name] for name in SETTING)
+        session.noise[session.frame.striker] = noise
         if (place := asked["place"]) is not None and list(session.place(*place)) != place:
             raise refuse("place", place, "must be free for the cue ball in hand")
         named = {None: AUTO, "none": DECLINED}
@@ -186,16 +183,9 @@ def _do(session: Session, asked: dict[str, Any]) -> None:
 def _sum(positions: Places, on_table: Flags, frame: Frame) -> int:
     """The check of the balls that lie on the table, and of what the referee says."""
     there = [i for i, on in enumerate(on_table) if on and (i != CUE or not frame.in_hand)]
-    said = (
-        frame.scores,
-        frame.striker,
-        frame.phase,
-        int(frame.ball_on),
-        frame.in_hand,
-        frame.free_ball,
-        frame.miss_called,
-    )
-    return zlib.crc32(repr(([(i, *steps_of(positions[i]).tolist()) for i in there], said)).encode()) % CHECK
+    places = [(i, *steps_of(positions[i]).tolist()) for i in there]
+    said = frame.scores, frame.striker, frame.phase, int(frame.ball_on), frame.free_ball, frame.miss_called
+    return zlib.crc32(repr((places, said)).encode()) % CHECK
 
 
 @cache
@@ -209,14 +199,8 @@ def _head_of(session: Session, key: int) -> bytes:
     """The form, the version, a sum of the constants that are played with, and the key of the random stream."""
     rules = session.options_with("none").rules
     table, constants = rules.table, rules.physics.pack().tolist()
-    told = repr(
-        (
-            constants,
-            [part.tolist() for part in (table.noses, table.jaws, table.falls)],
-            rules.fidelity,
-            LEVELS,
-        )
-    )
+    lines = [part.tolist() for part in (table.noses, table.jaws, table.falls)]
+    told = repr((constants, lines, rules.fidelity, LEVELS))
     version = bytes(int(part) for part in re.findall(r"\d+", __version__)[:3])
     return bytes([FORM]) + version + zlib.crc32(told.encode()).to_bytes(4, "big")[1:] + key.to_bytes(8, "big")
 
@@ -232,7 +216,7 @@ def _read_link(session: Session, link: object) -> tuple[dict[str, Any], Digits]:
     same = urlsafe_b64encode(raw).decode().rstrip("=") == link
     if len(whole) < HEAD + TABLE or not same or zlib.crc32(whole) != int.from_bytes(raw[-TAIL:], "big"):
         raise refuse_what(
-            "link", f"{len(link)} characters", "must be whole, as it was copied: this one is damaged"
+            "link", f"{len(link)} characters", "must be whole: this one is damaged, copy it again"
         )
     key = int.from_bytes(whole[7:HEAD], "big")
     own, length = _head_of(session, key), int.from_bytes(whole[HEAD : HEAD + TABLE], "big")
@@ -240,9 +224,7 @@ def _read_link(session: Session, link: object) -> tuple[dict[str, Any], Digits]:
         allowed = f"must be {__version__}, as here: both players need the same version of snooker_env"
         raise refuse("version", ".".join(map(str, whole[1:4])), allowed)
     if whole[:HEAD] != own:
-        raise refuse_what(
-            "physics", "other constants", "must be those of this server: were both begun with --flight?"
-        )
+        raise refuse_what("physics", "other constants", "must be as here: were both begun with --flight?")
     unpack = zlib.decompressobj(wbits=-15, zdict=_usual())
     try:
         first = strict_json(unpack.decompress(rest[:length], MOST_TABLE))

@@ -192,8 +192,8 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
         else:
             open_link(session, fields["link"], agreed=by_link)
         if by_link and seat is None:  # who opens it is not who played last
-            over = session.frame.phase == "over" and session.acts[-1].player is not None
-            seat = 1 - session.acts[-1].player if over else session.frame.striker
+            last, frame = session.acts[-1].player, session.frame
+            seat = frame.striker if frame.phase != "over" or last is None else 1 - last
         service.seats.share(seat)
 
 

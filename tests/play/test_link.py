@@ -162,7 +162,7 @@ def test_what_is_not_sound_is_refused_in_one_sentence_and_changes_nothing(monkey
     session.play(CueStroke(speed=1.0, aim=-2.5))
     link, other = write_link(session), standing(EASY)
     before, acts = other.save(), list(other.acts)
-    damaged = r"^link = \d+ characters: must be whole, as it was copied: this one is damaged"
+    damaged = r"^link = \d+ characters: must be whole: this one is damaged, copy it again"
     raw = urlsafe_b64decode(link + "=" * (-len(link) % 4))
     wrong = {
         None: "^link = a NoneType: must be a text of at most 30000",
@@ -174,7 +174,7 @@ def test_what_is_not_sound_is_refused_in_one_sentence_and_changes_nothing(monkey
         link + "AAAA": damaged,
         altered(link, b0=1): "^version = '1.0.0'",
         altered(link, b2=3): r"^version = '1.3.0': must be 1\.0\.0, as here",
-        altered(link, b5=1): "^physics = other constants: must be those of this server",
+        altered(link, b5=1): "^physics = other constants: must be as here",
         altered(link, b15=1): "^link = no table at its beginning",
     }
     wrong |= {urlsafe_b64encode(raw[:k]).decode().rstrip("="): damaged for k in range(len(raw))}
