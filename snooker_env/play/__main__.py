@@ -52,7 +52,6 @@ def service_of(args: argparse.Namespace) -> "Service":
     import numpy as np
 
     from ..players.resolver import players_of
-    from .game_record import open_game
     from .routes import position_of
     from .service import OPPONENT, PERSON, Seats, Service
     from .session import Session
@@ -68,7 +67,7 @@ def service_of(args: argparse.Namespace) -> "Service":
     if args.position is not None:
         read = _read(args.position)
         if read.get("format") == "snooker-game":
-            open_game(session, read)
+            session.load(read)
         else:
             session.set_up(position_of(read), scores=(0, 0), striker=0, free_ball=False)
     return Service(session, seats)

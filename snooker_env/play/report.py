@@ -16,8 +16,8 @@ from ..replays.referee_words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
-from .service import PERSON, Service
-from .session import Act
+from .service import LINKED, PERSON, Service
+from .session import Act, Session
 
 STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
 
@@ -116,14 +116,19 @@ def report(service: Service) -> dict[str, Any]:
         "choice_wins": service.choice_chances(session),
         "paused": host and service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
-        "undo": host and session.at > 1,
+        "undo": host and session.at > 1 and LINKED not in seats.who,
         "redo": host and session.at < len(session.acts),
+        "by_link": {"seat": seats.who.index(PERSON), "visit": _last_visit(session)}
+        if LINKED in seats.who
+        else None,
     }
     if service.agent_to_play():
         waits = (
             "waits: press Continue." if state["paused"] else "waits." if service.paused else "is thinking."
         )
         state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
+    if service.friend_to_play:
+        state["words"] = "Your friend is to play: send the link."
     fair = act.played is not None and not (act.played.fouls or act.played.points)
     if fair and state["snookered"]:
         state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
@@ -131,6 +136,12 @@ def report(service: Service) -> dict[str, Any]:
         state["words"] = " ".join([state["words"], *_say_luck(service)])
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
     return state | {"text": say_table(state, lines, said)}
+
+
+def _last_visit(session: Session) -> int:
+    """How many strokes were played before the last visit."""
+    players = [session.acts[k].player for k in session.strokes]
+    return max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
 
 
 def _say_chance(state: dict[str, Any]) -> list[str]:

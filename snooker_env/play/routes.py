@@ -20,7 +20,7 @@ from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
 from . import questions
-from .game_record import open_game, record_game
+from .link import open_link, write_link
 from .report import report, scene, stroke_report, table_after
 from .reviewing import Reviewing
 from .service import Service, StaleError
@@ -124,17 +124,31 @@ def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bo
 
 
 def _new(service: Service, fields: dict[str, Any]) -> None:
-    kinds = {"layout": str, "seed": int, "breaker": int, "game": str, "best_of": int, "next": bool}
+    kinds = {
+        "layout": str,
+        "seed": int,
+        "breaker": int,
+        "game": str,
+        "best_of": int,
+        "next": bool,
+        "by_link": bool,
+    }
     for name, kind in kinds.items():
         if name in fields and type(fields[name]) is not kind:
             raise refuse(name, fields[name], f"must be of type {kind.__name__}")
-    with service.acting(any_turn=True) as session:
+    by_link = fields.pop("by_link", False)
+    if by_link and not (fields.get("best_of", 1) == 1 and "next" not in fields):
+        raise refuse("by_link", True, "must be left out in a match: a link holds one frame")
+    with service.acting(anew=True) as session:
         if fields.pop("next", False):
             for name in set(fields) - {"seed"}:
                 raise refuse(name, fields[name], "must be left out with next: the match goes on as it is")
             session.next_frame(**fields)
         else:
             session.new(**fields)
+        if by_link:
+            session.noise[1], session.practice = session.noise[0], False
+        service.seats.share(0 if by_link else None)
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
@@ -148,7 +162,7 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
         truth("practice", practice)
     if cue is not None:
         choice("cue", cue, CUES)
-    with service.acting(any_turn=True) as session:
+    with service.acting(any_turn=True, anew="players" in fields) as session:
         if "players" in fields:
             service.seats.sit(fields["players"])
             service.vacant = False
@@ -164,14 +178,28 @@ def _concede(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    whole = truth("acts", fields.get("acts", False))
     with service.reading() as session:
-        return record_game(session) if whole else session.save()
+        return session.save()
+
+
+def _link(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    with service.reading() as session:
+        return {"link": write_link(session)}
 
 
 def _load(service: Service, fields: dict[str, Any]) -> None:
-    with service.acting(pause=True, any_turn=True) as session:
-        open_game(session, fields.get("saved"))
+    seat, by_link = fields.get("seat"), "seat" in fields
+    if seat is not None:
+        integer("seat", seat, 0, 1)
+    with service.acting(pause=True, anew=True) as session:
+        if "link" not in fields:
+            session.load(fields.get("saved"))
+        else:
+            open_link(session, fields["link"], agreed=by_link)
+        if by_link and seat is None:  # who opens it is not who played last
+            last, frame = session.acts[-1].player, session.frame
+            seat = frame.striker if frame.phase != "over" or last is None else 1 - last
+        service.seats.share(seat)
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -278,6 +306,7 @@ ERRORS = ("noise", "samples", "seed", "revision")
 GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
+    "link": Route(_link),
     "strokes": Route(_strokes, ("from",)),
     "reviewed": Route(_reviewed, ("stroke",)),
     "replay": Route(partial(_replay, form=Replay.to_dict), ("one", "other")),
@@ -292,13 +321,13 @@ POST: dict[str, Route] = {
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
     "undo": Route(partial(_move, move=Session.undo)),
     "redo": Route(partial(_move, move=Session.redo)),
-    "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next")),
+    "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next", "by_link")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede, friend=True),
     "sit": Route(lambda service, fields: service.sit_down(), friend=True),
-    "save": Route(_save, ("acts",)),
-    "load": Route(_load, ("saved",)),
+    "save": Route(_save),
+    "load": Route(_load, ("saved", "link", "seat")),
     "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
     "again": Route(_again, ("stroke",)),
 }

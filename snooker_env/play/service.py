@@ -31,6 +31,7 @@ from .session import DECLINED, Act, Session
 
 PERSON = "person"  # who sits at the page of the host
 FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
+LINKED = "friend_by_link"  # who plays elsewhere, from the link of the game
 OPPONENT = "tactician_500"  # who plays against a person unless someone is named
 OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
 
@@ -38,7 +39,7 @@ OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents
 class Seats:
     """The two seats, and the players that may take them: ``OFFERED``, ``agents`` by name, and ``friends``."""
 
-    who: list[str]  # ``PERSON``, ``FRIEND`` or the name of an agent, for each seat
+    who: list[str]  # ``PERSON``, ``FRIEND``, ``LINKED`` or the name of an agent, for each seat
 
     def __init__(self, agents: Mapping[str, Player], *, friends: bool = False):
         self.named: list[str] = list(agents)
@@ -46,7 +47,7 @@ class Seats:
         for name in OFFERED:
             self.players.setdefault(name, player(name))
         self.names: list[str] = [PERSON, *[FRIEND] * friends, *self.players]  # who may sit down
-        self.who = [PERSON, PERSON]
+        self.who, self._before = [PERSON, PERSON], [PERSON, PERSON]
 
     def advisers(self, practice: bool) -> list[str]:
         """The agents that may be asked for advice: alone at the table all, in a frame those that know frames."""
@@ -70,7 +71,13 @@ class Seats:
 
     def is_agent(self, seat: int) -> bool:
         """Whether an agent has this seat."""
-        return self.who[seat] not in (PERSON, FRIEND)
+        return self.who[seat] not in (PERSON, FRIEND, LINKED)
+
+    def share(self, seat: int | None) -> None:
+        """The person plays this seat, and a friend by link the other; None: those who sat there before come back."""
+        if LINKED not in self.who:
+            self._before = self.who
+        self.who = self._before if seat is None else [PERSON if k == seat else LINKED for k in (0, 1)]
 
     def seen_by(self, me: str) -> list[str]:
         """Who sits on both seats, as one of the persons sees it: itself as ``PERSON``, another as ``FRIEND``."""
@@ -166,6 +173,8 @@ class Service:
         striker = self.session.frame.striker
         if self.agent_to_play():
             raise refuse("turn", self.labels[striker], "must be a person's: an agent is to play")
+        if self.friend_to_play:
+            raise refuse("turn", "Friend", "must be yours: send the link of the game")
         if self.seats.who[striker] != self.me and self.session.frame.phase != "over":
             raise refuse("turn", self.labels[striker], "must be yours: the other player is to play")
 
@@ -179,13 +188,15 @@ class Service:
 
     @contextmanager
     def acting(
-        self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False
+        self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False, anew: bool = False
     ) -> Iterator[Session]:
         """The game, for changing it: after an exception it is as it was before. ``pause``: agents then wait; ``any_turn``:
-        also in an agent's turn."""
+        also in an agent's turn; ``anew``: another game begins."""
         with self.reading(revision) as session:
-            if not any_turn:
+            if not (any_turn or anew):
                 self.check_turn()
+            elif not anew and LINKED in self.seats.who:
+                raise refuse("game", "by link", "must stay as it is played: begin another game first")
             with session.as_a_whole():
                 yield session
             self.paused, self.trouble = pause, ""
@@ -248,6 +259,12 @@ class Service:
         """Whether it is an agent's turn."""
         frame = self.session.frame
         return frame.phase != "over" and self.seats.is_agent(frame.striker)
+
+    @property
+    def friend_to_play(self) -> bool:
+        """Whether it is the turn of a friend by link."""
+        frame = self.session.frame
+        return frame.phase != "over" and self.seats.who[frame.striker] == LINKED
 
     @property
     def thinking(self) -> bool:

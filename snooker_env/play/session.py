@@ -34,6 +34,7 @@ from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput, Tables
 from ..tasks.threads import Threads
+from .grid import Grid, numbers_of, stroke_of
 
 DECLINED = 0  # the nomination of a player who does not use a free ball
 MOST_FRAMES = 99  # the longest match
@@ -64,6 +65,7 @@ class Session:
     acts: list[Act]
     at: int  # number of acts that count; the following ones were undone
     begun: int  # games begun or loaded so far
+    grid: Grid  # on which all is played
 
     def __init__(
         self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
@@ -74,6 +76,7 @@ class Session:
         self._options = box.but(miss="clear_path", layout=layout, cue=cue)
         self.noise, self.practice = ["none", "none"], False
         self.best_of, self.won, self.begun = 1, [0, 0], 0
+        self.grid = Grid()
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
@@ -221,6 +224,9 @@ class Session:
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
         """Play the stroke; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
+        stroke = stroke_of(numbers_of(stroke))
+        if self.frame.in_hand and self.frame.phase == "stroke":
+            self.place(*self.tables.positions[0, CUE].tolist())
         frame, tables, before = self.frame, self.tables, self.state
         if frame.phase != "stroke":
             choose = 'must be "stroke": choose first (play, play_again, replace or anywhere)'
@@ -244,6 +250,7 @@ class Session:
         played = replace(self._played, before=frame, meant=meant)
         if self.practice:
             self._hand_back()
+        self.grid.settle(tables, before["positions"])
         words = NAMES[nominated] if nominated > CUE else ""
         return self._did(Act("stroke", self.state, striker, played, words, room, asked, luck))
 
@@ -305,6 +312,7 @@ class Session:
             raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
         places = self.tables.positions[0]
         places[CUE] = place_cue(places, self.tables.on_table[0], x, y, anywhere=frame.anywhere)
+        self.grid.put(self.tables, CUE)
         self.acts[self.at - 1] = replace(self.acts[self.at - 1], state=self.state)
         px, py = places[CUE].tolist()
         return px, py

@@ -11,6 +11,7 @@ import { Advisor } from "./play_ask.js";
 import { Door } from "./play_door.js";
 import { Drills } from "./play_drill.js";
 import { firstAim } from "./play_first.js";
+import { Friend } from "./play_friend.js";
 import { ask, by, confirmed, DOWN, fill, isPerson, keep, kept, Latest, make } from "./play_parts.js";
 import { Review } from "./play_review.js";
 import { Room } from "./play_room.js";
@@ -71,6 +72,7 @@ class Page {
     this.stats = new Stats(this);
     this.drills = new Drills(this);
     this.share = new Share(this);
+    this.friend = new Friend(this);
     PHONE.onchange = () => this.fold(PHONE.matches);
     this.compact();
     new ResizeObserver(() => this.fit()).observe(by("stage"));
@@ -95,7 +97,7 @@ class Page {
     by("concede").onclick = async () => { if (await confirmed("Concede the frame?", "Concede")) this.try(() => ask("concede", {})); };
     by("new").onclick = () => this.sure("Leave this frame and begin a new game? This cannot be undone.", "New game", () => this.begin());
     by("again").onclick = () => this.again();
-    by("next").onclick = () => this.once(() => this.go("new", { next: true, seed: seed() }));
+    by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { next: true, seed: seed() })));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html", undefined, `?${new URLSearchParams({ one: this.state.labels[0], other: this.state.labels[1] })}`), "text/html"); });
@@ -208,7 +210,7 @@ class Page {
     if (fresh) this.review.end();
     if (fresh && !first) {
       this.stats.times.clear();
-      this.played = 0;
+      this.played = state.by_link?.visit ?? 0;
       this.replay = state.strokes > 0;
     }
     by("last").className = "";
@@ -318,6 +320,7 @@ class Page {
       this.lay = moved;
       this.phase = state.phase;
       this.settled = state.revision;
+      this.friend.settled().catch(error => this.trouble(error));
       this.room.changed();
       if (this.zoomed) this.fit();
     }
@@ -563,7 +566,7 @@ class Page {
     by("aim-out").textContent = this.aim.words;
     by("undo").disabled = !state.undo || this.drills.now;
     by("redo").disabled = !state.redo || this.drills.now;
-    by("set").disabled = this.drills.now;
+    by("set").disabled = this.drills.now || state.by_link;
     by("again").disabled = by("slow").disabled = !state.strokes || busy;
     by("share-stroke").disabled = by("share-replay").disabled = by("replay").disabled = by("stats-open").disabled = !state.strokes;
     by("review-open").disabled = state.practice || !state.strokes && !this.review.kept;
@@ -608,7 +611,7 @@ class Page {
     by("over-last").textContent = this.said(last);
   }
 
-  get next() { return this.state.best_of > 1 && this.state.match_over ? "New match" : "Next frame"; }
+  get next() { return this.state.by_link ? "New game by link" : this.state.best_of > 1 && this.state.match_over ? "New match" : "Next frame"; }
 
   /** An error message beside a place on the table. */
   bubble(text, x, y) {

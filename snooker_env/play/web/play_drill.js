@@ -48,7 +48,7 @@ export class Drills {
 
   async begin(key) {
     const { app } = this;
-    this.before ??= app.state.practice ? null : { players: app.state.players, noise: app.state.noise, practice: false };
+    this.before ??= app.state.practice || app.state.by_link ? null : { players: app.state.players, noise: app.state.noise, practice: false };
     Object.assign(this, { now: key, tries: 0, score: 0, over: false, dealing: true });  // no stroke on the table before
     by("drills").open = false;
     this.show();

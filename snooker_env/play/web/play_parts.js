@@ -25,7 +25,7 @@ export function fill(select, values, chosen = select.value, words = value => val
 }
 
 /** Is this who sits on a seat: a person, at this page or another? */
-export const isPerson = who => who === "person" || who === "friend";
+export const isPerson = who => ["person", "friend", "friend_by_link"].includes(who);
 
 /** What this browser keeps of the player, by name. Without storage it lasts as long as the page. */
 export const kept = {
