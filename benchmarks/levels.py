@@ -16,7 +16,7 @@ from snooker_env.advice.outcomes import wilson
 from snooker_env.play.levels import LEVELS
 from snooker_env.players import FRAMES, ask_player, decision_seeds
 from snooker_env.players.opponents import PlayerOpponent
-from snooker_env.tasks.frames import Seat
+from snooker_env.tasks.frames import Frames, Seat
 
 from ._common.command import Command, at_least, run, save_json
 
@@ -42,6 +42,7 @@ def count_wins(one, other, frames, budget, seed):
             len(seeds), rules[0], opponent=player_of(other, budget), autoreset_mode="Disabled"
         )
         seats = Seat.of(rules[0].rules), Seat.of(rules[1].rules, PlayerOpponent(opponent, other.name))
+        assert isinstance(tables.tables, Frames)
         tables.tables.sit(seats)
         _, info = tables.reset(seed=seeds.tolist(), options={"breaker": seeds % 2})
         winners = info["winner"].copy()
@@ -73,7 +74,10 @@ def fit_elo(wins, frames):
 
 def main():
     parser = Command("levels", __doc__, seed=0)
-    for name, least, what in (("frames", 2, "frames of each pair"), ("budget", 30, "most shots for a stroke")):
+    for name, least, what in (
+        ("frames", 2, "frames of each pair"),
+        ("budget", 30, "most shots for a stroke"),
+    ):
         parser.add_argument(f"--{name}", type=at_least(least), default=100, metavar="N", help=f"{what} [100]")
     args = parser.options()
     n, wins = len(LEVELS), np.zeros((len(LEVELS), len(LEVELS)))

@@ -16,7 +16,9 @@ class Level(NamedTuple):
 
 
 LEVELS = (
-    Level("Pip", "ghost_ball", "beginner", "quick: strikes the plainest pot at once, and often misses it", 1000),
+    Level(
+        "Pip", "ghost_ball", "beginner", "quick: strikes the plainest pot at once, and often misses it", 1000
+    ),
     Level("Walter", "tactician_500", "club", "safe: leaves you little, and waits for your mistakes", 1400),
     Level("Rosa", "search_2000", "amateur", "bold: goes for every pot, and for the break", 1600),
     Level("Mia", "tactician_60", "professional", "quick: looks at few strokes, and hits them well", 1900),

@@ -15,6 +15,7 @@ from ..replays.encode import encode_stroke
 from ..replays.referee_words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
+from .levels import LEVELS
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import Service
 from .session import Act
@@ -37,6 +38,8 @@ def scene(service: Service) -> dict[str, Any]:
         "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
         "pockets": [{"name": name, "x": x, "y": y} for name, (x, y) in pockets],
         "players": service.seats.names,
+        "levels": [level._asdict() for level in LEVELS],
+        "opponents": service.seats.opponents,
         "noise": ERRORS,
         "cues": list(CUES),
         "games": list(RULES),
@@ -100,7 +103,18 @@ def report(service: Service) -> dict[str, Any]:
     state = table_after(act, labels, service.win_chances([act])[0], before)
     table, noise = session.tables.rules.table, session.noise[frame.striker]
     turn, lines = report_turn(frame, session.position, table, noise)
-    of_session = ("begun", "practice", "game", "best_of", "frames", "match_over", "cue")
+    of_session = (
+        "begun",
+        "practice",
+        "game",
+        "best_of",
+        "frames",
+        "match_over",
+        "cue",
+        "hints",
+        "undone",
+        "highest",
+    )
     state |= turn | {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
     state |= {
@@ -118,7 +132,7 @@ def report(service: Service) -> dict[str, Any]:
         waits = "waits: press Continue." if service.paused else "is thinking."
         state["words"] = service.trouble or f"{seats.label(frame.striker)} {waits}"
     if state["phase"] == "over":
-        state["words"] = " ".join([state["words"], *_say_luck(service)])
+        state["words"] = " ".join([state["words"], *_say_luck(service), service.unkept]).strip()
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
     return state | {"text": say_table(state, lines, said)}
 

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from .._lib.check import choice, integer, number, refuse, truth
-from ..advice import CueStroke
+from ..advice import CueStroke, coach
 from ..game.fouls import AUTO
 from ..game.frame import MOST_BREAK
 from ..planning.position import Position
@@ -19,8 +19,9 @@ from ..tasks.options import CUES
 from ..tasks.states import MOST
 from . import questions
 from .game_record import open_game, record_game
+from .person import Person
 from .report import report, scene, stroke_report
-from .service import Service, StaleError
+from .service import PERSON, Service, StaleError
 from .session import Session
 
 Handler = Callable[[Service, dict[str, Any]], Any]
@@ -114,9 +115,10 @@ def position_of(fields: object) -> Position:
 def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
     """Undo or redo until a person has a stroke or decision to make."""
     with service.acting(pause=True, any_turn=True) as session:
-        people = not all(map(service.seats.is_agent, (0, 1)))
+        people, before = not all(map(service.seats.is_agent, (0, 1))), session.at
         while move(session) and people and service.agent_to_play():
             pass
+        session.undone += session.at < before
 
 
 def _new(service: Service, fields: dict[str, Any]) -> None:
@@ -147,6 +149,7 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(any_turn=True) as session:
         if "players" in fields:
             service.seats.sit(fields["players"])
+            session.noise[:] = [service.seats.usual_noise(k, own) for k, own in enumerate(session.noise)]
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
@@ -171,6 +174,10 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     n = integer("n", fields.get("n", 5), 1, questions.MOST_SUGGESTIONS)
+    with service.reading(_revision(fields)) as session:
+        seat = session.frame.striker
+        session.hints[seat] += not session.practice and service.seats.who[seat] == PERSON
+        hints = {"hints": list(session.hints)}
     with service.asking(_revision(fields)) as session:
         first = service.seats.advisers(session.practice)[0]
         agent = choice("agent", fields.get("agent", first), service.seats.players)
@@ -180,7 +187,7 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         decided = questions.decision(session, service, agent) if foul else {"choice": None, "choices": []}
         if foul:
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
-        return decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
+        return decided | hints | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
 
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -207,6 +214,34 @@ def _errors(fields: dict[str, Any], samples: int, noise: str) -> dict[str, Any]:
     return {"noise": noise, "samples": samples, "seed": integer("seed", fields.get("seed", 0), 0, MOST)}
 
 
+def _own(service: Service) -> Person:
+    """The person's file."""
+    if service.person is None:
+        raise refuse("person", None, "must be named: this server keeps no person's file")
+    return service.person
+
+
+def _person(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    """What the file holds, and where it lies; first a name is given, or the file deleted."""
+    with service.reading():
+        person = _own(service)
+        if "name" in fields:
+            person.change(lambda kept: kept.update(name=fields["name"]))
+        if truth("delete", fields.get("delete", False)):
+            person.read()
+            person.path.unlink(missing_ok=True)
+        return person.read() | {"path": str(person.path)}
+
+
+def _coach(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    strokes = _own(service).strokes()
+    if not strokes:
+        raise refuse("strokes", 0, "must be at least one: play a frame against one of the five first")
+    with service.asking():
+        found = coach(strokes)
+    return found.to_dict() | {"text": str(found)}
+
+
 def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], Any]) -> Any:
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
@@ -223,11 +258,14 @@ GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
+    "person": Route(_person),
     "replay": Route(partial(_replay, form=Replay.to_dict)),
     "replay.html": Route(partial(_replay, form=Replay.html)),
 }
 POST: dict[str, Route] = {
     "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision")),
+    "person": Route(_person, ("name", "delete")),
+    "coach": Route(_coach),
     "place": Route(_place, ("place",)),
     "advise": Route(_advise, ("agent", "n", *ERRORS)),
     "destinations": Route(_destinations, (*STROKE, *ERRORS)),
