@@ -77,7 +77,7 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
         balls = " and ".join(ball_name(ball) for ball in pots_of(played.shot))
         words = f"{balls[:1].upper()}{balls[1:]} potted, {played.points}"
         if played.break_before:
-            words += f", break of {played.break_before + played.points}"
+            words += f", break {played.break_before + played.points}"
     else:
         words = "No ball potted"
     if (winner := played.winner) is not None and len(players) > winner:

@@ -11,6 +11,8 @@ import { Advisor } from "./play_ask.js";
 import { Drills } from "./play_drill.js";
 import { firstAim } from "./play_first.js";
 import { ask, by, confirmed, DOWN, fill, keep, kept, Latest, make } from "./play_parts.js";
+import { breakWords, ending, helped, opponents } from "./play_level.js";
+import { Person } from "./play_person.js";
 import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 import { Share } from "./play_share.js";
@@ -18,12 +20,7 @@ import { Sound } from "./play_sound.js";
 import { Stats } from "./play_stats.js";
 import { Tour } from "./play_tour.js";
 
-/** The strengths of an opponent: who plays, with whose errors. */
-const LEVELS = {
-  beginner: ["ghost_ball", "beginner"], "club player": ["tactician_500", "club"], amateur: ["tactician_500", "amateur"],
-  professional: ["tactician_500", "professional"], perfect: ["tactician_500", "none"], "nobody: two play here": ["person", "none"],
-};
-const OWN = "own";
+const OWN = "own", FINE = 30, POWER = 2.5;
 const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
 /** Slow motion, zoom, time of a call [ms]. */
 const SLOW = 0.2, ZOOM = 2, CALLED = 1600;
@@ -65,6 +62,7 @@ class Page {
     this.stats = new Stats(this);
     this.drills = new Drills(this);
     this.share = new Share(this);
+    this.person = new Person(this);
     PHONE.onchange = () => this.fold(PHONE.matches);
     this.compact();
     new ResizeObserver(() => this.fit()).observe(by("stage"));
@@ -99,6 +97,7 @@ class Page {
     fill(by("rules"), this.games);
     by("rules").onchange = () => fill(by("layout"), by("rules").value === "six_red" ? ["break_off", "colours"] : LAYOUTS);
     by("rules").onchange();
+    this.menu = opponents(this.levels, this.opponents, this.noise);
     fill(by("best-of"), BEST_OF.map(String), "1", n => (n === "1" ? "one frame" : `best of ${n}`));
     by("level").onchange = () => this.level();
     for (const k of [0, 1]) {
@@ -189,17 +188,16 @@ class Page {
   /** Use a state, if it is newer than the current one. */
   take(state) {
     if (this.state && state.revision <= this.state.revision) return;
-    const first = this.state === null, fresh = state.begun !== this.state?.begun, level = state.players[0] === "person" && Object.entries(LEVELS).find(([, [who, noise]]) => who === state.players[1] && noise === state.noise[1])?.[0];
+    const first = this.state === null, fresh = state.begun !== this.state?.begun, [me, who] = state.players, errors = this.levels.find(({ name }) => name === who)?.noise;
     this.state = state;
-    this.strength = level || OWN;
-    this.alias = [state.labels[1], state.labels[1]];
-    if (level && state.players[1] !== "person") this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
+    this.strength = me === "person" && who in this.menu && (errors ?? state.noise[1]) === state.noise[1] ? who : OWN;
     if (first) { this.put(state); this.drills.resume(); }
     if (fresh || state.strokes < this.played) { this.still(); this.stats.key = null; }
     if (fresh && !first) {
       this.stats.times.clear();
       this.played = 0;
       this.replay = state.strokes > 0;
+      if (!this.drills.now) this.aim.set({ speed: POWER });
     }
     by("last").className = "";
     this.seated();
@@ -334,7 +332,7 @@ class Page {
   call({ points, fouls, penalty, words, break: run }) {
     if (!points && !fouls.length) return;
     const call = by("call");
-    call.textContent = fouls.length ? words.split(/[.;]/)[0] : run > points ? `+${points}, break ${run}` : `+${points}`;
+    call.textContent = fouls.length ? words.split(/[.;]/)[0] : run > points ? `break ${run}` : `+${points}`;
     call.className = fouls.length ? "foul" : "";
     call.hidden = false;
     clearTimeout(this.called);
@@ -404,6 +402,7 @@ class Page {
       const { state } = this, body = { revision: state.revision, speed, side, top, aim, elevation };
       if (state.in_hand) body.place = state.positions.cue;
       if (by("nominate").value && state.nominations.includes(by("nominate").value)) body.nominate = by("nominate").value;
+      await this.drills.weigh(body);
       await this.send(body);
     });
   }
@@ -434,15 +433,18 @@ class Page {
     }
   }
 
-  /** Seat an opponent of the chosen strength; it errs as its level says, the person as before. */
+  /** Seat the chosen opponent; one of the five errs as its level says, the person as before. */
   level() {
-    const [who, noise] = LEVELS[by("level").value] ?? [];
-    if (who) this.go("players", { players: ["person", who], noise: [this.state.noise[0], noise], practice: false });
+    const who = by("level").value;
+    if (who in this.menu) this.go("players", { players: ["person", who], practice: false });
   }
 
-  /** Send the players; a new agent gets a professional's errors, a person none. */
+  /** Send the players; a new agent gets its level's errors or a professional's, a person an amateur's. */
   seats(changed = -1) {
-    if (changed >= 0) by(`noise-${changed}`).value = by(`who-${changed}`).value === "person" ? "none" : "professional";
+    if (changed >= 0) {
+      const who = by(`who-${changed}`).value;
+      by(`noise-${changed}`).value = this.levels.find(({ name }) => name === who)?.noise ?? (who === "person" ? "amateur" : "professional");
+    }
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
     this.held = false;
     this.try(() => ask("players", { players, noise, practice: by("practice").checked, cue: by("cue").value }));
@@ -506,7 +508,8 @@ class Page {
       by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
       by(`side-${k}`).querySelector(".frames").textContent = state.best_of > 1 ? `(${state.frames[k]})` : "";
     }
-    fill(by("level"), [...Object.keys(LEVELS), OWN], this.strength);
+    fill(by("level"), [...Object.keys(this.menu), OWN], this.strength, name => this.menu[name]?.short ?? name);
+    by("level-about").textContent = this.menu[this.strength]?.about ?? "";
     const own = by("level").lastChild;
     own.hidden = this.strength !== OWN;
     own.textContent = `${state.labels[1]}, mistakes: ${this.noise[state.noise[1]]}`;
@@ -517,15 +520,12 @@ class Page {
     this.show();
   }
 
-  /** The server's words, with an opponent called by its strength. */
-  said(words) { return words.replaceAll(...this.alias); }
-
   show() {
     const { state, table } = this, busy = this.behind, mine = this.aiming, setup = this.setup.open;
     for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["act", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
     const who = state.labels[table.striker], on = table.ball_on?.replace("_", " ");
-    by("asked").textContent = setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : this.said(table.words);
-    if (by("last").className !== "trouble") by("last").textContent = this.said(table.last);
+    by("asked").textContent = setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : table.words;
+    if (by("last").className !== "trouble") by("last").textContent = this.drills.said ?? table.last;
     by("asked").title = by("asked").textContent;
     by("last").title = by("last").textContent;
     const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
@@ -580,20 +580,21 @@ class Page {
     }
     put("n-reds", "reds ", make("b", { textContent: table.reds }));
     put("n-left", "left ", make("b", { textContent: table.available }));
+    put("n-aid", helped(this.state).join(", "));
     const left = Math.max(0, Math.ceil(table.time_left ?? 0));
     put("n-time", ...table.time_left === null ? [] : ["time ", make("b", { textContent: `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}` })]);
   }
 
   /** The end of the frame, with the score from the side of the only person, else of the first seat. */
   over(rest) {
-    const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0;
-    by("over").hidden = !rest || phase !== "over" || this.seen === this.table;
+    const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0, best = this.state.highest[winner];
+    by("over").hidden = !rest || this.drills.now || phase !== "over" || this.seen === this.table;
     if (phase !== "over") return;
     const { match_over: ended, best_of: length, frames } = this.state;
-    by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}`;
+    by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}${best < FINE ? "" : ` with ${breakWords(best)}`}`;
     by("next").textContent = this.next;
     by("over-score").textContent = `${labels[me]} ${scores[me]} : ${scores[1 - me]} ${labels[1 - me]}`;
-    by("over-last").textContent = this.said(last);
+    by("over-last").textContent = ending(this.state, last, me);
   }
 
   get next() { return this.state.best_of > 1 && this.state.match_over ? "New match" : "Next frame"; }

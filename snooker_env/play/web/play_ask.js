@@ -119,6 +119,7 @@ export class Advisor {
     try {
       const found = await ask("advise", { agent: by("agent").value, n: 5, revision });
       this.noise = found.noise;
+      app.state.hints = found.hints ?? app.state.hints;
       if (found.suggestions && revision === app.state.revision) this.show(found);
     } catch (error) {
       by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
