@@ -1,13 +1,14 @@
-"""How strong are the five opponents of the page? Every one against every other, each with its own errors.
+"""How strong are the five opponents of the page? Each against the next, with its own errors.
 
     python -m benchmarks.levels [--frames 100] [--budget 100] [--seed 0] [--json FILE] [--out FOLDER]
 
 Frames of snooker from the break with a real cue; half are opened by each. ``--budget`` cuts the simulated shots of a
-stroke down to so many. Strengths are those of Bradley and Terry (``agents.tournament``), the first opponent's 1000; each
-pair counts one drawn frame more. Intervals of the wins are Wilson's, 95 %.
+stroke down to so many. The first has an Elo of 1000, each further one that of the one before and 400 log10 of wins over
+losses, one drawn frame added. Intervals of the wins are Wilson's, 95 %.
 """
 
-from itertools import combinations
+from itertools import pairwise
+from math import log10
 
 import numpy as np
 
@@ -21,7 +22,6 @@ from snooker_env.tasks.frames import Frames, Seat
 from ._common.command import Command, at_least, run, save_json
 
 AT_ONCE, LONGEST = 50, 2000
-ELO = 400.0 / np.log(10.0)
 
 
 def player_of(level, budget):
@@ -61,17 +61,6 @@ def count_wins(one, other, frames, budget, seed):
     return won
 
 
-def fit_elo(wins, frames):
-    """Elo of n players from ``wins`` (n, n), the first one's 1000: the maximum of the likelihood, by its fixed point."""
-    wins = wins + 0.5 * (1 - np.eye(len(wins)))
-    strength = np.ones(len(wins))
-    for _ in range(10_000):
-        pairs = (wins + wins.T) / (strength[:, None] + strength)
-        strength = wins.sum(axis=1) / pairs.sum(axis=1)
-        strength /= strength[0]
-    return 1000.0 + ELO * np.log(strength)
-
-
 def main():
     parser = Command("levels", __doc__, seed=0)
     for name, least, what in (
@@ -80,18 +69,15 @@ def main():
     ):
         parser.add_argument(f"--{name}", type=at_least(least), default=100, metavar="N", help=f"{what} [100]")
     args = parser.options()
-    n, wins = len(LEVELS), np.zeros((len(LEVELS), len(LEVELS)))
-    for a, b in combinations(range(n), 2):
-        won = count_wins(LEVELS[a], LEVELS[b], args.frames, args.budget, args.seed)
-        wins[a, b], wins[b, a] = won, args.frames - won
+    elo, wins = 1000.0, []
+    for weaker, stronger in pairwise(LEVELS):
+        won = args.frames - count_wins(weaker, stronger, args.frames, args.budget, args.seed)
+        elo += 400.0 * log10((won + 0.5) / (args.frames - won + 0.5))
         low, high = (100 * end for end in wilson(won, args.frames))
-        share = 100 * won / args.frames
-        print(f"{LEVELS[a].name} beats {LEVELS[b].name} in {share:.0f} % [{low:.0f}, {high:.0f}]", flush=True)
-    elo = fit_elo(wins, args.frames).round().astype(int).tolist()
-    for level, value in zip(LEVELS, elo, strict=True):
-        print(f"{level.name}: {value}")
-    names = [level.name for level in LEVELS]
-    save_json(args.json, {"names": names, "wins": wins.astype(int).tolist(), "elo": elo})
+        share = f"{100 * won / args.frames:.0f} % [{low:.0f}, {high:.0f}]"
+        print(f"{stronger.name} beats {weaker.name} in {share}: {elo:.0f}", flush=True)
+        wins.append({"stronger": stronger.name, "weaker": weaker.name, "won": won, "elo": round(elo)})
+    save_json(args.json, {"frames": args.frames, "budget": args.budget, "pairs": wins})
     return 0
 
 

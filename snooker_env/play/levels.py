@@ -21,7 +21,7 @@ LEVELS = (
     ),
     Level("Walter", "tactician_500", "club", "safe: leaves you little, and waits for your mistakes", 1400),
     Level("Rosa", "search_2000", "amateur", "bold: goes for every pot, and for the break", 1600),
-    Level("Mia", "tactician_60", "professional", "quick: looks at few strokes, and hits them well", 1900),
+    Level("Mia", "tactician_30", "professional", "quick: looks at few strokes, and hits them well", 1900),
     Level("Vera", "tactician_500", "professional", "safe: weighs pot and safety, and seldom errs", 2000),
 )
 BY_NAME = {level.name: level for level in LEVELS}
