@@ -38,6 +38,7 @@ ERRORS = {
     "professional": "a professional's",
     "amateur": "an amateur's",
     "club": "a club player's",
+    "beginner": "a beginner's",
     "robot": "a robot's",
     "olympiad": "the Olympiad's robots'",
 }

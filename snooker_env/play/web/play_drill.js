@@ -44,7 +44,7 @@ const DRILLS = {
     table: () => ask("position", { position: { cue: [within(-0.5, 0.5), within(-1.35, -1.1)], reds: [[within(-0.5, 0.5), within(0.1, 0.6)]], black: [0, BLACK], on: "red" } }),
   },
   safeties: {
-    name: "Safeties", about: "Ten safeties: a point if nothing can be potted, two for a snooker", made: "points", most: 2, table: () => dealt("safety"),
+    name: "Safeties", about: "Ten safeties: a point if nothing can be potted, two for a snooker", points: true, table: () => dealt("safety"),
     score: (stroke, state) => (!fair(stroke) || stroke.points ? 0 : state.snookered ? 2 : Number(!open(state))),
   },
   escapes: { name: "Escapes", about: "Ten snookers: strike a ball on", made: "fair", score: stroke => Number(fair(stroke)), share: found => 1 - found.foul, table: () => dealt("escape") },
@@ -92,7 +92,7 @@ export class Drills {
       this.position = { position: { cue, reds, ...Object.fromEntries(colours), on: state.ball_on, in_hand: state.in_hand }, free_ball: state.free_ball };
     }
     this.before ??= state.practice ? null : { players: state.players, noise: state.noise, practice: false, cue: state.cue };
-    Object.assign(this, { now: key, tries: 0, score: 0, over: false, dealing: true, said: null, expected: 0, weighed: 0, best: null, date: today(), balls: "" });  // no stroke on the table before
+    Object.assign(this, { now: key, tries: 0, score: 0, over: false, dealing: true, said: "", expected: 0, weighed: 0, best: null, date: today(), balls: "" });  // no stroke on the table before
     by("drills").open = false;
     this.show();
     const seated = { players: ["person", "person"], noise: [own, own], practice: true };
@@ -105,14 +105,14 @@ export class Drills {
   async deal() {
     this.dealing = Boolean(this.now);  // no stroke on the table of the last try
     if (!this.dealing) return;
-    const { app } = this, wish = { ...app.aim.wish };
+    const { app } = this;
     await app.try(() => DRILLS[this.now].table(this));
     this.dealing = false;
     this.counted = app.state.strokes;
     this.show();
     app.settle();
     if (this.now !== "here") return;
-    if (this.tries) app.aim.set({ aim: wish.aim, side: wish.side, top: wish.top, elevation: wish.elevation });
+    if (this.tries) app.aim.set(this.struck ?? {});  // the last stroke, to be corrected
     else this.advised = ask("advise", { n: 1, noise: app.state.noise[0], revision: app.state.revision }).then(({ suggestions: [one] = [] }) => one, () => undefined);
   }
 
@@ -124,7 +124,9 @@ export class Drills {
       const one = await this.advised;
       this.best = { chance: one?.chance ?? null, pot: one ? one.kind === "pot" : open(this.app.state) };
     }
-    const { choice, nominate, ...stroke } = body, found = await ask("destinations", stroke).catch(() => ({ stale: true }));
+    const { choice, nominate, ...stroke } = body, { side: x, top, aim, elevation } = body;
+    this.struck = { side: x, top, aim, elevation };
+    const found = await ask("destinations", stroke).catch(() => ({ stale: true }));
     if (found.stale) return;
     this.expected += (drill.share ?? (this.best.pot ? DRILLS.long_pots : DRILLS.escapes).share)(found);
     this.weighed++;
@@ -136,7 +138,7 @@ export class Drills {
     const score = drill.score ?? (this.best?.pot === false ? DRILLS.escapes.score : potted);
     const got = drill.run ? potted(stroke) && stroke.points : score(stroke, this.app.state);
     if (drill.run && got) { this.score = stroke.break; this.balls += stroke.pots.map(ball => (ball < 16 ? "🔴" : DOTS[ball - 16])).join(""); }
-    if (!drill.run) this.said = `Try ${this.tries + 1} of ${TRIES}: ${stroke.words}`;
+    this.said = drill.run ? null : `Try ${this.tries + 1} of ${TRIES}: ${stroke.words}`;
     await this.count(got);
   }
 
@@ -177,7 +179,7 @@ export class Drills {
   }
 
   words() {
-    const { now, tries, score, over, expected, weighed, best } = this, { name, about, run, made, most = 1 } = DRILLS[now], record = kept.get("best", {})[now];
+    const { now, tries, score, over, expected, weighed, best } = this, { name, about, run, made, points } = DRILLS[now], record = kept.get("best", {})[now];
     const yours = record === undefined || now === "here" ? "" : ` Your best is ${record}.`;
     if (run && over) {
       const how = score > 7 ? breakWords(score) : score ? `${score} point${score === 1 ? "" : "s"}` : "nothing potted";
@@ -186,14 +188,15 @@ export class Drills {
     }
     if (!tries) return `${name}. ${about}.${now === "day" && this.first ? ` You made ${this.first.score} today; this one is for practice.` : yours}`;
     if (run) return `${name}: ${score} so far.`;
-    const advised = best?.chance != null ? `, the best advised ${(best.chance * tries).toFixed(1)}` : "";
-    const chance = weighed === tries ? ` On average your strokes make ${expected.toFixed(1)} with these mistakes${advised}.` : "";
-    return `${name}: ${score} ${made}, ${tries * most === TRIES * most ? "of" : "so far of"} ${tries * most}.${chance}${over ? yours : ""}`;
+    const advised = best?.chance != null ? `, ${(best.chance * tries).toFixed(1)} as advised` : "";
+    const chance = weighed === tries ? ` Expected with these mistakes: ${expected.toFixed(1)} as you aimed${advised}.` : "";
+    return `${name}: ${points ? `${score} point${score === 1 ? "" : "s"} in ${tries} tries` : `${score} of ${tries} ${made}`}.${chance}${over ? yours : ""}`;
   }
 
   show() {
     kept.set("drill", Object.fromEntries(KEPT.map(name => [name, this[name]])));
     by("drill").hidden = !this.now;
+    by("drill").classList.toggle("over", Boolean(this.over));
     by("drill-copy").hidden = !(this.now === "day" && this.over);
     by("drill-copy").textContent = "Copy the result";
     if (this.now) by("drill-words").textContent = by("drill-words").title = this.words();

@@ -8,7 +8,7 @@ const many = (n, one) => `${n} ${one}${n === 1 ? "" : "s"}`;
 export function opponents(levels, names, noise) {
   return Object.fromEntries([...names.map(name => {
     const { style = "", noise: errors } = levels.find(one => one.name === name) ?? {}, [kind] = style.split(":");
-    return [name, style ? { short: `${name} – ${kind}, ${noise[errors]} mistakes`, about: `${name} is ${style}.` } : { short: name.replaceAll("_", " "), about: "" }];
+    return [name, style ? { short: `${name} – ${kind}, ${noise[errors].replace(/'s$/, "")}`, about: `${name} is ${style}.` } : { short: name.replaceAll("_", " "), about: "" }];
   }), ["person", { short: "nobody: two play here", about: "" }]]);
 }
 

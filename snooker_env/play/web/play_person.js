@@ -8,7 +8,7 @@ import { ask, by, confirmed, keep, make } from "./play_parts.js";
 const PRIOR = [1300, 400], STEP = 5;
 /** Pots by the way of cue ball and ball [m]. */
 const WAYS = [[0, 1, "up to 1 m"], [1, 2, "1 to 2 m"], [2, 9, "over 2 m"]];
-const LAST = 30, W = 480;
+const LAST = 30, W = 360;
 
 /** The quantile 2.5 %, the median and the quantile 97.5 % of a person's Elo: levels are {elo, won, lost}; strengths as of Bradley and Terry. */
 export function rate(levels) {
@@ -88,8 +88,8 @@ export class Person {
   bars(values) {
     if (!values.length) return "";
     const most = Math.max(20, ...values), wide = Math.min(34, (W - 40) / values.length), high = value => 70 * value / most;
-    const bars = values.map((value, k) => `<rect x="${20 + k * wide}" y="${90 - high(value)}" width="${wide - 2}" height="${high(value) + 1}"/>${wide > 14 ? text(20 + (k + 0.5) * wide - 1, 85 - high(value), value, 'text-anchor="middle"') : ""}`);
-    return `<p>Highest break of each of your last ${values.length} frames${wide > 14 ? "" : `, up to ${most}`}:</p>${svg(96, `highest breaks, the last first: ${[...values].reverse().join(", ")}`, bars.join(""))}`;
+    const bars = values.map((value, k) => `<rect x="${20 + k * wide}" y="${90 - high(value)}" width="${wide - 2}" height="${high(value) + 1}"/>${wide > 20 ? text(20 + (k + 0.5) * wide - 1, 85 - high(value), value, 'text-anchor="middle"') : ""}`);
+    return `<p>Highest break of each of your last ${values.length} frames${wide > 20 ? "" : `, up to ${most}`}:</p>${svg(96, `highest breaks, the last first: ${[...values].reverse().join(", ")}`, bars.join(""))}`;
   }
 
   pots(strokes) {
@@ -104,9 +104,9 @@ export class Person {
     }
     if (!sums.some(([tries]) => tries)) return "";
     const rows = sums.map(([tries, made], k) => {
-      const y = 12 + 30 * k, at = share => 90 + 260 * share, [low, high] = tries ? wilson(made, tries) : [0, 0];
-      return `${text(0, y + 12, WAYS[k][2])}<path class="tick" d="M90 ${y}V${y + 18}"/>${tries ? `<rect x="90" y="${y}" width="${260 * made / tries}" height="18"/><path class="whisker" d="M${at(low)} ${y + 9}H${at(high)}"/>` : ""}`
-        + text(364, y + 13, tries ? `${Math.round(100 * made / tries)} %, ${made} of ${tries}` : "none");
+      const y = 12 + 30 * k, at = share => 84 + 170 * share, [low, high] = tries ? wilson(made, tries) : [0, 0];
+      return `${text(0, y + 12, WAYS[k][2])}<path class="tick" d="M84 ${y}V${y + 18}"/>${tries ? `<rect x="84" y="${y}" width="${170 * made / tries}" height="18"/><path class="whisker" d="M${at(low)} ${y + 9}H${at(high)}"/>` : ""}`
+        + text(262, y + 13, tries ? `${Math.round(100 * made / tries)} %, ${made} of ${tries}` : "none");
     });
     return `<p>Pots by distance, cue ball to ball to pocket, with 95 % intervals:</p>${svg(100, `pots by distance: ${sums.map(([tries, made], k) => `${WAYS[k][2]}: ${made} of ${tries}`).join("; ")}`, rows.join(""))}`;
   }
