@@ -575,10 +575,13 @@ def test_a_drill_counts_and_keeps_its_best(shown):
         shown.until("page.moving")
         shown("page.skip()")
     shown.until("page.drills.over")
-    assert shown.page.inner_text("#drill-words") == f"Escapes: {fair}. Best: {fair}." and fair > 0
+    assert (
+        shown.page.inner_text("#drill-words") == f"Escapes: {fair} of 10 fair. Your best is {fair}."
+        and fair > 0
+    )
     assert json.loads(shown("localStorage.getItem('snooker')"))["best"] == {"escapes": fair}
     shown.page.click("#drills summary")
-    assert f"Best: {fair}" in shown.page.inner_text("#drill-list button:has-text('Escapes')")
+    assert f"Your best: {fair}" in shown.page.inner_text("#drill-list button:has-text('Escapes')")
     shown.page.click("#drill-end")
     shown.until(f"!page.state.practice && {SETTLED}")
     assert not shown.page.is_visible("#drill")

@@ -62,7 +62,7 @@ class Page {
     this.stats = new Stats(this);
     this.drills = new Drills(this);
     this.share = new Share(this);
-    this.person = new Person(this);
+    new Person(this);
     PHONE.onchange = () => this.fold(PHONE.matches);
     this.compact();
     new ResizeObserver(() => this.fit()).observe(by("stage"));

@@ -57,7 +57,8 @@ export class Drills {
     by("drill-again").onclick = () => this.begin(this.now);
     by("drill-end").onclick = () => this.end();
     by("drill-copy").onclick = async () => {
-      await navigator.clipboard.writeText(this.shared).catch(() => {});
+      const { name } = await ask("person").catch(() => ({}));
+      await navigator.clipboard.writeText(this.shared(name)).catch(() => {});
       by("drill-copy").textContent = "Copied";
     };
     this.list();
@@ -173,8 +174,8 @@ export class Drills {
   }
 
   /** The result of the day in a line, for others. */
-  get shared() {
-    const { date, score, balls } = this.first ?? this, name = this.app.person?.name;
+  shared(name) {
+    const { date, score, balls } = this.first ?? this;
     return `Snooker, position of the day ${date}: ${name ? `${name} made ` : ""}${score} of 51 ${balls || "–"}`;
   }
 

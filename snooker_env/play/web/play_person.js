@@ -32,14 +32,13 @@ const text = (x, y, words, more = "") => `<text x="${x}" y="${y}" ${more}>${word
 
 export class Person {
   constructor(app) {
-    Object.assign(this, { app, name: "" });
+    this.app = app;
     const act = (id, what) => { by(id).onclick = () => this.try(what); };
     by("mine-open").onclick = async () => { by("mine-coach-says").textContent = ""; await this.try(() => ask("person")); by("mine").showModal(); };
     by("mine-name").onchange = () => this.try(() => ask("person", { name: by("mine-name").value.trim() }));
     act("mine-export", async () => { keep("snooker-person.json", JSON.stringify(await ask("person")), "application/json"); });
     act("mine-delete", async () => ((await confirmed("Delete your file, with all frames? This cannot be undone.", "Delete")) ? ask("person", { delete: true }) : undefined));
     act("mine-coach", () => this.coach());
-    this.try(() => ask("person"));
   }
 
   async try(what) {
@@ -58,7 +57,7 @@ export class Person {
   }
 
   show({ path, name, frames, strokes }) {
-    this.name = by("mine-name").value = name;
+    by("mine-name").value = name;
     const won = frames.filter(one => one.won).length, breaks = frames.flatMap(one => one.breaks).sort((a, b) => b - a);
     const levels = this.app.levels.map(level => {
       const rated = frames.filter(one => one.rated && one.opponent === level.name);

@@ -1,0 +1,241 @@
+"""Is a person's play kept, told and judged, and are the opponents who they say?"""
+
+import json
+import time
+from math import log
+
+import numpy as np
+import pytest
+
+from snooker_env.advice import read_strokes, write_strokes
+from snooker_env.play.__main__ import main
+from snooker_env.play.levels import LEVELS
+from snooker_env.play.person import Person
+from tests.play.test_page import SETTLED, Shown
+from tests.playing import EASY, STRAIGHT
+from tests.web.chromium import chromium  # noqa: F401
+
+PIP = {"players": ["person", "Pip"], "practice": False}
+
+
+@pytest.fixture
+def kept(game, tmp_path):
+    """The person's file, of a game of "Pip" against a person with an amateur's errors."""
+    game.service.person = Person(tmp_path / "own" / "person.json")
+    game("players", noise=["amateur", "none"], **{"players": ["person", "person"]})
+    game("players", **PIP)
+    return game.service.person
+
+
+def end_frame(game, *, seed=1, strokes=0):
+    """A frame from the break that the person gives up, after so many strokes."""
+    game("new", layout="break_off", seed=seed)
+    for _ in range(strokes):
+        game("stroke", speed=3.0, aim=1.5)
+    while game.service.thinking or game.session.frame.phase == "choice":
+        if game.service.thinking:
+            game.service.wait(game.service.revision, 20.0)
+        else:
+            game("stroke", choice="play_again")
+    return game("concede")
+
+
+def test_one_of_the_five_sits_down_with_a_name_and_errors_of_its_own(game):
+    for level in LEVELS:
+        state = game("players", players=["person", level.name])
+        assert (state["labels"], state["noise"][1]) == (["You", level.name], level.noise)
+        assert level.name not in state["advisers"]
+        assert game.service.seats.players[level.name].name == level.agent
+    assert game("players", players=["person", "Pip"], noise=["none", "robot"])["noise"] == ["none", "robot"]
+    assert game("players", players=["person", "ghost_ball"])["noise"][1] == "robot"  # an agent has none
+    assert [one.elo for one in LEVELS] == sorted(one.elo for one in LEVELS)
+
+
+def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(game, kept, tmp_path):
+    assert not kept.path.exists()
+    end_frame(game, strokes=1)
+    (frame,) = game.get("person")["frames"]
+    assert {name: frame[name] for name in ("opponent", "noise", "won", "hints", "undone", "rated")} == {
+        **{"opponent": "Pip", "noise": ["amateur", "beginner"], "won": False},
+        **{"hints": 0, "undone": 0, "rated": True},
+    }
+    (stroke,) = kept.strokes()
+    assert (stroke.cue, stroke.physics.preset) == (
+        "real",
+        game.session.options_with("none").rules.physics.preset,
+    )
+    write_strokes(tmp_path / "strokes.json", [stroke])
+    assert read_strokes(tmp_path / "strokes.json")[0].played == stroke.played
+    assert game("undo")["undone"] == 1
+    game("concede")
+    assert len(game.get("person")["frames"]) == 1  # the same frame
+    game("new", seed=2)
+    assert game("advise", n=1, samples=10)["hints"] == [1, 0] == game.get("state")["hints"]
+    game("concede")
+    game("new", seed=3)
+    game("players", noise=["none", "beginner"])
+    game("stroke", speed=3.0, aim=1.5)
+    while game.service.thinking:
+        game.service.wait(game.service.revision, 20.0)
+    game("players", players=["Pip", "person"])
+    assert [one["rated"] for one in kept.read()["frames"]] == [True, False]
+    game("players", **PIP)
+    game("position", position=EASY)
+    game("concede")
+    assert len(kept.read()["frames"]) == 2  # of a position that was set up nothing is kept
+
+
+def test_a_break_is_kept_as_a_whole(game, kept):
+    game("new", layout="colours", seed=4)
+    game("players", noise=["none", "none"])
+    runs = []
+    for _ in range(12):
+        suggested = game("advise", agent="tactician_500", n=1, samples=10)["suggestions"][0]
+        stroke = {name: suggested[name] for name in ("speed", "side", "top", "aim", "elevation")}
+        runs.append(game("stroke", **stroke)["stroke"]["break"])
+        if not runs[-1] or game.session.frame.phase == "over":
+            break
+    assert game.session.highest[0] == max(runs) > 5
+    if game.session.frame.phase != "over":
+        while game.service.thinking:
+            game.service.wait(game.service.revision, 20.0)
+        game("concede")
+    frame = kept.read()["frames"][-1]
+    assert max(frame["breaks"]) == max(runs) and len(frame["breaks"]) <= 2 and not frame["rated"]
+
+
+def test_a_file_that_is_not_sound_is_one_error_and_stays_as_it_is(game, kept, capsys):
+    end_frame(game, strokes=1)
+    sound = json.loads(kept.path.read_text())
+    frame = sound["frames"][0]
+    for wrong in (
+        "{",
+        "[]",
+        {**sound, "version": 2},
+        {**sound, "name": 7},
+        {**sound, "frames": [{**frame, "date": "yesterday"}]},
+        {**sound, "frames": [{**frame, "breaks": [-1]}]},
+        {**sound, "frames": [{**frame, "won": 1}]},
+        {**sound, "strokes": [{"position": 3}]},
+        {name: sound[name] for name in sound if name != "strokes"},
+    ):
+        text = wrong if isinstance(wrong, str) else json.dumps(wrong)
+        kept.path.write_text(text)
+        for fields in ({}, {"name": "Anna"}, {"delete": True}):
+            with pytest.raises(ValueError, match=r"^person = .*must be a person's file"):
+                game("person", **fields)
+        assert "The frame was not kept: person = " in end_frame(game)["words"]
+        assert kept.path.read_text() == text
+    assert main(["--no-browser", "--person", str(kept.path)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    with pytest.raises(ValueError, match="at most 40"):
+        kept.path.write_text(json.dumps(sound))
+        game("person", name="x" * 41)
+    assert game("person", name="Anna")["name"] == "Anna" and len(kept.read()["frames"]) == 1
+    assert not game("person", delete=True)["frames"] and not kept.path.exists()
+
+
+def elo_of(results):
+    """The quantiles of a person's Elo, by another sum: {level: (won, lost)}."""
+    at = np.linspace(-1000, 4000, 100_001)
+    logs = -0.5 * ((at - 1300) / 400) ** 2
+    for level in LEVELS:
+        won, lost = results.get(level.name, (0, 0))
+        chance = 1 / (1 + np.exp((level.elo - at) * log(10) / 400))
+        logs += won * np.log(chance) + lost * np.log(1 - chance)
+    sums = np.cumsum(np.exp(logs - logs.max()))
+    return np.interp((0.025, 0.5, 0.975), sums / sums[-1], at)
+
+
+def test_my_play_shows_the_file_with_a_rating_and_deletes_it(chromium, line, tmp_path):  # noqa: F811
+    frame = {"date": "2026-11-30", "noise": ["amateur", "club"], "scores": [70, 12], "breaks": [33, 87]}
+    frame |= {"hints": 0, "undone": 0, "rated": True, "won": True, "opponent": "Walter"}
+    frames = [frame] * 3 + [frame | {"won": False, "breaks": []}] * 2 + [frame | {"rated": False}]
+    line.server.service.person = person = Person(tmp_path / "person.json")
+    person.change(lambda file: file.update(frames=frames, name="Anna"))
+    shown = Shown(chromium, line)
+    shown.until(f"page.state && {SETTLED}")
+    shown.page.click("#mine-open")
+    shown.until("document.getElementById('mine').open")
+    text = shown.page.inner_text("#mine")
+    assert "6 frames, 4 won. Highest break: 87. Breaks of 20 and more: 87, 87, 87, 87, 33" in text
+    assert "✓ Walter 3:2" in text and str(person.path) in text
+    found = shown(
+        "import('./play_person.js').then(({rate}) => rate(page.levels.map(one => ({...one, won: one.name === 'Walter' ? 3 : 0, lost: one.name === 'Walter' ? 2 : 0}))))"
+    )
+    assert found == pytest.approx(elo_of({"Walter": (3, 2)}), abs=6)
+    assert f"Rating {found[1]}, with 95 % between {found[0]} and {found[2]}, from 5 rated frames" in text
+    shown.page.fill("#mine-name", "Berta")
+    shown.page.keyboard.press("Tab")
+    end = time.monotonic() + 60
+    while person.read()["name"] != "Berta":
+        assert time.monotonic() < end
+    shown.page.click("#mine-delete")
+    shown.page.click("#confirm-yes")
+    shown.until("document.getElementById('mine-frames').innerText.startsWith('No frames yet')")
+    assert not person.path.exists()
+    shown.close()
+    line.server.service.person = None
+
+
+def try_once(shown, n):
+    shown.until(f"page.aiming && {SETTLED}")
+    shown("page.play()")
+    shown.until("page.moving")
+    shown("page.skip()")
+    shown.until("page.drills.tries > argument", n)
+
+
+def test_my_position_is_repeated_with_what_is_to_be_expected(chromium, line):  # noqa: F811
+    shown = Shown(chromium, line)
+    shown.set_up(EASY)
+    line("api/players", {"noise": ["club", "none"]})
+    shown.until("page.state.noise[0] === 'club'")
+    shown("void page.drills.begin('here')")
+    shown.until(f"page.drills.now === 'here' && {SETTLED} && page.aiming")
+    assert shown("page.aim.wish.speed") == 2
+    shown("page.aim.set({aim: argument, speed: 1.5})", STRAIGHT)
+    made, aims = 0, set()
+    for n in range(10):
+        try_once(shown, n)
+        stroke = line("api/strokes")[1]["strokes"][-1]
+        made += bool(stroke["points"])
+        assert shown("page.drills.said") == f"Try {n + 1} of 10: {stroke['words']}"
+        if n < 9:
+            shown.until(f"page.aiming && {SETTLED}")
+            assert shown.page.inner_text("#last") == shown("page.drills.said")  # until the next try
+            aims.add((shown("page.aim.wish.aim"), shown("page.aim.wish.speed")))
+            for name, place in EASY.items():
+                if name != "reds":
+                    assert shown("page.state.positions")[name] == place
+    assert aims == {(STRAIGHT, 1.5)}
+    words = shown.page.inner_text("#drill-words")
+    assert words.startswith(f"This position: {made} of 10 made. Expected with these mistakes: ")
+    expected, advised = (float(word) for word in words.split(": ")[2].split()[0:5:4])
+    assert 0 < expected <= 10 and 3 < advised <= 10
+    shown.page.click("#drills summary")
+    shown.page.click("#drill-list button:has-text('The T')")  # inside a drill nothing is asked
+    shown.until(f"page.drills.now === 'tee' && {SETTLED} && page.aiming")
+    assert shown("page.state.reds") == 10 and not shown("document.getElementById('confirm').open")
+    shown.close()
+
+
+def test_the_position_of_the_day_is_the_same_for_everybody_and_counts_once(chromium, line):  # noqa: F811
+    seen = []
+    for seed in (1, 2):
+        line("api/players", {"players": ["person", "person"], "noise": ["none", "none"], "practice": False})
+        line("api/new", {"layout": "break_off", "seed": seed})
+        shown = Shown(chromium, line)
+        shown.until(f"page.state && {SETTLED}")
+        shown("void page.drills.begin('day')")
+        shown.until(f"page.drills.now === 'day' && {SETTLED} && page.aiming")
+        assert shown("page.state.noise") == ["amateur", "amateur"]
+        first = shown("[page.state.positions, page.state.lines.filter(one => one.open).length > 0]")
+        shown("page.aim.set({speed: 2, aim: 1})")
+        try_once(shown, 0)
+        seen.append([first, shown("page.state.positions")])  # errors are the same, too
+        counted = shown("page.drills.first.score")
+        assert shown("page.drills.over") and str(counted) in shown("page.drills.shared('Anna')")
+        assert shown.page.is_visible("#drill-copy")
+        shown.close()
+    assert seen[0] == seen[1] and seen[0][0][1]
