@@ -66,13 +66,10 @@ class Person:
 
 def frame_of(session: Session, seat: int, opponent: str) -> dict[str, Any]:
     """The frame that is over, as it is kept: the person's side first; rated are fair frames against a level."""
-    sides, level, breaks = (seat, 1 - seat), BY_NAME.get(opponent), [0]
-    acts = [act for act in session.acts[: session.at] if act.played is not None and act.player == seat]
-    for act in acts:
-        if (played := act.played) is not None and played.points and not played.penalty:
-            breaks[len(breaks) - (played.break_before > 0) :] = [played.break_before + played.points]
+    sides, level = (seat, 1 - seat), BY_NAME.get(opponent)
+    asked = [session.acts[k].asked for k in session.strokes if session.acts[k].player == seat]
     usual = (session.game, session.layout, session.cue) == ("snooker", "break_off", "real")
-    erred = {RATED_WITH} == {act.asked["noise"] for act in acts}
+    erred = {RATED_WITH} == {stroke["noise"] for stroke in asked}
     own = level is not None and session.noise[1 - seat] == level.noise
     return {
         "date": date.today().isoformat(),
@@ -80,7 +77,7 @@ def frame_of(session: Session, seat: int, opponent: str) -> dict[str, Any]:
         "noise": [session.noise[side] for side in sides],
         "scores": [session.frame.scores[side] for side in sides],
         "won": session.frame.winner == seat,
-        "breaks": breaks[1:],
+        "breaks": session.breaks[seat],
         "hints": session.hints[seat],
         "undone": session.undone,
         "rated": usual and erred and own and not session.hints[seat] and not session.undone,

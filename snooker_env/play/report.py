@@ -103,18 +103,8 @@ def report(service: Service) -> dict[str, Any]:
     state = table_after(act, labels, service.win_chances([act])[0], before)
     table, noise = session.tables.rules.table, session.noise[frame.striker]
     turn, lines = report_turn(frame, session.position, table, noise)
-    of_session = (
-        "begun",
-        "practice",
-        "game",
-        "best_of",
-        "frames",
-        "match_over",
-        "cue",
-        "hints",
-        "undone",
-        "highest",
-    )
+    of_session = ["begun", "practice", "game", "best_of", "frames", "match_over", "cue"]
+    of_session += ["breaks", "hints", "undone"]
     state |= turn | {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
     state |= {

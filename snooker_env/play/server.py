@@ -25,7 +25,21 @@ from ..simulation import SimulationError
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
-PARTS = ("aim", "ask", "drill", "first", "level", "parts", "person", "room", "setup", "share", "sound", "stats", "tour")
+PARTS = (
+    "aim",
+    "ask",
+    "drill",
+    "first",
+    "level",
+    "parts",
+    "person",
+    "room",
+    "setup",
+    "share",
+    "sound",
+    "stats",
+    "tour",
+)
 SCRIPTS = ("table.js", "play.js", *(f"play_{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""

@@ -120,12 +120,13 @@ class Session:
         return self._options.layout
 
     @property
-    def highest(self) -> list[int]:
-        """The highest break of each seat in this frame."""
-        found = [0, 0]
+    def breaks(self) -> list[list[int]]:
+        """The breaks of each seat in this frame, the one that goes on last."""
+        found: list[list[int]] = [[], []]
         for k in self.strokes:
             if (one := self.acts[k].played) is not None and one.points and not one.penalty:
-                found[one.player] = max(found[one.player], one.break_before + one.points)
+                own = found[one.player]
+                own[len(own) - (one.break_before > 0) :] = [one.break_before + one.points]
         return found
 
     @property

@@ -82,7 +82,8 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
     else:
         words = "No ball potted"
     if (winner := played.winner) is not None and len(players) > winner:
-        words += f". Frame to {players[winner]}, {played.scores[winner]}-{played.scores[1 - winner]}"
+        who = "you" if players[winner] == "You" else players[winner]
+        words += f". Frame to {who}, {played.scores[winner]}-{played.scores[1 - winner]}"
     elif played.over and played.next_on == BallOn.NOTHING and not played.fouls:
         words += ". Table cleared"
     return words + "."

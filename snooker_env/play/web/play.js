@@ -587,7 +587,7 @@ class Page {
 
   /** The end of the frame, with the score from the side of the only person, else of the first seat. */
   over(rest) {
-    const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0, best = this.state.highest[winner];
+    const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0, best = Math.max(0, ...this.state.breaks[winner] ?? []);
     by("over").hidden = !rest || this.drills.now || phase !== "over" || this.seen === this.table;
     if (phase !== "over") return;
     const { match_over: ended, best_of: length, frames } = this.state;
