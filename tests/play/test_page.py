@@ -332,7 +332,7 @@ def test_the_end_of_a_frame_is_seen(shown):
     shown.until("page.state.phase === 'over' && page.settled === page.state.revision")
     assert shown.page.inner_text("#over-who") == "ghost ball won the frame"
     assert shown.page.inner_text("#over-score") == "You 1 : 0 ghost ball"
-    assert shown.page.inner_text("#over-last") == "You conceded the frame."
+    assert shown.page.inner_text("#over-last") == 'You conceded the frame. With "no mistakes".'
     assert shown.words == "Frame over: ghost ball won."
     table, over = shown.page.locator("#stage").bounding_box(), shown.page.locator("#over").bounding_box()
     assert over["y"] >= table["y"] and over["x"] >= table["x"]

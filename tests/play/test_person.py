@@ -4,10 +4,10 @@ import json
 import time
 from math import log
 
-import numpy as np
 import pytest
 
-from snooker_env.advice import read_strokes, write_strokes
+from snooker_env.advice import Recorded
+from snooker_env.planning import Position
 from snooker_env.play.__main__ import main
 from snooker_env.play.levels import LEVELS
 from snooker_env.play.person import Person
@@ -27,17 +27,19 @@ def kept(game, tmp_path):
     return game.service.person
 
 
+def leave(game):
+    """The person gives the frame up at its turn."""
+    while game.service.thinking:
+        game.service.wait(game.service.revision, 20.0)
+    return game.get("state") if game.session.frame.phase == "over" else game("concede")
+
+
 def end_frame(game, *, seed=1, strokes=0):
     """A frame from the break that the person gives up, after so many strokes."""
     game("new", layout="break_off", seed=seed)
     for _ in range(strokes):
         game("stroke", speed=3.0, aim=1.5)
-    while game.service.thinking or game.session.frame.phase == "choice":
-        if game.service.thinking:
-            game.service.wait(game.service.revision, 20.0)
-        else:
-            game("stroke", choice="play_again")
-    return game("concede")
+    return leave(game)
 
 
 def test_one_of_the_five_sits_down_with_a_name_and_errors_of_its_own(game):
@@ -51,38 +53,26 @@ def test_one_of_the_five_sits_down_with_a_name_and_errors_of_its_own(game):
     assert [one.elo for one in LEVELS] == sorted(one.elo for one in LEVELS)
 
 
-def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(game, kept, tmp_path):
+def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(game, kept):
     assert not kept.path.exists()
     end_frame(game, strokes=1)
     (frame,) = game.get("person")["frames"]
-    assert {name: frame[name] for name in ("opponent", "noise", "won", "hints", "undone", "rated")} == {
-        **{"opponent": "Pip", "noise": ["amateur", "beginner"], "won": False},
-        **{"hints": 0, "undone": 0, "rated": True},
-    }
+    told = {"opponent": "Pip", "noise": ["amateur", "beginner"], "won": False, "hints": 0, "undone": 0}
+    assert told.items() <= frame.items() and frame["rated"]
     (stroke,) = kept.strokes()
-    assert (stroke.cue, stroke.physics.preset) == (
-        "real",
-        game.session.options_with("none").rules.physics.preset,
-    )
-    write_strokes(tmp_path / "strokes.json", [stroke])
-    assert read_strokes(tmp_path / "strokes.json")[0].played == stroke.played
+    assert (stroke.cue, stroke.physics) == ("real", game.session.options_with("none").rules.physics)
     assert game("undo")["undone"] == 1
     game("concede")
     assert len(game.get("person")["frames"]) == 1  # the same frame
     game("new", seed=2)
     assert game("advise", n=1, samples=10)["hints"] == [1, 0] == game.get("state")["hints"]
     game("concede")
-    game("new", seed=3)
     game("players", noise=["none", "beginner"])
-    game("stroke", speed=3.0, aim=1.5)
-    while game.service.thinking:
-        game.service.wait(game.service.revision, 20.0)
-    game("players", players=["Pip", "person"])
-    assert [one["rated"] for one in kept.read()["frames"]] == [True, False]
-    game("players", **PIP)
+    end_frame(game, seed=3, strokes=1)
+    game("new", seed=4)
     game("position", position=EASY)
-    game("concede")
-    assert len(kept.read()["frames"]) == 2  # of a position that was set up nothing is kept
+    game("concede")  # of a position that was set up nothing is kept
+    assert [one["rated"] for one in kept.read()["frames"]] == [True, False, False]
 
 
 def test_a_break_is_kept_as_a_whole(game, kept):
@@ -96,10 +86,7 @@ def test_a_break_is_kept_as_a_whole(game, kept):
         if not runs[-1] or game.session.frame.phase == "over":
             break
     assert max(game.session.breaks[0]) == max(runs) > 5
-    if game.session.frame.phase != "over":
-        while game.service.thinking:
-            game.service.wait(game.service.revision, 20.0)
-        game("concede")
+    leave(game)
     frame = kept.read()["frames"][-1]
     assert max(frame["breaks"]) == max(runs) and len(frame["breaks"]) <= 2 and not frame["rated"]
 
@@ -117,7 +104,7 @@ def test_a_file_that_is_not_sound_is_one_error_and_stays_as_it_is(game, kept, ca
         {**sound, "frames": [{**frame, "breaks": [-1]}]},
         {**sound, "frames": [{**frame, "won": 1}]},
         {**sound, "strokes": [{"position": 3}]},
-        {name: sound[name] for name in sound if name != "strokes"},
+        {**sound, "strokes": None},
     ):
         text = wrong if isinstance(wrong, str) else json.dumps(wrong)
         kept.path.write_text(text)
@@ -135,24 +122,17 @@ def test_a_file_that_is_not_sound_is_one_error_and_stays_as_it_is(game, kept, ca
     assert not game("person", delete=True)["frames"] and not kept.path.exists()
 
 
-def elo_of(results):
-    """The quantiles of a person's Elo, by another sum: {level: (won, lost)}."""
-    at = np.linspace(-1000, 4000, 100_001)
-    logs = -0.5 * ((at - 1300) / 400) ** 2
-    for level in LEVELS:
-        won, lost = results.get(level.name, (0, 0))
-        chance = 1 / (1 + np.exp((level.elo - at) * log(10) / 400))
-        logs += won * np.log(chance) + lost * np.log(1 - chance)
-    sums = np.cumsum(np.exp(logs - logs.max()))
-    return np.interp((0.025, 0.5, 0.975), sums / sums[-1], at)
-
-
 def test_my_play_shows_the_file_with_a_rating_and_deletes_it(chromium, line, tmp_path):  # noqa: F811
     frame = {"date": "2026-11-30", "noise": ["amateur", "club"], "scores": [70, 12], "breaks": [33, 87]}
     frame |= {"hints": 0, "undone": 0, "rated": True, "won": True, "opponent": "Walter"}
     frames = [frame] * 3 + [frame | {"won": False, "breaks": []}] * 2 + [frame | {"rated": False}]
     line.server.service.person = person = Person(tmp_path / "person.json")
-    person.change(lambda file: file.update(frames=frames, name="Anna"))
+    at, place = (
+        Position(cue=(0.1, 0.2), black=(-0.3, 1.0)),
+        {"cue": "real", "physics": "match", "table": "match"},
+    )
+    pot = Recorded(position=at, ball=21, pocket=4, speed=2.0, potted=True, points=7, **place).to_dict()
+    person.change(lambda file: file.update(frames=frames, name="Anna", strokes=[pot] * 3))
     shown = Shown(chromium, line)
     shown.until(f"page.state && {SETTLED}")
     shown.page.click("#mine-open")
@@ -160,10 +140,18 @@ def test_my_play_shows_the_file_with_a_rating_and_deletes_it(chromium, line, tmp
     text = shown.page.inner_text("#mine")
     assert "6 frames, 4 won. Highest break: 87. Breaks of 20 and more: 87, 87, 87, 87, 33" in text
     assert "✓ Walter 3:2" in text and str(person.path) in text
-    own = "page.levels.map(one => ({...one, ...(one.name === 'Walter' ? {won: 3, lost: 2} : {won: 0, lost: 0})}))"
-    found = shown(f"import('./play_person.js').then(({{rate}}) => rate({own}))")
-    assert found == pytest.approx(elo_of({"Walter": (3, 2)}), abs=6)
+    results = (
+        [{"elo": 1500, "won": 1000, "lost": 500}],
+        [{"elo": one.elo, "won": 0, "lost": 0} for one in LEVELS],
+    )
+    results[1][1] |= {"won": 3, "lost": 2}
+    known, found = shown("import('./play_person.js').then(({rate}) => argument.map(rate))", results)
+    spread = 1.96 * 400 / log(10) / (1500 * 2 / 9) ** 0.5  # two wins for a loss are 400 lg 2 points
+    assert known == pytest.approx([1620.4 - spread, 1620.4, 1620.4 + spread], abs=6)
     assert f"Rating {found[1]}, with 95 % between {found[0]} and {found[2]}, from 5 rated frames" in text
+    assert "100 %, 3 of 3" in text  # 0.9 m and 0.9 m
+    shown.page.click("#mine-coach")
+    shown.until("document.getElementById('mine-coach-says').innerText.includes('pots: 3 of 3 made')")
     shown.page.fill("#mine-name", "Berta")
     shown.page.keyboard.press("Tab")
     end = time.monotonic() + 60
@@ -173,6 +161,11 @@ def test_my_play_shows_the_file_with_a_rating_and_deletes_it(chromium, line, tmp
     shown.page.click("#confirm-yes")
     shown.until("document.getElementById('mine-frames').innerText.startsWith('No frames yet')")
     assert not person.path.exists()
+    shown.page.click("#mine button:has-text('Close')")
+    shown.page.click("#start summary")
+    shown.page.select_option("#level", "Rosa")
+    shown.until("page.state.players[1] === 'Rosa' && page.state.noise[1] === 'amateur'")
+    assert shown.page.inner_text("#level-about") == f"Rosa is {LEVELS[2].style}."
     shown.close()
     line.server.service.person = None
 

@@ -92,7 +92,7 @@ export class Drills {
       const reds = Object.entries(others).flatMap(([name, place]) => (name.startsWith("red") ? [place] : []));
       this.position = { position: { cue, reds, ...Object.fromEntries(colours), on: state.ball_on, in_hand: state.in_hand }, free_ball: state.free_ball };
     }
-    this.before ??= state.practice ? null : { players: state.players, noise: state.noise, practice: false, cue: state.cue };
+    if (!this.now) this.before = { players: state.players, noise: state.noise, practice: state.practice, cue: state.cue };
     Object.assign(this, { now: key, tries: 0, score: 0, over: false, dealing: true, said: "", expected: 0, weighed: 0, best: null, date: today(), balls: "" });  // no stroke on the table before
     by("drills").open = false;
     this.show();
