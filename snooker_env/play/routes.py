@@ -21,7 +21,7 @@ from . import questions
 from .game_record import open_game, record_game
 from .person import Person
 from .report import report, scene, stroke_report
-from .service import PERSON, Service, StaleError
+from .service import Service, StaleError
 from .session import Session
 
 Handler = Callable[[Service, dict[str, Any]], Any]
@@ -174,10 +174,6 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     n = integer("n", fields.get("n", 5), 1, questions.MOST_SUGGESTIONS)
-    with service.reading(_revision(fields)) as session:
-        seat = session.frame.striker
-        session.hints[seat] += not session.practice and service.seats.who[seat] == PERSON
-        hints = {"hints": list(session.hints)}
     with service.asking(_revision(fields)) as session:
         first = service.seats.advisers(session.practice)[0]
         agent = choice("agent", fields.get("agent", first), service.seats.players)
@@ -187,7 +183,12 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         decided = questions.decision(session, service, agent) if foul else {"choice": None, "choices": []}
         if foul:
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
-        return decided | hints | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
+        answer = decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
+    with service.reading() as now:
+        seat = session.frame.striker
+        if now.begun == session.begun and not now.practice and not service.seats.is_agent(seat):
+            now.hints[seat] += 1
+    return answer
 
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -258,7 +259,6 @@ GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
-    "person": Route(_person),
     "replay": Route(partial(_replay, form=Replay.to_dict)),
     "replay.html": Route(partial(_replay, form=Replay.html)),
 }

@@ -259,7 +259,9 @@ def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
     balls, break_, scores = {0, 1, 2, 3, 19, 20, 21}, 0, [0, 0]
 
     def now(on):
-        return f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)}"
+        return (
+            f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)} no mistakes"
+        )
 
     for k, stroke in enumerate(strokes):
         before = [one for one in drawn if one["k"] == k + 1 and one["moving"]]

@@ -56,16 +56,17 @@ def test_one_of_the_five_sits_down_with_a_name_and_errors_of_its_own(game):
 def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(game, kept):
     assert not kept.path.exists()
     end_frame(game, strokes=1)
-    (frame,) = game.get("person")["frames"]
+    (frame,) = game("person")["frames"]
     told = {"opponent": "Pip", "noise": ["amateur", "beginner"], "won": False, "hints": 0, "undone": 0}
     assert told.items() <= frame.items() and frame["rated"]
     (stroke,) = kept.strokes()
     assert (stroke.cue, stroke.physics) == ("real", game.session.options_with("none").rules.physics)
     assert game("undo")["undone"] == 1
     game("concede")
-    assert len(game.get("person")["frames"]) == 1  # the same frame
+    assert len(game("person")["frames"]) == 1  # the same frame
     game("new", seed=2)
-    assert game("advise", n=1, samples=10)["hints"] == [1, 0] == game.get("state")["hints"]
+    game("advise", n=1, samples=10)
+    assert game.get("state")["hints"] == [1, 0]
     game("concede")
     game("players", noise=["none", "beginner"])
     end_frame(game, seed=3, strokes=1)

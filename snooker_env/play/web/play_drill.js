@@ -57,7 +57,7 @@ export class Drills {
     by("drill-again").onclick = () => this.begin(this.now);
     by("drill-end").onclick = () => this.end();
     by("drill-copy").onclick = async () => {
-      const { name } = await ask("person").catch(() => ({}));
+      const { name } = await ask("person", {}).catch(() => ({}));
       await navigator.clipboard.writeText(this.shared(name)).catch(() => {});
       by("drill-copy").textContent = "Copied";
     };

@@ -34,9 +34,9 @@ export class Person {
   constructor(app) {
     this.app = app;
     const act = (id, what) => { by(id).onclick = () => this.try(what); };
-    by("mine-open").onclick = async () => { by("mine-coach-says").textContent = ""; await this.try(() => ask("person")); by("mine").showModal(); };
+    by("mine-open").onclick = async () => { by("mine-coach-says").textContent = ""; await this.try(() => ask("person", {})); by("mine").showModal(); };
     by("mine-name").onchange = () => this.try(() => ask("person", { name: by("mine-name").value.trim() }));
-    act("mine-export", async () => { keep("snooker-person.json", JSON.stringify(await ask("person")), "application/json"); });
+    act("mine-export", async () => { keep("snooker-person.json", JSON.stringify(await ask("person", {})), "application/json"); });
     act("mine-delete", async () => ((await confirmed("Delete your file, with all frames? This cannot be undone.", "Delete")) ? ask("person", { delete: true }) : undefined));
     act("mine-coach", () => this.coach());
   }
