@@ -2,6 +2,7 @@
 
 import json
 import time
+from dataclasses import replace
 from math import log
 
 import pytest
@@ -128,12 +129,10 @@ def test_my_play_shows_the_file_with_a_rating_and_deletes_it(chromium, line, tmp
     frame |= {"hints": 0, "undone": 0, "rated": True, "won": True, "opponent": "Walter"}
     frames = [frame] * 3 + [frame | {"won": False, "breaks": []}] * 2 + [frame | {"rated": False}]
     line.server.service.person = person = Person(tmp_path / "person.json")
-    at, place = (
-        Position(cue=(0.1, 0.2), black=(-0.3, 1.0)),
-        {"cue": "real", "physics": "match", "table": "match"},
-    )
-    pot = Recorded(position=at, ball=21, pocket=4, speed=2.0, potted=True, points=7, **place).to_dict()
-    person.change(lambda file: file.update(frames=frames, name="Anna", strokes=[pot] * 3))
+    at = Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+    pot = Recorded(position=at, ball=21, pocket=4, speed=2.0, potted=True, points=7, cue="real")
+    own = replace(pot, physics="match", table="match").to_dict()
+    person.change(lambda file: file.update(frames=frames, name="Anna", strokes=[own] * 3))
     shown = Shown(chromium, line)
     shown.until(f"page.state && {SETTLED}")
     shown.page.click("#mine-open")

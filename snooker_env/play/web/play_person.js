@@ -5,7 +5,7 @@
 import { ask, by, confirmed, keep, make } from "./play_parts.js";
 
 /** A rating before the first frame: mean, standard deviation; in steps of so much Elo. */
-const PRIOR = [1300, 400], STEP = 5;
+const PRIOR = [1700, 600], STEP = 5;
 /** Pots by the way of cue ball and ball [m]. */
 const WAYS = [[0, 1, "up to 1 m"], [1, 2, "1 to 2 m"], [2, 9, "over 2 m"]];
 const LAST = 30, W = 360;
