@@ -29,11 +29,11 @@ class Asked:
     def __init__(self):
         self.service = Service(Session(seed=1), Seats({}))
 
-    def __call__(self, name, **fields):
+    def __call__(self, name, /, **fields):
         """A POST."""
         return self._answer(routes.POST[name], json.loads(json.dumps(fields)))
 
-    def get(self, name, **fields):
+    def get(self, name, /, **fields):
         return self._answer(routes.GET[name], fields)
 
     def _answer(self, route, fields):

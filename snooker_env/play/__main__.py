@@ -1,6 +1,7 @@
 """``python -m snooker_env.play``: a server on this machine's own address, and the browser on its page."""
 
 import argparse
+import os
 import sys
 import webbrowser
 from pathlib import Path
@@ -20,6 +21,12 @@ if TYPE_CHECKING:
 PORT = 8147  # unless another is named: always the same, since a browser keeps scores by the page's address
 
 
+def _usual_file() -> Path:
+    """A person's file, unless another is named: in the user's folder for data."""
+    base = os.environ.get("APPDATA" if os.name == "nt" else "XDG_DATA_HOME") or "~/.local/share"
+    return Path(base).expanduser() / "snooker_env" / "person.json"
+
+
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
     about = """Play snooker in the browser: against yourself or an agent, from any position, with an advisor.
         Programs can play too, by the protocol in the documentation. The server listens on 127.0.0.1 only, unless
@@ -32,12 +39,14 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--host", nargs="?", const="", metavar="ADDRESS", help=host)
     add("--no-browser", action="store_true", help="only print the address")
     agent = """an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or
-        MODULE:CLASS; the first one is your opponent (default: tactician_500), and your adviser if it knows frames;
+        MODULE:CLASS; the first one is your opponent (default: Walter, of five), and your adviser if it knows frames;
         may be given more than once"""
     add("--agent", action="append", default=[], metavar="NAME", help=agent)
     add_model_options(parser)
-    noise = "execution errors of the agent (default: %(default)s)"
-    add("--noise", choices=list(LEVELS), default="professional", help=noise)
+    noise = "execution errors of the agent (default: a professional's, of the usual opponent its own)"
+    add("--noise", choices=list(LEVELS), help=noise)
+    person = "your own file, of your frames and strokes, which are sent nowhere (default: %(default)s)"
+    add("--person", type=Path, default=_usual_file(), metavar="FILE", help=person)
     add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
     add("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
     cue = "whether rails and balls are in its way (default: %(default)s)"
@@ -52,8 +61,10 @@ def service_of(args: argparse.Namespace) -> "Service":
     import numpy as np
 
     from ..players.resolver import players_of
+    from .levels import USUAL
+    from .person import Person
     from .routes import position_of
-    from .service import OPPONENT, PERSON, Seats, Service
+    from .service import PERSON, Seats, Service
     from .session import Session
 
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
@@ -62,15 +73,15 @@ def service_of(args: argparse.Namespace) -> "Service":
     players = players_of(args.agent, args.trust, options_of_words(args.options))
     agents = dict(zip(shown, players, strict=True))
     seats = Seats(agents, friends=args.host is not None)
-    seats.sit([PERSON, next(iter(agents), OPPONENT)])
-    session.noise[1] = args.noise
+    seats.sit([PERSON, next(iter(agents), USUAL)])
+    session.noise[:] = ["amateur", args.noise or seats.usual_noise(1, "professional")]
     if args.position is not None:
         read = _read(args.position)
         if read.get("format") == "snooker-game":
             session.load(read)
         else:
             session.set_up(position_of(read), scores=(0, 0), striker=0, free_ball=False)
-    return Service(session, seats)
+    return Service(session, seats, Person(args.person))
 
 
 def warm_up(service: "Service") -> None:

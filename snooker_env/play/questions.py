@@ -64,7 +64,9 @@ def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any
     """Where cue ball and object ball stop with ``errors`` (noise, samples, seed), and the paths without them."""
     shot = exact(session, stroke)
     stops = destinations(session.as_visit(), stroke, **errors, options={"cue": session.cue})
-    figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
+    figures = {
+        name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "scored", "points")
+    }
     return paths(shot) | figures | {"cue": pack(stops.cue, "f4"), "ball": pack(stops.ball, "f4")}
 
 

@@ -15,6 +15,7 @@ from ..replays.encode import encode_stroke
 from ..replays.referee_words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
+from .levels import LEVELS
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import LINKED, PERSON, Service
 from .session import Act, Session
@@ -37,7 +38,8 @@ def scene(service: Service) -> dict[str, Any]:
         "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
         "pockets": [{"key": key, "name": name, "x": x, "y": y} for key, name, (x, y) in pockets],
         "players": service.seats.names,
-        "named": service.seats.named,
+        "levels": [level._asdict() for level in LEVELS],
+        "opponents": service.seats.opponents,
         "noise": ERRORS,
         "cues": list(CUES),
         "games": list(RULES),
@@ -104,7 +106,8 @@ def report(service: Service) -> dict[str, Any]:
     host = service.me == PERSON
     table, noise = session.tables.rules.table, session.noise[frame.striker]
     turn, lines = report_turn(frame, session.position, table, noise)
-    of_session = ("begun", "practice", "game", "best_of", "frames", "match_over", "cue")
+    of_session = ["begun", "practice", "game", "best_of", "frames", "match_over", "cue"]
+    of_session += ["breaks", "hints", "undone"]
     state |= turn | {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
     state |= {
@@ -133,7 +136,7 @@ def report(service: Service) -> dict[str, Any]:
     if fair and state["snookered"]:
         state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
     if state["phase"] == "over":
-        state["words"] = " ".join([state["words"], *_say_luck(service)])
+        state["words"] = " ".join([state["words"], *_say_luck(service), service.unkept]).strip()
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
     return state | {"text": say_table(state, lines, said)}
 

@@ -8,19 +8,19 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from .._lib.check import choice, integer, number, refuse, truth
-from ..advice import CueStroke
+from ..advice import CueStroke, coach
 from ..advice.review import SAMPLES, read_frame
 from ..game.fouls import AUTO
 from ..game.frame import MOST_BREAK
 from ..planning.position import Position
 from ..players.requests import STROKE, read_colour, read_place, read_stroke
 from ..replays import Replay
-from ..replays.document import check_text
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
 from . import questions
 from .link import open_link, write_link
+from .person import Person
 from .report import report, scene, stroke_report, table_after
 from .reviewing import Reviewing
 from .service import Service, StaleError
@@ -118,9 +118,10 @@ def position_of(fields: object) -> Position:
 def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
     """Undo or redo until a person has a stroke or decision to make."""
     with service.acting(pause=True, any_turn=True) as session:
-        people = not all(map(service.seats.is_agent, (0, 1)))
+        people, before = not all(map(service.seats.is_agent, (0, 1))), session.at
         while move(session) and people and service.agent_to_play():
             pass
+        session.undone += session.at < before
 
 
 def _new(service: Service, fields: dict[str, Any]) -> None:
@@ -166,6 +167,7 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
         if "players" in fields:
             service.seats.sit(fields["players"])
             service.vacant = False
+            session.noise[:] = [service.seats.usual_noise(k, own) for k, own in enumerate(session.noise)]
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
@@ -213,7 +215,12 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         decided = questions.decision(session, service, agent) if foul else {"choice": None, "choices": []}
         if foul:
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
-        return decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
+        answer = decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
+    with service.reading() as now:
+        seat = session.frame.striker
+        if now.begun == session.begun and not now.practice and not service.seats.is_agent(seat):
+            now.hints[seat] += 1
+    return answer
 
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -242,12 +249,38 @@ def _errors(fields: dict[str, Any], samples: int, noise: str) -> dict[str, Any]:
     return {"noise": noise, "samples": samples, "seed": integer("seed", fields.get("seed", 0), 0, MOST)}
 
 
+def _own(service: Service) -> Person:
+    """The person's file."""
+    if service.person is None:
+        raise refuse("person", None, "must be named: this server keeps no person's file")
+    return service.person
+
+
+def _person(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    """What the file holds, and where it lies; first a name is given, or the file deleted."""
+    with service.reading():
+        person = _own(service)
+        if "name" in fields:
+            person.change(lambda kept: kept.update(name=fields["name"]))
+        if truth("delete", fields.get("delete", False)):
+            person.read()
+            person.path.unlink(missing_ok=True)
+        return person.read() | {"path": str(person.path)}
+
+
+def _coach(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    strokes = _own(service).strokes()
+    if not strokes:
+        raise refuse("strokes", 0, "must be at least one: play a frame against one of the five first")
+    with service.asking():
+        found = coach(strokes)
+    return found.to_dict() | {"text": str(found)}
+
+
 def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], Any]) -> Any:
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
-        one, other = service.labels
-        labels = check_text("one", fields.get("one", one)), check_text("other", fields.get("other", other))
-        judge = service.judge()
+        labels, judge = service.labels, service.judge()
         luck = session.luck if judge is not None and any(session.luck) else None
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
@@ -309,11 +342,13 @@ GET: dict[str, Route] = {
     "link": Route(_link),
     "strokes": Route(_strokes, ("from",)),
     "reviewed": Route(_reviewed, ("stroke",)),
-    "replay": Route(partial(_replay, form=Replay.to_dict), ("one", "other")),
-    "replay.html": Route(partial(_replay, form=Replay.html), ("one", "other")),
+    "replay": Route(partial(_replay, form=Replay.to_dict)),
+    "replay.html": Route(partial(_replay, form=Replay.html)),
 }
 POST: dict[str, Route] = {
     "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision"), True),
+    "person": Route(_person, ("name", "delete")),
+    "coach": Route(_coach),
     "place": Route(_place, ("place",), True),
     "advise": Route(_advise, ("agent", "n", *ERRORS), True),
     "destinations": Route(_destinations, (*STROKE, *ERRORS), True),

@@ -31,8 +31,8 @@ from .invites import addresses_here, invite
 from .routes import GET, POST, answer, parts_of
 from .service import FRIEND, PERSON, WATCHER, BusyError, Service
 
-PARTS = ("aim", "ask", "door", "drill", "first", "friend", "parts", "review", "room")
-PARTS += ("setup", "share", "sound", "stats", "tour")
+PARTS = ("aim", "ask", "door", "drill", "first", "friend", "level", "parts", "person", "review")
+PARTS += ("room", "setup", "share", "sound", "stats", "tour")
 SCRIPTS = ("table.js", "play.js", *(f"play_{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""

@@ -26,32 +26,36 @@ from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS
 from .invites import Invite
+from .levels import BY_NAME
+from .person import Person
 from .reviewing import Reviewing
 from .session import DECLINED, Act, Session
 
 PERSON = "person"  # who sits at the page of the host
 FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
 LINKED = "friend_by_link"  # who plays elsewhere, from the link of the game
-OPPONENT = "tactician_500"  # who plays against a person unless someone is named
-OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
+OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")  # agents that can always be chosen
 
 
 class Seats:
-    """The two seats, and the players that may take them: ``OFFERED``, ``agents`` by name, and ``friends``."""
+    """The two seats, and the players that may take them: ``agents`` by name, ``OFFERED``, the levels, and ``friends``."""
 
     who: list[str]  # ``PERSON``, ``FRIEND``, ``LINKED`` or the name of an agent, for each seat
 
     def __init__(self, agents: Mapping[str, Player], *, friends: bool = False):
-        self.named: list[str] = list(agents)
         self.players: dict[str, Player] = dict(agents)
         for name in OFFERED:
             self.players.setdefault(name, player(name))
+        self.opponents: list[str] = [*agents, *BY_NAME]  # for the menu
+        for level in BY_NAME.values():
+            self.players.setdefault(level.name, self.players.get(level.agent) or player(level.agent))
         self.names: list[str] = [PERSON, *[FRIEND] * friends, *self.players]  # who may sit down
         self.who, self._before = [PERSON, PERSON], [PERSON, PERSON]
 
     def advisers(self, practice: bool) -> list[str]:
         """The agents that may be asked for advice: alone at the table all, in a frame those that know frames."""
-        return [name for name, one in self.players.items() if practice or getattr(one, "frames", True)]
+        known = [name for name in self.players if name not in BY_NAME]
+        return [name for name in known if practice or getattr(self.players[name], "frames", True)]
 
     def level(self, session: Session) -> NoiseName:
         """With whose errors the chance to win and advice are counted, for both players alike: the largest of the persons'
@@ -68,6 +72,10 @@ class Seats:
         if not isinstance(who, list) or len(who) != 2:
             raise refuse("players", who, "must be two names")
         self.who = [choice(f"players[{k}]", name, self.names) for k, name in enumerate(who)]
+
+    def usual_noise(self, seat: int, otherwise: NoiseName) -> NoiseName:
+        """The errors of the level on this seat; of anybody else ``otherwise``."""
+        return BY_NAME[self.who[seat]].noise if self.who[seat] in BY_NAME else otherwise
 
     def is_agent(self, seat: int) -> bool:
         """Whether an agent has this seat."""
@@ -121,9 +129,13 @@ class Service:
     paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
     trouble: str  # why the last agent did not play, or ""
 
-    def __init__(self, session: Session, seats: Seats):
+    unkept: str  # why the frame that is over is not in the person's file, or ""
+
+    def __init__(self, session: Session, seats: Seats, person: Person | None = None):
         self.session: Session = session
         self.seats: Seats = seats
+        self.person: Person | None = person
+        self._kept, self.unkept = 0, ""
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
         self.reviewing: Reviewing | None = None
         self.revision: int = 0
@@ -271,7 +283,22 @@ class Service:
         """Whether an agent is thinking about its stroke, or about to."""
         return self.agent_to_play() and not self.paused
 
+    def _keep(self) -> None:
+        """Keep a frame of a person against an agent once it is over, if it was played from its beginning."""
+        session, seats, person = self.session, self.seats, self.person
+        if person is None or session.frame.phase != "over" or self._kept == session.begun:
+            return
+        people = [seat for seat in (0, 1) if not seats.is_agent(seat)]
+        dealt = all(act.what not in ("set_up", "load") for act in session.acts[: session.at])
+        if len(people) == 1 and dealt and not session.practice:
+            self._kept, self.unkept = session.begun, ""
+            try:
+                person.keep(session, people[0], seats.who[1 - people[0]])
+            except (ValueError, OSError) as error:
+                self.unkept = f"The frame was not kept: {error}."
+
     def _announce(self):
+        self._keep()
         self.revision += 1
         self._changed.notify_all()
 

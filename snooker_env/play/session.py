@@ -62,6 +62,8 @@ class Session:
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
     best_of: int  # the length of the match in frames; 1: a single frame
     won: list[int]  # frames that each seat has won in the match before this one
+    hints: list[int]  # how often each seat asked for advice in this frame
+    undone: int  # how often something was taken back in it
     acts: list[Act]
     at: int  # number of acts that count; the following ones were undone
     begun: int  # games begun or loaded so far
@@ -116,6 +118,21 @@ class Session:
         return max(self.frames) > self.best_of // 2
 
     @property
+    def layout(self) -> str:
+        """How the table was dealt."""
+        return self._options.layout
+
+    @property
+    def breaks(self) -> list[list[int]]:
+        """The breaks of each seat in this frame, the one that goes on last."""
+        found: list[list[int]] = [[], []]
+        for k in self.strokes:
+            if (one := self.acts[k].played) is not None and one.points and not one.penalty:
+                own = found[one.player]
+                own[len(own) - (one.break_before > 0) :] = [one.break_before + one.points]
+        return found
+
+    @property
     def miss(self) -> str:
         """The rule for a foul and a miss."""
         return self._options.miss
@@ -161,7 +178,7 @@ class Session:
     def as_a_whole(self) -> Iterator["Session"]:
         """What is done in this context is done as a whole: after an exception the session is as it was before."""
         state, kept = self.state, self.__dict__.copy()
-        kept |= {name: list(kept[name]) for name in ("acts", "noise", "won")}
+        kept |= {name: list(kept[name]) for name in ("acts", "noise", "won", "hints")}
         try:
             yield self
         except BaseException:
@@ -386,6 +403,7 @@ class Session:
 
     def _begin(self, what: str) -> None:
         self.acts, self.at, self.begun = [Act(what, self.state)], 1, self.begun + 1
+        self.hints, self.undone = [0, 0], 0
 
     def _did(self, act: Act) -> Act:
         del self.acts[self.at :]

@@ -259,7 +259,9 @@ def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
     balls, break_, scores = {0, 1, 2, 3, 19, 20, 21}, 0, [0, 0]
 
     def now(on):
-        return f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)}"
+        return (
+            f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)} no mistakes"
+        )
 
     for k, stroke in enumerate(strokes):
         before = [one for one in drawn if one["k"] == k + 1 and one["moving"]]
@@ -332,7 +334,7 @@ def test_the_end_of_a_frame_is_seen(shown):
     shown.until("page.state.phase === 'over' && page.settled === page.state.revision")
     assert shown.page.inner_text("#over-who") == "ghost ball won the frame"
     assert shown.page.inner_text("#over-score") == "You 1 : 0 ghost ball"
-    assert shown.page.inner_text("#over-last") == "You conceded the frame."
+    assert shown.page.inner_text("#over-last") == 'You conceded the frame. With "no mistakes".'
     assert shown.words == "Frame over: ghost ball won."
     table, over = shown.page.locator("#stage").bounding_box(), shown.page.locator("#over").bounding_box()
     assert over["y"] >= table["y"] and over["x"] >= table["x"]
@@ -575,10 +577,13 @@ def test_a_drill_counts_and_keeps_its_best(shown):
         shown.until("page.moving")
         shown("page.skip()")
     shown.until("page.drills.over")
-    assert shown.page.inner_text("#drill-words") == f"Escapes: {fair}. Best: {fair}." and fair > 0
+    assert (
+        shown.page.inner_text("#drill-words") == f"Escapes: {fair} of 10 fair. Your best is {fair}."
+        and fair > 0
+    )
     assert json.loads(shown("localStorage.getItem('snooker')"))["best"] == {"escapes": fair}
     shown.page.click("#drills summary")
-    assert f"Best: {fair}" in shown.page.inner_text("#drill-list button:has-text('Escapes')")
+    assert f"Your best: {fair}" in shown.page.inner_text("#drill-list button:has-text('Escapes')")
     shown.page.click("#drill-end")
     shown.until(f"!page.state.practice && {SETTLED}")
     assert not shown.page.is_visible("#drill")

@@ -12,7 +12,9 @@ import { Door } from "./play_door.js";
 import { Drills } from "./play_drill.js";
 import { firstAim } from "./play_first.js";
 import { Friend } from "./play_friend.js";
+import { breakWords, ending, helped, opponents } from "./play_level.js";
 import { ask, by, confirmed, DOWN, fill, isPerson, keep, kept, Latest, make } from "./play_parts.js";
+import { Person } from "./play_person.js";
 import { Review } from "./play_review.js";
 import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
@@ -21,12 +23,7 @@ import { Sound } from "./play_sound.js";
 import { Stats } from "./play_stats.js";
 import { Tour } from "./play_tour.js";
 
-/** The strengths of an opponent: who plays, with whose errors. */
-const LEVELS = {
-  beginner: ["ghost_ball", "beginner"], "club player": ["tactician_500", "club"], amateur: ["tactician_500", "amateur"],
-  professional: ["tactician_500", "professional"], perfect: ["tactician_500", "none"], "nobody: two play here": ["person", "none"],
-};
-const OWN = "own";
+const OWN = "own", FINE = 30, POWER = 2.5;
 const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
 /** Slow motion, zoom, time of a call [ms], how long an agent's cue is seen before its stroke [s]. */
 const SLOW = 0.2, ZOOM = 2, CALLED = 1600, AGENTS_LEAD = 1;
@@ -73,10 +70,12 @@ class Page {
     this.drills = new Drills(this);
     this.share = new Share(this);
     this.friend = new Friend(this);
+    new Person(this);
     PHONE.onchange = () => this.fold(PHONE.matches);
     this.compact();
     new ResizeObserver(() => this.fit()).observe(by("stage"));
-    this.door = new Door(this, LEVELS);
+    this.menu = opponents(this.levels, this.opponents, this.noise);
+    this.door = new Door(this, this.menu);
     this.wire();
     this.tour = new Tour(this);
   }
@@ -100,7 +99,7 @@ class Page {
     by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { next: true, seed: seed() })));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
-    by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html", undefined, `?${new URLSearchParams({ one: this.state.labels[0], other: this.state.labels[1] })}`), "text/html"); });
+    by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
     by("load").onclick = () => this.sure("Leave this frame and load a file?", "Load", () => by("file").click());
     by("file").onchange = () => this.try(() => this.load());
     by("labels").checked = kept.get("labels", false);
@@ -198,13 +197,9 @@ class Page {
   /** Use a state, if it is newer than the current one. */
   take(state) {
     if (this.state && state.revision <= this.state.revision) return;
-    const first = this.state === null, fresh = state.begun !== this.state?.begun, level = state.players[0] === "person" && Object.entries(LEVELS).find(([, [who, noise]]) => who === state.players[1] && noise === state.noise[1])?.[0];
+    const first = this.state === null, fresh = state.begun !== this.state?.begun, [me, who] = state.players, errors = this.levels.find(({ name }) => name === who)?.noise;
     this.state = state;
-    const other = state.players[1], own = state.players[0] === "person" && this.named.includes(other);
-    if (own) this.errs = { ...this.errs, [other]: state.noise[1] };
-    this.strength = level || (own ? other : OWN);
-    this.alias = [state.labels[1], state.labels[1]];
-    if (level && !isPerson(state.players[1])) this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
+    this.strength = me === "person" && who in this.menu && (errors ?? state.noise[1]) === state.noise[1] ? who : OWN;
     if (first) { this.put(state); this.drills.resume(); }
     if (fresh || state.strokes < this.played) { this.still(); this.stats.key = null; }
     if (fresh) this.review.end();
@@ -212,6 +207,7 @@ class Page {
       this.stats.times.clear();
       this.played = state.by_link?.visit ?? 0;
       this.replay = state.strokes > 0;
+      if (!this.drills.now) this.aim.set({ speed: POWER });
     }
     by("last").className = "";
     this.seated();
@@ -347,7 +343,7 @@ class Page {
   call({ points, fouls, penalty, words, break: run }) {
     if (!points && !fouls.length) return;
     const call = by("call");
-    call.textContent = fouls.length ? words.split(/[.;]/)[0] : run > points ? `+${points}, break ${run}` : `+${points}`;
+    call.textContent = fouls.length ? words.split(/[.;]/)[0] : run > points ? `break ${run}` : `+${points}`;
     call.className = fouls.length ? "foul" : "";
     call.hidden = false;
     clearTimeout(this.called);
@@ -417,6 +413,7 @@ class Page {
       const { state } = this, body = { revision: state.revision, speed, side, top, aim, elevation };
       if (state.in_hand) body.place = state.positions.cue;
       if (by("nominate").value && state.nominations.includes(by("nominate").value)) body.nominate = by("nominate").value;
+      await this.drills.weigh(body);
       await this.send(body);
     });
   }
@@ -447,15 +444,18 @@ class Page {
     }
   }
 
-  /** Seat an opponent of the chosen strength; it errs as its level says, the person as before. */
+  /** Seat the chosen opponent; one of the five errs as its level says, the person as before. */
   level() {
-    const name = by("level").value, [who, noise] = LEVELS[name] ?? [this.named.includes(name) && name, this.errs?.[name] ?? "professional"];
-    if (who) this.go("players", { players: ["person", who], noise: [this.state.noise[0], noise], practice: false });
+    const who = by("level").value;
+    if (who in this.menu) this.go("players", { players: ["person", who], practice: false });
   }
 
-  /** Send the players; a new agent gets a professional's errors, a person none. */
+  /** Send the players; a new agent gets its level's errors or a professional's, a person an amateur's. */
   seats(changed = -1) {
-    if (changed >= 0) by(`noise-${changed}`).value = isPerson(by(`who-${changed}`).value) ? "none" : "professional";
+    if (changed >= 0) {
+      const who = by(`who-${changed}`).value;
+      by(`noise-${changed}`).value = this.levels.find(({ name }) => name === who)?.noise ?? (isPerson(who) ? "amateur" : "professional");
+    }
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
     this.held = false;
     this.try(() => ask("players", { players, noise, practice: by("practice").checked, cue: by("cue").value }));
@@ -519,7 +519,8 @@ class Page {
       by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
       by(`side-${k}`).querySelector(".frames").textContent = state.best_of > 1 ? `(${state.frames[k]})` : "";
     }
-    fill(by("level"), [...Object.keys(LEVELS), ...this.named, OWN], this.strength);
+    fill(by("level"), [...Object.keys(this.menu), OWN], this.strength, name => this.menu[name]?.short ?? name);
+    by("level-about").textContent = this.menu[this.strength]?.about ?? "";
     const own = by("level").lastChild;
     own.hidden = this.strength !== OWN;
     own.textContent = `${state.labels[1]}, mistakes: ${this.noise[state.noise[1]]}`;
@@ -530,15 +531,12 @@ class Page {
     this.show();
   }
 
-  /** The server's words, with an opponent called by its strength. */
-  said(words) { return words.replaceAll(...this.alias); }
-
   show() {
     const { state, table } = this, busy = this.behind, mine = this.aiming, review = this.review.open, setup = this.setup.open || review;
     for (const [id, hide] of [["setup", !this.setup.open], ["review", !review], ["stroke", setup], ["ask", setup], ["act", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
     const who = state.labels[table.striker], on = table.ball_on?.replace("_", " ");
-    by("asked").textContent = review ? "Review of the frame" : setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : this.said(table.words);
-    if (by("last").className !== "trouble") by("last").textContent = this.said(table.last);
+    by("asked").textContent = review ? "Review of the frame" : setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : table.words;
+    if (by("last").className !== "trouble") by("last").textContent = this.drills.said ?? table.last;
     by("asked").title = by("asked").textContent;
     by("last").title = by("last").textContent;
     const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
@@ -595,20 +593,21 @@ class Page {
     }
     put("n-reds", "reds ", make("b", { textContent: table.reds }));
     put("n-left", "left ", make("b", { textContent: table.available }));
+    put("n-aid", helped(this.state).join(", "));
     const left = Math.max(0, Math.ceil(table.time_left ?? 0));
     put("n-time", ...table.time_left === null ? [] : ["time ", make("b", { textContent: `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}` })]);
   }
 
   /** The end of the frame, with the score from the side of the only person, else of the first seat. */
   over(rest) {
-    const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0;
-    by("over").hidden = !rest || phase !== "over" || this.seen === this.table;
+    const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0, best = Math.max(0, ...this.state.breaks[winner] ?? []);
+    by("over").hidden = !rest || this.drills.now || phase !== "over" || this.seen === this.table;
     if (phase !== "over") return;
     const { match_over: ended, best_of: length, frames } = this.state;
-    by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}`;
+    by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}${best < FINE ? "" : ` with ${breakWords(best)}`}`;
     by("next").textContent = this.next;
     by("over-score").textContent = `${labels[me]} ${scores[me]} : ${scores[1 - me]} ${labels[1 - me]}`;
-    by("over-last").textContent = this.said(last);
+    by("over-last").textContent = ending(this.state, last, me);
   }
 
   get next() { return this.state.by_link ? "New game by link" : this.state.best_of > 1 && this.state.match_over ? "New match" : "Next frame"; }

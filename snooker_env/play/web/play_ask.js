@@ -118,12 +118,14 @@ export class Advisor {
     try {
       const found = await ask("advise", { agent: by("agent").value, n: 5, revision });
       this.noise = found.noise;
+      if (found.suggestions && !app.state.practice) app.state.hints[app.state.striker]++;  // as the server does
       if (found.suggestions && revision === app.state.revision) this.show(found);
     } catch (error) {
       by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
     }
     button.disabled = false;
     button.textContent = "Hint";
+    app.show();
   }
 
   show({ order, suggestions, choices }) {

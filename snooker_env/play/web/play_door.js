@@ -13,9 +13,9 @@ const FOR = {
 };
 
 export class Door {
-  constructor(app, levels) {
+  constructor(app, menu) {
     Object.assign(this, { app, host: app.me === "person" });
-    if (app.players.includes("friend")) levels["a friend, on their device"] = ["friend", "none"];
+    if (app.players.includes("friend")) menu.friend = { short: "a friend, on their device", about: "" };
     by("undo").before(...this.host ? [] : [by("concede")]);
     by("invite-open").hidden = !app.invites.length;
     by("invite-open").onclick = () => by("invite").showModal();
