@@ -43,8 +43,13 @@ class Seats:
         self.players: dict[str, Player] = dict(agents)
         for name in OFFERED:
             self.players.setdefault(name, player(name))
-        self.names: list[str] = [PERSON, *[FRIEND] * friends, *self.players]  # who may sit down
+        self.persons: list[str] = [PERSON, *[FRIEND] * friends]
         self.who = [PERSON, PERSON]
+
+    @property
+    def names(self) -> list[str]:
+        """The players that may sit down: persons and the agents."""
+        return [*self.persons, *self.players]
 
     def advisers(self, practice: bool) -> list[str]:
         """The agents that may be asked for advice: alone at the table all, in a frame those that know frames."""
