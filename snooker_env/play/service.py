@@ -49,8 +49,13 @@ class Seats:
         self.opponents: list[str] = [*agents, *BY_NAME]  # for the menu
         for level in BY_NAME.values():
             self.players.setdefault(level.name, self.players.get(level.agent) or player(level.agent))
-        self.names: list[str] = [PERSON, *[FRIEND] * friends, *self.players]  # who may sit down
+        self.persons: list[str] = [PERSON, *[FRIEND] * friends]
         self.who, self._before = [PERSON, PERSON], [PERSON, PERSON]
+
+    @property
+    def names(self) -> list[str]:
+        """The players that may sit down: persons and the agents."""
+        return [*self.persons, *self.players]
 
     def advisers(self, practice: bool) -> list[str]:
         """The agents that may be asked for advice: alone at the table all, in a frame those that know frames."""
