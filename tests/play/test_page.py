@@ -196,7 +196,7 @@ def test_a_cue_ball_in_hand_is_dragged_within_the_d(shown):
     shown.drag(cue, (0.1, -1.2))
     shown.until("Math.hypot(page.state.positions.cue[0] - 0.1, page.state.positions.cue[1] + 1.2) < 0.004")
     shown.drag(shown("[page.balls.x[0], page.balls.y[0]]"), (0.0, 0.5))
-    shown.until("Math.abs(page.state.positions.cue[1] + 1.0475) < 1e-9")
+    shown.until("Math.abs(page.state.positions.cue[1] + 1.0475) < 1e-6")
     shown("page.aim.set({aim: -1.5708, speed: 0.5})")
     shown.page.keyboard.press("Enter")
     shown.played(1)
@@ -480,7 +480,7 @@ def test_the_cue_is_pulled_back_and_let_go(shown):
     wanted = shown("page.aim.wish.speed")
     shown.played(1)
     cue = shown.line("api/strokes")[1]["strokes"][0]["cue"]
-    assert cue["speed"] == pytest.approx(wanted) and cue["aim"] == pytest.approx(pi / 2)
+    assert cue["speed"] == pytest.approx(wanted, abs=1e-3) and cue["aim"] == pytest.approx(pi / 2)
 
 
 def test_the_strip_aims_finely_and_says_how_full_the_ball_is_struck(shown):
