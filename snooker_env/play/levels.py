@@ -12,7 +12,7 @@ class Level(NamedTuple):
     agent: str
     noise: NoiseName
     style: str
-    elo: int  # of ``python -m benchmarks.levels``, the first 1000; the last two are provisional
+    elo: int  # of ``python -m benchmarks.levels``, the first 1000
 
 
 LEVELS = (
@@ -21,8 +21,8 @@ LEVELS = (
     ),
     Level("Walter", "tactician_500", "club", "safe: leaves you little, and waits for your mistakes", 1921),
     Level("Rosa", "search_2000", "amateur", "bold: goes for every pot, and for the break", 2148),
-    Level("Mia", "tactician_30", "professional", "quick: looks at few strokes, and hits them well", 2530),
-    Level("Vera", "tactician_500", "professional", "safe: weighs pot and safety, and seldom errs", 2677),
+    Level("Mia", "tactician_30", "professional", "quick: looks at few strokes, and hits them well", 2587),
+    Level("Vera", "tactician_500", "professional", "safe: weighs pot and safety, and seldom errs", 2693),
 )
 BY_NAME = {level.name: level for level in LEVELS}
 USUAL = "Walter"  # who plays against a person unless someone is named
