@@ -124,13 +124,14 @@ def test_set_up_snaps_undoes_and_mirrors(shown):
 
 def test_the_agent_that_was_named_stays_in_the_menu(chromium, line):  # noqa: F811
     seats = line.server.service.seats
-    seats.named, seats.players["planner"] = ["planner"], sn.player("planner")
+    seats.opponents.insert(0, "planner")
+    seats.players["planner"] = sn.player("planner")
     shown = Shown(chromium, line)
     shown.set_up(CUT)
     shown.page.click("#start summary")
-    for name, who in (("amateur", "tactician_500"), ("planner", "planner"), ("perfect", "tactician_500")):
+    for name in ("Rosa", "planner", "Vera"):
         shown.page.select_option("#level", name)
-        shown.until(f"page.state.players[1] === argument && page.strength && {SETTLED}", who)
+        shown.until(f"page.state.players[1] === argument && page.strength && {SETTLED}", name)
         assert shown.page.input_value("#level") == name
     tables = shown("[...document.querySelectorAll('#layout option')].map(one => one.innerText)")
     assert not [words for words in tables if ":" in words or "_" in words]

@@ -4,7 +4,7 @@
  */
 
 import { ChanceGraph } from "./table.js";
-import { ask, by, make, pocketWords } from "./play_parts.js";
+import { ask, by, make } from "./play_parts.js";
 
 /** How the stroke that was played and the best one are drawn. */
 const INK = { played: { colour: "#ffffff", width: 0.005 }, best: { colour: "#ffd75e", width: 0.005, dash: [0.03, 0.02] } };
@@ -121,7 +121,7 @@ export class Review {
     if (held) list.querySelector(`[data-stroke="${held}"]`)?.focus({ preventScroll: true });
   }
 
-  words(text) { return pocketWords(text, this.app.view.upright).replace(/ %/g, "\u00a0%"); }
+  words(text) { return text.replace(/ %/g, "\u00a0%"); }
 
   say(trouble) {
     const said = by("review-said"), one = this.order.find(({ number }) => number === this.chosen), { running } = this.found ?? { running: true };
