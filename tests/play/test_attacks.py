@@ -10,8 +10,9 @@ import pytest
 
 from snooker_env.play import server as module
 from snooker_env.play.invites import addresses_here, invite
+from snooker_env.play.levels import USUAL
 from snooker_env.play.routes import GET, POST
-from snooker_env.play.service import FRIEND, OPPONENT, PERSON, WATCHER
+from snooker_env.play.service import FRIEND, PERSON, WATCHER
 from tests.playing import EASY, STRAIGHT, refused, served
 
 
@@ -25,7 +26,7 @@ def line(request):
 def hosted():
     """A new game against an agent, served to others."""
     with served("") as one:
-        one.server.service.seats.sit([PERSON, OPPONENT])
+        one.server.service.seats.sit([PERSON, USUAL])
         yield one
 
 
