@@ -154,7 +154,7 @@ def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     else:
         made = f"{names[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
-    title = f"{made}, {args.noise}'s errors, {where.split(',')[0]}"
+    title = f"{' - '.join(names)}, {args.noise}'s errors, {where.split(',')[0]}"  # does not tell how it ends
     judge = check_judge(player(TACTICIAN).at(env)) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
     print(*describe(played), sep="\n")

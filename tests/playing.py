@@ -2,9 +2,12 @@
 
 import http.client
 import json
+import threading
+from contextlib import contextmanager
 from math import atan2
 
 from snooker_env.play import routes
+from snooker_env.play.server import PlayServer
 from snooker_env.play.service import Seats, Service
 from snooker_env.play.session import Session
 
@@ -26,11 +29,11 @@ class Asked:
     def __init__(self):
         self.service = Service(Session(seed=1), Seats({}))
 
-    def __call__(self, name, **fields):
+    def __call__(self, name, /, **fields):
         """A POST."""
         return self._answer(routes.POST[name], json.loads(json.dumps(fields)))
 
-    def get(self, name, **fields):
+    def get(self, name, /, **fields):
         return self._answer(routes.GET[name], fields)
 
     def _answer(self, route, fields):
@@ -69,3 +72,26 @@ class Line:
             return reply.status, json.loads(text) if as_json else text, reply.headers
         finally:
             connection.close()
+
+
+@contextmanager
+def served(host=None):
+    """A connection to the server of a new game, on these addresses."""
+    service = Service(Session(seed=1), Seats({}, friends=host is not None))
+    server = PlayServer(service, 0, host)
+    thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05}, daemon=True)
+    thread.start()
+    yield Line(server)
+    server.shutdown()
+    server.server_close()
+    service.close()
+    thread.join()
+
+
+def refused(answer, status, words):
+    """Is that an error of this status, as one JSON object, that says these words?"""
+    code, body, headers = answer
+    assert code == status and set(body) == {"error"}, answer[:2]
+    assert set(body["error"]) == {"field", "value", "message"} and words in body["error"]["message"]
+    assert headers["Content-Type"] == "application/json"
+    return body["error"]

@@ -1,44 +1,83 @@
-"""``python -m snooker_env.advice coach FILE``: what do recorded strokes say of a player?"""
+"""``python -m snooker_env.advice coach FILE``, ``review FILE``: what do recorded strokes say of a player, what did those of a
+frame cost?"""
 
 import argparse
 import json
 import sys
 from collections.abc import Sequence
 
-from .._lib.command import stop_with_reader
+from .._lib.command import exit_code
 from ..physics.parameters import PRESETS as PHYSICS
+from ..progress import Progress
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
-from .coach import coach
-from .recorded import PLAYED_ON, read_strokes
+from .coach import Coaching, coach
+from .recorded import PLAYED_ON, REPLAY, read_document, read_strokes
+from .review import SAMPLES, Review, go_through, read_frame
 
 TABLES = ("match", "tight")  # presets of snooker's size
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print what recorded strokes say of a player."""
+    """Print what recorded strokes say of a player, or what those of a frame cost."""
+    parser = argparse.ArgumentParser("python -m snooker_env.advice")
+    asked = parser.add_subparsers(dest="question", required=True)
     about = "A player's errors, pots made and expected, what costs most, and drills."
-    parser = argparse.ArgumentParser("python -m snooker_env.advice", description=about)
-    parser.add_argument("question", choices=("coach",), help="what is asked")
-    parser.add_argument("file", metavar="FILE", help="recorded strokes (JSON), or a replay (JSON or page)")
-    parser.add_argument("--player", type=int, choices=(0, 1), help="of a replay of a frame: whose strokes")
+    of_player = asked.add_parser("coach", help="what recorded strokes say of a player", description=about)
+    about = (
+        "What each stroke of a frame cost against an agent's best: by the choice of it, and by its errors."
+    )
+    of_frame = asked.add_parser("review", help="what the strokes of a frame cost", description=about)
+    for one, file in (
+        (of_player, "recorded strokes (JSON), or a replay (JSON or page)"),
+        (of_frame, "a replay of a frame (JSON or page)"),
+    ):
+        one.add_argument("file", metavar="FILE", help=file)
+        one.add_argument("--player", type=int, choices=(0, 1), help="of a replay of a frame: whose strokes")
+        one.add_argument("--seed", type=int, default=0, help="seed of the simulated strokes (default: 0)")
+        one.add_argument("--json", action="store_true", help="print all figures as JSON")
     target = f"whom costs are counted against: {', '.join(LEVELS)} (default: professional)"
-    parser.add_argument("--target", default="professional", help=target)
+    of_player.add_argument("--target", default="professional", help=target)
     for name, names in (("cue", CUES), ("physics", PHYSICS), ("table", TABLES)):
-        parser.add_argument(f"--{name}", choices=names, help="of the strokes, where the file does not say it")
-    parser.add_argument("--seed", type=int, default=0, help="seed of the simulated strokes (default: 0)")
-    parser.add_argument("--json", action="store_true", help="print all figures as JSON")
+        of_player.add_argument(
+            f"--{name}", choices=names, help="of the strokes, where the file does not say it"
+        )
+    of_frame.add_argument("--agent", help="whose best strokes count (default: tactician)")
+    of_frame.add_argument(
+        "--noise", choices=LEVELS, help="errors of all strokes (default: those of the players)"
+    )
+    of_frame.add_argument(
+        "--samples", type=int, default=SAMPLES, help=f"how often a stroke is played (default: {SAMPLES})"
+    )
     args = parser.parse_args(argv)
+
+    def show() -> int:
+        try:
+            found = _coach(args) if args.question == "coach" else _review(args)
+        except (ValueError, OSError) as error:
+            print(f"error: {error}", file=sys.stderr)
+            return 2
+        print(json.dumps(found.to_dict(), indent=1) if args.json else found)
+        return 0
+
+    return exit_code(f"{parser.prog} {args.question}", show)
+
+
+def _coach(args: argparse.Namespace) -> Coaching:
     told = {name: value for name in PLAYED_ON if (value := getattr(args, name)) is not None}
-    try:
-        with stop_with_reader():
-            strokes = read_strokes(args.file, player=args.player)
-            found = coach(strokes, target=args.target, options=told, seed=args.seed)
-            print(json.dumps(found.to_dict(), indent=1) if args.json else found)
-    except (ValueError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    return 0
+    strokes = read_strokes(args.file, player=args.player)
+    return coach(strokes, target=args.target, options=told, seed=args.seed)
+
+
+def _review(args: argparse.Namespace) -> Review:
+    how = {name: getattr(args, name) for name in ("agent", "noise", "samples", "seed")}
+    players = (0, 1) if args.player is None else (args.player,)
+    steps = go_through(read_document(args.file, {REPLAY: read_frame}), players, **how)
+    _, total, found = next(steps)
+    with Progress("review", total, "looks") as progress:
+        for done, _, found in steps:  # noqa: B007
+            progress.at(done)
+    return found
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """What would a player do here, and how would it turn out? ``advise``."""
 
+from collections import Counter
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,8 @@ SELDOM = 0.05  # chance of a pot below which it is no suggestion
 ALIKE = 0.005  # strokes whose chances to win differ by no more are as good,
 FEW = 0.05  # or, where the chance is small, by no more than this share of it
 FAR = 1.25  # how many times as often a pot must win that takes a ball to lay snookers on
-CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
+CONSIDERED = 20  # ranked strokes that are examined for each stroke requested, so that enough of them differ
+WAYS = 3  # ways of playing the same stroke that are judged: the best one is kept
 FEWEST = 40  # strokes that are examined at least
 
 
@@ -55,15 +57,16 @@ def advise(
         each stroke has its ``place``. Points of the break so far do not count.
     agent : str, Path or player, optional
         The player, as ``snooker_env.player`` takes it, in a frame one that knows frames ("tactician",
-        "stroke_value", your own). One without ``rank`` has one stroke; of those that read alike, apart from the
-        speed of a pot, only the first is kept. Default None: "planner_500", in a frame "tactician".
+        "stroke_value", your own). One without ``rank`` has one stroke. Default None: "planner_500", in a frame
+        "tactician".
     scores : (int, int), optional
         Of the striker and of the other, in [0, 1000]: they make a frame of a position of a visit. Default None:
         it is what it is.
     noise : str, dict or Noise
         Execution errors with which strokes are chosen and judged.
     n : int
-        Largest number of strokes, in [1, 100].
+        Largest number of strokes, in [1, 100]: of all ways to pot a ball into one pocket the best, and likewise
+        of safeties off a red, or the same colour, that leave the cue ball in the same third of the table.
     samples : int
         How often each stroke is played, in [1, 100000]. Without noise each is played once.
     visits : int
@@ -95,24 +98,33 @@ def advise(
     )
     at = one_position(position, scores)
     practice = practice_of(noise, options, position, of_frames=at.of_frames)
-    name, asked = _player_of(agent, at)
-    strokes = _ask(asked, practice, at, n, seed)
-    chosen, of_agent = _choose_fair(practice, strokes, n, trials), {one.stroke for one in strokes}
-    if not chosen:
-        strokes += _ask(player_of(INSTEAD), practice, at, n, seed)
-        chosen = _choose_fair(practice, strokes, n, trials) or [_choose_least_bad(practice, strokes, trials)]
+    name, asked = name_player(agent, at)
+    chosen, own = choose_strokes(practice, asked, at, n, trials)
     return Advice(
         suggestions=tuple(chosen),
         position=at[0],
         scores=tuple(at.scores[0].tolist()) if at.of_frames else None,
         agent=name,
-        own=all(one.stroke in of_agent for one in chosen),
+        own=own,
         noise=noise if isinstance(noise, str) else asdict(practice.noise),
         **trials._asdict(),
     )
 
 
-def _player_of(agent: object, at: Positions) -> tuple[str, Player]:
+def choose_strokes(
+    practice: Practice, asked: Player, at: Positions, n: int, trials: Trials, rivals: int = RIVALS
+) -> tuple[list[Suggestion], bool]:
+    """The player's strokes, best first, the first of a frame compared with so many ``rivals``; whether all are its own."""
+    strokes = _ask(asked, practice, at, n, trials.seed)
+    chosen, of_agent = _choose_fair(practice, strokes, n, trials, rivals), {one.stroke for one in strokes}
+    if not chosen:
+        strokes += _ask(player_of(INSTEAD), practice, at, n, trials.seed)
+        fair = _choose_fair(practice, strokes, n, trials, rivals)
+        chosen = fair or [_choose_least_bad(practice, strokes, trials)]
+    return chosen, all(one.stroke in of_agent for one in chosen)
+
+
+def name_player(agent: object, at: Positions) -> tuple[str, Player]:
     """The player and its name; ValueError for one that knows visits alone in a frame."""
     agent = (OF_FRAMES if at.of_frames else AGENT) if agent is None else agent
     asked = player_of(agent)
@@ -131,30 +143,41 @@ def _ask(player: Player, practice: Practice, at: Positions, n: int, seed: int) -
     return drop_alike(intend(practice, at, cue_strokes(played, at)[: max(FEWEST, CONSIDERED * n)]))
 
 
-def _choose_fair(practice: Practice, strokes: list[Intention], n: int, trials: Trials) -> list[Suggestion]:
-    """The first n strokes that are fair without errors and in most samples, best first; no pot that hardly ever goes."""
+def _choose_fair(
+    practice: Practice, strokes: list[Intention], n: int, trials: Trials, rivals: int
+) -> list[Suggestion]:
+    """The first n ideas that are fair without errors and in most samples, best first; no pot that hardly ever goes."""
     fair = [one for one in strokes if one.kind not in FOULS]
     out, waiting = _judge_fair(practice, [one for one in fair if not one.spends], n, trials)
     if practice.options.task != "frame":
-        return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
+        return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))[:n]
     spent, rest = _judge_fair(practice, [one for one in fair if one.spends], n, trials)
     out = _lay_first(_sort_by_win(out), _sort_by_win(spent))
-    if not out:
-        return out
-    others = [one for one in waiting + rest if (one.kind == "pot") != (out[0].kind == "pot")][:RIVALS]
-    rivals = judge_strokes(practice, others, trials._replace(visits=0)) if others else []
-    return [_compare(out, [one for one in out[1:] + rivals if _is_sensible(one)]), *out[1:n]]
+    if not (out and rivals):
+        return out[:n]
+    others = [one for one in waiting + rest if (one.kind == "pot") != (out[0].kind == "pot")][:rivals]
+    judged = judge_strokes(practice, others, trials._replace(visits=0)) if others else []
+    return [_compare(out, [one for one in out[1:] + judged if _is_sensible(one)]), *out[1:n]]
 
 
 def _judge_fair(
-    practice: Practice, waiting: list[Intention], n: int, trials: Trials
+    practice: Practice, fair: list[Intention], n: int, trials: Trials
 ) -> tuple[list[Suggestion], list[Intention]]:
-    """The first n strokes that are fair in most samples, in their order, and those that were not judged."""
-    out: list[Suggestion] = []
-    while waiting and len(out) < n:
-        some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
-        out += [one for one in judge_strokes(practice, some, trials) if _is_sensible(one)]
-    return out, waiting
+    """The best way of each of n ideas that is fair in most samples, and the strokes that were not judged."""
+    ways: Counter[object] = Counter()
+    waiting, best = [], dict[object, Suggestion]()
+    for one in fair:
+        ways[one.idea] += 1
+        if ways[one.idea] <= WAYS:
+            waiting.append(one)
+    some = n + (WAYS - 1) * (n - 1)
+    while waiting and len(best) < n:
+        for one, judged in zip(waiting, judge_strokes(practice, waiting[:some], trials), strict=False):
+            known = best.get(one.idea)
+            if _is_sensible(judged) and (known is None or judged.figure > known.figure):
+                best[one.idea] = judged
+        waiting, some = waiting[some:], n - len(best)
+    return list(best.values()), waiting
 
 
 def _lay_first(others: list[Suggestion], spent: list[Suggestion]) -> list[Suggestion]:

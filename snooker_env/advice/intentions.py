@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..game.balls import CUE
-from ..geometry import BALL_RADIUS
+from ..geometry import BALL_RADIUS, BAULK_Y
 from ..planning import Outcomes, Positions, clear_paths, obstructions
 from ..planning.worth import lead_of, left_of
 from ..players.cue_stroke import CueStroke
@@ -31,6 +31,7 @@ class Intention(NamedTuple):
     alike: str  # the same without what the room does: strokes with equal ones are one stroke to a player
     room: Room
     spends: bool  # whether it pots a ball that the striker needs to lay snookers on
+    idea: tuple[str, str | int, int]  # what other ways of playing it share with it
 
 
 def intend(practice: Practice, at: Positions, strokes: list[CueStroke]) -> list[Intention]:
@@ -74,7 +75,11 @@ def _intend(
     how_played = (say.stroke_words(played, distance, physics, way) for way in (room, None))
     push = say.push_words(dx, dy, stroke.aim, first) if first >= 0 else ""
     words, alike = (", ".join(filter(None, (what, how, lie, push))) for how in how_played)
-    return Intention(stroke, starts[k : k + 1], kind, ball, pocket, first, words, alike, room, False)
+    idea = kind, ball, pocket
+    if kind != "pot":  # a red is as good as another; where the cue ball goes tells safeties apart
+        third = int(np.digitize(stops.places[k, CUE, 1], (BAULK_Y, -BAULK_Y)))
+        idea = kind, say.ball_name(ball), third
+    return Intention(stroke, starts[k : k + 1], kind, ball, pocket, first, words, alike, room, False, idea)
 
 
 def _count_snookers(at: Positions, after: Positions, strokes: list[Intention]) -> list[Intention]:

@@ -5,18 +5,18 @@ import base64
 import binascii
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from math import atan2, hypot, pi, radians, remainder
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
 from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
-from .._lib.types import CueKind, Floats
+from .._lib.types import Bools, CueKind, Floats
 from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
 from ..physics import cloth
@@ -30,8 +30,10 @@ from ..replays.encode import physics_data, table_data, table_from
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.options import CUES, Options
 
-FORMAT, VERSION = "snooker-strokes", 1
-VERSIONS = {FORMAT: VERSION, "snooker-replay": 2}  # of files that are read
+FORMAT, VERSION, REPLAY = "snooker-strokes", 1, "snooker-replay"
+VERSIONS = {FORMAT: VERSION, REPLAY: 2}  # of files that are read
+WHAT = {FORMAT: f"a file of strokes ({FORMAT!r})", REPLAY: f"a replay ({REPLAY!r})"}
+T = TypeVar("T")
 PLAYED_ON = ("cue", "physics", "table")  # what errors are told by beside the strokes: never assumed
 # How far a stroke may be from the pot that it is guessed for: 4 sigma of a club player's hard one
 CALLED = radians(2.0)
@@ -247,32 +249,37 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
     ...     read_strokes(f"{folder}/mine.json")[0].potted
     True
     """
+    readers = {FORMAT: _from_strokes, REPLAY: _from_replay}
+    if player is not None:
+        integer("player", player, 0, 1)
+    strokes = read_document(path, {form: partial(one, player=player) for form, one in readers.items()})
+    if not strokes:
+        raise refuse("path", str(path), "must hold at least one stroke of the player")
+    return strokes
+
+
+def read_document(path: str | Path, readers: Mapping[str, Callable[[dict[str, Any]], T]]) -> T:
+    """What the reader of its format makes of a file, JSON or the page of a replay; ValueError, OSError as ``read_strokes``."""
+    allowed = f"must be {' or '.join(WHAT[form] for form in readers)}"
     try:
         text = read_bytes(path, MOST_JSON).decode("utf-8")
         page = _DATA.search(text)
         kept = strict_json(page[1] if page else text)
     except ValueError as error:
-        raise refuse("path", str(path), f"must be a file of strokes or a replay ({error})") from None
+        raise refuse("path", str(path), f"{allowed} ({error})") from None
     form = kept.get("format") if isinstance(kept, dict) else None
-    readers = {FORMAT: _from_strokes, "snooker-replay": _from_replay}
     if not isinstance(form, str) or form not in readers:
-        allowed = f"must be a file of strokes ({FORMAT!r}) or a replay ('snooker-replay')"
         raise refuse("path", str(path), allowed)
     if not isinstance(kept.get("strokes"), list):
         raise refuse_what(f"strokes of {path}", f"a {type(kept.get('strokes')).__name__}", "must be a list")
     if kept.get("version") != VERSIONS[form] or kept["version"] is True:
         raise refuse(f"version of {path}", kept.get("version"), f"must be {VERSIONS[form]}")
-    if player is not None:
-        integer("player", player, 0, 1)
     try:
         with in_file(path):
-            strokes = readers[form](kept, player)
+            return readers[form](kept)
     except (KeyError, TypeError, IndexError, AttributeError, binascii.Error) as error:
         what = f"a damaged file ({type(error).__name__}: {error})"
         raise refuse_what(str(path), what, f"must be a whole {form!r}") from None
-    if not strokes:
-        raise refuse("path", str(path), "must hold at least one stroke of the player")
-    return strokes
 
 
 def strokes_of(
@@ -350,17 +357,9 @@ def _of_replay(
     one: Mapping[str, Any], scores: tuple[int, int], intended: CueStroke | None, where: dict[str, Any]
 ) -> Recorded:
     """A stroke of a replay, played on the table ``where``; which pot was meant is told from the line of the stroke."""
-    start, here = _numbers(one["start"], "f8", 2), _present(one["on_table"])
+    (start, here), (rest, left), fell = read_balls(one)
     word = one["ball_on"].replace(" ", "_")
     position = _position(start, here, None if word == "free_ball" else word)
-    which, states = _numbers(one["paths"]["u1"], "u1", 2).astype(int).T
-    rest, left = start.copy(), here.copy()
-    for ball, state, row in zip(which, states, _numbers(one["paths"]["f8"], "f8", 7), strict=True):
-        rest[ball], left[ball] = row[1:3], state != cloth.GONE
-    # the pocket nearest to where it fell
-    fell = {ball: int(np.hypot(*(_AIMS - rest[ball]).T).argmin()) for ball in one["pots"]}
-    if one["after"] is not None:
-        rest, left = _numbers(one["after"]["places"], "f8", 2), _present(one["after"]["on_table"])
     scored = one["points"] > 0 and not one["penalty"]
     red = word == "red" or (word == "free_ball" and here[1:16].any())  # that a free ball stood for
     colour = scored and red and bool(left[16:].any())
@@ -381,6 +380,20 @@ def _of_replay(
     came = {"points": one["points"], "penalty": one["penalty"], "after": after, "scores": scores}
     came |= {**where, "cue": one.get("cue_kind")}
     return Recorded(position=position, intended=intended, played=played, **pot, **came)
+
+
+def read_balls(one: Mapping[str, Any]) -> tuple[tuple[Floats, Bools], tuple[Floats, Bools], dict[int, int]]:
+    """Of a stroke of a replay: the balls (22, 2), (22,) before it and after it, and the pockets of those potted."""
+    start, here = _numbers(one["start"], "f8", 2), _present(one["on_table"])
+    which, states = _numbers(one["paths"]["u1"], "u1", 2).astype(int).T
+    rest, left = start.copy(), here.copy()
+    for ball, state, row in zip(which, states, _numbers(one["paths"]["f8"], "f8", 7), strict=True):
+        rest[ball], left[ball] = row[1:3], state != cloth.GONE
+    # the pocket nearest to where it fell
+    fell = {ball: int(np.hypot(*(_AIMS - rest[ball]).T).argmin()) for ball in one["pots"]}
+    if one["after"] is not None:
+        rest, left = _numbers(one["after"]["places"], "f8", 2), _present(one["after"]["on_table"])
+    return (start, here), (rest, left), fell
 
 
 def _numbers(text: str, kind: str, columns: int) -> Floats:

@@ -1,6 +1,7 @@
 """``python -m snooker_env.play``: a server on this machine's own address, and the browser on its page."""
 
 import argparse
+import os
 import sys
 import webbrowser
 from pathlib import Path
@@ -20,21 +21,32 @@ if TYPE_CHECKING:
 PORT = 8147  # unless another is named: always the same, since a browser keeps scores by the page's address
 
 
+def _usual_file() -> Path:
+    """A person's file, unless another is named: in the user's folder for data."""
+    base = os.environ.get("APPDATA" if os.name == "nt" else "XDG_DATA_HOME") or "~/.local/share"
+    return Path(base).expanduser() / "snooker_env" / "person.json"
+
+
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
     about = """Play snooker in the browser: against yourself or an agent, from any position, with an advisor.
-        Programs can play too, by the protocol in the documentation. The server listens on 127.0.0.1 only, and
-        requires the address that it prints."""
+        Programs can play too, by the protocol in the documentation. The server listens on 127.0.0.1 only, unless
+        --host is given, and requires an address that it prints."""
     parser = argparse.ArgumentParser(prog="python -m snooker_env.play", description=about)
     add = parser.add_argument
     add("--port", type=int, help=f"port to listen on (default: {PORT} if it is free, else any)")
+    host = """play on a phone and with a friend in the same network: listen on all addresses of this machine, or on
+        ADDRESS, and print the addresses to pass on"""
+    add("--host", nargs="?", const="", metavar="ADDRESS", help=host)
     add("--no-browser", action="store_true", help="only print the address")
     agent = """an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or
-        MODULE:CLASS; the first one is your opponent (default: tactician_500), and your adviser if it knows frames;
+        MODULE:CLASS; the first one is your opponent (default: Walter, of five), and your adviser if it knows frames;
         may be given more than once"""
     add("--agent", action="append", default=[], metavar="NAME", help=agent)
     add_model_options(parser)
-    noise = "execution errors of the agent (default: %(default)s)"
-    add("--noise", choices=list(LEVELS), default="professional", help=noise)
+    noise = "execution errors of the agent (default: a professional's, of the usual opponent its own)"
+    add("--noise", choices=list(LEVELS), help=noise)
+    person = "your own file, of your frames and strokes, which are sent nowhere (default: %(default)s)"
+    add("--person", type=Path, default=_usual_file(), metavar="FILE", help=person)
     add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
     add("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
     cue = "whether rails and balls are in its way (default: %(default)s)"
@@ -49,9 +61,10 @@ def service_of(args: argparse.Namespace) -> "Service":
     import numpy as np
 
     from ..players.resolver import players_of
-    from .game_record import open_game
+    from .levels import USUAL
+    from .person import Person
     from .routes import position_of
-    from .service import OPPONENT, PERSON, Seats, Service
+    from .service import PERSON, Seats, Service
     from .session import Session
 
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
@@ -59,16 +72,16 @@ def service_of(args: argparse.Namespace) -> "Service":
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
     players = players_of(args.agent, args.trust, options_of_words(args.options))
     agents = dict(zip(shown, players, strict=True))
-    seats = Seats(agents)
-    seats.sit([PERSON, next(iter(agents), OPPONENT)])
-    session.noise[1] = args.noise
+    seats = Seats(agents, friends=args.host is not None)
+    seats.sit([PERSON, next(iter(agents), USUAL)])
+    session.noise[:] = ["amateur", args.noise or seats.usual_noise(1, "professional")]
     if args.position is not None:
         read = _read(args.position)
         if read.get("format") == "snooker-game":
-            open_game(session, read)
+            session.load(read)
         else:
             session.set_up(position_of(read), scores=(0, 0), striker=0, free_ball=False)
-    return Service(session, seats)
+    return Service(session, seats, Person(args.person))
 
 
 def warm_up(service: "Service") -> None:
@@ -87,18 +100,29 @@ def warm_up(service: "Service") -> None:
         report(service)
 
 
-def _server(service: "Service", port: int | None) -> "PlayServer":
+def _server(service: "Service", port: int | None, host: str | None = None) -> "PlayServer":
     """The server on a port; by default on ``PORT``, where a browser finds again what it has kept, unless it is taken."""
     from .server import PlayServer
 
     if port is not None:
         integer("port", port, 0, 65535)
     try:
-        return PlayServer(service, PORT if port is None else port)
+        return PlayServer(service, PORT if port is None else port, host)
     except ValueError:
         if port is not None:
             raise
-        return PlayServer(service)
+        return PlayServer(service, 0, host)
+
+
+def _invite(server: "PlayServer") -> None:
+    """Print the addresses for other devices, and the one for the host's own phone as a QR code."""
+    print("In the same network, unencrypted, so pass them on in one that you trust:\n")
+    for one, words in zip(server.service.invites, ("you, on a phone", "a friend", "watchers"), strict=True):
+        print(*(f"    {words:16} {address}" for address in one.addresses), sep="\n")
+    if sys.stdout.isatty():
+        rows = server.service.invites[0].drawn.splitlines()
+        print("", *(f"\x1b[97;40m{row}\x1b[0m" for row in rows), sep="\n")
+    print()
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -115,7 +139,7 @@ def main(argv: list[str] | None = None) -> int:
     args = _arguments(argv)
     try:
         service = service_of(args)
-        server = _server(service, args.port)
+        server = _server(service, args.port, args.host)
         print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
         warm_up(service)
     except (ValueError, OSError, OverflowError) as error:
@@ -126,6 +150,8 @@ def main(argv: list[str] | None = None) -> int:
         return 130
     try:
         print(f"Snooker is played at\n\n    {server.address}\n")
+        if args.host is not None:
+            _invite(server)
         print("Programs play at its api/ (docs: The protocol). Ctrl-C ends it and the game.", flush=True)
         if not args.no_browser and not webbrowser.open(server.address):
             print(f"No browser was found: open {server.address} in one.", flush=True)

@@ -6,7 +6,7 @@ from typing import Any
 from ..advice import POCKET_WORDS
 from ..game.frame import Frame
 from ..game.rule_sets import RULES
-from ..geometry import POCKET_AIMS
+from ..geometry import POCKET_AIMS, POCKETS
 from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
 from ..planning.stroke_columns import FARTHEST
 from ..players.table_report import report_game, report_turn, say_score, say_table
@@ -15,9 +15,10 @@ from ..replays.encode import encode_stroke
 from ..replays.referee_words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
+from .levels import LEVELS
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
-from .service import Service
-from .session import Act
+from .service import LINKED, PERSON, Service
+from .session import Act, Session
 
 STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
 
@@ -28,18 +29,22 @@ def scene(service: Service) -> dict[str, Any]:
         rules = session.options_with("none").rules
     assert isinstance(rules.actions, Actions)
     limits = {"speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, rules.actions.steepest]}
-    pockets = zip(POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
+    pockets = zip(POCKETS, POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
     return {
         "scene": scene_data(rules.table),
         "R": rules.physics.R,
         "spin_decel": rules.physics.spin_decel,
         "cue": {"tip": TIP, "butt": BUTT, "length": LENGTH, "rail": RAIL},
         "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
-        "pockets": [{"name": name, "x": x, "y": y} for name, (x, y) in pockets],
+        "pockets": [{"key": key, "name": name, "x": x, "y": y} for key, name, (x, y) in pockets],
         "players": service.seats.names,
+        "levels": [level._asdict() for level in LEVELS],
+        "opponents": service.seats.opponents,
         "noise": ERRORS,
         "cues": list(CUES),
         "games": list(RULES),
+        "me": service.me,
+        "invites": [one._asdict() for one in service.invites] if service.me == PERSON else [],
     }
 
 
@@ -98,29 +103,48 @@ def report(service: Service) -> dict[str, Any]:
     frame, act = session.frame, session.acts[session.at - 1]
     before = session.acts[session.at - 2] if session.at > 1 else None
     state = table_after(act, labels, service.win_chances([act])[0], before)
+    host = service.me == PERSON
     table, noise = session.tables.rules.table, session.noise[frame.striker]
     turn, lines = report_turn(frame, session.position, table, noise)
-    of_session = ("begun", "practice", "game", "best_of", "frames", "match_over", "cue")
+    of_session = ["begun", "practice", "game", "best_of", "frames", "match_over", "cue"]
+    of_session += ["breaks", "hints", "undone"]
     state |= turn | {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
     state |= {
-        "players": list(seats.who),
+        "players": seats.seen_by(service.me),
         "labels": list(labels),
         "advisers": seats.advisers(session.practice),
         "level": seats.level(session),
         "noise": list(session.noise),
-        "paused": service.paused and service.agent_to_play(),
+        "choice_wins": service.choice_chances(session),
+        "paused": host and service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
-        "undo": session.at > 1,
-        "redo": session.at < len(session.acts),
+        "undo": host and session.at > 1 and LINKED not in seats.who,
+        "redo": host and session.at < len(session.acts),
+        "by_link": {"seat": seats.who.index(PERSON), "visit": _last_visit(session)}
+        if LINKED in seats.who
+        else None,
     }
     if service.agent_to_play():
-        waits = "waits: press Continue." if service.paused else "is thinking."
-        state["words"] = service.trouble or f"{seats.label(frame.striker)} {waits}"
+        waits = (
+            "waits: press Continue." if state["paused"] else "waits." if service.paused else "is thinking."
+        )
+        state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
+    if service.friend_to_play:
+        state["words"] = "Your friend is to play: send the link."
+    fair = act.played is not None and not (act.played.fouls or act.played.points)
+    if fair and state["snookered"]:
+        state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
     if state["phase"] == "over":
-        state["words"] = " ".join([state["words"], *_say_luck(service)])
+        state["words"] = " ".join([state["words"], *_say_luck(service), service.unkept]).strip()
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
     return state | {"text": say_table(state, lines, said)}
+
+
+def _last_visit(session: Session) -> int:
+    """How many strokes were played before the last visit."""
+    players = [session.acts[k].player for k in session.strokes]
+    return max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
 
 
 def _say_chance(state: dict[str, Any]) -> list[str]:

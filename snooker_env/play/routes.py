@@ -8,7 +8,8 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from .._lib.check import choice, integer, number, refuse, truth
-from ..advice import CueStroke
+from ..advice import CueStroke, coach
+from ..advice.review import SAMPLES, read_frame
 from ..game.fouls import AUTO
 from ..game.frame import MOST_BREAK
 from ..planning.position import Position
@@ -18,8 +19,10 @@ from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
 from . import questions
-from .game_record import open_game, record_game
-from .report import report, scene, stroke_report
+from .link import open_link, write_link
+from .person import Person
+from .report import report, scene, stroke_report, table_after
+from .reviewing import Reviewing
 from .service import Service, StaleError
 from .session import Session
 
@@ -31,6 +34,7 @@ class Route(NamedTuple):
 
     handler: Handler
     fields: tuple[str, ...] = ()
+    friend: bool = False  # whether not the host alone may post it, but a friend, too
 
 
 def _state(service: Service, fields: dict[str, Any]) -> None:
@@ -114,23 +118,38 @@ def position_of(fields: object) -> Position:
 def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
     """Undo or redo until a person has a stroke or decision to make."""
     with service.acting(pause=True, any_turn=True) as session:
-        people = not all(map(service.seats.is_agent, (0, 1)))
+        people, before = not all(map(service.seats.is_agent, (0, 1))), session.at
         while move(session) and people and service.agent_to_play():
             pass
+        session.undone += session.at < before
 
 
 def _new(service: Service, fields: dict[str, Any]) -> None:
-    kinds = {"layout": str, "seed": int, "breaker": int, "game": str, "best_of": int, "next": bool}
+    kinds = {
+        "layout": str,
+        "seed": int,
+        "breaker": int,
+        "game": str,
+        "best_of": int,
+        "next": bool,
+        "by_link": bool,
+    }
     for name, kind in kinds.items():
         if name in fields and type(fields[name]) is not kind:
             raise refuse(name, fields[name], f"must be of type {kind.__name__}")
-    with service.acting(any_turn=True) as session:
+    by_link = fields.pop("by_link", False)
+    if by_link and not (fields.get("best_of", 1) == 1 and "next" not in fields):
+        raise refuse("by_link", True, "must be left out in a match: a link holds one frame")
+    with service.acting(anew=True) as session:
         if fields.pop("next", False):
             for name in set(fields) - {"seed"}:
                 raise refuse(name, fields[name], "must be left out with next: the match goes on as it is")
             session.next_frame(**fields)
         else:
             session.new(**fields)
+        if by_link:
+            session.noise[1], session.practice = session.noise[0], False
+        service.seats.share(0 if by_link else None)
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
@@ -144,9 +163,11 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
         truth("practice", practice)
     if cue is not None:
         choice("cue", cue, CUES)
-    with service.acting(any_turn=True) as session:
+    with service.acting(any_turn=True, anew="players" in fields) as session:
         if "players" in fields:
             service.seats.sit(fields["players"])
+            service.vacant = False
+            session.noise[:] = [service.seats.usual_noise(k, own) for k, own in enumerate(session.noise)]
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
@@ -159,14 +180,28 @@ def _concede(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    whole = truth("acts", fields.get("acts", False))
     with service.reading() as session:
-        return record_game(session) if whole else session.save()
+        return session.save()
+
+
+def _link(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    with service.reading() as session:
+        return {"link": write_link(session)}
 
 
 def _load(service: Service, fields: dict[str, Any]) -> None:
-    with service.acting(pause=True, any_turn=True) as session:
-        open_game(session, fields.get("saved"))
+    seat, by_link = fields.get("seat"), "seat" in fields
+    if seat is not None:
+        integer("seat", seat, 0, 1)
+    with service.acting(pause=True, anew=True) as session:
+        if "link" not in fields:
+            session.load(fields.get("saved"))
+        else:
+            open_link(session, fields["link"], agreed=by_link)
+        if by_link and seat is None:  # who opens it is not who played last
+            last, frame = session.acts[-1].player, session.frame
+            seat = frame.striker if frame.phase != "over" or last is None else 1 - last
+        service.seats.share(seat)
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -180,7 +215,12 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         decided = questions.decision(session, service, agent) if foul else {"choice": None, "choices": []}
         if foul:
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
-        return decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
+        answer = decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
+    with service.reading() as now:
+        seat = session.frame.striker
+        if now.begun == session.begun and not now.practice and not service.seats.is_agent(seat):
+            now.hints[seat] += 1
+    return answer
 
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -192,7 +232,9 @@ def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading(_revision(fields)) as session:  # at once: it does not wait for long questions
         twin = session.twin()
-    return twin.room(take_stroke(twin, fields)).to_dict()
+    stroke = take_stroke(twin, fields)
+    room = twin.room(stroke).to_dict()
+    return room | questions.leaving(twin, stroke) if twin.frame.phase == "stroke" else room
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
@@ -207,6 +249,34 @@ def _errors(fields: dict[str, Any], samples: int, noise: str) -> dict[str, Any]:
     return {"noise": noise, "samples": samples, "seed": integer("seed", fields.get("seed", 0), 0, MOST)}
 
 
+def _own(service: Service) -> Person:
+    """The person's file."""
+    if service.person is None:
+        raise refuse("person", None, "must be named: this server keeps no person's file")
+    return service.person
+
+
+def _person(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    """What the file holds, and where it lies; first a name is given, or the file deleted."""
+    with service.reading():
+        person = _own(service)
+        if "name" in fields:
+            person.change(lambda kept: kept.update(name=fields["name"]))
+        if truth("delete", fields.get("delete", False)):
+            person.read()
+            person.path.unlink(missing_ok=True)
+        return person.read() | {"path": str(person.path)}
+
+
+def _coach(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    strokes = _own(service).strokes()
+    if not strokes:
+        raise refuse("strokes", 0, "must be at least one: play a frame against one of the five first")
+    with service.asking():
+        found = coach(strokes)
+    return found.to_dict() | {"text": str(found)}
+
+
 def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], Any]) -> Any:
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
@@ -218,29 +288,83 @@ def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], A
     return form(Replay(strokes, title=title, players=labels, judge=judge, luck=luck))
 
 
+def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    """Begin a review of what was played, or stop the one that is being made."""
+    with service.reading() as session:
+        if service.reviewing:
+            service.reviewing.running = False
+        if not truth("stop", fields.get("stop", False)):
+            if session.practice:
+                raise refuse("practice", True, "must be false: alone at the table nobody wins")
+            advisers = service.seats.advisers(practice=False)
+            agent = service.seats.players[choice("agent", fields.get("agent", advisers[0]), advisers)]
+            people = [seat for seat in (0, 1) if not service.seats.is_agent(seat)] or (0, 1)
+            errors, frame = (
+                _errors(fields, SAMPLES, service.seats.level(session)),
+                _replay(service, {}, Replay.to_dict),
+            )
+            service.reviewing = Reviewing(session, read_frame(frame), people, agent=agent, **errors)
+    return _reviewing(service).report()
+
+
+def _reviewing(service: Service) -> Reviewing:
+    if service.reviewing is None or service.reviewing.begun != service.session.begun:
+        raise refuse("review", None, "must be begun first: this game has not been reviewed")
+    return service.reviewing
+
+
+def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    """The review so far, or of a stroke its table, and both strokes drawn."""
+    reviewing = _reviewing(service)
+    if "stroke" not in fields:
+        return reviewing.report()
+    k, one, chance = reviewing.act_of(fields.get("stroke"))
+    before, act = reviewing.acts[k - 1 : k + 1]
+    assert act.played is not None
+    with service.asking() as session:
+        session.cue = act.played.cue_kind
+        session.go_to(reviewing.acts, k)
+        both = {"played": questions.paths(act.played.shot), "best": questions.draw(session, one.best.stroke)}
+        return both | {"table": table_after(before, service.labels, chance)}
+
+
+def _again(service: Service, fields: dict[str, Any]) -> None:
+    """Put the game back to before a stroke that was reviewed."""
+    reviewing = _reviewing(service)
+    with service.acting(pause=True, any_turn=True) as session:
+        session.go_to(reviewing.acts, reviewing.act_of(fields.get("stroke"))[0])
+
+
 ERRORS = ("noise", "samples", "seed", "revision")
 GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
+    "link": Route(_link),
     "strokes": Route(_strokes, ("from",)),
+    "reviewed": Route(_reviewed, ("stroke",)),
     "replay": Route(partial(_replay, form=Replay.to_dict)),
     "replay.html": Route(partial(_replay, form=Replay.html)),
 }
 POST: dict[str, Route] = {
-    "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision")),
-    "place": Route(_place, ("place",)),
-    "advise": Route(_advise, ("agent", "n", *ERRORS)),
-    "destinations": Route(_destinations, (*STROKE, *ERRORS)),
-    "room": Route(_room, (*STROKE, "revision")),
+    "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision"), True),
+    "person": Route(_person, ("name", "delete")),
+    "coach": Route(_coach),
+    "place": Route(_place, ("place",), True),
+    "advise": Route(_advise, ("agent", "n", *ERRORS), True),
+    "destinations": Route(_destinations, (*STROKE, *ERRORS), True),
+    "room": Route(_room, (*STROKE, "revision"), True),
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
     "undo": Route(partial(_move, move=Session.undo)),
     "redo": Route(partial(_move, move=Session.redo)),
-    "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next")),
+    "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next", "by_link")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
-    "concede": Route(_concede),
-    "save": Route(_save, ("acts",)),
-    "load": Route(_load, ("saved",)),
+    "concede": Route(_concede, friend=True),
+    "sit": Route(lambda service, fields: service.sit_down(), friend=True),
+    "save": Route(_save),
+    "load": Route(_load, ("saved", "link", "seat")),
+    "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
+    "again": Route(_again, ("stroke",)),
 }
 
 

@@ -1,9 +1,11 @@
 """How does the game answer a browser or a program? A small HTTP server, for those who have its token.
 
-Every request is checked before anything is done: the token in its path, in constant time; ``Host``, and the host of a
-target that has one, so that no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
-path, length, type and form of the body. Connections are bounded in number. Every error is answered by one JSON object."""
+Every request is checked before anything is done: the token in its path, in constant time, and what its holder may do;
+``Host``, and the host of a target that has one, so that no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so
+that no other page can send requests; method, path, length, type and form of the body. Connections are bounded in number
+and time, and wrong tokens are slowed down. Every error is answered by one JSON object."""
 
+import errno
 import hmac
 import json
 import re
@@ -13,7 +15,10 @@ import sys
 import threading
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from ipaddress import IPv4Address
 from pathlib import Path
+from socketserver import TCPServer
+from time import monotonic, sleep
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
@@ -22,17 +27,24 @@ from .._lib.files import strict_json
 from ..players.requests import read_object
 from ..replays.web import table_js
 from ..simulation import SimulationError
+from .invites import addresses_here, invite
 from .routes import GET, POST, answer, parts_of
-from .service import BusyError, Service
+from .service import FRIEND, PERSON, WATCHER, BusyError, Service
 
-PARTS = ("aim", "ask", "drill", "first", "parts", "room", "setup", "share", "sound", "stats", "tour")
+PARTS = ("aim", "ask", "door", "drill", "first", "friend", "level", "parts", "person", "review")
+PARTS += ("room", "setup", "share", "sound", "stats", "tour")
 SCRIPTS = ("table.js", "play.js", *(f"play_{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_BODY = 131_072  # largest body of a request [bytes]; a replay has about 200 for each stroke
-IDLE = 20.0  # how long a connection waits for the next byte [s]
-MOST_AT_ONCE = 32
+IDLE = 20.0  # how long a connection waits for the next byte, and for a whole request [s]
+MOST_AT_ONCE = 64
 """Largest number of connections; a browser keeps six. One that waits gives way to a further one."""
+MOST_EACH = 20  # of one client, where others than this machine are served
+FREE, DELAY, FORGET = 10, 0.5, 60.0
+"""So many wrong tokens of a client are answered at once, further ones after DELAY [s], until it shows none for FORGET [s]."""
+MOST_KNOWN = 1024  # clients with wrong tokens that are remembered
+LOCAL = ("127.0.0.1", "localhost", "[::1]")
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
 _HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"
 FULL = b"%sContent-Length: %d\r\n\r\n%s" % (_HEAD, len(_FULL), _FULL)  # the answer to further connections
@@ -44,7 +56,6 @@ HEADERS = {
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-store",
     "Cross-Origin-Resource-Policy": "same-origin",
-    "Cross-Origin-Opener-Policy": "same-origin",
 }
 
 
@@ -63,6 +74,7 @@ class PlayHandler(BaseHTTPRequestHandler):
     """One connection."""
 
     server: "PlayServer"
+    who: str  # whose token the request has shown
     protocol_version = default_request_version = "HTTP/1.1"
     server_version, sys_version = "snooker_env", ""
     timeout = IDLE
@@ -87,7 +99,7 @@ class PlayHandler(BaseHTTPRequestHandler):
     def handle_one_request(self) -> None:
         """Handle one request; then the connection waits again."""
         super().handle_one_request()
-        self.server.waiting.setdefault(self.connection, True)
+        self.server.waiting.setdefault(self.connection, (True, monotonic()))
 
     def finish(self) -> None:
         """Read the rest of a refused request: closing with unread bytes would lose the answer."""
@@ -106,7 +118,8 @@ class PlayHandler(BaseHTTPRequestHandler):
                 self._file(name)
                 return
             route = (GET if self.command == "GET" else POST)[name[4:]]
-            reply = answer(self.server.service, route, query if self.command == "GET" else self._body())
+            game = self.server.service.asked_by(self.who)
+            reply = answer(game, route, query if self.command == "GET" else self._body())
             if isinstance(reply, str):
                 more = {"Content-Disposition": 'attachment; filename="replay.html"'}
                 self._send(200, reply.encode(), "text/html", more)
@@ -131,21 +144,23 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise self._last(400, "the target of a request must be an address") from None
         host = head.get_all("Host") or []
         asked = [*host, parts.netloc] if parts.scheme or parts.netloc else host
-        if len(host) != 1 or not self.server.hosts.issuperset(map(str.lower, asked)):
-            raise self._last(403, "Host must be " + " or ".join(sorted(self.server.hosts)))
+        known = self._hosts()
+        if len(host) != 1 or not known.issuperset(map(str.lower, asked)):
+            raise self._last(403, "Host must be " + " or ".join(sorted(known)))
         for field in ("Origin", "Sec-Fetch-Site", "Content-Length"):
             if len(head.get_all(field) or []) > 1:
                 raise self._last(400, "must be given once", field)
         origin = head.get("Origin")
-        if origin is not None and origin.lower() not in {f"http://{name}" for name in self.server.hosts}:
+        if origin is not None and origin.lower() not in {f"http://{name}" for name in known}:
             raise self._last(403, "Origin must be this server's own")
         if head.get("Sec-Fetch-Site", "none").lower() not in ("none", "same-origin"):
             raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
         token, _, name = parts.path.removeprefix("/").partition("/")
         # the printed address ends with "/", and clients often append "/api/state"
         name = re.sub("^/+(?=api/)", "", name)
-        known = hmac.compare_digest(token.encode(), self.server.token.encode())
-        if not parts.path.startswith("/") or not known:
+        self.who = self.server.whose(token if parts.path.startswith("/") else "")
+        if not self.who:
+            sleep(self.server.delay(self.client_address[0]))
             raise self._last(403, "the address must hold this server's token: open the one that it printed")
         self.server.waiting.pop(self.connection, None)
         if self.command not in ("GET", "POST"):
@@ -156,11 +171,22 @@ class PlayHandler(BaseHTTPRequestHandler):
             if name in methods[other]:
                 raise self._last(405, f"the method must be {other}", Allow=other)
             raise self._last(404, "there is nothing of that name")
+        friendly = self.who == FRIEND and self.command == "POST" and POST[name[4:]].friend
+        if self.command == "POST" and self.who != PERSON and not friendly:
+            raise self._last(403, "the host alone may do this")
         if "Transfer-Encoding" in head:
             raise self._last(411, "a body must come with its Content-Length")
         if self.command == "GET" and head.get("Content-Length", "0") != "0":
             raise self._last(400, "GET must have no body")
         return name, self._query(parts.query)
+
+    def _hosts(self) -> set[str]:
+        """The names by which this connection may call the server: the address that it came to, no name that may lead anywhere."""
+        names = (self.connection.getsockname()[0], *(LOCAL if self._is_local() else ()))
+        return {f"{name}:{self.server.server_port}" for name in names}
+
+    def _is_local(self) -> bool:
+        return IPv4Address(self.connection.getsockname()[0]).is_loopback
 
     def _query(self, text: str) -> dict[str, Any]:
         pairs = parse_qsl(text, keep_blank_values=True)
@@ -187,7 +213,9 @@ class PlayHandler(BaseHTTPRequestHandler):
         kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
         if kind != "application/json":
             raise self._last(415, "must be application/json", "Content-Type", kind)
+        self.server.waiting[self.connection] = True, monotonic()
         raw = self.rfile.read(int(length[0]))
+        self.server.waiting.pop(self.connection, None)
         if len(raw) < int(length[0]):
             raise self._last(400, "the body ended before its Content-Length")
         try:
@@ -217,7 +245,10 @@ class PlayHandler(BaseHTTPRequestHandler):
     def _send(self, status: int, body: bytes, kind: str, more: dict[str, str] | None = None) -> None:
         self.send_response(status)
         about = {"Content-Type": kind, "Content-Length": str(len(body))}
-        for name, value in (HEADERS | (more or {}) | about).items():
+        own = (
+            {"Cross-Origin-Opener-Policy": "same-origin"} if self._is_local() else {}
+        )  # others' addresses lack TLS
+        for name, value in (HEADERS | own | (more or {}) | about).items():
             self.send_header(name, value)
         if self.close_connection:
             self.send_header("Connection", "close")
@@ -227,44 +258,83 @@ class PlayHandler(BaseHTTPRequestHandler):
 
 
 class PlayServer(ThreadingHTTPServer):
-    """The server of one game, on 127.0.0.1; port 0 stands for any that is free."""
+    """The server of one game, on 127.0.0.1, or on ``host`` for other devices too; port 0 stands for any that is free."""
 
     daemon_threads = True
     request_queue_size = MOST_AT_ONCE
 
-    def __init__(self, service: Service, port: int = 0):
+    def __init__(self, service: Service, port: int = 0, host: str | None = None):
         try:
-            super().__init__(("127.0.0.1", port), PlayHandler)
+            super().__init__(("127.0.0.1" if host is None else host, port), PlayHandler)
         except OSError as error:
+            if error.errno == errno.EADDRNOTAVAIL or isinstance(error, socket.gaierror):
+                raise refuse("host", host, "must be an IPv4 address of this machine") from error
             allowed = f"must be free ({error.strerror}): choose another with --port, or leave it out for any that is"
             raise refuse("port", port, allowed) from error
-        self.service, self.token = service, secrets.token_urlsafe(24)
+        doors = [PERSON] if host is None else [PERSON, FRIEND, WATCHER]
+        self.service, self.tokens = service, {who: secrets.token_urlsafe(24) for who in doors}
+        self.token: str = self.tokens[PERSON]
+        self._most = MOST_AT_ONCE if host is None else MOST_EACH
         self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
-        self.waiting: dict[socket.socket, bool] = {}
-        """The connections without a request that shows the token, the longest first; and whether one did so before."""
-        self.hosts = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
+        self._clients: dict[socket.socket, str] = {}  # of each connection
+        self._wrong: dict[str, tuple[int, float]] = {}  # wrong tokens of a client, and when the last one came
+        self._lock = threading.Lock()
+        self.waiting: dict[socket.socket, tuple[bool, float]] = {}
+        """The connections without a whole request that shows a token: whether one did so before, and since when."""
+        everywhere = self.server_name == "0.0.0.0"
+        here = "127.0.0.1" if everywhere else self.server_name
+        self.address: str = self._address(PERSON, here)
+        """Address of the host's page; the protocol is at its ``api/``."""
+        if host is not None:
+            found = (addresses_here() if everywhere else []) or [here]
+            service.invites = [invite(who, [self._address(who, at) for at in found]) for who in doors]
 
-    @property
-    def address(self) -> str:
-        """Address of the page; the protocol is at its ``api/``."""
-        return f"http://127.0.0.1:{self.server_port}/{self.token}/"
+    def _address(self, who: str, at: str) -> str:
+        return f"http://{at}:{self.server_port}/{self.tokens[who]}/"
+
+    def server_bind(self) -> None:
+        """Bind, without asking for the machine's name: that might ask a server outside."""
+        TCPServer.server_bind(self)
+        self.server_name, self.server_port = str(self.server_address[0]), self.server_address[1]
+
+    def whose(self, token: str) -> str:
+        """Who holds a token, or ""; every token is compared, in constant time."""
+        same = {who: hmac.compare_digest(token.encode(), own.encode()) for who, own in self.tokens.items()}
+        return next((who for who, is_same in same.items() if is_same), "")
+
+    def delay(self, client: str) -> float:
+        """How long a client waits that has shown one more wrong token [s]."""
+        now = monotonic()
+        with self._lock:
+            count, last = self._wrong.pop(client, (0, now))
+            count = 1 if now - last > FORGET else count + 1
+            self._wrong[client] = count, now
+            if len(self._wrong) > MOST_KNOWN:
+                del self._wrong[next(iter(self._wrong))]
+        return DELAY if count > FREE else 0.0
+
+    def service_actions(self) -> None:
+        """Close the connections that have sent no whole request for too long, slowly or not at all."""
+        for one, (_, since) in self.waiting.copy().items():
+            if since < monotonic() - IDLE:
+                _cut(one)
 
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection in its own thread, unless there are too many that do not wait."""
-        if not (self._free.acquire(blocking=False) or self._make_room()):
+        theirs = list(self._clients.copy().values()).count(client_address[0])
+        if theirs >= self._most or not (self._free.acquire(blocking=False) or self._make_room()):
             with suppress(OSError):
                 request.settimeout(1.0)
                 request.sendall(FULL)
             self.shutdown_request(request)
             return
-        self.waiting[request] = False
+        self.waiting[request], self._clients[request] = (False, monotonic()), client_address[0]
         super().process_request(request, client_address)
 
     def _make_room(self) -> bool:
-        """Close the connection that has waited longest, of those that never showed the token if there are any."""
+        """Close the connection that has waited longest, of those that never showed a token if there are any."""
         for one, _ in sorted(self.waiting.copy().items(), key=lambda item: item[1])[:1]:
-            with suppress(OSError):
-                one.shutdown(socket.SHUT_RDWR)
+            _cut(one)
             return self._free.acquire(timeout=1.0)
         return False
 
@@ -274,9 +344,16 @@ class PlayServer(ThreadingHTTPServer):
             super().process_request_thread(request, client_address)
         finally:
             self.waiting.pop(request, None)
+            self._clients.pop(request, None)
             self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Report errors, except for connections that were cut."""
         if not isinstance(sys.exc_info()[1], OSError):
             super().handle_error(request, client_address)
+
+
+def _cut(connection: socket.socket) -> None:
+    """End a connection; its thread notices it."""
+    with suppress(OSError):
+        connection.shutdown(socket.SHUT_RDWR)

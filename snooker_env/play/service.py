@@ -6,7 +6,6 @@ has seen. An agent's stroke is dropped if the game has changed in the meantime."
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from math import sqrt
 from time import monotonic
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy as np
 from .._lib.check import choice, refuse, refuse_what
 from .._lib.types import NoiseName
 from ..advice.ask import AGENT
+from ..advice.review import size_of
 from ..game.fouls import AUTO
 from ..game.frame import CHOICES, Frame
 from ..game.frame_columns import STROKES
@@ -24,33 +24,43 @@ from ..players.table_report import nominations_of
 from ..replays.chances import ChanceJudge, Standing, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
-from ..tasks.noise import LEVELS, Noise
+from ..tasks.noise import LEVELS
+from .invites import Invite
+from .levels import BY_NAME
+from .person import Person
+from .reviewing import Reviewing
 from .session import DECLINED, Act, Session
 
-PERSON = "person"
-OPPONENT = "tactician_500"  # who plays against a person unless someone is named
-OFFERED = (AGENT, OPPONENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
+PERSON = "person"  # who sits at the page of the host
+FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
+LINKED = "friend_by_link"  # who plays elsewhere, from the link of the game
+OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")  # agents that can always be chosen
 
 
 class Seats:
-    """The two seats, and the players that may take them: ``OFFERED``, and ``agents`` by name."""
+    """The two seats, and the players that may take them: ``agents`` by name, ``OFFERED``, the levels, and ``friends``."""
 
-    who: list[str]  # ``PERSON`` or the name of an agent, for each seat
+    who: list[str]  # ``PERSON``, ``FRIEND``, ``LINKED`` or the name of an agent, for each seat
 
-    def __init__(self, agents: Mapping[str, Player]):
+    def __init__(self, agents: Mapping[str, Player], *, friends: bool = False):
         self.players: dict[str, Player] = dict(agents)
         for name in OFFERED:
             self.players.setdefault(name, player(name))
-        self.who = [PERSON, PERSON]
+        self.opponents: list[str] = [*agents, *BY_NAME]  # for the menu
+        for level in BY_NAME.values():
+            self.players.setdefault(level.name, self.players.get(level.agent) or player(level.agent))
+        self.persons: list[str] = [PERSON, *[FRIEND] * friends]
+        self.who, self._before = [PERSON, PERSON], [PERSON, PERSON]
 
     @property
     def names(self) -> list[str]:
-        """The players that may sit down: "person" and the agents."""
-        return [PERSON, *self.players]
+        """The players that may sit down: persons and the agents."""
+        return [*self.persons, *self.players]
 
     def advisers(self, practice: bool) -> list[str]:
         """The agents that may be asked for advice: alone at the table all, in a frame those that know frames."""
-        return [name for name, one in self.players.items() if practice or getattr(one, "frames", True)]
+        known = [name for name in self.players if name not in BY_NAME]
+        return [name for name in known if practice or getattr(self.players[name], "frames", True)]
 
     def level(self, session: Session) -> NoiseName:
         """With whose errors the chance to win and advice are counted, for both players alike: the largest of the persons'
@@ -60,7 +70,7 @@ class Seats:
         people = [seat for seat in seats if not self.is_agent(seat)]
         levels: list[NoiseName] = [session.noise[seat] for seat in people or seats]
         levels.append("amateur" if people and "none" in levels else "professional")
-        return max(levels, key=lambda name: _size(LEVELS[name]))
+        return max(levels, key=lambda name: size_of(LEVELS[name]))
 
     def sit(self, who: list[str]) -> None:
         """Assign both seats; ValueError for an unknown name."""
@@ -68,21 +78,34 @@ class Seats:
             raise refuse("players", who, "must be two names")
         self.who = [choice(f"players[{k}]", name, self.names) for k, name in enumerate(who)]
 
+    def usual_noise(self, seat: int, otherwise: NoiseName) -> NoiseName:
+        """The errors of the level on this seat; of anybody else ``otherwise``."""
+        return BY_NAME[self.who[seat]].noise if self.who[seat] in BY_NAME else otherwise
+
     def is_agent(self, seat: int) -> bool:
         """Whether an agent has this seat."""
-        return self.who[seat] != PERSON
+        return self.who[seat] not in (PERSON, FRIEND, LINKED)
 
-    def label(self, seat: int) -> str:
-        """The player's name on the page."""
+    def share(self, seat: int | None) -> None:
+        """The person plays this seat, and a friend by link the other; None: those who sat there before come back."""
+        if LINKED not in self.who:
+            self._before = self.who
+        self.who = self._before if seat is None else [PERSON if k == seat else LINKED for k in (0, 1)]
+
+    def seen_by(self, me: str) -> list[str]:
+        """Who sits on both seats, as one of the persons sees it: itself as ``PERSON``, another as ``FRIEND``."""
+        persons = {PERSON: FRIEND, FRIEND: FRIEND, me: PERSON}
+        return [persons.get(who, who) for who in self.who]
+
+    def label(self, seat: int, me: str = PERSON) -> str:
+        """The player's name on the page of ``me``."""
+        seen = self.seen_by(me)
         if self.is_agent(seat):
-            name = self.who[seat].replace("_", " ")  # as the page lists it
-            return name if self.who[0] != self.who[1] else f"{name} {seat + 1}"
-        return "You" if self.is_agent(1 - seat) else f"Player {seat + 1}"
-
-    @property
-    def labels(self) -> tuple[str, str]:
-        """The names of both."""
-        return self.label(0), self.label(1)
+            name = seen[seat].replace("_", " ")  # as the page lists it
+            return name if seen[0] != seen[1] else f"{name} {seat + 1}"
+        if seen.count(PERSON) != 1:
+            return f"Player {seat + 1}"
+        return "You" if seen[seat] == PERSON else "Friend"
 
     def decide(self, name: str, session: Session) -> Strokes:
         """What an agent does in the frame: a decision, a declaration or a stroke, without changing it."""
@@ -107,15 +130,23 @@ class StaleError(RuntimeError):
 class Service:
     """One game, its seats, and the thread in which agents think."""
 
+    me: str = PERSON  # who asks: see ``asked_by``
     paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
     trouble: str  # why the last agent did not play, or ""
 
-    def __init__(self, session: Session, seats: Seats):
+    unkept: str  # why the frame that is over is not in the person's file, or ""
+
+    def __init__(self, session: Session, seats: Seats, person: Person | None = None):
         self.session: Session = session
         self.seats: Seats = seats
+        self.person: Person | None = person
+        self._kept, self.unkept = 0, ""
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
+        self.reviewing: Reviewing | None = None
         self.revision: int = 0
         self.paused, self.trouble = False, ""
+        self.invites: list[Invite] = []  # what the host may pass on, if others can come to the table
+        self.vacant: bool = True  # whether a friend may sit down without having been chosen
         self._changed = threading.Condition(threading.RLock())
         self._asking = threading.BoundedSemaphore(2)
         self._closed = False
@@ -127,12 +158,42 @@ class Service:
         with self._changed:
             self._closed = True
             self._changed.notify_all()
+            if self.reviewing:
+                self.reviewing.running = False
+
+    def asked_by(self, me: str) -> "Service":
+        """The same game for requests of the host (``PERSON``), of the ``FRIEND`` or of a ``WATCHER``."""
+        other = object.__new__(_Asked)
+        other.__dict__, other.me = self.__dict__, me
+        return other
 
     @property
     def labels(self) -> tuple[str, str]:
-        """The names of both players; alone at the table a person is "You"."""
-        one, other = self.seats.labels
-        return ("You" if self.session.practice and not self.seats.is_agent(0) else one), other
+        """The names of both players, as seen by ``me``; alone at the table a person is "You"."""
+        alone = self.session.practice and self.seats.who[0] == self.me
+        return "You" if alone else self.seats.label(0, self.me), self.seats.label(1, self.me)
+
+    def sit_down(self) -> None:
+        """Seat the friend as the second player, unless somebody has played or the host has chosen who sits there."""
+        if FRIEND in self.seats.who:
+            return
+        with self.acting(any_turn=True) as session:
+            if FRIEND not in self.seats.names:
+                raise refuse("seat", 2, "must be open to friends: start the game with --host")
+            if not self.vacant or session.strokes or session.practice:
+                allowed = "must be free: ask your host to choose you as the opponent, under New game"
+                raise refuse("seat", 2, allowed)
+            self.seats.who[1], session.noise[1] = FRIEND, session.noise[0]
+
+    def check_turn(self) -> None:
+        """ValueError unless whoever asks is to play."""
+        striker = self.session.frame.striker
+        if self.agent_to_play():
+            raise refuse("turn", self.labels[striker], "must be a person's: an agent is to play")
+        if self.friend_to_play:
+            raise refuse("turn", "Friend", "must be yours: send the link of the game")
+        if self.seats.who[striker] != self.me and self.session.frame.phase != "over":
+            raise refuse("turn", self.labels[striker], "must be yours: the other player is to play")
 
     @contextmanager
     def reading(self, revision: int | None = None) -> Iterator[Session]:
@@ -144,14 +205,15 @@ class Service:
 
     @contextmanager
     def acting(
-        self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False
+        self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False, anew: bool = False
     ) -> Iterator[Session]:
         """The game, for changing it: after an exception it is as it was before. ``pause``: agents then wait; ``any_turn``:
-        also in an agent's turn."""
+        also in an agent's turn; ``anew``: another game begins."""
         with self.reading(revision) as session:
-            if not any_turn and self.agent_to_play():
-                whose = self.seats.label(session.frame.striker)
-                raise refuse("turn", whose, "must be a person's: an agent is to play")
+            if not (any_turn or anew):
+                self.check_turn()
+            elif not anew and LINKED in self.seats.who:
+                raise refuse("game", "by link", "must stay as it is played: begin another game first")
             with session.as_a_whole():
                 yield session
             self.paused, self.trouble = pause, ""
@@ -164,6 +226,8 @@ class Service:
             raise BusyError("other questions are being answered")
         try:
             with self.reading(revision) as session:
+                if self.me != PERSON:
+                    self.check_turn()  # a guest's questions do not hold up those of the player
                 twin = session.twin()
             yield twin
         finally:
@@ -182,11 +246,16 @@ class Service:
 
     def win_chances(self, acts: Sequence[Act], noise: NoiseName | None = None) -> list[float] | list[None]:
         """How likely seat 0 was to win after each of some acts; None for nobody says it. ``noise``: see ``judge``."""
-        if (judge := self.judge(noise)) is None:
+        if (judge := self.judge(noise)) is None or not acts:
             return [None] * len(acts)
         tables = [(act.state["positions"], act.state["on_table"], act.state["frame"]) for act in acts]
         parts = [(Frame.from_dict(frame), np.array(at), np.array(on)) for at, on, frame in tables]
         return win_chances(judge, [Standing(*one) for one in parts])
+
+    def choice_chances(self, session: Session, noise: NoiseName | None = None) -> list[float | None]:
+        """How likely the striker wins after each choice that it has after a foul; as ``win_chances``."""
+        chances = self.win_chances([session.twin().choose(what) for what in session.frame.choices], noise)
+        return [one if one is None or session.frame.striker == 0 else 1.0 - one for one in chances]
 
     def wait(self, revision: int, seconds: float) -> None:
         """Return when the revision has changed, or after that time."""
@@ -209,11 +278,32 @@ class Service:
         return frame.phase != "over" and self.seats.is_agent(frame.striker)
 
     @property
+    def friend_to_play(self) -> bool:
+        """Whether it is the turn of a friend by link."""
+        frame = self.session.frame
+        return frame.phase != "over" and self.seats.who[frame.striker] == LINKED
+
+    @property
     def thinking(self) -> bool:
         """Whether an agent is thinking about its stroke, or about to."""
         return self.agent_to_play() and not self.paused
 
+    def _keep(self) -> None:
+        """Keep a frame of a person against an agent once it is over, if it was played from its beginning."""
+        session, seats, person = self.session, self.seats, self.person
+        if person is None or session.frame.phase != "over" or self._kept == session.begun:
+            return
+        people = [seat for seat in (0, 1) if not seats.is_agent(seat)]
+        dealt = all(act.what not in ("set_up", "load") for act in session.acts[: session.at])
+        if len(people) == 1 and dealt and not session.practice:
+            self._kept, self.unkept = session.begun, ""
+            try:
+                person.keep(session, people[0], seats.who[1 - people[0]])
+            except (ValueError, OSError) as error:
+                self.unkept = f"The frame was not kept: {error}."
+
     def _announce(self):
+        self._keep()
         self.revision += 1
         self._changed.notify_all()
 
@@ -273,6 +363,7 @@ class Service:
         session.play(stroke, nominated=nominated if sensible else AUTO)
 
 
-def _size(noise: Noise) -> float:
-    """The root mean square error of the direction [deg], lapses included."""
-    return noise.direction_deg() * sqrt(1.0 + noise.lapse * (noise.lapse_factor**2 - 1.0))
+class _Asked(Service):
+    """A service that shares all but ``me`` with another."""
+
+    __slots__ = ("me",)

@@ -34,6 +34,7 @@ from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput, Tables
 from ..tasks.threads import Threads
+from .grid import Grid, numbers_of, stroke_of
 
 DECLINED = 0  # the nomination of a player who does not use a free ball
 MOST_FRAMES = 99  # the longest match
@@ -61,9 +62,12 @@ class Session:
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
     best_of: int  # the length of the match in frames; 1: a single frame
     won: list[int]  # frames that each seat has won in the match before this one
+    hints: list[int]  # how often each seat asked for advice in this frame
+    undone: int  # how often something was taken back in it
     acts: list[Act]
     at: int  # number of acts that count; the following ones were undone
     begun: int  # games begun or loaded so far
+    grid: Grid  # on which all is played
 
     def __init__(
         self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
@@ -74,6 +78,7 @@ class Session:
         self._options = box.but(miss="clear_path", layout=layout, cue=cue)
         self.noise, self.practice = ["none", "none"], False
         self.best_of, self.won, self.begun = 1, [0, 0], 0
+        self.grid = Grid()
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
@@ -111,6 +116,21 @@ class Session:
     def match_over(self) -> bool:
         """Whether one seat has won the match."""
         return max(self.frames) > self.best_of // 2
+
+    @property
+    def layout(self) -> str:
+        """How the table was dealt."""
+        return self._options.layout
+
+    @property
+    def breaks(self) -> list[list[int]]:
+        """The breaks of each seat in this frame, the one that goes on last."""
+        found: list[list[int]] = [[], []]
+        for k in self.strokes:
+            if (one := self.acts[k].played) is not None and one.points and not one.penalty:
+                own = found[one.player]
+                own[len(own) - (one.break_before > 0) :] = [one.break_before + one.points]
+        return found
 
     @property
     def miss(self) -> str:
@@ -158,7 +178,7 @@ class Session:
     def as_a_whole(self) -> Iterator["Session"]:
         """What is done in this context is done as a whole: after an exception the session is as it was before."""
         state, kept = self.state, self.__dict__.copy()
-        kept |= {name: list(kept[name]) for name in ("acts", "noise", "won")}
+        kept |= {name: list(kept[name]) for name in ("acts", "noise", "won", "hints")}
         try:
             yield self
         except BaseException:
@@ -221,6 +241,9 @@ class Session:
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
         """Play the stroke; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
+        stroke = stroke_of(numbers_of(stroke))
+        if self.frame.in_hand and self.frame.phase == "stroke":
+            self.place(*self.tables.positions[0, CUE].tolist())
         frame, tables, before = self.frame, self.tables, self.state
         if frame.phase != "stroke":
             choose = 'must be "stroke": choose first (play, play_again, replace or anywhere)'
@@ -234,16 +257,19 @@ class Session:
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
         self._played, room = None, self.room(stroke)
-        asked = {**stroke.to_dict(), "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
-        asked["place"] = before["positions"][CUE] if frame.in_hand else None
+        meant = {**stroke.to_dict(), "place": before["positions"][CUE] if frame.in_hand else None}
+        asked = {**meant, "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
         asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
         tables.nominated[0] = nominated
         crew, luck = Crew(self._buffers, self._watch), self._luck(actions, striker)
         tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
+        assert self._played is not None
+        played = replace(self._played, before=frame, meant=meant)
         if self.practice:
             self._hand_back()
+        self.grid.settle(tables, before["positions"])
         words = NAMES[nominated] if nominated > CUE else ""
-        return self._did(Act("stroke", self.state, striker, self._played, words, room, asked, luck))
+        return self._did(Act("stroke", self.state, striker, played, words, room, asked, luck))
 
     def _luck(self, actions: Floats, striker: int) -> float:
         """The luck of a stroke that is about to be played, by the chance to win under the larger errors of both."""
@@ -303,6 +329,7 @@ class Session:
             raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
         places = self.tables.positions[0]
         places[CUE] = place_cue(places, self.tables.on_table[0], x, y, anywhere=frame.anywhere)
+        self.grid.put(self.tables, CUE)
         self.acts[self.at - 1] = replace(self.acts[self.at - 1], state=self.state)
         px, py = places[CUE].tolist()
         return px, py
@@ -339,6 +366,11 @@ class Session:
         """Redo an act that was undone; returns whether there was one."""
         return self._go(self.at + 1)
 
+    def go_to(self, acts: list[Act], at: int) -> None:
+        """The game of these acts as it stood before act ``at``: those from there on can be done again."""
+        self.acts = list(acts)
+        self._go(at)
+
     def save(self) -> dict[str, Any]:
         """The current game as JSON types."""
         game = {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
@@ -371,6 +403,7 @@ class Session:
 
     def _begin(self, what: str) -> None:
         self.acts, self.at, self.begun = [Act(what, self.state)], 1, self.begun + 1
+        self.hints, self.undone = [0, 0], 0
 
     def _did(self, act: Act) -> Act:
         del self.acts[self.at :]

@@ -6,13 +6,14 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from .._lib.check import number, refuse, refuse_what
-from .._lib.types import Bools, Floats
+from .._lib.types import Bools, Floats, Ints
 from ..game import frame_columns as columns
 from ..game.balls import BLACK, mask_of_present
 from ..game.frame import Frame, write_frame
-from ..game.sides import strikers_own
+from ..game.sides import swap_sides
 from ..physics import cloth
 from ..planning import Positions
+from ..simulation import Shot
 from ..tasks.played import Played
 
 DIGITS = 4  # decimals of a chance in data
@@ -56,18 +57,24 @@ def check_luck(luck: Sequence[float] | None, strokes: int, judged: bool) -> tupl
 
 def win_chances(judge: ChanceJudge, standings: Sequence[Standing]) -> list[float]:
     """How likely player 0 wins each of n frames as they stand: 0 and 1 only where the judge is certain."""
+    strikers = np.array([one.frame.striker for one in standings])
+    theirs = np.asarray(judge.chance_to_win(positions_of(standings, strikers)), np.float64)
+    first = np.where(strikers == 0, theirs, 1.0 - theirs)
+    least = np.where((first > 0.0) & (first < 1.0), 10.0**-DIGITS, 0.0)  # rounding makes nothing certain
+    return np.clip(first.round(DIGITS), least, 1.0 - least).tolist()
+
+
+def positions_of(standings: Sequence[Standing], players: Ints, begun: Ints | None = None) -> Positions:
+    """n frames as they stand, each as one of its ``players`` (n,) sees it, who is player 0 there; ``begun`` (n,): how many
+    strokes were played before, by default none."""
     n = len(standings)
     game = np.zeros((n, columns.COLUMNS), np.int64)
     saved = columns.Layouts(np.zeros((n, 22, 2)), np.zeros((n, 22), np.bool_))
     for k, one in enumerate(standings):
-        write_frame(one.frame, 0, game[k], saved, k)
+        write_frame(one.frame, 0 if begun is None else int(begun[k]), game[k], saved, k)
     present = np.stack([one.on_table for one in standings])
     places = np.where(present[..., None], np.stack([one.positions for one in standings]), 0.0)
-    at = Positions(places, present, strikers_own(game), saved)
-    theirs = np.asarray(judge.chance_to_win(at), np.float64)
-    first = np.where(game[:, columns.STRIKER] == 0, theirs, 1.0 - theirs)
-    least = np.where((first > 0.0) & (first < 1.0), 10.0**-DIGITS, 0.0)  # rounding makes nothing certain
-    return np.clip(first.round(DIGITS), least, 1.0 - least).tolist()
+    return Positions(places, present, np.where(players[:, None] == 1, swap_sides(game), game), saved)
 
 
 def standings_of(strokes: Sequence[object]) -> list[Standing]:
@@ -78,22 +85,30 @@ def standings_of(strokes: Sequence[object]) -> list[Standing]:
             what = "a stroke of a visit" if isinstance(one, Played) else "a bare shot"
             raise refuse_what(f"strokes[{k}]", what, "must be of a frame with a judge: nobody wins a visit")
         if k == 0:
-            standings.append(_before(one, one.frame))
+            standings.append(Standing(frame_before(one, one.frame), *start_of(one.shot)))
         standings.append(Standing(one.frame, one.positions, one.on_table))
     return standings
 
 
-def _before(stroke: Played, after: Frame) -> Standing:
-    """The frame that a stroke was played from, its cue ball placed; how often it was missed before is not known."""
-    first = stroke.shot.segments[: len(stroke.shot.positions)]
-    here = first[:, cloth.SEGMENT_STATE] != cloth.GONE
+def start_of(shot: Shot) -> tuple[Floats, Bools]:
+    """The balls (n, 2) [m] before a shot, and which are on the table (n,)."""
+    first = shot.segments[: len(shot.positions)]
+    return first[:, [cloth.X, cloth.Y]], first[:, cloth.SEGMENT_STATE] != cloth.GONE
+
+
+def frame_before(stroke: Played, after: Frame) -> Frame:
+    """The frame that a stroke was played from. Where nobody kept it, neither the misses before it are known nor whether the
+    cue ball was in hand."""
+    if stroke.before is not None:
+        return stroke.before
+    _, here = start_of(stroke.shot)
     scores = list(stroke.scores)
     scores[stroke.player] -= stroke.points
     scores[1 - stroke.player] -= stroke.penalty
     balls = mask_of_present(here) & ~1
     level = balls == 1 << BLACK and scores[0] == scores[1]
     same = {name: getattr(after, name) for name in ("breaker", "rack", "rules", "miss")}
-    frame = Frame(
+    return Frame(
         **same,
         scores=(scores[0], scores[1]),
         striker=stroke.player,
@@ -104,4 +119,3 @@ def _before(stroke: Played, after: Frame) -> Standing:
         in_hand=False,
         respotted_black=level and after.respotted_black,
     )
-    return Standing(frame, first[:, [cloth.X, cloth.Y]], here)

@@ -19,6 +19,7 @@ from ..physics.table import Table
 from ..simulation import Shot
 from ..tasks.noise import LEVELS, Noise
 from ..tasks.played import Played
+from .chances import frame_before, start_of
 from .referee_words import foul_words, on_words, pots_of, sentence
 
 _PLACES = [cloth.T0, cloth.X, cloth.Y, cloth.VX, cloth.VY, cloth.AX, cloth.AY]
@@ -42,7 +43,7 @@ def encode_shot(shot: Shot) -> dict[str, Any]:
     if not len(shot.segments):
         allowed = "must be of sn.simulate, or of an environment with keep_history = True"
         raise refuse_what("shot", "a Shot without its path", allowed)
-    first, states = shot.segments[:n], shot.segments[:, cloth.SEGMENT_STATE]
+    (places, here), states = start_of(shot), shot.segments[:, cloth.SEGMENT_STATE]
     idle = (states == cloth.REST) | (states == cloth.GONE)
     # at rest from the start: its place is in ``start``
     waits = (np.arange(len(states)) < n) & idle & (shot.segments[:, cloth.WZ] == 0.0)
@@ -51,8 +52,8 @@ def encode_shot(shot: Shot) -> dict[str, Any]:
     heights = {"height": pack(moves[:, _HEIGHTS], "f8"), "g": shot.physics.g} if flies else {}
     return {
         "n": n,
-        "start": pack(first[:, [cloth.X, cloth.Y]], "f8"),
-        "on_table": np.flatnonzero(first[:, cloth.SEGMENT_STATE] != cloth.GONE).tolist(),
+        "start": pack(places, "f8"),
+        "on_table": np.flatnonzero(here).tolist(),
         "paths": {
             "count": len(moves),
             "f8": pack(moves[:, _PLACES], "f8"),
@@ -69,7 +70,8 @@ def encode_shot(shot: Shot) -> dict[str, Any]:
 def encode_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, Any]:
     """One stroke of a replay. For a bare ``Shot``, the parts that come from the referee are empty."""
     if isinstance(item, Shot):
-        empty = dict.fromkeys(("cue", "cue_kind", "noise", "player", "ball_on", "after"))
+        nothing = ("cue", "cue_kind", "noise", "player", "ball_on", "after", "frames", "meant")
+        empty = dict.fromkeys(nothing)
         none = {"points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0}
         return encode_shot(item) | empty | none
     same = {name: getattr(item, name) for name in ("cue", "cue_kind", "player", "points", "penalty")}
@@ -86,6 +88,8 @@ def encode_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, An
         "score": list(item.scores),
         "break": item.break_points,
         "after": after,
+        "frames": item.frame and [frame_before(item, item.frame).to_dict(), item.frame.to_dict()],
+        "meant": item.meant,
     }
 
 

@@ -38,6 +38,7 @@ ERRORS = {
     "professional": "a professional's",
     "amateur": "an amateur's",
     "club": "a club player's",
+    "beginner": "a beginner's",
     "robot": "a robot's",
     "olympiad": "the Olympiad's robots'",
 }
@@ -77,11 +78,12 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
         balls = " and ".join(ball_name(ball) for ball in pots_of(played.shot))
         words = f"{balls[:1].upper()}{balls[1:]} potted, {played.points}"
         if played.break_before:
-            words += f", break of {played.break_before + played.points}"
+            words += f", break {played.break_before + played.points}"
     else:
         words = "No ball potted"
     if (winner := played.winner) is not None and len(players) > winner:
-        words += f". Frame to {players[winner]}, {played.scores[winner]}-{played.scores[1 - winner]}"
+        who = "you" if players[winner] == "You" else players[winner]
+        words += f". Frame to {who}, {played.scores[winner]}-{played.scores[1 - winner]}"
     elif played.over and played.next_on == BallOn.NOTHING and not played.fouls:
         words += ". Table cleared"
     return words + "."

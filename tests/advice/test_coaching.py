@@ -345,7 +345,7 @@ def test_the_command(tmp_path, capsys):
     assert main(["coach", str(tmp_path / "mine.json"), *TOLD, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["called"] == 2
     for text, words in (
-        ("{", "must be a file of strokes or a replay"),
+        ("{", "or a replay ('snooker-replay') (Expecting"),
         ('{"format": "other"}', "must be a file of strokes ('snooker-strokes') or a replay"),
         ('{"format": "snooker-strokes", "version": 2, "strokes": []}', "must be 1"),
         ('{"format": "snooker-strokes", "version": 1, "strokes": []}', "must hold at least one stroke"),

@@ -94,7 +94,9 @@ def test_strokes_are_ordered_by_it_and_the_best_is_compared():
     assert pot[0].kind == "pot" and pot[0].words.endswith(f"{100 * pot[0].against:.0f} % for the best safety")
     lone = sn.advise(LAST, agent=Given(CueStroke(speed=0.9, aim=np.pi / 2)), **QUICK)
     assert len(lone) == 1 and lone[0].against is None and " against " not in lone[0].words
-    two = Given(*(CueStroke(speed=speed, aim=np.pi / 2) for speed in (0.9, 1.6)))
+    two = Given(
+        *(CueStroke(speed=speed, aim=np.pi / 2) for speed in (0.9, 1.6, 3.0))
+    )  # the second is another way of the first
     best, other = sn.advise(LAST, agent=two, **QUICK)
     assert best.against == other.win and best.words.endswith(f"{100 * other.win:.0f} % for the next best")
 

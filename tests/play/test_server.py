@@ -1,28 +1,19 @@
-"""Does the server answer those alone who know its address, and stay within its bounds?"""
+"""Does the server answer a request as the protocol says, and does its command begin and end well?"""
 
-import http.client
 import json
+import re
 import signal
 import socket
 import subprocess
 import sys
-import time
 
 import pytest
 
 from snooker_env.play import server as module
 from snooker_env.play.__main__ import main
 from snooker_env.play.routes import GET, POST
+from tests.playing import refused
 from tests.processes import ROOT
-
-
-def refused(answer, status, words):
-    """Is that an error of this status, as one JSON object, that says these words?"""
-    code, body, headers = answer
-    assert code == status and set(body) == {"error"}, answer[:2]
-    assert set(body["error"]) == {"field", "value", "message"} and words in body["error"]["message"]
-    assert headers["Content-Type"] == "application/json"
-    return body["error"]
 
 
 def test_it_listens_on_this_machine_alone_and_serves_its_own_page(line):
@@ -44,47 +35,6 @@ def test_the_page_and_the_protocol_are_served_with_headers_that_keep_others_out(
         assert kept == ["nosniff", "DENY", "no-store"]
         assert headers["Referrer-Policy"] == "no-referrer" and "Python" not in headers["Server"]
     assert all(line(name)[0] == 200 for name in module.FILES)
-
-
-def test_without_the_token_nothing_is_served(line):
-    for name in ("", "play.js", "api/state"):
-        for token in ("", "x", "TOKEN", "%2e%2e"):
-            refused(line(name, token=token), 403, "token")
-
-
-def test_this_machines_names_are_served_and_others_refused(line):
-    port = line.server.server_port
-    for name in ("127.0.0.1", "localhost", "[::1]", "LOCALHOST"):
-        assert line("api/state", host=f"{name}:{port}")[0] == 200
-    others = ["evil.example", "evil.example:80", "127.0.0.1", "127.0.0.1:1", "localhost:0"]
-    for host in (*others, f"127.0.0.1.nip.io:{port}"):
-        refused(line("api/state", host=host), 403, "Host")
-    refused(line("api/state", headers={"Host": None}), 403, "Host")
-
-
-def test_the_host_of_a_target_is_checked_as_host_is(line):
-    """A proxy that is told to go to another host must not arrive here."""
-    own, token = f"127.0.0.1:{line.server.server_port}", line.server.token
-    for name in (own, own.replace("127.0.0.1", "LOCALHOST")):
-        assert line("", path=f"http://{name}/{token}/api/state")[0] == 200
-    targets = [f"http://{name}" for name in ("evil", "evil:80", "127.0.0.1", f"x@{own}", f"{own}.evil", "")]
-    for target in (*targets, "foo:", "http:", f"foo://{own}/..", "//evil"):
-        status, body, _ = line("", path=f"{target}/{token}/api/state")
-        assert status == 403 and "must" in body["error"]["message"], target
-    refused(line("", path=f"http://[evil/{token}/api/state"), 400, "must be an address")
-
-
-def test_other_pages_are_refused(line):
-    origins = [{"Origin": name} for name in ("http://evil.example", "null", "https://127.0.0.1")]
-    for headers in (*origins, {"Sec-Fetch-Site": "cross-site"}, {"Sec-Fetch-Site": "same-site"}):
-        refused(line("api/undo", {}, headers=headers), 403, "must be")
-        refused(line("api/state", headers=headers), 403, "must be")
-
-
-def test_only_known_names_are_served(line):
-    outside = ["etc/passwd", "../pyproject.toml", "..%2f..%2fpyproject.toml", "//play.js", "./play.js"]
-    for name in ["api/none", "play.html", "replay.html", "api/", "api", *outside]:
-        refused(line(name), 404, "nothing of that name")
 
 
 def test_only_known_methods_are_answered(line):
@@ -139,89 +89,6 @@ def test_a_post_without_a_body_has_no_fields_and_a_second_slash_does_no_harm(lin
     refused(line("/etc/passwd"), 404, "nothing")
 
 
-def test_heads_and_bodies_are_bounded_and_typed(line):
-    refused(line("api/state", headers={"X-Long": "x" * 70_000}), 431, "")
-    refused(line("api/state", headers={f"X-{k}": "x" * 100 for k in range(200)}), 431, "")
-    refused(line("api/load", b" " * (module.MOST_BODY + 1)), 413, "at most")
-    refused(line("api/load", b"", headers={"Content-Length": "999999999999"}), 413, "at most")
-    refused(line("api/undo", {}, headers={"Content-Type": "text/plain"}), 415, "application/json")
-    refused(line("api/undo", {}, headers={"Content-Type": None}), 415, "application/json")
-    for wrong in ("x", "-1", "1e3", "", "+2", "0x2"):
-        refused(line("api/undo", {}, headers={"Content-Length": wrong}), 411, "bytes")
-    chunked = {"Content-Length": None, "Transfer-Encoding": "chunked"}
-    refused(line("api/undo", {}, headers=chunked), 411, "Content-Length")
-    refused(line("api/state", b"{}", method="GET"), 400, "no body")
-
-
-def raw(line, *parts):
-    """Bytes on a connection, one part after the other, and what comes back until it is closed."""
-    with socket.create_connection(("127.0.0.1", line.server.server_port), timeout=20) as connection:
-        for part in parts:
-            connection.sendall(part)
-        found = b""
-        while part := connection.recv(65_536):
-            found += part
-        return found
-
-
-def test_a_connection_that_says_nothing_more_is_cut_off(line, monkeypatch):
-    monkeypatch.setattr(module.PlayHandler, "timeout", 0.3)
-    start = time.monotonic()
-    assert raw(line, b"GET /x HTTP/1.1\r\n", b"Host: x\r\n") == b"" and time.monotonic() - start < 5
-
-
-def closed(connection):
-    """Has the other side closed it?"""
-    connection.settimeout(0.5)
-    try:
-        return connection.recv(1) == b""
-    except TimeoutError:
-        return False
-    except OSError:
-        return True
-
-
-def test_connections_that_wait_give_way(line):
-    """Others on this machine who hold all places do not shut the player out, whose own connection stays."""
-    address = "127.0.0.1", line.server.server_port
-    own = http.client.HTTPConnection(*address, timeout=20)
-    own.request("GET", f"/{line.server.token}/api/scene")
-    assert own.getresponse().read()
-    held = [socket.create_connection(address) for _ in range(module.MOST_AT_ONCE + 4)]
-    for one in held[-8:]:
-        one.sendall(b"GET /")  # a request that does not end
-    try:
-        assert line("api/state")[0] == 200
-        assert closed(held[0]) and not closed(held[-1])
-        own.request("GET", f"/{line.server.token}/api/scene")
-        assert own.getresponse().status == 200
-    finally:
-        for one in (own, *held):
-            one.close()
-
-
-def test_connections_that_are_answered_are_bounded(line):
-    """A further one is told so, and served once one of them has ended."""
-    wait = f"GET /{line.server.token}/api/state?after={line('api/state')[1]['revision']}&wait=20 HTTP/1.1\r\n"
-    address = "127.0.0.1", line.server.server_port
-    held = [socket.create_connection(address) for _ in range(module.MOST_AT_ONCE)]
-    try:
-        for one in held:
-            one.sendall(f"{wait}Host: localhost:{address[1]}\r\n\r\n".encode())
-        time.sleep(0.5)
-        with socket.create_connection(address, timeout=5) as further:
-            reply = further.recv(1000)
-        assert reply.startswith(b"HTTP/1.1 503 ") and b'"message": "busy: too many connections"' in reply
-        assert not closed(held[0])
-        with line.server.service.acting():  # a change, which they wait for
-            pass
-        assert [one.recv(12) for one in held] == [b"HTTP/1.1 200"] * len(held)
-        assert line("api/state")[0] == 200
-    finally:
-        for one in held:
-            one.close()
-
-
 def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     start = tmp_path / "position.json"
     start.write_text(json.dumps({"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}))
@@ -253,12 +120,29 @@ def test_a_browser_that_is_not_found_is_said_with_the_address(found, monkeypatch
     assert opened[0].startswith("http://127.0.0.1:") and opened[0] in said.split("\n\n")[1]
 
 
+def test_with_host_the_command_prints_an_address_for_each_person_and_a_qr_code(monkeypatch, capsys):
+    from snooker_env.play import __main__ as command
+
+    monkeypatch.setattr(command, "warm_up", lambda service: None)
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setattr("snooker_env.play.server.PlayServer.serve_forever", lambda self, **_: None)
+    assert main(["--host", "127.0.0.1", "--no-browser", "--seed", "1"]) == 0
+    said = capsys.readouterr().out
+    first, _, others = said.partition("In the same network")
+    addresses = re.findall(r"(?m)^    .*(http://127.0.0.1:\d+/[\w-]{32}/)$", others)
+    assert len(set(addresses)) == 3 and addresses[0] in first
+    rows = re.findall(r"(?m)^\x1b\[97;40m(.+)\x1b\[0m$", others)
+    assert len({len(row) for row in rows}) == 1 and 2 * len(rows) >= len(rows[0]) >= 33
+
+
 WRONG = f"""
 --position nowhere.json | nowhere.json
 --layout x | layout = 'x'
 --agent nobody | player = 'nobody'
 --options aim=target | options = {{'aim': 'target'}}: must be left out
 --position {ROOT / "pyproject.toml"} | pyproject.toml': must be JSON (
+--host 198.51.100.1 | host = '198.51.100.1': must be an IPv4 address of this machine
+--host ::1 | host = '::1': must be an IPv4 address of this machine
 --port 99999 | port = 99999: must be an integer in [0, 65535]
 --seed -1 | seed = -1
 """

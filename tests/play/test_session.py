@@ -10,6 +10,7 @@ from snooker_env.advice import CueStroke
 from snooker_env.game.balls import CUE
 from snooker_env.game.frame_columns import STROKES
 from snooker_env.planning import Position
+from snooker_env.play.grid import STEP, numbers_of, stroke_of
 from snooker_env.play.report import report
 from snooker_env.play.service import Seats, Service
 from snooker_env.play.session import STATE, Session
@@ -26,7 +27,7 @@ def standing(position, *, scores=(0, 0), striker=0, free_ball=False):
 
 
 def test_strokes_are_those_of_the_match_environment():
-    """The same strokes, with noise, in both: the same balls, frame and random numbers, to the last bit."""
+    """The same strokes, with noise, in both: the same balls, frame and random numbers; then the balls lie on the grid."""
     pytest.importorskip("pettingzoo")
     from snooker_env.envs.match import MatchEnv
 
@@ -39,7 +40,9 @@ def test_strokes_are_those_of_the_match_environment():
     rng = np.random.default_rng(0)
     for _ in range(12):
         numbers = rng.uniform((0.5, -3, -0.3, -0.3, 0), (6, 3, 0.3, 0.3, 0.3)).tolist()
-        stroke = CueStroke(**dict(zip(("speed", "aim", "side", "top", "elevation"), numbers, strict=True)))
+        wish = CueStroke(**dict(zip(("speed", "aim", "side", "top", "elevation"), numbers, strict=True)))
+        stroke = stroke_of(numbers_of(wish))
+        assert np.abs(stroke.numbers() - wish.numbers()).max() < 1.5e-3
         if session.frame.in_hand and session.frame.phase == "stroke":
             session.place(0.1, -1.2)
         x, y = session.tables.positions[0, CUE]
@@ -52,10 +55,10 @@ def test_strokes_are_those_of_the_match_environment():
             if session.frame.in_hand:
                 session.place(0.1, -1.2)
                 action[5:7] = 0.1 / 0.292, 2 * 0.1525 / np.sqrt(0.292**2 - 0.01) - 1
-        session.play(stroke)
+        session.play(wish)
         env.step(np.clip(action, -1, 1))
         assert replace(session.frame, saved=None) == replace(env.frame, saved=None)
-        assert np.allclose(session.tables.positions[0], env.positions, rtol=0, atol=1e-9)
+        assert np.allclose(session.tables.positions[0], env.positions, rtol=0, atol=STEP)
         # rounding of a place would grow
         session._set({k: v for k, v in env.get_state().items() if k in STATE})
     assert session.tables.game[0, STROKES] == 12
@@ -79,11 +82,11 @@ def test_the_choices_after_a_foul():
 def test_a_cue_ball_in_hand_goes_to_the_nearest_free_place_of_the_d():
     session = Session(seed=1)
     assert session.place(5.0, 5.0) == pytest.approx((0.292, -1.0475), abs=0.06)
-    assert session.place(0.1, -1.2) == (0.1, -1.2)
+    assert session.place(0.1, -1.2) == pytest.approx((0.1, -1.2), abs=STEP / 2)
     assert session.at == 1  # a place is no act of its own
     session.play(CueStroke(speed=1.0, aim=-0.5 * pi))
     assert np.allclose(session.acts[-1].played.shot.at(0.0)[0][CUE], (0.1, -1.2), atol=1e-12)
-    assert session.undo() and session.tables.positions[0, CUE].tolist() == [0.1, -1.2]
+    assert session.undo() and session.tables.positions[0, CUE] == pytest.approx([0.1, -1.2], abs=STEP / 2)
     with pytest.raises(ValueError, match="not in hand"):
         standing(EASY).place(0.0, -1.2)
 
@@ -120,7 +123,7 @@ def test_noise_is_that_of_the_seat():
         session.choose("play")
     assert session.frame.striker == 1
     second = session.play(CueStroke(speed=1.0, aim=3.0)).played
-    assert first.cue["aim"] == pytest.approx(3.0, abs=1e-12) and abs(second.cue["aim"] - 3.0) > 1e-6
+    assert first.cue["aim"] == pytest.approx(3.0, abs=1e-6) and abs(second.cue["aim"] - 3.0) > 1e-5
 
 
 def test_a_frame_ends_with_the_luck_of_both():

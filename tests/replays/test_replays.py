@@ -306,7 +306,7 @@ def test_a_break_is_the_sum_of_its_strokes(frame):
         potted = np.sum(played.shot.potted >= 0) if played.points else 0
         assert len(after.potted) - len(before.potted) == potted
         if played.points and run:
-            assert f"break of {run + played.points}" in after.words
+            assert f"break {run + played.points}" in after.words
         run, last = run + played.points, played.player if played.points else None
 
 

@@ -8,9 +8,14 @@
 import { decode, showChance, TableView } from "./table.js";
 import { Aim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
+import { Door } from "./play_door.js";
 import { Drills } from "./play_drill.js";
 import { firstAim } from "./play_first.js";
-import { ask, by, confirmed, DOWN, fill, keep, kept, Latest, make } from "./play_parts.js";
+import { Friend } from "./play_friend.js";
+import { breakWords, ending, helped, opponents } from "./play_level.js";
+import { ask, by, confirmed, DOWN, fill, isPerson, keep, kept, Latest, make } from "./play_parts.js";
+import { Person } from "./play_person.js";
+import { Review } from "./play_review.js";
 import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 import { Share } from "./play_share.js";
@@ -18,20 +23,18 @@ import { Sound } from "./play_sound.js";
 import { Stats } from "./play_stats.js";
 import { Tour } from "./play_tour.js";
 
-/** The strengths of an opponent: who plays, with whose errors. */
-const LEVELS = {
-  beginner: ["ghost_ball", "beginner"], "club player": ["tactician_500", "club"], amateur: ["tactician_500", "amateur"],
-  professional: ["tactician_500", "professional"], perfect: ["tactician_500", "none"], "nobody: two play here": ["person", "none"],
-};
-const OWN = "own";
+const OWN = "own", FINE = 30, POWER = 2.5;
 const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
-/** Slow motion, zoom, time of a call [ms]. */
-const SLOW = 0.2, ZOOM = 2, CALLED = 1600;
+/** Slow motion, zoom, time of a call [ms], how long an agent's cue is seen before its stroke [s]. */
+const SLOW = 0.2, ZOOM = 2, CALLED = 1600, AGENTS_LEAD = 1;
 /** Keys that go on while they are held: after [ms], by so many steps [1/ms]. */
 const STEPS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", ..."wsadeq"], HOLD = 300, RATE = 0.03;
-/** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels]. */
-const LOUPE = 0.24, SMALL = 9;
-const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "escape", "safety", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
+/** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels], and what is about lies so many of its breadths off its corner. */
+const LOUPE = 0.24, SMALL = 9, CLEAR = 1.5;
+const LAYOUTS = {
+  break_off: "break-off", opened: "opened pack", line_up: "line-up", colours: "colours only", snookered: "snookered", escape: "hard escape", safety: "safety battle",
+  "random:3": "three reds anywhere", "random:6": "six reds anywhere", "random:10": "ten reds anywhere", "pots:easy": "one easy pot", "pots:medium": "one fair pot", "pots:hard": "one hard pot",
+};
 const CUES = { real: "can be blocked", free: "never blocked" };
 /** What may be chosen after the foul of a player with this name. */
 const CHOICES = { play: () => "Play the table as it lies", play_again: who => `${who} plays again from here`, replace: who => `Put the balls back: ${who} plays again`, anywhere: () => "Put the cue ball anywhere" };
@@ -61,13 +64,18 @@ class Page {
     this.advisor = new Advisor(this);
     this.room = new Room(this);
     this.setup = new SetUp(this);
+    this.review = new Review(this);
     this.sound = new Sound();
     this.stats = new Stats(this);
     this.drills = new Drills(this);
     this.share = new Share(this);
+    this.friend = new Friend(this);
+    new Person(this);
     PHONE.onchange = () => this.fold(PHONE.matches);
     this.compact();
     new ResizeObserver(() => this.fit()).observe(by("stage"));
+    this.menu = opponents(this.levels, this.opponents, this.noise);
+    this.door = new Door(this, this.menu);
     this.wire();
     this.tour = new Tour(this);
   }
@@ -88,7 +96,7 @@ class Page {
     by("concede").onclick = async () => { if (await confirmed("Concede the frame?", "Concede")) this.try(() => ask("concede", {})); };
     by("new").onclick = () => this.sure("Leave this frame and begin a new game? This cannot be undone.", "New game", () => this.begin());
     by("again").onclick = () => this.again();
-    by("next").onclick = () => this.once(() => this.go("new", { next: true, seed: seed() }));
+    by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { next: true, seed: seed() })));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
@@ -97,7 +105,7 @@ class Page {
     by("labels").checked = kept.get("labels", false);
     by("labels").onchange = () => { kept.set("labels", by("labels").checked); this.redraw(); };
     fill(by("rules"), this.games);
-    by("rules").onchange = () => fill(by("layout"), by("rules").value === "six_red" ? ["break_off", "colours"] : LAYOUTS);
+    by("rules").onchange = () => fill(by("layout"), by("rules").value === "six_red" ? ["break_off", "colours"] : Object.keys(LAYOUTS), undefined, name => LAYOUTS[name]);
     by("rules").onchange();
     fill(by("best-of"), BEST_OF.map(String), "1", n => (n === "1" ? "one frame" : `best of ${n}`));
     by("level").onchange = () => this.level();
@@ -189,17 +197,17 @@ class Page {
   /** Use a state, if it is newer than the current one. */
   take(state) {
     if (this.state && state.revision <= this.state.revision) return;
-    const first = this.state === null, fresh = state.begun !== this.state?.begun, level = state.players[0] === "person" && Object.entries(LEVELS).find(([, [who, noise]]) => who === state.players[1] && noise === state.noise[1])?.[0];
+    const first = this.state === null, fresh = state.begun !== this.state?.begun, [me, who] = state.players, errors = this.levels.find(({ name }) => name === who)?.noise;
     this.state = state;
-    this.strength = level || OWN;
-    this.alias = [state.labels[1], state.labels[1]];
-    if (level && state.players[1] !== "person") this.alias[1] = state.labels[1] = level[0].toUpperCase() + level.slice(1);
+    this.strength = me === "person" && who in this.menu && (errors ?? state.noise[1]) === state.noise[1] ? who : OWN;
     if (first) { this.put(state); this.drills.resume(); }
     if (fresh || state.strokes < this.played) { this.still(); this.stats.key = null; }
+    if (fresh) this.review.end();
     if (fresh && !first) {
       this.stats.times.clear();
-      this.played = 0;
+      this.played = state.by_link?.visit ?? 0;
       this.replay = state.strokes > 0;
+      if (!this.drills.now) this.aim.set({ speed: POWER });
     }
     by("last").className = "";
     this.seated();
@@ -209,7 +217,7 @@ class Page {
 
   /** Animate all strokes that have not been shown yet, one after the other. */
   async catchUp() {
-    if (this.busy) return;
+    if (this.busy || this.review.open) return;
     this.busy = true;
     try { await this.showAll(); } catch (error) { this.played = this.state.strokes; this.trouble(error); }
     this.busy = false;
@@ -240,10 +248,10 @@ class Page {
   }
 
   /** Do two agents play, with a stroke to come? The page lets them go on when the last one has been shown. */
-  get agentsAlone() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
+  get agentsAlone() { return this.door.host && !this.state.players.some(isPerson) && this.state.phase !== "over"; }
 
   /** Has the frame ended, and been shown? */
-  get ended() { return this.state?.phase === "over" && !this.behind && !this.drills.now; }
+  get ended() { return this.state?.phase === "over" && !this.behind && !this.drills.now && this.door.host; }
 
   /** Does the game wait for Continue? */
   get waits() { return this.agentsAlone && this.held || !this.behind && this.state.paused; }
@@ -297,7 +305,7 @@ class Page {
 
   /** Show the state, and set a first aim. */
   settle() {
-    if (this.moving || this.busy) return;
+    if (this.moving || this.busy || this.review.open) return;
     const { state } = this;
     if (state.phase === "over" || state.players[state.striker] === "person") this.hurried = false;
     this.put(state);
@@ -308,6 +316,7 @@ class Page {
       this.lay = moved;
       this.phase = state.phase;
       this.settled = state.revision;
+      this.friend.settled().catch(error => this.trouble(error));
       this.room.changed();
       if (this.zoomed) this.fit();
     }
@@ -334,7 +343,7 @@ class Page {
   call({ points, fouls, penalty, words, break: run }) {
     if (!points && !fouls.length) return;
     const call = by("call");
-    call.textContent = fouls.length ? words.split(/[.;]/)[0] : run > points ? `+${points}, break ${run}` : `+${points}`;
+    call.textContent = fouls.length ? words.split(/[.;]/)[0] : run > points ? `break ${run}` : `+${points}`;
     call.className = fouls.length ? "foul" : "";
     call.hidden = false;
     clearTimeout(this.called);
@@ -345,7 +354,7 @@ class Page {
   move(data, rate = 1) {
     const stroke = decode({ format: "snooker-replay", version: 2, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     return new Promise(done => {
-      this.moving = { stroke, rate, at: -0.4, now: null, done };
+      this.moving = { stroke, rate, at: this.state.players[stroke.player] === "person" || rate < 1 ? -0.4 : -AGENTS_LEAD, now: null, done };
       if (this.near) this.fit();
       if (this.state.players[stroke.player] === "person") this.compact();
       this.stats.turn(false);
@@ -404,6 +413,7 @@ class Page {
       const { state } = this, body = { revision: state.revision, speed, side, top, aim, elevation };
       if (state.in_hand) body.place = state.positions.cue;
       if (by("nominate").value && state.nominations.includes(by("nominate").value)) body.nominate = by("nominate").value;
+      await this.drills.weigh(body);
       await this.send(body);
     });
   }
@@ -434,15 +444,18 @@ class Page {
     }
   }
 
-  /** Seat an opponent of the chosen strength; it errs as its level says, the person as before. */
+  /** Seat the chosen opponent; one of the five errs as its level says, the person as before. */
   level() {
-    const [who, noise] = LEVELS[by("level").value] ?? [];
-    if (who) this.go("players", { players: ["person", who], noise: [this.state.noise[0], noise], practice: false });
+    const who = by("level").value;
+    if (who in this.menu) this.go("players", { players: ["person", who], practice: false });
   }
 
-  /** Send the players; a new agent gets a professional's errors, a person none. */
+  /** Send the players; a new agent gets its level's errors or a professional's, a person an amateur's. */
   seats(changed = -1) {
-    if (changed >= 0) by(`noise-${changed}`).value = by(`who-${changed}`).value === "person" ? "none" : "professional";
+    if (changed >= 0) {
+      const who = by(`who-${changed}`).value;
+      by(`noise-${changed}`).value = this.levels.find(({ name }) => name === who)?.noise ?? (isPerson(who) ? "amateur" : "professional");
+    }
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
     this.held = false;
     this.try(() => ask("players", { players, noise, practice: by("practice").checked, cue: by("cue").value }));
@@ -464,7 +477,7 @@ class Page {
     if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
     if (event.altKey && !key.startsWith("Arrow")) return;
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, tip = (x, y) => aim.tip(aim.wish.side + x, aim.wish.top + y);
-    const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end() } : {
+    const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end(), u: () => this.setup.undo() } : this.review.open ? { Escape: () => this.review.end(), ArrowUp: () => this.review.step(-1), ArrowDown: () => this.review.step(1), Enter: () => this.review.again() } : {
       " ": () => (event.shiftKey ? this.hurry() : this.skip()), Escape: () => (aim.held === "cue" ? aim.up(false) : this.skip()), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
       z: () => this.zoom(), f: () => this.full(), m: () => this.sound.flip(),
       "?": () => this.help(),
@@ -506,7 +519,8 @@ class Page {
       by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
       by(`side-${k}`).querySelector(".frames").textContent = state.best_of > 1 ? `(${state.frames[k]})` : "";
     }
-    fill(by("level"), [...Object.keys(LEVELS), OWN], this.strength);
+    fill(by("level"), [...Object.keys(this.menu), OWN], this.strength, name => this.menu[name]?.short ?? name);
+    by("level-about").textContent = this.menu[this.strength]?.about ?? "";
     const own = by("level").lastChild;
     own.hidden = this.strength !== OWN;
     own.textContent = `${state.labels[1]}, mistakes: ${this.noise[state.noise[1]]}`;
@@ -517,15 +531,12 @@ class Page {
     this.show();
   }
 
-  /** The server's words, with an opponent called by its strength. */
-  said(words) { return words.replaceAll(...this.alias); }
-
   show() {
-    const { state, table } = this, busy = this.behind, mine = this.aiming, setup = this.setup.open;
-    for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["act", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
+    const { state, table } = this, busy = this.behind, mine = this.aiming, review = this.review.open, setup = this.setup.open || review;
+    for (const [id, hide] of [["setup", !this.setup.open], ["review", !review], ["stroke", setup], ["ask", setup], ["act", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
     const who = state.labels[table.striker], on = table.ball_on?.replace("_", " ");
-    by("asked").textContent = setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : this.said(table.words);
-    if (by("last").className !== "trouble") by("last").textContent = this.said(table.last);
+    by("asked").textContent = review ? "Review of the frame" : setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : table.words;
+    if (by("last").className !== "trouble") by("last").textContent = this.drills.said ?? table.last;
     by("asked").title = by("asked").textContent;
     by("last").title = by("last").textContent;
     const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
@@ -533,8 +544,9 @@ class Page {
     if (choosing && by("choices").dataset.for !== String(state.revision)) {
       by("choices").dataset.for = state.revision;
       by("panel").scrollTop = 0;
-      by("choices").replaceChildren(...state.choices.map(choice => {
-        const button = make("button", { textContent: choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice](state.labels[1 - state.striker]) });
+      const wins = state.choice_wins, best = wins.indexOf(Math.max(...wins));
+      by("choices").replaceChildren(...state.choices.map((choice, k) => {
+        const button = make("button", { className: k === best ? "best" : "" }, choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice](state.labels[1 - state.striker]), make("small", { textContent: wins[k] === null ? "" : `win ${Math.round(100 * wins[k])} %` }));
         button.dataset.choice = choice;
         button.onclick = () => this.once(() => this.send({ choice }));
         return button;
@@ -546,15 +558,16 @@ class Page {
     by("stroke").classList.toggle("idle", !mine);
     by("skip").hidden = !this.moving;
     by("turn").hidden = !this.moving || !this.replay && (state.players[table.striker] === "person" || !state.players.includes("person"));
-    by("play").hidden = Boolean(this.moving) || choosing || !by("go").hidden;
+    by("play").hidden = this.door.show() || Boolean(this.moving) || choosing || !by("go").hidden;
     if (!mine) by("odds").textContent = "";
     by("advise").disabled = !mine && !choosing;
     by("aim-out").textContent = this.aim.words;
     by("undo").disabled = !state.undo || this.drills.now;
     by("redo").disabled = !state.redo || this.drills.now;
-    by("set").disabled = this.drills.now;
+    by("set").disabled = this.drills.now || state.by_link;
     by("again").disabled = by("slow").disabled = !state.strokes || busy;
     by("share-stroke").disabled = by("share-replay").disabled = by("replay").disabled = by("stats-open").disabled = !state.strokes;
+    by("review-open").disabled = state.practice || !state.strokes && !this.review.kept;
     by("concede").disabled = !mine && !choosing;
     const named = mine && state.nominations.length > 0;
     by("nominate-row").classList.toggle("idle", !named);
@@ -571,7 +584,7 @@ class Page {
       by(`side-${k}`).querySelector("b").textContent = table.scores[k];
       by(`side-${k}`).classList.toggle("turn", table.striker === k && table.phase !== "over");
     }
-    showChance(by("win"), table.win_chance, this.state.labels, `, both with ${this.noise[this.state.level]} mistakes`);
+    showChance(by("win"), table.win_chance, this.state.labels, ` with ${this.noise[this.state.level]} mistakes`);
     put("n-break", "break ", make("b", { textContent: table.break }));
     if (!on) put("n-on", "frame over");
     else {
@@ -580,23 +593,24 @@ class Page {
     }
     put("n-reds", "reds ", make("b", { textContent: table.reds }));
     put("n-left", "left ", make("b", { textContent: table.available }));
+    put("n-aid", helped(this.state).join(", "));
     const left = Math.max(0, Math.ceil(table.time_left ?? 0));
     put("n-time", ...table.time_left === null ? [] : ["time ", make("b", { textContent: `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}` })]);
   }
 
   /** The end of the frame, with the score from the side of the only person, else of the first seat. */
   over(rest) {
-    const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0;
-    by("over").hidden = !rest || phase !== "over" || this.seen === this.table;
+    const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0, best = Math.max(0, ...this.state.breaks[winner] ?? []);
+    by("over").hidden = !rest || this.drills.now || phase !== "over" || this.seen === this.table;
     if (phase !== "over") return;
     const { match_over: ended, best_of: length, frames } = this.state;
-    by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}`;
+    by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}${best < FINE ? "" : ` with ${breakWords(best)}`}`;
     by("next").textContent = this.next;
     by("over-score").textContent = `${labels[me]} ${scores[me]} : ${scores[1 - me]} ${labels[1 - me]}`;
-    by("over-last").textContent = this.said(last);
+    by("over-last").textContent = ending(this.state, last, me);
   }
 
-  get next() { return this.state.best_of > 1 && this.state.match_over ? "New match" : "Next frame"; }
+  get next() { return this.state.by_link ? "New game by link" : this.state.best_of > 1 && this.state.match_over ? "New match" : "Next frame"; }
 
   /** An error message beside a place on the table. */
   bubble(text, x, y) {
@@ -623,7 +637,8 @@ class Page {
     const [px, py] = view.toScreen(x, y), [ix, iy] = view.toScreen(this.balls.x[0], this.balls.y[0]), { style } = by("loupe");
     const aim = this.aim.wish.aim, cue = view.toScreen(this.balls.x[0] - 0.5 * Math.cos(aim), this.balls.y[0] - 0.5 * Math.sin(aim)), busy = [[px, py], [ix, iy], cue, to ? view.toScreen(...to) : cue];
     const room = ([left, top]) => Math.min(...busy.map(([x_, y_]) => Math.hypot(x_ - left * box.clientWidth, y_ - top * box.clientHeight)));
-    const [[left, top]] = [[0, 1], [1, 1], [0, 0], [1, 0]].sort((a, b) => room(b) - room(a));
+    if (!this.corner || room(this.corner) < CLEAR * by("loupe").clientWidth) [this.corner] = [[0, 1], [1, 1], [0, 0], [1, 0]].sort((a, b) => room(b) - room(a));  // it stays until it is in the way
+    const [left, top] = this.corner;
     Object.assign(style, { left: left ? "auto" : "8px", right: left ? "8px" : "auto", top: top ? "auto" : "8px", bottom: top ? "8px" : "auto" });
     by("room").classList.toggle("up", Boolean(top));
     if (loupe.canvas.width < 2 || loupe.canvas.clientWidth * loupe.ratio !== loupe.canvas.width) loupe.resize();
@@ -650,7 +665,7 @@ class Page {
       frame.side = stroke.flies(t);
       frame.turns = Array.from({ length: stroke.n }, (_, ball) => (frame.on[ball] ? stroke.turn(ball, t) : undefined));
       if (t < 0.3 && stroke.cue) {
-        const lead = Math.min(1, moving.at / 0.4 + 1), { cue } = stroke;
+        const lead = Math.max(0, Math.min(1, moving.at / 0.4 + 1)), { cue } = stroke;
         const pull = t > 0 ? -Math.min(0.16, t * cue.speed * 0.4) : 0.02 + (0.02 + 0.02 * cue.speed) * Math.sin(Math.PI * lead);
         frame.cue = { x: stroke.first[0], y: stroke.first[1], aim: cue.aim, pull, elevation: cue.elevation, alpha: t > 0 ? 1 - t / 0.3 : 1 };
       }
@@ -659,9 +674,11 @@ class Page {
       else this.redraw();
     } else if (this.setup.open) {
       const { balls, wrong } = this.setup, rings = wrong >= 0 && balls.on[wrong] ? [wrong] : [];
-      this.view.draw({ x: balls.x, y: balls.y, on: balls.on, labels, highlight: rings });
+      const spots = this.scene.lines.spots.map(([x, y], k) => ({ x, y, ball: 16 + k, alpha: 0.12 }));
+      this.view.draw({ x: balls.x, y: balls.y, on: balls.on, labels, highlight: rings, rings: spots });
     } else if (this.state) {
       const frame = { x: this.balls.x, y: this.balls.y, on: this.balls.on, labels, lines: [], rings: [], heat: [] };
+      if (this.review.open) Object.assign(frame, this.review.overlay());
       if (this.aiming) {
         const own = this.aim.overlay(), asked = this.advisor.overlay();
         frame.heat = asked.heat;

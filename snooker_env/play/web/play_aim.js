@@ -196,8 +196,8 @@ export class Aim {
     const { app, wish } = this, { balls, scene: { extent }, view: { R } } = app, met = firstContact(balls, 0, wish.aim, extent, R);
     const lines = [{ points: [[balls.x[0], balls.y[0]], [met.x, met.y]], colour: [255, 255, 255], width: 0.003 }];
     if (met.ball >= 0) {
-      const x = balls.x[met.ball], y = balls.y[met.ball], way = Math.atan2(y - met.y, x - met.x);
-      const far = Math.min(0.12 + 0.7 * Math.cos(wish.aim - way), firstContact({ ...balls, on: balls.on.with(0, 0) }, met.ball, way, extent, R).run);
+      const x = balls.x[met.ball], y = balls.y[met.ball], full = Math.atan2(y - met.y, x - met.x), way = full + (app.room?.thrown(met.ball) ?? 0);
+      const far = Math.min(0.12 + 0.7 * Math.cos(wish.aim - full), firstContact({ ...balls, on: balls.on.with(0, 0) }, met.ball, way, extent, R).run);
       const to = met.to = [x + Math.cos(way) * far, y + Math.sin(way) * far];
       lines.push({ points: [[x, y], to], colour: [255, 226, 110], width: 0.003, dash: [0.02, 0.02] });
     }

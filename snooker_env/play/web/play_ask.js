@@ -3,7 +3,7 @@
  */
 
 import { numbers } from "./table.js";
-import { ask, by, fill, Latest, make, pocketWords, setting } from "./play_parts.js";
+import { ask, by, fill, Latest, make, setting } from "./play_parts.js";
 
 const GUIDES = { line: "aim line", paths: "paths of the balls", spread: "paths, and where they stop" };
 const CUE_CLOUD = [255, 255, 255], BALL_CLOUD = [255, 196, 60];
@@ -63,7 +63,7 @@ export class Advisor {
     if (marks.hidden) return;
     pockets.forEach(({ x, y }, k) => {
       const [px, py] = view.upright ? view.toScreen(x * 0.76, y * 0.94) : view.toScreen(x + Math.sign(x) * RAIL, Math.abs(y) > 1 ? y - Math.sign(y) * 0.29 : 0.3);
-      marks.children[k].textContent = pocketWords(pockets[k].name, view.upright);
+      marks.children[k].className = pockets[k].key === (this.hover ?? this.taken)?.pocket ? "meant" : "";
       Object.assign(marks.children[k].style, { left: `${px}px`, top: `${py}px` });
     });
   }
@@ -113,30 +113,30 @@ export class Advisor {
 
   async advise() {
     const button = by("advise"), { app } = this, { revision } = app.state;
-    app.fold(false);
     button.disabled = true;
-    button.textContent = "Thinking …";
+    button.textContent = "Hint …";
     try {
       const found = await ask("advise", { agent: by("agent").value, n: 5, revision });
       this.noise = found.noise;
+      if (found.suggestions && !app.state.practice) app.state.hints[app.state.striker]++;  // as the server does
       if (found.suggestions && revision === app.state.revision) this.show(found);
     } catch (error) {
       by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
     }
     button.disabled = false;
-    button.textContent = "What would you play?";
+    button.textContent = "Hint";
+    app.show();
   }
 
-  show({ order, suggestions, choices, choice }) {
+  show({ order, suggestions, choices }) {
     this.list = suggestions;
-    this.adopted = false;
-    for (const button of by("choices").children) button.classList.toggle("best", button.dataset.choice === choice);
+    this.taken = null;
     const items = suggestions.map((one, k) => {
       const [low, high] = (one.win_interval ?? one.chance_interval).map(value => Math.round(100 * value));
       const [least, most] = one.points_interval.map(value => value.toFixed(1));
       const visit = one.kind === "pot" ? `points ${least} to ${most}` : `fair ${low} to ${high} %`;
       const range = one.win_interval ? `win chance ${low} to ${high} %` : visit;
-      const [what, ...how] = pocketWords(one.words, this.app.view.upright).split("; ")[0].split(", "), told = this.told(one, what, how);
+      const [what, ...how] = one.words.split("; ")[0].split(", "), told = this.told(one, what, how);
       const button = make("button", { title: `${range} (95 % interval)` }, make("b", { textContent: told.figure }), told.what, make("small", { textContent: told.how }));
       button.setAttribute("aria-pressed", "false");
       button.onpointerenter = event => event.pointerType === "mouse" && this.preview(k);
@@ -178,7 +178,7 @@ export class Advisor {
     const one = this.list[k], { app } = this;
     by("advice").querySelectorAll("button").forEach((button, j) => button.setAttribute("aria-pressed", String(j === k)));
     this.hover = null;
-    this.adopted = true;
+    this.taken = one;
     if (one.place && app.state.in_hand) {
       [app.balls.x[0], app.balls.y[0]] = one.place;
       app.aim.place(...one.place);
@@ -199,7 +199,7 @@ export class Advisor {
       draw(this.hover.paths, 0.006, 1);
       for (const [ball, points] of Object.entries(this.hover.paths)) out.rings.push({ x: points.at(-1)[0], y: points.at(-1)[1], ball: Number(ball), alpha: 0.35 });
     } else {
-      if (!this.adopted) for (const one of this.list) draw(one.paths, 0.0025, 0.4);
+      if (!this.taken) for (const one of this.list) draw(one.paths, 0.0025, 0.4);
       draw(this.found?.paths, 0.004, 0.9);
     }
     return out;

@@ -24,6 +24,9 @@ export function fill(select, values, chosen = select.value, words = value => val
   if (values.includes(chosen)) select.value = chosen;
 }
 
+/** Is this who sits on a seat: a person, at this page or another? */
+export const isPerson = who => ["person", "friend", "friend_by_link"].includes(who);
+
 /** What this browser keeps of the player, by name. Without storage it lasts as long as the page. */
 export const kept = {
   all: (() => { try { return JSON.parse(localStorage.getItem("snooker")) ?? {}; } catch { return {}; } })(),
@@ -41,8 +44,6 @@ export function setting(id, words, otherwise, changed) {
   select.onchange = event => { kept.set(id, select.value); changed(event); };
 }
 
-export const pocketWords = (text, upright) => (upright ? text : text.replace("right middle", "lower middle").replace("left middle", "upper middle")
-  .replace("top right", "lower right").replace("top left", "upper right"));
 
 export function confirmed(question, yes) {
   const box = by("confirm");

@@ -4,7 +4,7 @@
  * `found`: the answer of `api/room` for the last stroke that was asked about, or null.
  */
 
-import { by, Latest } from "./play_parts.js";
+import { by, firstContact, Latest } from "./play_parts.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const STEEP = Math.PI / 36;  // a cue raised less is not worth a word
@@ -14,20 +14,27 @@ export class Room {
   constructor(app) {
     this.app = app;
     this.found = null;
-    this.wait = new Latest("room", (found, revision) => this.take(found, revision), error => this.take(null, app.state.revision, error));
+    this.wait = new Latest("room", (found, about) => this.take(found, about), (error, about) => this.take(null, about, error));
   }
 
   changed() {
     const { app } = this;
     if (!app.aiming) { this.wait.drop(); this.found = null; this.show(); return; }
     const { speed, side, top, aim, elevation } = app.aim.wish, { revision } = app.state;
-    this.wait.ask({ speed, side, top, aim, elevation, revision }, revision);
+    this.wait.ask({ speed, side, top, aim, elevation, revision }, { revision, aim });
   }
 
-  take(found, revision, error) {
+  /** How far a ball's way is turned from the line of centres [rad], by throw and swerve, with the last stroke that was asked about. */
+  thrown(ball) { return this.found?.first === this.app.names[ball] ? this.found.turned : 0; }
+
+  take(found, { revision, aim }, error) {
     const { app } = this;
     if (found?.stale || revision !== app.state.revision || !app.aiming) return;
     this.found = found;
+    if (found?.first) {
+      const { balls, scene, R } = app, { x, y, ball } = firstContact(balls, 0, aim, scene.extent, R);
+      found.turned = ball < 0 ? 0 : found.heads - Math.atan2(balls.y[ball] - y, balls.x[ball] - x);
+    }
     this.show(error);
     app.redraw();
   }

@@ -2,8 +2,10 @@
  * How is a position set up? Balls are dragged on the table and off it, and the server validates every change.
  */
 
-import { ask, by, fill, Latest, make, ServerError } from "./play_parts.js";
+import { ask, by, fill, intoD, Latest, make, ServerError } from "./play_parts.js";
 
+/** How near a dropped ball snaps: to a spot [ball radii], to touch a cushion or a ball [m]. */
+const SPOT = 0.8, NEAR = 0.008;
 const ON = ["automatic", "red", "any_colour", "yellow", "green", "brown", "blue", "pink", "black"];
 
 export class SetUp {
@@ -21,7 +23,9 @@ export class SetUp {
     by("set").onclick = () => this.begin();
     by("set-cancel").onclick = () => this.end();
     by("set-done").onclick = () => this.done();
-    by("set-clear").onclick = () => { this.balls.on.fill(0, 1, 16); by("set-on").value = ON[0]; this.changed(); };
+    by("set-clear").onclick = () => { this.keep(); this.balls.on.fill(0, 1, 16); by("set-on").value = ON[0]; this.changed(); };
+    by("set-undo").onclick = () => this.undo();
+    by("set-mirror").onclick = () => this.mirror();
     for (const id of ["set-on", "set-striker", "set-score-0", "set-score-1", "set-hand", "set-free"]) by(id).onchange = () => this.changed();
   }
 
@@ -31,6 +35,7 @@ export class SetUp {
     app.put(state);
     this.balls = { x: x.slice(), y: y.slice(), on: on.slice() };
     this.open = true;
+    this.kept = [];
     app.compact(false);
     fill(by("set-on"), ON, state.ball_on ?? ON[0]);
     fill(by("set-striker"), ["0", "1"], String(state.striker), value => state.labels[Number(value)]);
@@ -39,6 +44,42 @@ export class SetUp {
     by("set-free").checked = state.free_ball;
     app.mode("setup");
     this.changed();
+  }
+
+  /** Keep the balls as they are, for Undo. */
+  keep() {
+    const { x, y, on } = this.balls;
+    this.kept.push({ balls: { x: x.slice(), y: y.slice(), on: on.slice() }, hand: by("set-hand").checked, wanted: by("set-on").value });
+  }
+
+  undo() {
+    const last = this.kept.pop();
+    if (!last) return;
+    this.balls = last.balls;
+    by("set-hand").checked = last.hand;
+    by("set-on").value = last.wanted;
+    this.changed();
+  }
+
+  /** Left for right; a colour on its own spot stays there. */
+  mirror() {
+    this.keep();
+    const { x, y } = this.balls, { spots } = this.app.scene.lines;
+    for (let i = 0; i < x.length; i++) if (i < 16 || Math.hypot(x[i] - spots[i - 16][0], y[i] - spots[i - 16][1]) > 1e-4) x[i] = -x[i];
+    this.changed();
+  }
+
+  /** The place for a ball dropped at (x, y): a spot, frozen to a cushion or touching a ball, if that is near. */
+  snap(ball, x, y) {
+    const { scene: { extent, lines }, view: { R } } = this.app, { balls } = this, spot = lines?.spots.find(([sx, sy]) => Math.hypot(sx - x, sy - y) < SPOT * R);
+    if (spot) return spot;
+    const frozen = (value, [low, high]) => (Math.abs(value - low - R) < NEAR ? low + R : Math.abs(high - R - value) < NEAR ? high - R : Math.round(value * 1e4) / 1e4);
+    [x, y] = [frozen(x, extent[0]), frozen(y, extent[1])];
+    for (let i = 0; i < balls.x.length; i++) {
+      const dx = x - balls.x[i], dy = y - balls.y[i], far = Math.hypot(dx, dy);
+      if (i !== ball && balls.on[i] && Math.abs(far - 2 * R) < NEAR) return [balls.x[i] + dx * 2 * R / far, balls.y[i] + dy * 2 * R / far];
+    }
+    return [x, y];
   }
 
   end() {
@@ -66,6 +107,7 @@ export class SetUp {
 
   changed() {
     this.tray();
+    by("set-undo").disabled = !this.kept.length;
     this.check.ask({ ...this.request(), check: true });
     this.app.redraw();
   }
@@ -114,7 +156,7 @@ export class SetUp {
       made.setAttribute("aria-label", made.title);
       made.setAttribute("aria-pressed", String(this.picked === i));
       made.style.background = `rgb(${ball.rgb})`;
-      made.onpointerdown = event => { this.picked = i; this.held = { ball: i }; made.releasePointerCapture?.(event.pointerId); };
+      made.onpointerdown = event => { this.picked = i; this.keep(); this.held = { ball: i }; made.releasePointerCapture?.(event.pointerId); };
       made.onclick = () => { this.picked = i; this.tray(); };
       return [made];
     }));
@@ -133,8 +175,8 @@ export class SetUp {
       const far = Math.hypot(balls.x[i] - x, balls.y[i] - y);
       if (balls.on[i] && far < best) { best = far; ball = i; }
     }
-    if (ball >= 0) this.held = { ball };
-    else if (this.picked >= 0 && this.inside(x, y)) { this.held = { ball: this.picked }; this.move(event); }
+    if (ball >= 0) { this.keep(); this.held = { ball }; }
+    else if (this.picked >= 0 && this.inside(x, y)) { this.keep(); this.held = { ball: this.picked }; this.move(event); }
     this.picked = -1;
     event.preventDefault();
   }
@@ -143,8 +185,8 @@ export class SetUp {
     const { ball } = this.held, [x, y] = this.app.aim.at(event), over = document.elementFromPoint(event.clientX, event.clientY) === by("table");
     this.balls.on[ball] = Number(over && this.inside(x, y));
     if (this.balls.on[ball]) {
-      const { lines } = this.app.scene, spot = lines?.spots.find(([sx, sy]) => Math.hypot(sx - x, sy - y) < 0.4 * this.app.view.R);
-      [this.balls.x[ball], this.balls.y[ball]] = spot ?? [x, y].map(value => Math.round(value * 1e4) / 1e4);
+      const place = [this.balls.x[ball], this.balls.y[ball]] = this.snap(ball, x, y);
+      if (ball === 0 && Math.hypot(...intoD(...place, this.app.scene.lines).map((value, k) => value - place[k])) > 1e-6) by("set-hand").checked = false;
       this.picked = -1;
       this.check.ask({ ...this.request(), check: true });
     }
@@ -152,6 +194,8 @@ export class SetUp {
   }
 
   up() {
+    const { balls: { x, y, on }, held: { ball } } = this, last = this.kept.at(-1).balls;
+    if (on[ball] === last.on[ball] && x[ball] === last.x[ball] && y[ball] === last.y[ball]) this.kept.pop();  // a mere tap
     this.held = null;
     this.changed();
   }

@@ -1,16 +1,16 @@
 /**
- * How is a position, a stroke or a replay passed on? As text after the # of the page's address: the game as it is saved, the last stroke as the server
- * tells it, or the game with all that was played. JSON, deflated, in base64url.
+ * How is a position, a stroke or a replay passed on? As text after the # of the page's address: the game as it is saved, or the last stroke as the server
+ * tells it, both JSON, deflated, in base64url; or the server's own link to all that was played.
  */
 
 import { numbers } from "./table.js";
 import { ask, by } from "./play_parts.js";
 
-/** Of each kind of link: its JSON, after so many strokes. */
+/** Each kind of link, after so many strokes. */
 const KINDS = {
-  game: () => ask("save", {}),
-  stroke: async n => JSON.stringify((await ask("strokes", undefined, `?from=${n - 1}`)).strokes[0]),
-  replay: () => ask("save", { acts: true }),
+  game: async () => packed("game", await ask("save", {})),
+  stroke: async n => packed("stroke", JSON.stringify((await ask("strokes", undefined, `?from=${n - 1}`)).strokes[0])),
+  replay: async () => short(`#replay=${(await ask("link")).link}`),
 };
 /** Characters of the longest link. */
 const MOST = 30_000;
@@ -32,10 +32,11 @@ export async function packed(kind, json) {
   return short(`#${kind}=${text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "")}`);
 }
 
-/** [kind, text of JSON] of a link or its fragment; Error if it is none. */
+/** [kind, text: JSON unless the server reads it] of a link or its fragment; Error if it is none. */
 export async function unpacked(link) {
   const [, kind, text] = /#(\w+)=([\w-]+)\s*$/.exec(short(link)) ?? [];
-  if (!Object.hasOwn(KINDS, kind)) throw new Error("This is no link to a position, a stroke or a replay.");
+  if (kind === "replay" || kind === "friend") return [kind, text];
+  if (!Object.hasOwn(KINDS, kind)) throw new Error("This is no link to a position, a stroke, a replay or a game.");
   const stream = deflate("DecompressionStream");
   try {
     const bytes = numbers(text.replaceAll("-", "+").replaceAll("_", "/"), Uint8Array);
@@ -49,14 +50,18 @@ export class Share {
     for (const kind in KINDS) by(`share-${kind}`).onclick = () => this.offer(kind);
     const link = by("link"), open = () => { this.open(link.value); link.value = ""; };
     link.onpaste = () => setTimeout(open);
-    link.onkeydown = event => event.key === "Enter" && open();
+    link.onkeydown = event => {
+      if (event.key !== "Enter") return;
+      event.preventDefault();  // it would press a button of the dialogue that opens
+      open();
+    };
     window.onhashchange = () => this.fromAddress();
   }
 
   /** Copy a link, and show it in the field: where a page may not write the clipboard, it can be copied there. */
   async offer(kind) {
     try {
-      const link = await packed(kind, await KINDS[kind](this.app.state.strokes)), field = by("link");
+      const link = await KINDS[kind](this.app.state.strokes), field = by("link");
       field.value = link;
       field.select();
       let where = "copied";
@@ -77,7 +82,8 @@ export class Share {
     const { app } = this;
     try {
       const [kind, text] = await unpacked(link);
-      if (kind !== "stroke") app.sure(`Leave this frame for the ${kind === "game" ? "position" : kind} of the link?`, "Open", () => app.go("load", `{"saved": ${text}}`));
+      if (kind === "friend") app.friend.open(text);
+      else if (kind !== "stroke") app.sure(`Leave this frame for the ${kind === "game" ? "position" : kind} of the link?`, "Open", () => app.go("load", kind === "game" ? `{"saved": ${text}}` : { link: text }));
       else {
         while (app.behind) await new Promise(done => setTimeout(done, 200));
         await app.film(JSON.parse(text));

@@ -18,7 +18,10 @@ export class Tour {
     by("tour-open").onclick = () => this.go(0);
     by("tour-next").onclick = () => this.go(this.step + 1);
     by("tour-skip").onclick = () => this.go(STEPS.length);
-    if (!kept.get("toured", false)) this.go(0);
+    new ResizeObserver(() => this.aside()).observe(by("stage"));
+    app.started.then(() => this.aside());
+    if (app.me !== "person") STEPS.splice(4);  // the host alone has what comes then
+    if (!kept.get("toured", false) && app.me !== "watcher") this.go(0);
   }
 
   go(step) {
@@ -31,7 +34,17 @@ export class Tour {
     if (id !== "table") by(id).classList.add("shown-now");
     by(id).scrollIntoView({ block: "nearest" });
     by("tour-words").textContent = words;
+    this.aside();
     by("tour-step").textContent = `${step + 1} of ${STEPS.length}`;
     by("tour-next").textContent = step + 1 < STEPS.length ? "Next" : "Play";
+  }
+
+  /** Put the card above, in the middle or below: where it is farthest from the cue, the cue ball and what it meets. */
+  aside() {
+    const card = by("tour"), { view, aim, balls } = this.app, { clientWidth, clientHeight } = by("stage"), { style } = card;
+    const { met, cue } = aim.overlay(), points = [[cue.x, cue.y], [met.x, met.y], [cue.x - 0.4 * Math.cos(cue.aim), cue.y - 0.4 * Math.sin(cue.aim)]].map(place => view.toScreen(...place));
+    const beside = Math.max(0, (clientWidth - card.offsetWidth) / 2), high = card.offsetHeight, least = top => Math.min(...points.map(([x, y]) => Math.hypot(Math.max(beside - x, x - clientWidth + beside, 0), Math.max(top - y, y - top - high, 0))));
+    const [top] = [0.98, 0.5, 0.02].map(share => share * (clientHeight - high)).sort((a, b) => least(b) - least(a));
+    style.top = `${top}px`;
   }
 }

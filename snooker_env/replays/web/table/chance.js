@@ -21,5 +21,5 @@ export function showChance(element, chance, names, how = "") {
   const both = shares(chance).map(share => `${share} %`);
   const meaning = `chance to win${how}: ${names.map((name, k) => `${name} ${both[k]}`).join(", ")}`;
   element.style.setProperty("--share", `${100 * chance}%`);
-  say(element, [both[0], "chance to win", both[1]], meaning);
+  say(element, [both[0], `chance to win${how}`, both[1]], meaning);
 }

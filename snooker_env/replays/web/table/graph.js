@@ -13,7 +13,7 @@ const sumLuck = (strokes, luck) =>
   [0, 1].map(who => strokes.reduce((sum, stroke, k) => sum + (stroke.player === who ? luck[k] : 0), 0));
 
 /** The graph of a player's replay in an element; a click shows the stroke there. */
-class ChanceGraph {
+export class ChanceGraph {
   constructor(element, player) {
     const { total, starts, strokes, replay } = player;
     const { win_chance: chances, luck, players } = replay;

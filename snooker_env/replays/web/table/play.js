@@ -7,12 +7,12 @@
 
 /** Words for events, by kind; a kind without is no stop for a step. */
 const EVENTS = [
-  "touches",
+  "strikes",
   "meets a cushion",
-  "meets a jaw",
+  "meets the edge of a pocket",
   "is potted",
-  "rolls",
-  "rests",
+  "begins to roll",
+  "comes to rest",
   "drops",
   "comes back",
 ];
@@ -59,11 +59,11 @@ const setAll = (element, attributes) => {
 };
 
 /** The player's elements; `STYLE` is the text of player.css. */
-const page = (ratio, players, total, judged) => {
+const page = (players, total, judged) => {
   const who = '<div class="sn-who"><span></span><b></b></div>';
   const parts = [who, '<div class="sn-now"></div>', who].slice(0, players.length + 1);
   return `<style>${STYLE}</style>
-    <div class="sn-stage" style="aspect-ratio:${ratio}"><canvas></canvas></div>
+    <div class="sn-stage"><canvas></canvas></div>
     ${players.length ? `<div class="sn-score">${parts.join("")}</div>` : ""}
     ${judged ? '<div class="sn-win"></div><div class="sn-graph"></div>' : ""}
     <div class="sn-bar" role="slider" tabindex="0" aria-label="time" aria-valuemin="0" aria-valuemax="${total}">
@@ -96,12 +96,21 @@ export class Player {
     this.build(element);
     this.tick = this.tick.bind(this);
     this.watch = new ResizeObserver(() => {
+      this.turn();
       this.view.resize();
       this.update();
     });
     this.watch.observe(this.canvas);
+    this.watch.observe(this.root);
     this.update();
     if (this.options.autoplay) this.play();
+  }
+
+  /** Let the table stand where the page does. */
+  turn() {
+    const { root: { clientWidth, clientHeight }, options, ratio } = this;
+    const tall = options.fill && clientHeight > 1.2 * clientWidth;
+    this.canvas.parentElement.style.aspectRatio = tall ? 1 / ratio : ratio;
   }
 
   get stroke() {
@@ -124,10 +133,12 @@ export class Player {
     const [wide, high] = TableView.size(scene);
     const kind = options.fill ? "sn sn-fill" : "sn";
     setAll(root, { class: kind, tabindex: 0, role: "group", "aria-label": title || "replay" });
-    root.innerHTML = page(wide / high, players, this.total.toFixed(1), win_chance);
+    this.ratio = wide / high;
+    root.innerHTML = page(players, this.total.toFixed(1), win_chance);
     [this.canvas, this.tip] = root.querySelectorAll("canvas");
     this.canvas.onclick = () => this.toggle();
-    this.view = new TableView(this.canvas, scene);
+    this.turn();
+    this.view = new TableView(this.canvas, scene, true);
     for (const name in this.view.ink) root.style.setProperty(`--${name}`, this.view.ink[name]);
     this.who = [...root.querySelectorAll(".sn-who")];
     this.who.forEach((one, k) => {
@@ -342,13 +353,14 @@ export class Player {
     return stroke.met.filter(ring => ring.at < this.t);
   }
 
-  /** The cue: drawn back, through the ball, away. */
+  /** The cue: at the ball, drawn back, through the ball, away. */
   cue(stroke) {
     const { t } = this;
     const { speed, aim, elevation } = stroke.cue;
     const before = t < 0;
-    const pull = before ? (0.06 + 0.02 * min(5, speed)) * sin(PI * (-t / LEAD) ** 0.6) : -min(0.16, 0.4 * t * speed);
-    const alpha = min(1, before ? 4 + 4 * t / LEAD : 1 - t / 0.35);
+    const back = 0.02 + (0.06 + 0.02 * min(5, speed)) * sin(PI * (-t / LEAD) ** 0.6);
+    const pull = before ? min(back, -t) : -min(0.16, 0.4 * t * speed);
+    const alpha = before ? 1 : 1 - t / 0.35;
     return { x: stroke.first[0], y: stroke.first[1], aim, elevation, pull, alpha };
   }
 
@@ -396,10 +408,12 @@ export class Player {
     if (this.who.length) this.score(stroke, over, reds);
   }
 
-  /** An event in words, with its time. */
+  /** An event as a sentence, with its time. */
   eventWords([t, kind, i, j], balls) {
-    const other = kind === BALL_BALL ? balls[j].name : "";
-    return `${t.toFixed(3)} s: ${balls[i].name} ${EVENTS[kind]} ${other}`;
+    const name = ball => (ball ? balls[ball].name.replace(/^red \d+/, "red") : "cue ball");
+    const both = kind === BALL_BALL;
+    const a = both && j && /^red/.test(balls[j].name) && /^red/.test(balls[i].name) ? "another" : "the";
+    return `After ${t.toFixed(2)} s the ${name(i)} ${EVENTS[kind]}${both ? ` ${a} ${name(j)}` : ""}.`;
   }
 
   /** The cue ball as the player sees it, and where the tip strikes it. */

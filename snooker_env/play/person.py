@@ -1,0 +1,102 @@
+"""What does a person's own file hold? Frames against the agents, and the strokes that the coach reads.
+
+The file is read before each use and written whole, so two servers may share it. One that is not sound is an error, and is
+never written over."""
+
+import json
+from collections.abc import Callable
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+from .._lib.check import integer, refuse, truth
+from .._lib.files import MOST_JSON, read_bytes, strict_json, write_atomic
+from ..advice import Recorded, strokes_of
+from .levels import BY_NAME
+from .session import Session
+
+EMPTY = {"format": "snooker-person", "version": 1, "name": "", "frames": [], "strokes": []}
+MOST_STROKES, MOST_NAME = 600, 40
+RATED_WITH = "amateur"  # the person's errors in frames that are rated
+PLACE = ("cue", "physics", "table")  # what strokes must share to be read by the coach together
+
+
+class Person:
+    """A person's file: the ``name``, ``frames`` as of ``frame_of``, and the last ``MOST_STROKES`` ``strokes``."""
+
+    def __init__(self, path: str | Path):
+        self.path: Path = Path(path)
+        self.read()
+
+    def read(self) -> dict[str, Any]:
+        """What the file holds, checked; without a file, nothing. ValueError names what is wrong."""
+        try:
+            kept = strict_json(read_bytes(self.path, MOST_JSON)) if self.path.exists() else dict(EMPTY)
+            _check(kept)
+        except (ValueError, TypeError, KeyError, AttributeError) as error:
+            why = f"must be a person's file; move it away, or name another with --person ({error})"
+            raise refuse("person", str(self.path), why) from None
+        return kept
+
+    def change(self, how: Callable[[dict[str, Any]], object]) -> None:
+        """Change what the file holds, check it, and write it whole."""
+        kept = self.read()
+        how(kept)
+        _check(kept)
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomic(self.path, json.dumps(kept, allow_nan=False) + "\n")
+
+    def keep(self, session: Session, seat: int, opponent: str) -> None:
+        """Keep a frame that is over, and the person's strokes in it: as they were played, with the pots that they tell."""
+        frame, played = frame_of(session, seat, opponent), [session.acts[k].played for k in session.strokes]
+        mine = strokes_of(played, player=seat) if any(one and one.player == seat for one in played) else []
+
+        def add(kept: dict[str, Any]) -> None:
+            kept["frames"] = [*kept["frames"], frame]
+            kept["strokes"] = [*kept["strokes"], *(one.to_dict() for one in mine)][-MOST_STROKES:]
+
+        self.change(add)
+
+    def strokes(self) -> list[Recorded]:
+        """The strokes that share cue, constants and table with the last one."""
+        kept = self.read()["strokes"]
+        same = [one for one in kept if all(one.get(name) == kept[-1].get(name) for name in PLACE)]
+        return [Recorded.from_dict(one) for one in same]
+
+
+def frame_of(session: Session, seat: int, opponent: str) -> dict[str, Any]:
+    """The frame that is over, as it is kept: the person's side first; rated are fair frames against a level."""
+    sides, level = (seat, 1 - seat), BY_NAME.get(opponent)
+    asked = [session.acts[k].asked for k in session.strokes if session.acts[k].player == seat]
+    usual = (session.game, session.layout, session.cue) == ("snooker", "break_off", "real")
+    erred = {RATED_WITH} == {stroke["noise"] for stroke in asked}
+    own = level is not None and session.noise[1 - seat] == level.noise
+    return {
+        "date": date.today().isoformat(),
+        "opponent": opponent,
+        "noise": [session.noise[side] for side in sides],
+        "scores": [session.frame.scores[side] for side in sides],
+        "won": session.frame.winner == seat,
+        "breaks": session.breaks[seat],
+        "hints": session.hints[seat],
+        "undone": session.undone,
+        "rated": usual and erred and own and not session.hints[seat] and not session.undone,
+    }
+
+
+def _check(kept: dict[str, Any]) -> None:
+    """An error of one of four kinds if this is not what a person's file holds."""
+    for name in ("format", "version"):
+        if kept[name] != EMPTY[name]:
+            raise refuse(name, kept[name], f"must be {EMPTY[name]!r}")
+    for text in (kept["name"], *(one["opponent"] for one in kept["frames"])):
+        if not isinstance(text, str) or len(text) > MOST_NAME or not text.isprintable():
+            raise refuse("name", text, f"must be a line of at most {MOST_NAME} characters")
+    for one in kept["frames"]:
+        date.fromisoformat(one["date"])
+        for name in ("won", "rated"):
+            truth(name, one[name])
+        for value in (*one["scores"], *one["breaks"], one["hints"], one["undone"]):
+            integer("frames", value, 0, 10**6)
+    for one in kept["strokes"]:
+        Recorded.from_dict(one)

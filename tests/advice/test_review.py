@@ -1,0 +1,132 @@
+"""Does a review say what strokes cost? Against ``advise``, and strokes whose costs are known."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.advice import CueStroke
+from snooker_env.advice.__main__ import main
+from snooker_env.advice.recorded import REPLAY, read_document
+from snooker_env.advice.review import go_through, read_frame
+from snooker_env.play.session import Session
+from snooker_env.replays import Replay
+
+HOW = {"agent": "tactician_100", "noise": "club", "samples": 60, "seed": 5}
+OPTIONS = {"cue": "real", "miss": "clear_path", "game": "snooker"}
+
+
+@pytest.fixture(scope="module")
+def game(tmp_path_factory):
+    """What advice says before each stroke of a frame, the replay's file, and who played: the first stroke is the advised one,
+    the others are struck anyhow."""
+    session, advice = Session(seed=2), []
+    session.noise[:] = ["club", "club"]
+    for k in range(4):
+        if session.frame.phase == "choice":
+            session.choose("play")
+        advice.append(sn.advise(session.position, n=1, visits=0, options=OPTIONS, **HOW)[0])
+        stroke = CueStroke(speed=2.0, aim=1.5 + 0.3 * k) if k else advice[0].stroke
+        if stroke.place is not None:
+            session.place(*stroke.place)
+        session.play(replace(stroke, place=None))
+    strokes = [session.acts[k].played for k in session.strokes]
+    judge = sn.player("tactician").at(session.options_with("club"))
+    file = tmp_path_factory.mktemp("review") / "frame.html"
+    Replay(strokes, players=("Ann", "Bob"), judge=judge, luck=session.luck).save(file)
+    return advice, file, [one.player for one in strokes]
+
+
+def reviewed(file, *players, **how):
+    *_, (done, total, found) = go_through(
+        read_document(file, {REPLAY: read_frame}), players or (0, 1), **HOW | how
+    )
+    assert done == total and not any(one.rough for one in found.strokes)
+    return found
+
+
+def test_a_review_says_what_advice_says_at_the_same_budget(game):
+    """Of the best stroke, and of the advised stroke as it was meant: its choice costs nothing, exactly."""
+    advice, file, players = game
+    found = reviewed(file)
+    assert [one.player for one in found.strokes] == players and found.agent == HOW["agent"]
+    assert [one.best.win for one in found.strokes] == [one.win for one in advice]
+    assert [one.best.stroke for one in found.strokes] == [one.stroke for one in advice]
+    first, *others = found.strokes
+    assert first.choice == 0.0 and first.meant.win == advice[0].win
+    assert max(one.choice for one in others) > 0.05
+    for one in found.strokes:
+        assert one.choice + one.execution == pytest.approx(one.best.win - one.after, abs=1e-12)
+
+
+def test_both_players_have_the_sums_of_their_strokes_and_a_result_without_luck(game):
+    """Under the errors that were made execution is the luck; under others the replay says it."""
+    _, file, players = game
+    found, other = reviewed(file), reviewed(file, 0, noise="amateur", samples=20)
+    for k, side in enumerate(found.sides):
+        own = [one for one in found.strokes if one.player == k]
+        assert (side.strokes, side.name) == (players.count(k), ("Ann", "Bob")[k])
+        assert side.choice == pytest.approx(sum(one.choice for one in own))
+        assert side.luck == pytest.approx(-sum(one.execution for one in own)) and side.luck != 0.0
+    one, two = found.sides
+    assert found.adjusted == pytest.approx(found.result - one.luck + two.luck)
+    kept = read_document(file, {REPLAY: lambda kept: kept})
+    told = [sum(luck for luck, by in zip(kept["luck"], players, strict=True) if by == k) for k in (0, 1)]
+    assert [side.luck for side in other.sides] == pytest.approx(told)
+    assert other.sides[1].strokes == 0 and len(other.win_chance) == 5
+    np.testing.assert_allclose(found.win_chance, kept["win_chance"])
+
+
+def test_what_was_left_is_worth_what_the_stroke_is_worth_without_errors(tmp_path):
+    """A stroke without errors leaves what its own mean is: the replay and the simulation agree on the chance to win."""
+    session = Session(seed=4)
+    for aim in (1.5, 1.8, 1.2):
+        if session.frame.phase == "choice":
+            session.choose("play")
+        session.play(CueStroke(speed=2.5, aim=aim))
+    file = tmp_path / "frame.json"
+    Replay([session.acts[k].played for k in session.strokes]).save(file)
+    found = reviewed(file, noise="none")
+    assert [one.execution for one in found.strokes] == pytest.approx([0.0] * 3, abs=1e-9)
+    assert found.adjusted is None
+
+
+def test_the_command_prints_the_costliest_and_one_error(game, tmp_path, capsys):
+    _, file, _ = game
+    asked = [
+        "review",
+        str(file),
+        "--noise",
+        "club",
+        "--agent",
+        "tactician_100",
+        "--samples",
+        "60",
+        "--seed",
+        "5",
+    ]
+    assert main(asked) == 0
+    said = capsys.readouterr().out
+    worst = reviewed(file).costliest[0]
+    assert f"stroke {worst.number}, " in said and "thrown away by the choice; the best was " in said
+    assert "Ann: luck " in said and "without luck" in said
+    assert main([*asked, "--json", "--player", "1"]) == 0
+    assert {one["player"] for one in json.loads(capsys.readouterr().out)["strokes"]} == {1}
+    visit = sn.SnookerEnv(action="discrete")
+    visit.keep_history = True
+    visit.reset(seed=1)
+    visit.step(67)
+    sn.replay(visit, tmp_path / "visit.json")
+    (tmp_path / "no.json").write_text("{}")
+    for name, word in (
+        ("visit.json", "nobody wins a visit"),
+        ("no.json", "must be a replay"),
+        ("gone", "gone"),
+    ):
+        assert main(["review", str(tmp_path / name)]) == 2
+        error = capsys.readouterr().err
+        assert word in error and error.startswith("error: ") and error.count("\n") == 1
+    assert main([*asked[:2], "--agent", "planner"]) == 2
+    assert "must know frames" in capsys.readouterr().err
