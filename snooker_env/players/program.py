@@ -137,19 +137,17 @@ class ProgramPlayer(BoundPlayer):
         rules, saved = self.options.rules, at.saved or Layouts(at.positions, at.on_table)
         return frame_of(at.game[0], rules.miss, saved, 0, rules.game)
 
-    def _ask(self, at: Positions, seed: int) -> dict[str, Any]:
-        """The program's answer to the one position ``at``: an object."""
+    def _state(self, at: Positions) -> dict[str, Any]:
+        """What the one position ``at``, of a frame, is told as."""
         frame = self._frame(at)
         state = report_game(frame, at.positions[0].tolist(), at.on_table[0].tolist(), LABELS)
         turn, lines = report_turn(frame, at, self.options.rules.table, self._noise)
-        state |= turn | {
-            "noise": [self._noise] * 2,
-            "cue": self.options.cue,
-            "game": frame.rules,
-            "seed": seed,
-        }
-        state["text"] = say_table(state, lines, [state["words"], say_score(state, LABELS)])
-        answer = self._answer(state)
+        state |= turn | {"noise": [self._noise] * 2, "cue": self.options.cue, "game": frame.rules}
+        return state | {"text": say_table(state, lines, [state["words"], say_score(state, LABELS)])}
+
+    def _ask(self, at: Positions, seed: int) -> dict[str, Any]:
+        """The program's answer to the one position ``at``: an object."""
+        answer = self._answer(self._state(at) | {"seed": seed})
         try:
             return read_object(answer.strip())
         except ValueError as error:
