@@ -1,8 +1,9 @@
 """Which games does a client play? Free ones, over the routes of the page, or the judged tables of a task."""
 
+import json
 import time
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from ..benchmark.provenance import machine
 from ..benchmark.results import result_of, write_result
 from ..benchmark.run import read_earlier
 from ..benchmark.tasks import HELD_OUT_SEED, Task
-from ..game.balls import NAMES
 from ..game.layouts import LAYOUTS
 from ..game.rule_sets import RULES
 from ..planning import Positions
@@ -22,6 +22,7 @@ from ..play.routes import GET, POST, answer
 from ..play.service import OFFERED, PERSON, Seats, Service
 from ..play.session import Session
 from ..players.program import ProgramPlayer
+from ..players.requests import STROKE
 from ..players.seen import begun
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options
@@ -29,24 +30,6 @@ from ..tasks.options import Options
 ALONE = "nobody"  # the opponent of somebody who practises
 DEALT = tuple(name for name in LAYOUTS if not name.startswith("held_out"))  # no table of the judging
 MOST_ADVICE = 5
-
-
-class Game(Protocol):
-    """What a client plays."""
-
-    options: Options  # of who plays
-
-    def state(self) -> dict[str, Any]:
-        """The table as JSON types, as the page and programs get it."""
-        ...
-
-    def lies(self) -> Positions | None:
-        """The one position that a stroke is played from; None if there is none to play."""
-        ...
-
-    def play(self, fields: dict[str, Any]) -> str:
-        """Play a stroke of ``POST api/stroke``; what happened, in words."""
-        ...
 
 
 class FreeGame:
@@ -59,7 +42,7 @@ class FreeGame:
 
     @property
     def options(self) -> Options:
-        """The options of the person's seat."""
+        """The options of who plays."""
         session = self._service.session
         return session.options_with(session.noise[0])
 
@@ -78,20 +61,20 @@ class FreeGame:
         self.advice = advice
 
     def state(self) -> dict[str, Any]:
-        """See ``Game``; waits for the opponent's strokes."""
+        """The table as the page gets it, once the opponent has played."""
         while (state := answer(self._service, GET["state"], {}))["thinking"]:
             self._service.wait(state["revision"], 25.0)
         return state
 
     def lies(self) -> Positions | None:
-        """See ``Game``."""
+        """The one position that a stroke is played from; None if there is none to play."""
         with self._service.reading() as session:
             if session.frame.phase == "over" or self._service.agent_to_play():
                 return None
             return session.as_visit() if session.practice else session.position
 
     def play(self, fields: dict[str, Any]) -> str:
-        """See ``Game``; also the strokes of the opponent that follow."""
+        """Play a stroke of ``POST api/stroke``; what happened, with the opponent's strokes that follow."""
         before = self.state()["strokes"]
         last = answer(self._service, POST["stroke"], fields)["state"]["last"]
         self.state()
@@ -104,9 +87,8 @@ class FreeGame:
             raise refuse("advice", False, "must be allowed by new_game: this game is played without")
         found = answer(self._service, POST["advise"], {"n": integer("n", n, 1, MOST_ADVICE)})
         head = [f"{found['agent']} would choose {found['choice']}."] if found["choice"] else []
-        names = ("speed", "aim", "side", "top", "elevation", "place")
         lines = [
-            f"{one['words']}: { {name: one[name] for name in names if one[name] is not None} }"
+            f"{one['words']}: {json.dumps({name: one[name] for name in STROKE if one.get(name) is not None})}"
             for one in found["suggestions"]
         ]
         return "\n".join([*head, *lines]) or "No fair stroke was found."
@@ -149,7 +131,7 @@ class JudgedGame:
             self._begun = time.perf_counter()
 
     def state(self) -> dict[str, Any]:
-        """See ``Game``."""
+        """The table as a program gets it."""
         at, done = self.lies(), len(self._played.rows)
         if at is None:
             words = f"All {done} tables are played."
@@ -159,11 +141,11 @@ class JudgedGame:
         return state | {"words": f"{where} {state['words']}", "text": f"{where}\n{state['text']}"}
 
     def lies(self) -> Positions | None:
-        """See ``Game``."""
+        """As of ``FreeGame``."""
         return Positions.of(self._tables) if len(self._played.rows) < len(self._seeds) else None
 
     def play(self, fields: dict[str, Any]) -> str:
-        """See ``Game``; after the last stroke of a visit the next table is dealt, and the file is written."""
+        """Play a stroke; after the last one of a visit the file is written, and the next table dealt."""
         if self.lies() is None:
             raise refuse("tables", len(self._seeds), "must not all be played: there is no stroke to play")
         self._decide.player.fields = fields  # type: ignore[attr-defined]
@@ -194,6 +176,4 @@ class JudgedGame:
         return rows[0]
 
 
-def balls_left(state: dict[str, Any]) -> str:
-    """The names of the balls on the table, without their places."""
-    return ", ".join(name for name in NAMES if name in state["positions"])
+Game: TypeAlias = FreeGame | JudgedGame

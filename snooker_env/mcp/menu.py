@@ -93,18 +93,3 @@ def _rank(one: dict[str, Any]) -> tuple[Any, ...]:
     if "choice" in one:
         return (0,)
     return 1 + one["foul"], one["pot"] is None, -one["promise"], one["next"], one["number"]
-
-
-def say_stroke(one: dict[str, Any]) -> str:
-    """A stroke of ``foresee_strokes`` in a line."""
-    if "choice" in one:
-        return f"{one['number']}: {one['choice']}"
-    what = "pot " + ", ".join(one["pot"]) if one["pot"] else f"strike a ball worth {one['points']}, no pot"
-    likely = f"chance {100 * one['chance']:.0f} %, {one['points']} points, " if one["pot"] else ""
-    x, y = one["cue_ball"]
-    ends = "foul" if one["foul"] else f"cue ball to ({x:+.2f}, {y:+.2f}) over {one['cushions']} cushions"
-    left = f"; then worth {one['next']:.1f} to whoever plays" + f", promise {one['promise']:.1f}" * bool(
-        one["pot"]
-    )
-    how = f"{one['speed']:.2f} m/s, top {one['top']:+.2f}"
-    return f"{one['number']}: {what}; {how}: {likely}{ends}{left}"

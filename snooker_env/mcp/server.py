@@ -15,8 +15,8 @@ from ..players.requests import STROKE
 from ..render.still import draw_png
 from ..simulation import SimulationError
 from ..tasks.noise import LEVELS
-from .games import ALONE, DEALT, HELD_OUT_SEED, MOST_ADVICE, FreeGame, Game, balls_left
-from .menu import foresee_strokes, say_stroke, take_stroke
+from .games import ALONE, DEALT, HELD_OUT_SEED, MOST_ADVICE, FreeGame, Game
+from .menu import foresee_strokes, take_stroke
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -45,6 +45,14 @@ _FRAME = {
     "nominate": {"type": "string", "description": "a colour of a frame that may be named"},
     "choice": {"type": "string", "description": "after a foul of the opponent: one of the choices"},
 }
+_MEANING = (
+    "speed: m/s; chance: that the ball is potted; cue_ball: where it stops; next: points that what is left is worth to "
+    "whoever plays it; promise: points, chance times what the pot and the next ones bring."
+)
+_AXES = (
+    "y grows to the right of the picture, to the black end, which pockets call top; x grows downwards, to what they call "
+    "right. An aim of 0 rad points down, of 1.571 to the right."
+)
 _MENU = {"number": {"type": "integer", "description": "a stroke of the menu, alone"}}
 
 
@@ -53,7 +61,6 @@ class Said(NamedTuple):
 
     text: str
     png: bytes | None = None
-    data: dict[str, Any] | None = None  # the same as JSON types
     failed: bool = False
 
 
@@ -123,30 +130,27 @@ class Desk:
 
     def _look(self, fields: dict[str, Any]) -> Said:
         state, at = self._game.state(), self._game.lies()
-        if self._track == "words" or (at is None and self._track != "picture"):
-            return Said(state["text"], data=state)
-        if at is None:
-            return Said(state["words"])
+        words = state["words" if self._track == "picture" else "text"]
+        if at is None or self._track in ("words", "menu"):
+            return Said(words)
         png, view = draw_png(self._game.options.rules.table, at.positions[0], at.on_table[0])
-        if self._track != "picture":
-            return Said(state["text"], png, state)
+        if self._track is None:
+            return Said(words, png)
         of_game = (
             f"Scores {state['scores']}, break {state['break']}. May be struck first: {state['balls_on']}."
         )
         if state["nominations"] or state["choices"]:
             of_game += f" Nominations: {state['nominations']}; choices: {state['choices']}."
         scale = f"The origin, the middle of the table, is at column {view.x:.0f}, row {view.y:.0f}; {view.scale:.1f} pixels a metre"
-        axes = f"{scale}. y grows to the right, to the black end, and x downwards: an aim of 0 rad points down, of 1.571 right."
-        return Said("\n".join([state["words"], of_game, f"On the table: {balls_left(state)}.", axes]), png)
+        axes = f"{scale}. {_AXES}"
+        there = f"On the table: {', '.join(state['positions'])}."
+        return Said("\n".join([words, of_game, there, axes]), png)
 
     def _strokes(self, fields: dict[str, Any]) -> Said:
         n, at = integer("n", fields.get("n", LISTED), 1, MOST_LISTED), self._lies()
         found = foresee_strokes(at, self._game.options)
-        lines = [
-            f"{len(found)} strokes, the best {min(n, len(found))} by closed forms:",
-            *map(say_stroke, found[:n]),
-        ]
-        return Said("\n".join(lines), data={"strokes": found[:n]})
+        head = f"The best {min(n, len(found))} of {len(found)} strokes, by closed forms. {_MEANING}"
+        return Said("\n".join([head, *map(json.dumps, found[:n])]))
 
     def _lies(self):
         self._game.state()  # the opponent has played
@@ -216,7 +220,7 @@ def serve(desk: Desk) -> "Server[Any]":
         if said.png is not None:
             data = base64.b64encode(said.png).decode()
             content.append(types.ImageContent(type="image", data=data, mime_type="image/png"))
-        return types.CallToolResult(content=content, structured_content=said.data, is_error=said.failed)
+        return types.CallToolResult(content=content, is_error=said.failed)
 
     about = "Snooker with its real physics. look, then play; units are metres, seconds and radians, the origin is the middle of the table."
     return Server(

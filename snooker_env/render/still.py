@@ -25,12 +25,14 @@ def draw_png(table: Table, positions: Floats, on_table: Bools) -> tuple[bytes, V
     image = table_picture(table, view)[: view.height - view.bar].astype(np.float32)
     image = 8 * np.rint(image / 8)  # what a packer can do more with
     radius = BALL_RADIUS * view.scale
-    rows, columns = np.ogrid[: image.shape[0], : image.shape[1]]
     for ball in np.flatnonzero(on_table).tolist():
         x, y = view(positions[ball]).tolist()
-        away = np.hypot(columns + 0.5 - x, rows + 0.5 - y)
+        top, left = int(y - radius) - 1, int(x - radius) - 1
+        around = image[top : int(y + radius) + 2, left : int(x + radius) + 2]
+        rows, columns = np.ogrid[: around.shape[0], : around.shape[1]]
+        away = np.hypot(columns + left + 0.5 - x, rows + top + 0.5 - y)
         ink = COLOURS[ball] * np.where(away > radius - 1.5, 0.4, 1.0)[..., None]
-        image += (ink - image) * np.clip(radius + 0.5 - away, 0.0, 1.0)[..., None]
+        around += (ink - around) * np.clip(radius + 0.5 - away, 0.0, 1.0)[..., None]
         if 0 < ball <= N_REDS:
             number = _number(ball)
             top, left = round(y - number.shape[0] / 2), round(x - number.shape[1] / 2)
