@@ -130,7 +130,7 @@ BAD = [
     ("play", {"number": True}),
     ("play", {"number": 0, "speed": 2}),
     ("play", {"speed": 2, "aim": 0, "revision": 0}),
-    ("play", {"speed": 10**4000, "aim": 0}),
+    ("play", {"speed": 10**400, "aim": 0}),
     ("play", {"speed": 10**5000, "aim": 0}),
     ("play", {"choice": "x" * 10**6}),
     ("play", {"x" * 3000: 1}),
@@ -161,8 +161,8 @@ def test_a_hostile_client_gets_one_sentence_and_changes_nothing(monkeypatch):
                 failed, (text,) = await call(name, **arguments)
             except (MCPError, ValueError):  # the SDK itself does not send it, or refuses it
                 continue
-            assert failed and 0 < len(text.text) <= 403 and "\n" not in text.text, (name, text)
-            assert "Traceback" not in text.text
+            assert failed and 0 < len(text.text) < 420 and "\n" not in text.text, (name, text)
+            assert " = " in text.text and ": must " in text.text and "Traceback" not in text.text
         assert await call("look") == before
         assert [(await call("new_game"))[0] for _ in range(3)] == [False, False, True]
         return [await call("look") for _ in range(len(BAD))][-1]

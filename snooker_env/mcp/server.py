@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 TRACKS = ("words", "menu", "picture")
 GAMES, CALLS = 100, 20_000  # the most of a session
-LONGEST = 4_096  # the longest arguments of a call, as JSON [characters]
-LONGEST_ERROR = 400  # [characters]
+LONGEST = 1_000  # the longest arguments of a call, as JSON [characters]
+SHOWN = 200  # of each end of an error [characters]
 LISTED, MOST_LISTED = 20, 160  # strokes that the menu lists
 
 _NUMBER = {"type": "number"}
@@ -126,7 +126,8 @@ class Desk:
                 return tool.call(arguments)
             except (ValueError, SimulationError, BusyError) as error:
                 text = " ".join(str(error).split())
-                return Said(text[:LONGEST_ERROR] + "..." * (len(text) > LONGEST_ERROR), failed=True)
+                text = text if len(text) <= 2 * SHOWN else f"{text[:SHOWN]} ... {text[-SHOWN:]}"
+                return Said(text, failed=True)
 
     def _look(self, fields: dict[str, Any]) -> Said:
         state, at = self._game.state(), self._game.lies()
