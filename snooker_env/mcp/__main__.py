@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from .._lib.check import refuse
 from .._lib.command import exit_code
 from ..benchmark.tasks import TASKS
-from ..benchmark.text import VISITS
 from .games import FreeGame, JudgedGame
 from .server import TRACKS, Desk, serve
 
 NAME = "python -m snooker_env mcp"
+VISITS = 50  # tables of a result unless it is said otherwise
 JUDGED = tuple(name for name, task in TASKS.items() if not task.frame)  # visits
 
 

@@ -42,10 +42,6 @@ class AgentError(RuntimeError):
     """An agent that stopped playing: it died, was too slow, or answered something that is no stroke."""
 
 
-class AnswerError(AgentError):
-    """An answer in time that is no stroke here: the program goes on, and may be asked again."""
-
-
 class ProgramPlayer(BoundPlayer):
     """An external program as a player. All that ``at`` makes of it share one process.
 
@@ -106,7 +102,7 @@ class ProgramPlayer(BoundPlayer):
             return self._read(answer, at, decided)
         except ValueError as error:
             what = f"answered {_short(json.dumps(answer))}, which is refused: {error}"
-            raise AnswerError(f"the program {self._lines.command!r} {what}") from None
+            raise AgentError(f"the program {self._lines.command!r} {what}") from None
 
     def _read(self, answer: dict[str, Any], at: Positions, decided: str) -> Strokes:
         """The stroke that an answer asks for, after what was ``decided``; ValueError names what is wrong."""
@@ -152,7 +148,7 @@ class ProgramPlayer(BoundPlayer):
             return read_object(answer.strip())
         except ValueError as error:
             what = f"answered {_short(answer)}, which is no stroke: {error}"
-            raise AnswerError(f"the program {self._lines.command!r} {what}") from None
+            raise AgentError(f"the program {self._lines.command!r} {what}") from None
 
     def _answer(self, state: dict[str, Any]) -> bytes:
         """The line that the program answers a state with."""

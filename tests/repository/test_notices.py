@@ -98,6 +98,16 @@ def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
     assert toys(code, NUMBA_CACHE_DIR="/dev/null", SNOOKER_ENV_QUIET="1", warn="ignore") == ""
 
 
+def test_on_a_terminal_a_warm_up_is_a_bar(capsys, monkeypatch):
+    monkeypatch.delenv("SNOOKER_ENV_QUIET", raising=False)
+    seen, kernel = [], jit.entry(what="a toy", seconds=3)(lambda x: x)
+    with notices.warming_up([kernel], lambda ready, many: seen.append((ready, many))):
+        monkeypatch.setattr(notices.sys.stderr, "isatty", lambda: True, raising=False)
+        event.start_event("numba:compile", data={"dispatcher": kernel})
+        assert capsys.readouterr().err == "" and seen == [(0, 1)]
+    jit.ENTRIES.remove(kernel)
+
+
 LONG = """
 physics.engine run_batch; simulation.impacts _collide_balls _collide_cushion; tasks.stroke address; planning.aims _pot_aim
 tasks.visit _conclude _begin; tasks.frame_kernels decide conclude observe finish begin show remember; game.layouts deal_tables
