@@ -13,6 +13,7 @@ from snooker_env.benchmark.tasks import TASKS
 from snooker_env.mcp import server as limits
 from snooker_env.mcp.games import FreeGame, JudgedGame
 from snooker_env.mcp.server import TRACKS, Desk, serve
+from snooker_env.play.routes import POST, answer
 from snooker_env.players import decision_seeds, player
 from snooker_env.players.cue_stroke import cue_strokes
 from tests.processes import ROOT
@@ -102,16 +103,38 @@ def test_a_stroke_of_the_menu_pots_the_ball_that_it_names():
             await call("new_game", layout="opened", seed=seed, noise="none")
             _, (text,) = await call("strokes", n=160)
             rows = [json.loads(line) for line in text.text.splitlines()[1:]]
-            pots = {tuple(row["pot"]): row for row in reversed(rows) if row["pot"] and row["chance"] > 0.8}
+            pots = {tuple(row["pot"]): row for row in reversed(rows) if row["chance"] > 0.8}
             assert len(pots) > 1 and rows[0]["promise"] == max(row["promise"] for row in rows)
             for (ball, _), row in pots.items():
                 await call("new_game", layout="opened", seed=seed, noise="none")
                 failed, _ = await call("play", number=row["number"])
-                left, (x, y) = game.state()["positions"], row["cue_ball"]
+                left, x, y = game.state()["positions"], row["x"], row["y"]
                 assert not failed and ball not in left
                 assert row["next"] == 0 or np.hypot(left["cue"][0] - x, left["cue"][1] - y) < 0.5
 
     talk(Desk(game, "menu"), conversation)
+
+
+def test_with_a_free_ball_the_menu_names_reds_and_colours():
+    game, position = (
+        FreeGame(),
+        {"cue": [0, 0], "reds": [[0.5, 0.9]], "blue": [0.6, -0.3], "pink": [-0.5, 1.2]},
+    )
+    game.new({"noise": "none", "opponent": "random"})
+    place = {"position": position | {"black": [0, 1.46], "on": "red"}, "free_ball": True}
+
+    def play(number):
+        answer(game._service, POST["position"], place)
+        text, _, failed = Desk(game, "menu").answer(*number)
+        assert not failed
+        return text
+
+    rows = [json.loads(line) for line in play(("strokes", {"n": 160})).splitlines()[1:]]
+    pots = {tuple(row["pot"]): row for row in reversed(rows) if "pot" in row and row["chance"] > 0.9}
+    assert {ball for ball, _ in pots} >= {"red 1", "blue"}
+    for (ball, _), row in pots.items():
+        words = play(("play", {"number": row["number"]}))
+        assert f"You: {'Red' if 'red' in ball else ball.capitalize()}" in words and "potted" in words, words
 
 
 BAD = [

@@ -8,7 +8,7 @@ from .._lib.check import integer, refuse
 from .._lib.types import Bools, Floats, Ints
 from ..game.balls import NAMES
 from ..game.frame import CHOICES
-from ..game.frame_columns import PLAY
+from ..game.frame_columns import BALL_ON, PLAY
 from ..geometry import HALF_LENGTH, HALF_WIDTH, POCKETS
 from ..planning import Positions, pots
 from ..players.cue_stroke import cue_strokes
@@ -17,7 +17,24 @@ from ..tasks import foreseen as columns
 from ..tasks.box_actions import FASTEST
 from ..tasks.observations import STROKE_SIZE
 from ..tasks.options import Options
-from ..tasks.stroke_menu import DECISIONS, PER_SPEED, SPEEDS, TOPS
+from ..tasks.stroke_menu import DECISIONS, SPEEDS, TOPS
+
+MEANING = (
+    "speed: m/s; chance: that the ball is potted; x, y: where the cue ball stops; next: points that what is left is worth to "
+    "whoever plays it; promise: points, chance times what the pot and the next ones bring."
+)
+_SHOWN = {
+    "speed": (columns.F_SPEED, FASTEST),
+    "top": (columns.F_TOP, TOPS[-1]),
+    "points": (columns.F_POINTS, 7),
+    "chance": (columns.F_CHANCE, 1),
+    "foul": (columns.F_FOUL, 1),
+    "x": (columns.F_X, HALF_WIDTH),
+    "y": (columns.F_Y, HALF_LENGTH),
+    "cushions": (columns.F_NOSES, 5),
+    "next": (columns.F_PROSPECTS, columns.MOST_WORTH),
+    "promise": (columns.F_PROMISE, columns.MOST_PROMISE),
+}  # name of a number: the column that holds it, and over what
 
 
 class _Reader:
@@ -59,37 +76,34 @@ def _read(number: int, at: Positions, options: Options) -> tuple[_Reader, dict[s
 def foresee_strokes(at: Positions, options: Options) -> list[dict[str, Any]]:
     """What is foreseen of each stroke on the menu, the best first: pots by their promise, then others."""
     reader, _ = _read(0, at, options)
-    direct, frame = pots(at.as_visits()), at.of_frames
+    named = _name_pots(at)
     rows = reader.row[: len(reader.there) * STROKE_SIZE].reshape(-1, STROKE_SIZE).astype(float)
     found = []
     for number in np.flatnonzero(reader.there).tolist():
-        row, line = rows[number], number // (SPEEDS * len(TOPS))
-        if frame and number >= len(rows) - DECISIONS:
-            found.append({"number": number, "choice": ("play_again", "replace")[number - len(rows)]})
+        one: dict[str, Any] = {"number": number}
+        if at.of_frames and number >= len(rows) - DECISIONS:
+            found.append(one | {"choice": ("play_again", "replace")[number - len(rows)]})
             continue
-        is_pot = number < PER_SPEED * SPEEDS and row[columns.F_POT] > 0
-        pot = [NAMES[direct.ball[0, line]], POCKETS[direct.pocket[0, line]]] if is_pot else None
-        x, y = row[columns.F_X] * HALF_WIDTH, row[columns.F_Y] * HALF_LENGTH
-        found.append(
-            {
-                "number": number,
-                "pot": pot,
-                "speed": round(row[columns.F_SPEED] * FASTEST, 2),
-                "top": round(row[columns.F_TOP] * TOPS[-1], 2),
-                "chance": round(row[columns.F_CHANCE], 3) if pot else None,
-                "points": round(7 * row[columns.F_POINTS]),
-                "foul": bool(row[columns.F_FOUL]),
-                "cue_ball": [round(x, 3), round(y, 3)],
-                "cushions": round(5 * row[columns.F_NOSES]),
-                "next": round(columns.MOST_WORTH * row[columns.F_PROSPECTS], 1),
-                "promise": round(columns.MOST_PROMISE * row[columns.F_PROMISE], 1),
-            }
-        )
+        if rows[number, columns.F_POT] > 0:
+            one["pot"] = named[number // (SPEEDS * len(TOPS))]
+        numbers = {name: round(rows[number, c] * over, 3) for name, (c, over) in _SHOWN.items()}
+        found.append(one | numbers)
     return sorted(found, key=_rank)
+
+
+def _name_pots(at: Positions) -> list[list[str]]:
+    """Ball and pocket of each line of the menu that is a pot; with a free ball of both kinds, the widest first."""
+    found, kinds = [], [at.as_visits()]
+    if at.free_ball[0]:
+        kinds.append(kinds[0].copy())
+        kinds[1].game[:, BALL_ON] = at.ball_on
+    for some in map(pots, kinds):
+        found += zip(-some.tolerance[0], some.ball[0].tolist(), some.pocket[0].tolist(), strict=True)
+    return [[NAMES[ball], POCKETS[pocket]] for _, ball, pocket in sorted(found) if ball >= 0]
 
 
 def _rank(one: dict[str, Any]) -> tuple[Any, ...]:
     """Decisions, then fair pots by their promise, then other fair strokes by what they leave, then fouls."""
     if "choice" in one:
         return (0,)
-    return 1 + one["foul"], one["pot"] is None, -one["promise"], one["next"], one["number"]
+    return 1 + one["foul"], "pot" not in one, -one["promise"], one["next"], one["number"]
