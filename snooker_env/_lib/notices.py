@@ -47,14 +47,14 @@ class _WarmUp:
         self.tick = tick
         self.spoke = False
 
-    def note(self, text):
-        """A kernel is compiled now: the bar, or a line."""
+    def note(self, text, line="warm-up, kernel {} of {}: {}"):
+        """On a terminal the bar, else a line."""
         self.spoke = True
         ready, many = sum(bool(kernel.signatures) for kernel in self.kernels), len(self.kernels)
         if sys.stderr is not None and sys.stderr.isatty():
             self.tick(ready, many)
         else:
-            say(f"warm-up, kernel {1 + ready} of {many}: {text}")
+            say(line.format(min(ready + 1, many), many, text))
 
 
 _running: list[_WarmUp] = []
@@ -69,8 +69,8 @@ def warming_up(kernels: Iterable[Any], tick: Callable[[int, int], None]) -> Iter
     try:
         yield
         if _running[-1].spoke:
-            elapsed = time.perf_counter() - start
-            say(f"warm-up: {len(_running[-1].kernels)} kernels ready after {elapsed:.0f} s")
+            elapsed = f"{time.perf_counter() - start:.0f} s"
+            _running[-1].note(elapsed, "warm-up: {1} kernels ready after {2}")
     finally:
         _running.pop()
 

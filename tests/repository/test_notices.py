@@ -105,6 +105,8 @@ def test_on_a_terminal_a_warm_up_is_a_bar(capsys, monkeypatch):
         monkeypatch.setattr(notices.sys.stderr, "isatty", lambda: True, raising=False)
         event.start_event("numba:compile", data={"dispatcher": kernel})
         assert capsys.readouterr().err == "" and seen == [(0, 1)]
+        kernel(1.0)
+    assert capsys.readouterr().err == "" and seen[-1] == (1, 1)
     jit.ENTRIES.remove(kernel)
 
 
