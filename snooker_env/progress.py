@@ -2,6 +2,8 @@
 
 import os
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from types import TracebackType
 from typing import TextIO
 
@@ -64,3 +66,17 @@ class Progress:
         self._bar.set_postfix_str(figures, refresh=False)
         self._bar.update(done - self.done)
         self.done = done
+
+
+@contextmanager
+def ticking(what: str, unit: str) -> Iterator[Callable[[int, int], None]]:
+    """A function of work done and total that shows the progress, from its first call on."""
+    with ExitStack() as ending:
+        shown_by: list[Progress] = []
+
+        def tick(done: int, total: int) -> None:
+            if not shown_by:
+                shown_by.append(ending.enter_context(Progress(what, total, unit, done=done)))
+            shown_by[0].at(done)
+
+        yield tick

@@ -1,9 +1,10 @@
-"""What is reported of compiling, unless ``SNOOKER_ENV_QUIET=1``? On stderr, each compile of over a second."""
+"""What is reported of compiling, unless ``SNOOKER_ENV_QUIET=1``? On stderr, each compile of over a second: in a warm-up as a
+bar on a terminal, else in lines."""
 
 import os
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, NamedTuple
 
@@ -17,6 +18,9 @@ def say(text: str) -> None:
     if os.environ.get("SNOOKER_ENV_QUIET", "0") in ("", "0") and sys.stderr is not None:
         with suppress(OSError, ValueError):
             print(f"snooker_env: {text}", file=sys.stderr, flush=True)
+
+
+AHEAD = "python -m snooker_env warmup compiles everything ahead; "
 
 
 class Cost(NamedTuple):
@@ -38,30 +42,35 @@ class Cost(NamedTuple):
 class _WarmUp:
     """The kernels that a warm-up makes ready."""
 
-    def __init__(self, kernels):
+    def __init__(self, kernels, tick):
         self.kernels = [kernel for kernel in kernels if not kernel.signatures]
+        self.tick = tick
         self.spoke = False
 
-    def place(self):
-        """Number of the next kernel and of all, for a line that is printed now."""
+    def note(self, text, line="warm-up, kernel {} of {}: {}"):
+        """On a terminal the bar, else a line."""
         self.spoke = True
-        ready = sum(bool(kernel.signatures) for kernel in self.kernels)
-        return f"warm-up, kernel {1 + ready} of {len(self.kernels)}: "
+        ready, many = sum(bool(kernel.signatures) for kernel in self.kernels), len(self.kernels)
+        if sys.stderr is not None and sys.stderr.isatty():
+            self.tick(ready, many)
+        else:
+            say(line.format(min(ready + 1, many), many, text))
 
 
 _running: list[_WarmUp] = []
 
 
 @contextmanager
-def warming_up(kernels: Iterable[Any]) -> Iterator[None]:
-    """Within this context each notice counts the ``kernels``; the last notice gives the time of all."""
-    _running.append(_WarmUp(kernels))
+def warming_up(kernels: Iterable[Any], tick: Callable[[int, int], None]) -> Iterator[None]:
+    """Within this context each notice counts the ``kernels``, on a terminal by ``tick(ready, all)``; the last one gives the
+    time of all."""
+    _running.append(_WarmUp(kernels, tick))
     start = time.perf_counter()
     try:
         yield
         if _running[-1].spoke:
-            elapsed = time.perf_counter() - start
-            say(f"warm-up: {len(_running[-1].kernels)} kernels ready after {elapsed:.0f} s")
+            elapsed = f"{time.perf_counter() - start:.0f} s"
+            _running[-1].note(elapsed, "warm-up: {1} kernels ready after {2}")
     finally:
         _running.pop()
 
@@ -76,10 +85,14 @@ class _Listener(event.Listener):
             return
         cache = getattr(kernel, "_cache", None)
         kept = isinstance(cache, Kept) and cache.has_room()
-        text = f"compiling {cost.what}, {'once, ' if kept else ''}about {seconds} s"
-        if not (_running and _running[-1].spoke):  # said once in a warm-up
-            text += f" ({f'kept in {CACHE_FOLDER}' if kept else 'for this process only'}; SNOOKER_ENV_QUIET=1 hides this)"
-        say(_running[-1].place() + text if _running else text)
+        text = f"compiling {cost.what} to machine code, {'once, ' if kept else ''}about {seconds} s"
+        where = f"kept in {CACHE_FOLDER}" if kept else "for this process only"
+        if not _running:
+            say(f"{text} ({where}; {AHEAD}SNOOKER_ENV_QUIET=1 hides this)")
+        elif _running[-1].spoke:  # where it is kept is said once
+            _running[-1].note(text)
+        else:
+            _running[-1].note(f"{text} ({where}; SNOOKER_ENV_QUIET=1 hides this)")
 
     def on_end(self, event):
         pass

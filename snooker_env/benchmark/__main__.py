@@ -3,8 +3,7 @@
 import argparse
 import shlex
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,7 @@ from .._lib.files import write_atomic
 from .._lib.text_tables import format_figure, text_table
 from ..players.model_options import add_model_options, options_of_words
 from ..players.program import AgentError
-from ..progress import Progress
+from ..progress import ticking
 from .agents import Agent, is_player_name, seat
 from .checking import afresh, count_luck, faults, faults_of_replay
 from .degenerate_check import ABOVE, results, winners
@@ -25,7 +24,6 @@ from .playing import COLUMNS
 from .results import missing, read_result, write_result
 from .run import judge
 from .tasks import FREE, FRESH_SEED, SEEDS_END, TASKS, Task, task_of
-from .text import VISITS, judge_text
 from .warmup import warmup
 
 NAME = "python -m snooker_env.benchmark"
@@ -51,12 +49,6 @@ def parser() -> argparse.ArgumentParser:
     add("--out", metavar="PATH", help="result file, or folder for several tasks (default: TASK.LABEL.json)")
     add("--resume", action="store_true", help="go on with an incomplete result file, keep a complete one")
     add("--force", action="store_true", help="replace result files that are there")
-    text = commands.add_parser("text", help="judge a program that reads words, as a language model does")
-    _agent(text, required=True)
-    text.add_argument("--label", help="name in the result (default: from the agent)")
-    text.add_argument("--visits", type=int, default=VISITS, help=f"tables (default: {VISITS})")
-    text.add_argument("--out", metavar="PATH", help="result file (default: text.LABEL.json)")
-    text.add_argument("--resume", action="store_true", help="go on with a result file")
     check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
     help_ = (
@@ -156,39 +148,10 @@ def _run(args: argparse.Namespace) -> int:
     worst, more = 0, {name: getattr(args, name) for name in ("episodes", "resume", "threads")}
     for task, file in zip(tasks, files, strict=True):
         if worst < 130:
-            with _ticking(task.id, "episodes") as tick:
+            with ticking(task.id, "episodes") as tick:
                 result = judge(task, agent, out=file, command=args.line, tick=tick, **more)
             worst = max(worst, _report(result, task, file))
     return worst
-
-
-def _text(args: argparse.Namespace) -> int:
-    """Play the track of words and print the result."""
-    agent = _agent_of(args, label=args.label)
-    out = Path(args.out or f"text.{agent.label}.json")
-    with _ticking("text", "visits") as tick:
-        result = judge_text(agent, visits=args.visits, out=out, resume=args.resume, tick=tick)
-    figures = result["figures"]
-    said = f"{format_figure(figures['points'])} points a visit, {len(result['rows'])} visits"
-    if agent.program:
-        said += f", {100 * figures['forfeited']:.0f} % forfeited, {figures['refused']:.2f} answers refused a visit"
-        said += f", {figures['read']:,.0f} characters read and {figures['written']:,.0f} written"
-    print(f"text  {agent.label}: {said}: {out}")
-    return 0
-
-
-@contextmanager
-def _ticking(what: str, unit: str) -> Iterator[Callable[[int, int], None]]:
-    """A function of work played and total that shows the progress, from its first call on."""
-    with ExitStack() as ending:
-        shown_by: list[Progress] = []
-
-        def tick(played: int, total: int) -> None:
-            if not shown_by:
-                shown_by.append(ending.enter_context(Progress(what, total, unit, done=played)))
-            shown_by[0].at(played)
-
-        yield tick
 
 
 def _report(result: dict[str, Any], task: Task, file: Path) -> int:
@@ -305,7 +268,7 @@ def _table(args: argparse.Namespace) -> int:
     return 0
 
 
-COMMANDS = {call.__name__[1:]: call for call in (_tasks, _run, _text, _check, _degenerate, _table)}
+COMMANDS = {call.__name__[1:]: call for call in (_tasks, _run, _check, _degenerate, _table)}
 
 if __name__ == "__main__":
     raise SystemExit(main())

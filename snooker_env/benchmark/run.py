@@ -65,7 +65,7 @@ def judge(
     seeds = task.seeds(task.episodes if episodes is None else episodes)
     many, alone, why = len(seeds), PlayedEpisodes([]), None
     total = many * len(agent.sources)
-    kept, played = _read_earlier(out if resume else None, task, agent, many)
+    kept, played = read_earlier(out if resume else None, task, agent, many)
     if kept is not None and kept["incomplete"] is None:
         return kept
     about, saved = {"command": command, "load": machine()}, time.monotonic()
@@ -112,7 +112,7 @@ def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
                 alone.add(play_episodes(task, player, [seed], run, threads, lucky=False))
 
 
-def _read_earlier(
+def read_earlier(
     path: str | Path | None, task: Task, agent: Agent, episodes: int
 ) -> tuple[dict[str, Any] | None, PlayedEpisodes]:
     """A file of the same run, and what was played for it; None and nothing if there is no file."""

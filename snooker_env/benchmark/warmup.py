@@ -1,11 +1,17 @@
-"""How does one compile everything in advance? ``warmup`` calls each kernel of this package once."""
+"""How does one compile everything in advance? ``warmup`` calls each kernel of this package once; a command does it."""
 
+import argparse
+import time
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._lib.cache import CACHE_FOLDER
+from .._lib.command import exit_code
 from .._lib.jit import ENTRIES
 from .._lib.notices import warming_up
+from ..progress import ticking
 from ..simulation import simulate
 from ..simulation.impacts import collide_balls, collide_cushion, strike
 
@@ -28,14 +34,15 @@ def warmup() -> None:
     """Compile every kernel of the package, or load it from the cache.
 
     Call it in the parent process before worker processes start; otherwise each worker compiles for itself.
-    Progress is reported on stderr, unless everything comes from the cache or ``SNOOKER_ENV_QUIET=1`` is set.
+    Progress is reported on stderr, on a terminal by a bar, unless everything comes from the cache or ``SNOOKER_ENV_QUIET=1`` is set.
 
     Examples
     --------
     >>> import snooker_env as sn
     >>> sn.warmup()  # doctest: +SKIP
     """
-    with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith("snooker_env.")]):
+    kernels = [kernel for kernel in ENTRIES if kernel.__module__.startswith("snooker_env.")]
+    with ticking("compiling", "kernels") as tick, warming_up(kernels, tick):
         simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
         strike(1.0, 0.0)
         collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
@@ -141,3 +148,18 @@ def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
         generate(VisitJudge({"noise": "club"}), at, 1, np.zeros(1, np.int64))
     for call in (pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
         call(at)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Compile everything, and say how long it took and where the machine code is kept."""
+    about = "Compile every kernel once, or load it: a minute or two, or some seconds. Nothing waits for it afterwards."
+    argparse.ArgumentParser("python -m snooker_env warmup", description=about).parse_args(argv)
+
+    def compile_all() -> int:
+        start = time.perf_counter()
+        warmup()
+        kept = f"is kept in {CACHE_FOLDER}" if CACHE_FOLDER else "is not kept: see the warning"
+        print(f"Everything is ready after {time.perf_counter() - start:.0f} s. The machine code {kept}.")
+        return 0
+
+    return exit_code("error", compile_all)

@@ -42,10 +42,6 @@ class AgentError(RuntimeError):
     """An agent that stopped playing: it died, was too slow, or answered something that is no stroke."""
 
 
-class AnswerError(AgentError):
-    """An answer in time that is no stroke here: the program goes on, and may be asked again."""
-
-
 class ProgramPlayer(BoundPlayer):
     """An external program as a player. All that ``at`` makes of it share one process.
 
@@ -106,7 +102,7 @@ class ProgramPlayer(BoundPlayer):
             return self._read(answer, at, decided)
         except ValueError as error:
             what = f"answered {_short(json.dumps(answer))}, which is refused: {error}"
-            raise AnswerError(f"the program {self._lines.command!r} {what}") from None
+            raise AgentError(f"the program {self._lines.command!r} {what}") from None
 
     def _read(self, answer: dict[str, Any], at: Positions, decided: str) -> Strokes:
         """The stroke that an answer asks for, after what was ``decided``; ValueError names what is wrong."""
@@ -137,24 +133,22 @@ class ProgramPlayer(BoundPlayer):
         rules, saved = self.options.rules, at.saved or Layouts(at.positions, at.on_table)
         return frame_of(at.game[0], rules.miss, saved, 0, rules.game)
 
-    def _ask(self, at: Positions, seed: int) -> dict[str, Any]:
-        """The program's answer to the one position ``at``: an object."""
+    def _state(self, at: Positions) -> dict[str, Any]:
+        """What the one position ``at``, of a frame, is told as."""
         frame = self._frame(at)
         state = report_game(frame, at.positions[0].tolist(), at.on_table[0].tolist(), LABELS)
         turn, lines = report_turn(frame, at, self.options.rules.table, self._noise)
-        state |= turn | {
-            "noise": [self._noise] * 2,
-            "cue": self.options.cue,
-            "game": frame.rules,
-            "seed": seed,
-        }
-        state["text"] = say_table(state, lines, [state["words"], say_score(state, LABELS)])
-        answer = self._answer(state)
+        state |= turn | {"noise": [self._noise] * 2, "cue": self.options.cue, "game": frame.rules}
+        return state | {"text": say_table(state, lines, [state["words"], say_score(state, LABELS)])}
+
+    def _ask(self, at: Positions, seed: int) -> dict[str, Any]:
+        """The program's answer to the one position ``at``: an object."""
+        answer = self._answer(self._state(at) | {"seed": seed})
         try:
             return read_object(answer.strip())
         except ValueError as error:
             what = f"answered {_short(answer)}, which is no stroke: {error}"
-            raise AnswerError(f"the program {self._lines.command!r} {what}") from None
+            raise AgentError(f"the program {self._lines.command!r} {what}") from None
 
     def _answer(self, state: dict[str, Any]) -> bytes:
         """The line that the program answers a state with."""

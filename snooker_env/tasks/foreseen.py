@@ -48,7 +48,7 @@ STATES = (
     len(STATE_ENTRIES),
     len(STATE_ENTRIES) + len(FRAME_ENTRIES),
 )  # numbers of the state of a visit, of a frame
-_MOST_WORTH, _MOST_PROMISE = 35.0, 42.0  # what a position, and a stroke, may promise [points]
+MOST_WORTH, MOST_PROMISE = 35.0, 42.0  # what a position, and a stroke, may promise [points]
 
 
 class Errors(NamedTuple):
@@ -102,7 +102,7 @@ def _judge(ball_on, left, many, law, errors, desk, one):
     found = pots_along(desk.runs, many, desk.after, desk.there, BALL_RADIUS, desk.pots)
     table = desk.after, desk.there, left, usual, RULE_OF_THUMB, law.rails, desk.chances
     worth, one[F_BEST], one[F_SECOND] = worth_of_pots(desk.pots, found, *table)
-    one[F_PROSPECTS] = worth / _MOST_WORTH
+    one[F_PROSPECTS] = worth / MOST_WORTH
     return worth
 
 
@@ -150,7 +150,7 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
         if ball_on != path.NONE:
             desk.after[0, 0], desk.after[0, 1] = seen[path.X], seen[path.Y]
             worth = _judge(ball_on, left, many, law, errors, desk, one)
-        one[F_PROMISE] = chance * (points + worth) / _MOST_PROMISE
+        one[F_PROMISE] = chance * (points + worth) / MOST_PROMISE
 
 
 @kernel(seconds=1, uses=(foresee_contact,))

@@ -52,6 +52,7 @@ ELSEWHERE = {
     "venv": ".ci/run",
     "train.py": "tests/agents/test_train.py",
     "tests.golden": "tests/test_golden.py",
+    "snooker_env": "tests/commands/test_names.py",
     "snooker_env.play": "tests/play/test_server.py",
     "snooker_env.advice": "tests/advice/test_coaching.py",
     "snooker_env.benchmark": "tests/benchmark/test_results.py",

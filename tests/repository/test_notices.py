@@ -10,6 +10,8 @@ from numba.core import event
 from snooker_env._lib import cache, jit, notices
 from tests.processes import ROOT, python
 
+HIDES = "SNOOKER_ENV_QUIET=1 hides this)"
+AHEAD = f"python -m snooker_env warmup compiles everything ahead; {HIDES}\n"
 TOY = """
 from snooker_env._lib.jit import entry, kernel
 
@@ -52,7 +54,7 @@ def toys(tmp_path):
         assert out == ""
         return err
 
-    run.kept = f"(kept in {tmp_path / 'cache' / 'snooker_env' / cache.kernel_hash()}; SNOOKER_ENV_QUIET=1 hides this)"
+    run.kept = f"(kept in {tmp_path / 'cache' / 'snooker_env' / cache.kernel_hash()}; "
     return run
 
 
@@ -60,7 +62,10 @@ def test_one_line_before_each_long_compile_and_none_when_it_is_loaded(toys):
     """What large kernels cost is said where they are compiled: with the first that uses them."""
     code = "small(1.0); one(1.0); one(2.0); another(1.0); rest(1.0)"
     costs = ("one toy", 9), ("another toy", 3)
-    lines = [f"snooker_env: compiling {what}, once, about {s} s {toys.kept}\n" for what, s in costs]
+    lines = [
+        f"snooker_env: compiling {what} to machine code, once, about {s} s {toys.kept}{AHEAD}"
+        for what, s in costs
+    ]
     assert toys(code) == "".join(lines)
     assert toys(code) == ""
 
@@ -68,9 +73,9 @@ def test_one_line_before_each_long_compile_and_none_when_it_is_loaded(toys):
 def test_it_can_be_silenced_and_says_that_it_is_not_kept(toys):
     for quiet in ("1", "yes"):
         assert toys("one(1.0)", SNOOKER_ENV_QUIET=quiet) == ""
-    hidden = "(for this process only; SNOOKER_ENV_QUIET=1 hides this)\n"
+    hidden = f"(for this process only; {AHEAD}"
     line = toys("one(1.0)", NUMBA_CACHE_DIR="/dev/null", warn="ignore")
-    assert line == f"snooker_env: compiling one toy, about 9 s {hidden}"
+    assert line == f"snooker_env: compiling one toy to machine code, about 9 s {hidden}"
 
 
 @pytest.mark.parametrize("without", ["sys.stderr = None", "sys.stderr.close()"])
@@ -81,16 +86,28 @@ def test_without_stderr_it_works_all_the_same(toys, without):
 def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
     code = (
         "from snooker_env._lib.notices import warming_up\nsmall(1.0)\n"
-        "with warming_up([small, one, another, rest]): one(1.0); rest(1.0); another(1.0)"
+        "with warming_up([small, one, another, rest], print): one(1.0); rest(1.0); another(1.0)"
     )
     lines = toys(code).splitlines()
     assert lines[:2] == [
-        f"snooker_env: warm-up, kernel 1 of 3: compiling one toy, once, about 9 s {toys.kept}",
-        "snooker_env: warm-up, kernel 3 of 3: compiling another toy, once, about 3 s",
+        f"snooker_env: warm-up, kernel 1 of 3: compiling one toy to machine code, once, about 9 s {toys.kept}{HIDES}",
+        "snooker_env: warm-up, kernel 3 of 3: compiling another toy to machine code, once, about 3 s",
     ]
     assert re.fullmatch(r"snooker_env: warm-up: 3 kernels ready after \d+ s", lines[2]) and len(lines) == 3
     assert toys(code) == ""
     assert toys(code, NUMBA_CACHE_DIR="/dev/null", SNOOKER_ENV_QUIET="1", warn="ignore") == ""
+
+
+def test_on_a_terminal_a_warm_up_is_a_bar(capsys, monkeypatch):
+    monkeypatch.delenv("SNOOKER_ENV_QUIET", raising=False)
+    seen, kernel = [], jit.entry(what="a toy", seconds=3)(lambda x: x)
+    with notices.warming_up([kernel], lambda ready, many: seen.append((ready, many))):
+        monkeypatch.setattr(notices.sys.stderr, "isatty", lambda: True, raising=False)
+        event.start_event("numba:compile", data={"dispatcher": kernel})
+        assert capsys.readouterr().err == "" and seen == [(0, 1)]
+        kernel(1.0)
+    assert capsys.readouterr().err == "" and seen[-1] == (1, 1)
+    jit.ENTRIES.remove(kernel)
 
 
 LONG = """
@@ -113,7 +130,11 @@ def test_each_long_kernel_announces_itself_and_what_others_compile_is_not_told(c
             kernel = getattr(importlib.import_module(f"snooker_env.{module}"), name)
             event.start_event("numba:compile", data={"dispatcher": kernel})
             err = capsys.readouterr().err
-            assert err.count("\n") == 1 and f"compiling {kernel.cost.what}, " in err and kernel in jit.ENTRIES
+            assert (
+                err.count("\n") == 1
+                and f"compiling {kernel.cost.what} to machine code, " in err
+                and kernel in jit.ENTRIES
+            )
     event.start_event("numba:compile", data={"dispatcher": sorted})
     event.start_event("numba:compile")
     assert capsys.readouterr().err == ""

@@ -1,0 +1,191 @@
+"""What may a client call? The tools of a track, within limits; an error is one sentence."""
+
+import base64
+import json
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .._lib.check import choice, integer, refuse, refuse_what
+from .._lib.install import missing
+from ..game.rule_sets import RULES
+from ..planning import Positions
+from ..play.service import OFFERED, BusyError
+from ..players.requests import STROKE
+from ..render.still import draw_png
+from ..simulation import SimulationError
+from ..tasks.noise import LEVELS
+from .games import ALONE, DEALT, HELD_OUT_SEED, MOST_ADVICE, FreeGame, Game
+from .menu import MEANING, foresee_strokes, take_stroke
+
+if TYPE_CHECKING:
+    from mcp.server.lowlevel import Server
+
+TRACKS = ("words", "menu", "picture")
+GAMES, CALLS = 100, 20_000  # the most of a session
+LONGEST = 1_000  # the longest arguments of a call, as JSON [characters]
+SHOWN = 200  # of each end of an error [characters]
+LISTED, MOST_LISTED = 20, 160  # strokes that the menu lists
+
+Fields = dict[str, Any]
+_POT = '{"pot": [ball, pocket]} instead of aim, as ["red 3", "middle left"]; throw is solved for'
+_PLAY = {
+    "speed": {"type": "number", "description": "of the ball off the cue, 0.2 to 7 m/s"},
+    "aim": {"type": "number", "description": "direction of the cue ball [rad], anticlockwise from +x"},
+    "aim_at": {"type": "object", "description": _POT},
+    "side": {"type": "number", "description": "tip offset to the right over the radius; with top within 0.5"},
+    "top": {"type": "number", "description": "tip offset upwards: above 0 follows, below 0 draws"},
+    "elevation": {"type": "number", "description": "of the cue, 0 to 0.52 rad"},
+    "place": {"type": "array", "description": "where a cue ball in hand is put first, [x, y] in metres"},
+    "nominate": {"type": "string", "description": "a colour that may be named"},
+    "choice": {"type": "string", "description": "after a foul of the opponent: one of the choices"},
+    "number": {"type": "integer", "description": "a stroke of the menu, alone"},
+}
+_AXES = (
+    "y grows to the right of the picture, to the black end, which pockets call top; x grows downwards, to what they call "
+    "right. An aim of 0 rad points down, of 1.571 to the right."
+)
+
+
+class Tool(NamedTuple):
+    """What a client may call; ``fields``: the JSON schema of each argument."""
+
+    about: str
+    fields: Fields
+    call: Callable[[Fields], tuple[str, bytes | None]]
+
+
+def _up_to(most: int, default: int, least: int = 1) -> Fields:
+    return {"type": "integer", "minimum": least, "maximum": most, "default": default}
+
+
+class Desk:
+    """The tools of one client on its game, one call after the other. ``track``: what it may see, None for everything."""
+
+    def __init__(self, game: Game, track: str | None = None):
+        self._game, self._track = game, track
+        self._calls, self._games, self._one = 0, 0, threading.Lock()
+        free, menu = isinstance(game, FreeGame), track in ("menu", None)
+        left_out = ({"nominate", "choice"} if not free else set()) | ({"number"} if not menu else set())
+        strokes = {name: field for name, field in _PLAY.items() if name not in left_out}
+        self.tools: dict[str, Tool] = {
+            "look": Tool("The table as it lies.", {}, self._look),
+            "play": Tool("Play a stroke, and see the table after it.", strokes, self._play),
+        }
+        if menu:
+            about = "Strokes with what closed forms foresee of each, the best first; nothing is simulated."
+            self.tools["strokes"] = Tool(about, {"n": _up_to(MOST_LISTED, LISTED)}, self._strokes)
+        if free:
+            fields = {
+                "layout": {"enum": [*DEALT], "default": "opened"},
+                "opponent": {"enum": [ALONE, *OFFERED], "default": ALONE},
+                "noise": {"enum": [*LEVELS], "default": "professional"},
+                "game": {"enum": [*RULES], "default": "snooker"},
+                "seed": _up_to(HELD_OUT_SEED - 1, 0, 0),
+                "advice": {"type": "boolean", "description": "whether advise may be called (default: not)"},
+            }
+            self.tools["new_game"] = Tool("Begin a frame, or practice alone.", fields, self._new)
+            advises = Tool("What an agent would play here.", {"n": _up_to(MOST_ADVICE, 3)}, self._advise)
+            self.tools["advise"] = advises
+
+    def answer(self, name: str, arguments: Fields) -> tuple[str, bytes | None, bool]:
+        """Words and a picture, and whether the call was refused; then the words say why, and nothing has changed."""
+        with self._one:
+            self._calls += 1
+            try:
+                if self._calls > CALLS:
+                    raise refuse("calls", self._calls, f"must be at most {CALLS:,} in a session")
+                tool = self.tools[choice("tool", name[:60], tuple(self.tools))]
+                _check_length(arguments)
+                for field in arguments:
+                    choice(f"argument of {name}", field[:60], tuple(tool.fields))
+                return *tool.call(arguments), False
+            except (ValueError, SimulationError, BusyError) as error:
+                text = " ".join(str(error).split())
+                short = len(text) <= 2 * SHOWN
+                return text if short else f"{text[:SHOWN]} ... {text[-SHOWN:]}", None, True
+
+    def _look(self, fields: Fields) -> tuple[str, bytes | None]:
+        state, at = self._game.state(), self._game.lies()
+        words = state["words" if self._track == "picture" else "text"]
+        if at is None or self._track in ("words", "menu"):
+            return words, None
+        png, view = draw_png(self._game.options.rules.table, at.positions[0], at.on_table[0])
+        if self._track is None:
+            return words, png
+        shown = ("scores", "break", "balls_on", "nominations", "choices", "in_hand")
+        said = [f"{name}: {state[name]}" for name in shown] + [f"on the table: {[*state['positions']]}"]
+        where = f"The origin is at column {view.x:.0f}, row {view.y:.0f}; {view.scale:.1f} pixels a metre."
+        return "\n".join([words, *said, f"{where} {_AXES}"]), png
+
+    def _strokes(self, fields: Fields) -> tuple[str, None]:
+        n, at = integer("n", fields.get("n", LISTED), 1, MOST_LISTED), self._lies()
+        found = foresee_strokes(at, self._game.options)
+        head = f"The best {min(n, len(found))} of {len(found)} strokes, by closed forms. {MEANING}"
+        return "\n".join([head, *map(json.dumps, found[:n])]), None
+
+    def _lies(self) -> Positions:
+        self._game.state()  # the opponent has played
+        if (at := self._game.lies()) is None:
+            raise refuse("phase", "over", "must not be over: there is no stroke to play")
+        return at
+
+    def _play(self, fields: Fields) -> tuple[str, bytes | None]:
+        if "number" in fields:
+            for name in set(fields) - {"number"}:
+                raise refuse(name, fields[name], "must be left out with number")
+            fields = take_stroke(fields["number"], self._lies(), self._game.options)
+        elif not {"choice", *STROKE} & set(fields):
+            raise refuse_what("speed", "nothing", "must be given, with aim or aim_at")
+        happened = self._game.play(fields)
+        words, png = self._look({})
+        return f"{happened}\n\n{words}", png
+
+    def _new(self, fields: Fields) -> tuple[str, bytes | None]:
+        integer("number of games", self._games + 1, 1, GAMES)
+        assert isinstance(self._game, FreeGame)
+        self._game.new(fields)
+        self._games += 1
+        return self._look({})
+
+    def _advise(self, fields: Fields) -> tuple[str, None]:
+        assert isinstance(self._game, FreeGame)
+        self._lies()
+        return self._game.advise(fields.get("n", 3)), None
+
+
+def _check_length(arguments: Fields) -> None:
+    try:
+        length = len(json.dumps(arguments))
+    except (ValueError, RecursionError):  # a number of thousands of digits; too deep
+        length = LONGEST + 1
+    if length > LONGEST:
+        raise refuse_what("arguments", "too many characters", f"must be at most {LONGEST:,} as JSON")
+
+
+def serve(desk: Desk) -> "Server[Any]":
+    """The server of the SDK whose tools are those of a desk."""
+    try:
+        import anyio.to_thread
+        from mcp import types
+        from mcp.server.lowlevel import Server
+    except ImportError as error:
+        raise missing("a server of the Model Context Protocol needs mcp", "mcp") from error
+    tools: list[types.Tool] = []
+    for name, tool in desk.tools.items():
+        schema = {"type": "object", "properties": tool.fields, "additionalProperties": False}
+        tools.append(types.Tool(name=name, description=tool.about, input_schema=schema))
+
+    async def list_tools(_: Any, params: types.PaginatedRequestParams | None) -> types.ListToolsResult:
+        return types.ListToolsResult(tools=tools)
+
+    async def call_tool(_: Any, params: types.CallToolRequestParams) -> types.CallToolResult:
+        asked = params.name, params.arguments or {}
+        text, png, failed = await anyio.to_thread.run_sync(desk.answer, *asked)
+        content: list[types.ContentBlock] = [types.TextContent(text=text)]
+        if png is not None:
+            content.append(types.ImageContent(data=base64.b64encode(png).decode(), mime_type="image/png"))
+        return types.CallToolResult(content=content, is_error=failed)
+
+    about = "Snooker by its real physics: look, then play. Units: metres, seconds, radians, from the middle of the table."
+    return Server("snooker_env", instructions=about, on_list_tools=list_tools, on_call_tool=call_tool)
