@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import torch
+from stable_baselines3.common.base_class import BaseAlgorithm
 
 from snooker_env.benchmark import TASKS, count_shots
 from snooker_env.sb3 import SnookerVecEnv
@@ -22,18 +23,17 @@ from .evaluation.curve_rows import ROWS, Row
 FORMS = {"pot": ROWS["pot_ppo"], "strokes": ROWS["strokes_maskable"]}
 
 
-def train(task: str, row: Row, shots: int, seed: int):
+def train(task: str, row: Row, shots: int, seed: int) -> BaseAlgorithm:
     """The agent of a training seed after at most so many shots; its tables begin below those of the judging."""
     options = TASKS[task].options(
         **({"action": "strokes", "observation": "strokes"} if row.form == "strokes" else {})
     )
     if TASKS[task].frame:
         options = options.but(opponent="ghost_ball")
-    tables = SnookerVecEnv(row.tables, options=options, seed=10_000 * seed)
-    agent = row.algorithm(row.policy, tables, seed=seed, device="cpu", **row.settings)
-    before, rollouts, size = count_shots(), 0, row.tables * row.settings["n_steps"]
+    tables = SnookerVecEnv(row.tables or 1, options=options, seed=10_000 * seed)
+    agent, before, rollouts = row.on(tables, seed), count_shots(), 0
     while (count_shots() - before) * (rollouts + 1) <= shots * rollouts:  # room for one more
-        agent.learn(size, reset_num_timesteps=False)
+        agent.learn(1, reset_num_timesteps=False)  # one rollout
         rollouts += 1
     assert count_shots() - before <= shots, "a rollout took more shots than those before it"
     tables.close()

@@ -41,7 +41,8 @@ class Progress:
         done: int = 0,
         to: TextIO | None = None,
     ):
-        self.done, self.total = done, total
+        self.done: int = done
+        self.total: int = total
         silent = os.environ.get("SNOOKER_ENV_QUIET", "0") not in ("", "0")
         self._bar = tqdm(
             desc=what,

@@ -95,8 +95,12 @@ class Row:
             tables = gymnasium.make("snooker_env:Snooker-v0", **self.options)
         else:
             tables = SnookerVecEnv(self.tables, threads=threads, **self.options)
+        return self.on(tables, SEEDS * seed), tables
+
+    def on(self, tables: Any, seed: int) -> BaseAlgorithm:
+        """The untrained agent on these tables."""
         make: Any = self.algorithm
-        return make(self.policy, tables, seed=SEEDS * seed, device="cpu", **self.settings), tables
+        return make(self.policy, tables, seed=seed, device="cpu", **self.settings)
 
     def judge(self, agent: BaseAlgorithm, visits: int, threads: int | None) -> np.ndarray:
         """What the deterministic policy makes of each held-out episode (visits,)."""

@@ -45,7 +45,8 @@ class Digits:
 
     def __init__(self, number: int | None = None):
         self.reads: bool = number is not None
-        self.number, self.base = number or 0, 1
+        self.number: int = number or 0
+        self.base: int = 1
 
     def within(self, low: int, high: int, value: int = 0) -> int:
         """An integer in [low, high]."""

@@ -15,7 +15,7 @@ from ..advice import Recorded, strokes_of
 from .levels import BY_NAME
 from .session import Session
 
-EMPTY = {"format": "snooker-person", "version": 1, "name": "", "frames": [], "strokes": []}
+EMPTY: dict[str, Any] = {"format": "snooker-person", "version": 1, "name": "", "frames": [], "strokes": []}
 MOST_STROKES, MOST_NAME = 600, 40
 RATED_WITH = "amateur"  # the person's errors in frames that are rated
 PLACE = ("cue", "physics", "table")  # what strokes must share to be read by the coach together

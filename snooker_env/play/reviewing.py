@@ -15,8 +15,10 @@ class Reviewing:
     def __init__(self, session: Session, frame: FrameRecord, players: Sequence[int], **how: Any):
         self.begun: int = session.begun
         self.acts: list[Act] = session.acts[: session.at]
-        self._strokes, self.found, self.trouble, self.running = session.strokes, (0, 1, None), "", True
-        self.found: tuple[int, int, Review | None]  # steps that are done, of how many, and what is known
+        self._strokes: list[int] = session.strokes
+        self.found: tuple[int, int, Review | None] = 0, 1, None  # done, of how many, what is known
+        self.trouble: str = ""
+        self.running: bool = True
         steps = go_through(frame, players, winner=session.frame.winner, **how)
         threading.Thread(target=self._run, args=(steps,), name="snooker review", daemon=True).start()
 

@@ -66,7 +66,8 @@ class RefusedError(Exception):
         self, status: int, message: str, field: str | None = None, value: object = None, **headers: str
     ):
         super().__init__(message)
-        self.status, self.body = status, {"field": field, "value": value, "message": message}
+        self.status: int = status
+        self.body: dict[str, Any] = {"field": field, "value": value, "message": message}
         self.headers: dict[str, str] = headers
 
 

@@ -68,6 +68,7 @@ class Session:
     at: int  # number of acts that count; the following ones were undone
     begun: int  # games begun or loaded so far
     grid: Grid  # on which all is played
+    tables: Frames  # of the one table
 
     def __init__(
         self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False

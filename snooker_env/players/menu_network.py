@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .._lib.types import Bools, Floats, Ints, Observation
+from .._lib.types import Bools, Ints, Observation, Singles
 from ..planning.learned.dense_layers import Layers
 from ..tasks.observations import STROKE_SIZE
 from ..tasks.options import Options
@@ -18,7 +18,7 @@ class MenuNetwork:
     """Chooses from menus of a "visit" or a "frame", see ``Seen``; ``layers``: (out, in) and (out,) of each layer, which read
     a stroke and the state."""
 
-    def __init__(self, layers: Sequence[tuple[Floats, Floats]], task: str) -> None:
+    def __init__(self, layers: Sequence[tuple[Singles, Singles]], task: str) -> None:
         self.options: dict[str, str] = {"action": "strokes", "observation": "strokes", "task": task}
         self._layers = Layers(layers, "tanh")
 

