@@ -29,7 +29,7 @@ def shoot(page, file):
 
 
 def page_to_play(browser, out):
-    """The page to play: at a desk as it answers "What would you play?", on a phone as a stroke is aimed."""
+    """The page to play: at a desk as it answers *Hint*, on a phone as a stroke is aimed."""
     command = [
         sys.executable,
         "-m",
@@ -39,6 +39,8 @@ def page_to_play(browser, out):
         "opened",
         "--seed",
         "6",
+        "--person",
+        str(Path(tempfile.mkdtemp()) / "person.json"),
     ]
     server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     try:
@@ -49,7 +51,7 @@ def page_to_play(browser, out):
         page.locator("#options summary").click()
         page.locator("#noise-0").select_option("professional")
         page.locator("#options summary").click()
-        page.get_by_role("button", name="What would you play?").click()
+        page.get_by_role("button", name="Hint").click()
         page.locator("#advice button").first.wait_for(timeout=120_000)
         page.locator("#advice button").first.hover()
         time.sleep(1.5)
@@ -69,7 +71,7 @@ def replay(browser, out):
         file = Path(folder) / "frame.html"
         command = [sys.executable, "-m", "snooker_env.watch", "--frame", "--seed", "3", "--out", str(file)]
         subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
-        for name, width, height in (("replay.jpg", 1280, 720), ("replay_phone.jpg", 390, 700)):
+        for name, width, height in (("replay.jpg", 1280, 720), ("replay_phone.jpg", 390, 844)):
             page = browser.new_page(viewport={"width": width, "height": height})
             page.goto(file.as_uri())
             page.keyboard.press("p")
