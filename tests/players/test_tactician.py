@@ -139,7 +139,7 @@ def test_who_needs_snookers_plays_for_them():
         level = frame_of(at[0], scores=(60, 60))
         assert player.search.rank(level, [0])[0].kinds[0] == 0
     advice = sn.advise(at, n=40, samples=20, visits=2, options={"cue": "real", "miss": "clear_path"})
-    assert advice[0].kind == "safety" and sum(one.kind == "safety" for one in advice) > 5
+    assert advice[0].kind == "safety" and sum(one.kind == "safety" for one in advice) > 2
 
 
 def test_a_called_miss_is_worth_no_more_than_the_best_stroke_and_its_penalty():
