@@ -165,9 +165,10 @@ class Run:
             with torch.no_grad():
                 chosen, value, log = self.policy(torch.from_numpy(self.seen))
             actions[t], logs[t], values[t] = chosen.numpy(), log.numpy(), value[:, 0].numpy()
-            self.seen, gained, over, _, infos = self.tables.step(actions[t])
+            self.seen, gained, ended, cut, infos = self.tables.step(actions[t])
+            over = ended | cut
             ahead = np.sign(infos["score"] - infos["opponent_score"]) * (1 - 2 * before)
-            rewards[t] = LEAD * gained[rows, before] + WON * over * ahead
+            rewards[t] = LEAD * gained[rows, before] + WON * ended * ahead
             signs[t] = np.where(over, 0, np.where(self.tables.strikers == before, 1, -1))
             if over.any():
                 self.seen, _ = self.tables.reset(options={"reset_mask": over})

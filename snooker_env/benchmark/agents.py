@@ -122,9 +122,9 @@ class Agent:
         if self.program and isinstance(source, str):
             return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)
         made = player_named(source, trust=self.trust, options=self.options)
-        if isinstance(made, SeenPlayer) and made.frames and not task.frame:
+        bound = made.at(task.judged_options())
+        if isinstance(bound, SeenPlayer) and bound.frames and not task.frame:
             raise refuse("player", source, "must see visits to play them: it sees frames")
-        made.at(task.judged_options())
         return made
 
 

@@ -27,7 +27,7 @@ from ..tasks.frames import Frames
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from .grid import HIGH, LOW, STEP, Flags, Grid, Places, is_sound, list_moved, numbers_of, steps_of, stroke_of
-from .session import DECLINED, Session
+from .session import DECLINED, Act, Session
 
 T = TypeVar("T")
 FORM = 1  # of a link
@@ -119,6 +119,8 @@ def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
         session.grid = Told(digits)
         if agreed and session.practice:
             raise refuse("practice", True, "must be False in a game by link")
+        if agreed and (session.state["strokes"] or any(session.frame.scores)):
+            raise refuse("scores", list(session.frame.scores), "must be 0 at the beginning of a game by link")
         for _ in range(digits.within(0, MOST_ACTS - 1)):
             try:
                 asked = _code_act(digits, session.frame, first, {})
@@ -133,6 +135,15 @@ def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
             raise refuse_what("link", "more behind its last act", "must end with it")
         session.noise, session.practice, session.cue = list(first["noise"]), first["practice"], first["cue"]
         session.grid = Grid()
+
+
+def check_course(played: Sequence[Act], acts: Sequence[Act]) -> None:
+    """ValueError unless a game by link that is opened again begins with what was ``played`` of it here."""
+    if not played or played[0].state["stream"][0] != acts[0].state["stream"][0]:
+        return  # another game
+    same = played[0].state == acts[0].state and len(played) <= len(acts)
+    if not same or any(one.asked != other.asked for one, other in zip(played[1:], acts[1:], strict=False)):
+        raise refuse_what("link", "another course of this game", "must begin with what was played of it here")
 
 
 def _code_act(digits: Digits, frame: Frame, first: dict[str, Any], asked: dict[str, Any]) -> dict[str, Any]:

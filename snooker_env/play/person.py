@@ -4,10 +4,11 @@ The file is read before each use and written whole, so two servers may share it.
 never written over."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from datetime import date
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from .._lib.check import integer, refuse, truth
 from .._lib.files import MOST_JSON, read_bytes, strict_json, write_atomic
@@ -18,6 +19,7 @@ from .session import Session
 EMPTY: dict[str, Any] = {"format": "snooker-person", "version": 1, "name": "", "frames": [], "strokes": []}
 MOST_STROKES, MOST_NAME = 600, 40
 RATED_WITH = "amateur"  # the person's errors in frames that are rated
+Kept: TypeAlias = tuple[dict[str, Any], list[dict[str, Any]]]  # a frame, and the person's strokes in it
 PLACE = ("cue", "physics", "table")  # what strokes must share to be read by the coach together
 
 
@@ -43,17 +45,41 @@ class Person:
         kept = self.read()
         how(kept)
         _check(kept)
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        write_atomic(self.path, json.dumps(kept, allow_nan=False) + "\n")
+        with self._written():
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            write_atomic(self.path, json.dumps(kept, allow_nan=False) + "\n")
 
-    def keep(self, session: Session, seat: int, opponent: str) -> None:
-        """Keep a frame that is over, and the person's strokes in it: as they were played, with the pots that they tell."""
-        frame, played = frame_of(session, seat, opponent), [session.acts[k].played for k in session.strokes]
+    def delete(self) -> None:
+        """Remove the file, unless it is not a person's."""
+        self.read()
+        with self._written():
+            self.path.unlink(missing_ok=True)
+
+    @contextmanager
+    def _written(self) -> Iterator[None]:
+        """ValueError for a file that cannot be written."""
+        try:
+            yield
+        except OSError as error:
+            raise refuse(
+                "person", str(self.path), f"must be a file that can be written ({error.strerror})"
+            ) from None
+
+    def tell(self, session: Session, seat: int, opponent: str, *, same: bool = True) -> Kept:
+        """A frame that is over, and the person's strokes in it: as they were played, with the pots that they tell. ``same``:
+        whether nobody else sat there before its end."""
+        frame = frame_of(session, seat, opponent)
+        frame["rated"] = frame["rated"] and same
+        played = [session.acts[k].played for k in session.strokes]
         mine = strokes_of(played, player=seat) if any(one and one.player == seat for one in played) else []
+        return frame, [one.to_dict() for one in mine]
+
+    def keep(self, frame: dict[str, Any], strokes: list[dict[str, Any]]) -> None:
+        """Keep what ``tell`` told."""
 
         def add(kept: dict[str, Any]) -> None:
             kept["frames"] = [*kept["frames"], frame]
-            kept["strokes"] = [*kept["strokes"], *(one.to_dict() for one in mine)][-MOST_STROKES:]
+            kept["strokes"] = [*kept["strokes"], *strokes][-MOST_STROKES:]
 
         self.change(add)
 
@@ -67,20 +93,22 @@ class Person:
 def frame_of(session: Session, seat: int, opponent: str) -> dict[str, Any]:
     """The frame that is over, as it is kept: the person's side first; rated are fair frames against a level."""
     sides, level = (seat, 1 - seat), BY_NAME.get(opponent)
-    asked = [session.acts[k].asked for k in session.strokes if session.acts[k].player == seat]
+    played = [(session.acts[k].player, session.acts[k].asked) for k in session.strokes]
     usual = (session.game, session.layout, session.cue) == ("snooker", "break_off", "real")
-    erred = {RATED_WITH} == {stroke["noise"] for stroke in asked}
-    own = level is not None and session.noise[1 - seat] == level.noise
+    usual = usual and all(one["cue"] == "real" and not one["practice"] for _, one in played)
+    own = level is not None and all(
+        one["noise"] == (RATED_WITH if player == seat else level.noise) for player, one in played
+    )
     return {
         "date": date.today().isoformat(),
-        "opponent": opponent,
+        "opponent": opponent[:MOST_NAME],
         "noise": [session.noise[side] for side in sides],
         "scores": [session.frame.scores[side] for side in sides],
         "won": session.frame.winner == seat,
         "breaks": session.breaks[seat],
         "hints": session.hints[seat],
         "undone": session.undone,
-        "rated": usual and erred and own and not session.hints[seat] and not session.undone,
+        "rated": usual and own and bool(played) and not session.hints[seat] and not session.undone,
     }
 
 

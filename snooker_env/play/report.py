@@ -122,7 +122,7 @@ def report(service: Service) -> dict[str, Any]:
         "undo": host and session.at > 1 and LINKED not in seats.who,
         "redo": host and session.at < len(session.acts),
         "by_link": {"seat": seats.who.index(PERSON), "visit": _last_visit(session)}
-        if LINKED in seats.who
+        if host and LINKED in seats.who
         else None,
     }
     if service.agent_to_play():
@@ -130,13 +130,15 @@ def report(service: Service) -> dict[str, Any]:
             "waits: press Continue." if state["paused"] else "waits." if service.paused else "is thinking."
         )
         state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
-    if service.friend_to_play:
+    if host and service.friend_to_play:
         state["words"] = "Your friend is to play: send the link."
     fair = act.played is not None and not (act.played.fouls or act.played.points)
     if fair and state["snookered"]:
         state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
     if state["phase"] == "over":
-        state["words"] = " ".join([state["words"], *_say_luck(service), service.unkept]).strip()
+        state["words"] = " ".join(
+            [state["words"], *_say_luck(service), service.unkept if host else ""]
+        ).strip()
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
     return state | {"text": say_table(state, lines, said)}
 

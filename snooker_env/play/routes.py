@@ -19,11 +19,11 @@ from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
 from . import questions
-from .link import open_link, write_link
+from .link import check_course, open_link, write_link
 from .person import Person
 from .report import report, scene, stroke_report, table_after
 from .reviewing import Reviewing
-from .service import Service, StaleError
+from .service import LINKED, Service, StaleError
 from .session import Session
 
 Handler = Callable[[Service, dict[str, Any]], Any]
@@ -141,6 +141,7 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
     if by_link and not (fields.get("best_of", 1) == 1 and "next" not in fields):
         raise refuse("by_link", True, "must be left out in a match: a link holds one frame")
     with service.acting(anew=True) as session:
+        noise = list(session.noise)
         if fields.pop("next", False):
             for name in set(fields) - {"seed"}:
                 raise refuse(name, fields[name], "must be left out with next: the match goes on as it is")
@@ -149,7 +150,9 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
             session.new(**fields)
         if by_link:
             session.noise[1], session.practice = session.noise[0], False
-        service.seats.share(0 if by_link else None)
+            service.seats.share(0, noise)
+        elif (before := service.seats.share_no_more()) is not None:
+            session.noise[:] = before
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
@@ -193,15 +196,22 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
     seat, by_link = fields.get("seat"), "seat" in fields
     if seat is not None:
         integer("seat", seat, 0, 1)
+    if by_link and "link" not in fields:
+        raise refuse("seat", seat, "must be left out without a link")
     with service.acting(pause=True, anew=True) as session:
+        noise, played = list(session.noise), session.acts[: session.at] if LINKED in service.seats.who else []
         if "link" not in fields:
             session.load(fields.get("saved"))
         else:
             open_link(session, fields["link"], agreed=by_link)
-        if by_link and seat is None:  # who opens it is not who played last
+        if not by_link:
+            service.seats.share_no_more()
+            return
+        check_course(played, session.acts)
+        if seat is None:  # who opens it is not who played last
             last, frame = session.acts[-1].player, session.frame
             seat = frame.striker if frame.phase != "over" or last is None else 1 - last
-        service.seats.share(seat)
+        service.seats.share(seat, noise)
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -263,8 +273,7 @@ def _person(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         if "name" in fields:
             person.change(lambda kept: kept.update(name=fields["name"]))
         if truth("delete", fields.get("delete", False)):
-            person.read()
-            person.path.unlink(missing_ok=True)
+            person.delete()
         return person.read() | {"path": str(person.path)}
 
 
@@ -330,16 +339,16 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 def _again(service: Service, fields: dict[str, Any]) -> None:
     """Put the game back to before a stroke that was reviewed."""
-    reviewing = _reviewing(service)
     with service.acting(pause=True, any_turn=True) as session:
+        reviewing = _reviewing(service)
         session.go_to(reviewing.acts, reviewing.act_of(fields.get("stroke"))[0])
+        session.undone += 1
 
 
 ERRORS = ("noise", "samples", "seed", "revision")
 GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
-    "link": Route(_link),
     "strokes": Route(_strokes, ("from",)),
     "reviewed": Route(_reviewed, ("stroke",)),
     "replay": Route(partial(_replay, form=Replay.to_dict)),
@@ -361,6 +370,7 @@ POST: dict[str, Route] = {
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede, friend=True),
     "sit": Route(lambda service, fields: service.sit_down(), friend=True),
+    "link": Route(_link),  # it holds the random stream: the host's alone
     "save": Route(_save),
     "load": Route(_load, ("saved", "link", "seat")),
     "review": Route(_review, ("agent", "stop", *ERRORS[:3])),

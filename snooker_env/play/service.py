@@ -4,8 +4,9 @@ A number, the revision, grows with every change; a request that waits for a chan
 has seen. An agent's stroke is dropped if the game has changed in the meantime."""
 
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from time import monotonic
 from typing import Any
 
@@ -50,7 +51,11 @@ class Seats:
         for level in BY_NAME.values():
             self.players.setdefault(level.name, self.players.get(level.agent) or player(level.agent))
         self.persons: list[str] = [PERSON, *[FRIEND] * friends]
-        self.who, self._before = [PERSON, PERSON], [PERSON, PERSON]
+        self.who = [PERSON, PERSON]
+        self._before = (
+            list(self.who),
+            list[NoiseName](),
+        )  # who sat here before a game by link, and their errors
 
     @property
     def names(self) -> list[str]:
@@ -86,11 +91,18 @@ class Seats:
         """Whether an agent has this seat."""
         return self.who[seat] not in (PERSON, FRIEND, LINKED)
 
-    def share(self, seat: int | None) -> None:
-        """The person plays this seat, and a friend by link the other; None: those who sat there before come back."""
+    def share(self, seat: int, noise: list[NoiseName]) -> None:
+        """The person plays this seat, and a friend by link the other; ``noise``: the errors of those who sat there."""
         if LINKED not in self.who:
-            self._before = self.who
-        self.who = self._before if seat is None else [PERSON if k == seat else LINKED for k in (0, 1)]
+            self._before = self.who, noise
+        self.who = [PERSON if k == seat else LINKED for k in (0, 1)]
+
+    def share_no_more(self) -> list[NoiseName] | None:
+        """Those who sat here before a game by link come back; returns their errors. None: there was no such game."""
+        if LINKED not in self.who:
+            return None
+        self.who, noise = self._before
+        return noise
 
     def seen_by(self, me: str) -> list[str]:
         """Who sits on both seats, as one of the persons sees it: itself as ``PERSON``, another as ``FRIEND``."""
@@ -140,7 +152,9 @@ class Service:
         self.session: Session = session
         self.seats: Seats = seats
         self.person: Person | None = person
-        self._kept, self.unkept = 0, ""
+        self._over, self._sat = 0, set[tuple[str, ...]]()  # the last game that ended; who sat in this one
+        self._unwritten: Callable[[], None] | None = None  # keeps a frame that could not be kept yet
+        self.unkept = ""
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
         self.reviewing: Reviewing | None = None
         self.revision: int = 0
@@ -289,17 +303,24 @@ class Service:
         return self.agent_to_play() and not self.paused
 
     def _keep(self) -> None:
-        """Keep a frame of a person against an agent once it is over, if it was played from its beginning."""
+        """Keep a frame of a person against an agent when it ends, if it was played from its beginning."""
         session, seats, person = self.session, self.seats, self.person
-        if person is None or session.frame.phase != "over" or self._kept == session.begun:
-            return
-        people = [seat for seat in (0, 1) if not seats.is_agent(seat)]
-        dealt = all(act.what not in ("set_up", "load") for act in session.acts[: session.at])
-        if len(people) == 1 and dealt and not session.practice:
-            self._kept, self.unkept = session.begun, ""
+        if not session.strokes:
+            self._sat.clear()
+        self._sat.add(tuple(seats.who))
+        if person is not None and session.frame.phase == "over" and self._over != session.begun:
+            self._over, self.unkept = session.begun, ""
+            people = [seat for seat in (0, 1) if not seats.is_agent(seat)]
+            dealt = all(act.what not in ("set_up", "load") for act in session.acts[: session.at])
+            if len(people) == 1 and dealt and not session.practice:
+                same = len(self._sat) == 1
+                frame = person.tell(session, people[0], seats.who[1 - people[0]], same=same)
+                self._unwritten = partial(person.keep, *frame)
+        if self._unwritten is not None:
             try:
-                person.keep(session, people[0], seats.who[1 - people[0]])
-            except (ValueError, OSError) as error:
+                self._unwritten()
+                self._unwritten, self.unkept = None, ""
+            except ValueError as error:
                 self.unkept = f"The frame was not kept: {error}."
 
     def _announce(self):

@@ -369,7 +369,8 @@ class Session:
 
     def go_to(self, acts: list[Act], at: int) -> None:
         """The game of these acts as it stood before act ``at``: those from there on can be done again."""
-        self.acts = list(acts)
+        if self.acts[: len(acts)] != acts:  # else what was played since can be done again, too
+            self.acts = list(acts)
         self._go(at)
 
     def save(self) -> dict[str, Any]:

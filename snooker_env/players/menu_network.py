@@ -39,6 +39,7 @@ class MenuPlayer(SeenPlayer):
     def __init__(self) -> None:
         self._networks = [MenuNetwork(learned_menu(f"{task}s"), task) for task in ("visit", "frame")]
         super().__init__(self._networks[0], name="strokes")
+        self.frames = True  # it knows them; bound, it sees what its options say
 
     def _bind(self, options: Options) -> None:
         self.frames = options.task != "visit"

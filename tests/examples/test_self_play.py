@@ -85,6 +85,7 @@ def test_advantages_are_sums_of_surprises_seen_from_the_side_of_each_stroke(monk
 
 def test_a_rollout_says_whose_stroke_came_next(tmp_path, monkeypatch):
     """Rewards are the striker's, and the sign is that of the next striker on the same table."""
+    monkeypatch.setitem(self_play.GAME, "layout", "colours")
     args = self_play.parse([*SHORT, "--out", str(tmp_path)])
     run, noted = self_play.Run(args), []
     step = run.tables.step
@@ -92,7 +93,9 @@ def test_a_rollout_says_whose_stroke_came_next(tmp_path, monkeypatch):
     def note(actions):
         before = run.tables.strikers
         result = step(actions)
-        noted.append((before, run.tables.strikers, result[1].copy(), result[2].copy()))
+        noted.append(
+            (before, run.tables.strikers, result[1].copy(), result[2].copy(), result[4]["winner"].copy())
+        )
         return result
 
     monkeypatch.setattr(run.tables, "step", note)
@@ -104,12 +107,20 @@ def test_a_rollout_says_whose_stroke_came_next(tmp_path, monkeypatch):
     )
     run._play()
     assert len(noted) == self_play.STEPS
-    for t, (before, after, gained, over) in enumerate(noted):
+    for t, (before, after, gained, over, winner) in enumerate(noted):
         for k in range(8):
             wanted = 0 if over[k] else 1 if before[k] == after[k] else -1
             assert told["signs"][t, k] == wanted
-            if not over[k]:
-                assert told["rewards"][t, k] == pytest.approx(self_play.LEAD * gained[k, before[k]], abs=1e-6)
+            won = (1 if winner[k] == before[k] else -1) if over[k] else 0
+            reward = self_play.LEAD * gained[k, before[k]] + self_play.WON * won
+            assert told["rewards"][t, k] == pytest.approx(reward, abs=1e-5)
+    ends = {
+        (int(w), int(b))
+        for before, _, _, over, win in noted
+        for w, b, o in zip(win, before, over, strict=True)
+        if o
+    }
+    assert len(ends) > 1  # won by the striker and by the other
     assert {-1.0, 1.0} <= set(told["signs"].ravel().tolist())
 
 

@@ -226,15 +226,19 @@ def test_by_link_two_persons_play_each_its_own_seat(game):
     ):
         with pytest.raises(ValueError, match=r"^(turn|game) = "):
             game(name, **fields)
-    link = game.get("link")["link"]
+    link = game("link")["link"]
     state = game("load", link=link, seat=None)  # as the friend opens it
     assert (state["by_link"], state["labels"]) == ({"seat": 1, "visit": 0}, ["Friend", "You"])
     if state["phase"] == "choice":
         game("stroke", choice="play")
     assert game("concede")["words"].startswith("Frame over: Friend won.")
-    assert game("load", link=game.get("link")["link"], seat=None)["by_link"]["seat"] == 0
-    assert game("load", link=link, seat=0)["words"].startswith("Your friend is to play")
+    assert game("load", link=game("link")["link"], seat=None)["by_link"]["seat"] == 0
+    with pytest.raises(
+        ValueError, match=r"^link = another course of this game: must begin with what was played"
+    ):
+        game("load", link=link, seat=0)  # an older one
     assert game("load", link=link)["players"] == ["person", "person"]  # to watch, take back and try
+    assert game("load", link=link, seat=0)["words"].startswith("Your friend is to play")
     changed = standing(EASY)
     for noise in ("club", "none"):
         changed.noise[:] = [noise, noise]
@@ -247,4 +251,20 @@ def test_by_link_two_persons_play_each_its_own_seat(game):
         game("load", link=write_link(changed), seat=None)
     with pytest.raises(ValueError, match=r"^by_link = True: must be left out in a match"):
         game("new", by_link=True, best_of=3)
-    assert json.dumps(game.get("state")["by_link"]) == "null"
+    assert json.dumps(game("new")["by_link"]) == "null"
+
+
+def test_a_game_by_link_leaves_nothing_behind_and_begins_at_a_break(game):
+    """The errors of those who sat here come back with them; a table that was set up with points is no beginning."""
+    game("players", players=["person", "Walter"], noise=["professional", "club"])
+    game("new", by_link=True)
+    assert game.get("state")["noise"] == ["professional", "professional"]
+    state = game("new")
+    assert (state["players"], state["noise"]) == (["person", "Walter"], ["professional", "club"])
+    forged = standing(EASY, scores=(0, 90))
+    with pytest.raises(
+        ValueError, match=r"^scores = \[0, 90\]: must be 0 at the beginning of a game by link"
+    ):
+        game("load", link=write_link(forged), seat=0)
+    with pytest.raises(ValueError, match=r"^seat = 0: must be left out without a link"):
+        game("load", saved=game("save"), seat=0)

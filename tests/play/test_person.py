@@ -77,6 +77,42 @@ def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(gam
     assert [one["rated"] for one in kept.read()["frames"]] == [True, False, False]
 
 
+def test_only_a_fair_frame_against_one_opponent_is_rated(game, kept):
+    def rated():
+        return [one["rated"] for one in kept.read()["frames"]]
+
+    game("new", seed=1)
+    game("stroke", speed=3.0, aim=1.5)
+    while game.service.thinking:
+        game.service.wait(game.service.revision, 20.0)
+    game("players", players=["person", "Vera"])  # in the middle of it
+    leave(game)
+    assert rated() == [False]
+    game("players", **PIP)
+    game("players", practice=True)
+    game("new", seed=2)
+    game("stroke", speed=3.0, aim=1.5)
+    game("players", practice=False)
+    leave(game)
+    assert rated() == [False, False]
+    game("players", players=["person", "person"], noise=["amateur", "amateur"])
+    game("new", seed=3)
+    game("concede")
+    game("players", players=["person", "Vera"])  # after its end
+    assert rated() == [False, False]
+
+
+def test_what_could_not_be_kept_is_kept_as_soon_as_it_can_be(game, kept):
+    kept.path.parent.write_text("in the way")
+    assert "The frame was not kept: person = " in end_frame(game, strokes=1)["words"]
+    for fields in ({"name": "Anna"}, {"delete": True}):
+        with pytest.raises(ValueError, match="must be a file that can be written"):
+            game("person", **fields)
+    kept.path.parent.unlink()
+    game("new", seed=5)
+    assert len(kept.read()["frames"]) == 1 and "not kept" not in game.get("state")["words"]
+
+
 def test_a_break_is_kept_as_a_whole(game, kept):
     game("new", layout="colours", seed=4)
     game("players", noise=["none", "none"])

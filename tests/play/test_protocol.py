@@ -391,7 +391,7 @@ def test_undo_redo_new_save_load_and_replay(game):
     assert replay["format"] == "snooker-replay" and len(replay["strokes"]) == 1
     assert replay["players"] == ["Player 1", "Player 2"]
     assert json.loads(json.dumps(replay))["strokes"][0]["words"] in game.get("replay.html")
-    saved, link = game("save"), game.get("link")["link"]
+    saved, link = game("save"), game("link")["link"]
     assert game("undo")["scores"] == [0, 0] and game("redo")["scores"] == [1, 0]
     fresh = game("new", layout="colours", seed=4)
     assert fresh["reds"] == 0 and fresh["ball_on"] == "yellow" and not fresh["undo"] and fresh["strokes"] == 0

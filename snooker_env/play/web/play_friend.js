@@ -56,7 +56,7 @@ export class Friend {
     const { state } = this.app, { by_link: mine, revision } = state, over = state.phase === "over";
     for (const id of FIXED) by(id).disabled = Boolean(mine);
     if (!mine) { by("friend").hidden = true; return; }
-    const theirs = !over && state.striker !== mine.seat, { link } = await ask("link");
+    const theirs = !over && state.striker !== mine.seat, { link } = await ask("link", {});
     if (this.app.state.revision !== revision) return;
     const stroke = `stroke ${state.strokes + 1}`;
     this.words = over ? `The frame is over, ${state.scores.join(" : ")}.` : `Your move, ${stroke}.`;

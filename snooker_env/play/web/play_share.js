@@ -10,7 +10,7 @@ import { ask, by } from "./play_parts.js";
 const KINDS = {
   game: async () => packed("game", await ask("save", {})),
   stroke: async n => packed("stroke", JSON.stringify((await ask("strokes", undefined, `?from=${n - 1}`)).strokes[0])),
-  replay: async () => short(`#replay=${(await ask("link")).link}`),
+  replay: async () => short(`#replay=${(await ask("link", {})).link}`),
 };
 /** Characters of the longest link. */
 const MOST = 30_000;
