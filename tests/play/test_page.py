@@ -861,7 +861,7 @@ def test_a_frame_is_reviewed_on_the_page_and_played_again_from_its_costliest_str
     rows.first.focus()
     shown.page.keyboard.press("Enter")
     shown.until("page.review.shown !== null && page.review.chosen === argument", first)
-    assert "thrown away by the choice; the best was" in shown.page.inner_text("#review-said")
+    assert "lost by the choice; the best was" in shown.page.inner_text("#review-said")
     lines = shown("page.review.overlay().lines.map(one => [one.colour, one.points.length > 1])")
     assert {colour for colour, _ in lines} == {"#ffffff", "#ffd75e"} and all(long for _, long in lines)
     table = shown("page.table")
