@@ -206,6 +206,8 @@ class Review:
 def name_stroke(one: Suggestion) -> str:
     """What a stroke does, in few words."""
     words = _parts(one)
+    if one.kind == "foul":
+        return ", ".join(words[:2])
     return f"{words[0]} to the {words[1]}" if one.kind == "pot" else words[0]
 
 

@@ -12,7 +12,7 @@ const INK = { played: { colour: "#ffffff", width: 0.005 }, best: { colour: "#ffd
 const FIRST = 3, LITTLE = 0.015;
 
 const percent = share => `${Math.round(100 * share)}\u00a0%`.replace(/^-0/, "0").replace("-", "−");
-const signed = share => (share < 0 ? percent(share) : `+${percent(share)}`);
+const signed = share => `${share > 0 ? "+" : ""}${percent(share)}`;
 
 export class Review {
   constructor(app) {
@@ -87,7 +87,7 @@ export class Review {
     by("review-bar").value = done ?? 0;
     by("review-body").hidden = !sides;
     if (sides) {
-      if (!this.line) this.graph([...chances, found.result]);
+      if (!this.line) this.graph([...found.concession ? chances : chances.slice(0, -1), found.result, found.result], chances.length - 1);
       const row = (name, className, ...said) => make("tr", { className }, make("td", { textContent: name }), ...said.map(textContent => make("td", { textContent })));
       const head = make("tr", {}, make("td"), ...app.state.labels.map(textContent => make("th", { scope: "col", textContent })));
       const rows = found.account.map(([name, whole]) => (["start", "end"].includes(name) ? row(name, "end", percent(whole / 100), percent(1 - whole / 100)) : row(name, "", signed(whole / 100), signed(-whole / 100))));
@@ -101,10 +101,10 @@ export class Review {
     this.say(trouble);
   }
 
-  graph(chances) {
-    const strokes = chances.slice(1).map(() => ({ duration: 1, words: "" })), { labels } = this.app.state, played = strokes.length - 1;
+  graph(chances, played) {
+    const strokes = chances.slice(1).map(() => ({ duration: 1, words: "" })), { labels } = this.app.state;
     by("review-graph").replaceChildren();
-    by("review-axis").textContent = `${labels[0]}: chance to win before each of ${played} stroke${played === 1 ? "" : "s"}, and at the end`;
+    by("review-axis").textContent = `${labels[0]}: chance to win, stroke by stroke, and the end`;
     this.line = new ChanceGraph(by("review-graph"), {
       total: strokes.length, starts: strokes.map((_, k) => k), strokes, replay: { win_chance: chances, luck: null, players: labels },
       strokeAt: at => Math.min(played - 1, Math.max(0, Math.floor(at))), skipTo: k => this.near(k + 1),
