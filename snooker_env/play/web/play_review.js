@@ -104,7 +104,7 @@ export class Review {
   graph(chances, played) {
     const strokes = chances.slice(1).map(() => ({ duration: 1, words: "" })), { labels } = this.app.state;
     by("review-graph").replaceChildren();
-    by("review-axis").textContent = `${labels[0]}: chance to win, stroke by stroke, and the end`;
+    by("review-axis").textContent = `${labels[0]}: chance to win, by strokes`;
     this.line = new ChanceGraph(by("review-graph"), {
       total: strokes.length, starts: strokes.map((_, k) => k), strokes, replay: { win_chance: chances, luck: null, players: labels },
       strokeAt: at => Math.min(played - 1, Math.max(0, Math.floor(at))), skipTo: k => this.near(k + 1),
