@@ -458,8 +458,8 @@ def _data(name: str, value: Any) -> Any:
     return physics_data(Physics.of(value)) if name == "physics" else table_data(Table.of(value))
 
 
-def call_pot(position: Position, direction: float) -> tuple[int, int] | None:
-    """Ball and pocket of the direct pot whose line is nearest to a direction [rad]; None beyond ``CALLED``."""
+def call_pot(position: Position, direction: float, within: float = CALLED) -> tuple[int, int] | None:
+    """Ball and pocket of the direct pot whose line is nearest to a direction [rad]; None if none is ``within`` [rad]."""
     direct = pots(position, 16)
     x, y = position.cue or (0.0, 0.0)
     aside = [
@@ -467,4 +467,4 @@ def call_pot(position: Position, direction: float) -> tuple[int, int] | None:
         for ball, (gx, gy) in zip(direct.ball[0].tolist(), direct.ghost[0].tolist(), strict=True)
     ]
     k = int(np.argmin(aside))
-    return (int(direct.ball[0, k]), int(direct.pocket[0, k])) if aside[k] <= CALLED else None
+    return (int(direct.ball[0, k]), int(direct.pocket[0, k])) if aside[k] <= within else None

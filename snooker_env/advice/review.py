@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import sqrt
+from math import radians, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,8 +24,8 @@ from .ask import choose_strokes, name_player
 from .intentions import intend
 from .outcomes import Trials, judge_strokes
 from .practice import one_position, practice_of
-from .recorded import CUE_PARTS, direction_of, read_balls
-from .stroke_words import percent
+from .recorded import CUE_PARTS, call_pot, direction_of, read_balls
+from .stroke_words import POCKET_WORDS, ball_name, percent
 from .suggestions import Suggestion
 
 ROUGH, FEW = (
@@ -33,6 +33,7 @@ ROUGH, FEW = (
     50,
 )  # who is asked in the first look at all strokes, and how often each is played
 SAMPLES = 500  # how often each is played then, unless another number is asked for
+MISSED = radians(1.0)  # a stroke whose line is so near to that of a pot was meant to pot
 LITTLE = 0.015  # share of the chance to win that is not worth a word: so much is sampling error
 
 
@@ -66,8 +67,14 @@ class Reviewed:
     best: Suggestion
     after: float  # what the stroke left as it was played
     choice: float  # what it cost to mean it: the best's mean less its own
-    execution: float  # what its errors cost: its mean, less what it left
+    execution: float  # what its errors cost: the luck with the other sign; where nobody knows it, its mean less what it left
+    pot: str  # the pot that it was likely meant for though it misses without errors, in words; "" for none
     rough: bool
+
+    @property
+    def name(self) -> str:
+        """What the stroke was meant for, in few words."""
+        return f"missed pot, {self.pot}" if self.pot else name_stroke(self.meant)
 
     @property
     def cost(self) -> float:
@@ -77,12 +84,12 @@ class Reviewed:
     def to_dict(self) -> dict[str, Any]:
         """As JSON types, with words."""
         shares = {"meant": self.meant.figure, "best": self.best.figure}
-        return vars(self) | shares | {"name": name_stroke(self.meant), "words": str(self)}
+        return vars(self) | shares | {"name": self.name, "words": str(self)}
 
     def __str__(self) -> str:
         costs, better, best, meant = [], "", name_stroke(self.best), name_stroke(self.meant)
         if self.choice >= LITTLE:
-            costs.append(f"{percent(self.choice)} thrown away by the choice")
+            costs.append(f"{percent(self.choice)} lost by the choice")
             article = (
                 "the" if self.best.kind == "pot" and best[:3] != "red" else "a" + "n" * (best[0] in "aei")
             )
@@ -92,17 +99,19 @@ class Reviewed:
         if abs(self.execution) >= LITTLE:
             way = "lost" if self.execution > 0.0 else "gained"
             costs.append(f"{percent(abs(self.execution))} {way} by the execution")
-        return f"stroke {self.number}, {meant}: {', '.join(costs) or 'nothing lost'}{better}"
+        return f"stroke {self.number}, {self.name}: {', '.join(costs) or 'nothing lost'}{better}"
 
 
 class Side(NamedTuple):
-    """The sums of a player: costs of its ``strokes`` reviewed, and the luck of all its strokes, None if nobody knows it."""
+    """The sums of a player in its own chance to win. What all its strokes gained is ``luck`` - ``choice`` - ``execution`` +
+    ``other``."""
 
     name: str
-    strokes: int
-    choice: float
-    execution: float
-    luck: float | None
+    strokes: int  # that were reviewed
+    choice: float  # what they cost by the choice
+    execution: float  # and by errors, of those whose luck nobody knows
+    luck: float | None  # of all its strokes; None if nobody knows it
+    other: float  # how much more the best strokes were worth than the position, and strokes that were not reviewed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,7 +120,10 @@ class Review:
 
     strokes: list[Reviewed]
     sides: tuple[Side, Side]
-    win_chance: list[float]  # of the first player, before the first stroke and after each
+    win_chance: list[float]  # of the first player, before each stroke, and at the end, before a concession
+    between: (
+        float  # what decisions and positions that were set up between the strokes gained for the first player
+    )
     result: float  # 1 if the first player won, else its last chance
     agent: str
     noise: str | dict[str, float]
@@ -125,6 +137,34 @@ class Review:
         return None if one is None or other is None else self.result - one + other
 
     @property
+    def concession(self) -> float:
+        """What the concession that ended the frame gained for the first player, negative where it conceded."""
+        return self.result - self.win_chance[-1]
+
+    @property
+    def account(self) -> list[tuple[str, int]]:
+        """The first player's chance at the start, all that changed it, and the result [%]: the changes add up."""
+        start, end = (round(100 * share) for share in (self.win_chance[0], self.result))
+        names, rows, loser = [side.name for side in self.sides], {}, int(self.concession > 0.0)
+        for k, (one, sign) in enumerate(zip(self.sides, (100, -100), strict=True)):
+            parts = {"choice": -one.choice, "luck": one.luck, "execution": -one.execution, "other": one.other}
+            here = {
+                "luck": one.luck is not None,
+                "execution": one.execution,
+                "choice": one.strokes,
+                "other": True,
+            }
+            rows |= {(k, name): round(sign * (share or 0.0)) for name, share in parts.items() if here[name]}
+        ends = {
+            (None, "between the strokes"): round(100 * self.between),
+            (loser, "concession"): round(100 * self.concession),
+        }
+        rows |= {who: share for who, share in ends.items() if share}
+        rows[0, "other"] += end - start - sum(rows.values())  # rounding must not spoil the sum
+        said = [(what if k is None else f"{names[k]}: {what}", share) for (k, what), share in rows.items()]
+        return [("start", start), *said, ("end", end)]
+
+    @property
     def costliest(self) -> list[Reviewed]:
         """The strokes, those that cost most first."""
         return sorted(self.strokes, key=lambda one: -one.cost)
@@ -136,7 +176,10 @@ class Review:
             "sides": [x._asdict() for x in self.sides],
         }
         return (
-            vars(self) | lists | {"adjusted": self.adjusted, "costliest": [x.number for x in self.costliest]}
+            vars(self)
+            | lists
+            | {"adjusted": self.adjusted, "concession": self.concession, "account": self.account}
+            | {"costliest": [x.number for x in self.costliest]}
         )
 
     def __str__(self) -> str:
@@ -144,17 +187,16 @@ class Review:
         for one in self.strokes:
             shares = one.meant.figure, one.best.figure, one.choice, one.execution, one.after
             said = [percent(round(share, 2) + 0.0) for share in shares]  # no "-0 %"
-            rows.append([str(one.number), self.sides[one.player].name, name_stroke(one.meant), *said])
+            rows.append([str(one.number), self.sides[one.player].name, one.name, *said])
         lines = [*text_table(head, rows, 3), "", *map(str, self.costliest[:3]), ""]
-        for one in self.sides:
-            costs = (
-                f"; choice cost {percent(one.choice)}, execution {percent(one.execution)}"
-                if one.strokes
-                else ""
-            )
-            lines.append(
-                f"{one.name}: luck {'not known' if one.luck is None else f'{100 * one.luck:+.0f} %'}{costs}"
-            )
+        head = ["", *(side.name for side in self.sides)]
+        account = [
+            [name, f"{share} %", f"{100 - share} %"]
+            if name in ("start", "end")
+            else [name, f"{share:+} %", f"{-share:+} %"]
+            for name, share in self.account
+        ]
+        lines += text_table(head, account, 1)
         known = (
             "" if self.adjusted is None else f", without luck {percent(min(1.0, max(0.0, self.adjusted)))}"
         )
@@ -164,6 +206,8 @@ class Review:
 def name_stroke(one: Suggestion) -> str:
     """What a stroke does, in few words."""
     words = _parts(one)
+    if one.kind == "foul":
+        return ", ".join(words[:2])
     return f"{words[0]} to the {words[1]}" if one.kind == "pot" else words[0]
 
 
@@ -177,6 +221,7 @@ def go_through(
     players: Sequence[int] = (0, 1),
     *,
     winner: int | None = None,
+    end: Standing | None = None,
     agent: Any = None,
     noise: NoiseLike | None = None,
     samples: int = SAMPLES,
@@ -185,7 +230,8 @@ def go_through(
     """Review a frame; yield how many steps are done, of how many, and what is known.
 
     A rough look at all strokes of the ``players``, with errors of its own, gives their order. Then the costliest first are
-    judged as ``advise`` does with ``n=1`` and ``visits=0``."""
+    judged as ``advise`` does with ``n=1`` and ``visits=0``. ``end``: the frame as it stood at last, before the other than the
+    ``winner`` conceded; None: as the last stroke left it."""
     trials = Trials(integer("samples", samples, 1, 100_000), 0, integer("seed", seed, 0, 2**62))
     turns, mine = frame.turns, [one for one in frame.turns if one.player in players]
     if not mine:
@@ -193,44 +239,62 @@ def go_through(
     errors = common_noise([one.noise for one in mine]) if noise is None else Noise.of(noise)
     name, asked = name_player(agent, mine[0].seen[:1])
     judge: Any = player_of("tactician").at(practice_of(errors, mine[0].options, of_frames=True).options)
-    chances = win_chances(judge, [turns[0].standings[0], *(one.standings[1] for one in turns)])
+    last = turns[-1].standings[1] if end is None else end
+    stood = [standing for one in turns for standing in one.standings]
+    chances = np.array(win_chances(judge, [*stood, last]))
+    gains, between = np.diff(chances)[::2], float(np.diff(chances)[1::2].sum())
     found: dict[int, Reviewed] = {}
+    told = {one.number: frame.luck[one.number - 1] for one in turns if frame.luck and not one.noise.silent}
 
     def sum_up(player: int) -> Side:
         own = [one for one in found.values() if one.player == player]
-        lucks = {k: luck for k, luck in enumerate(frame.luck or (), 1) if turns[k - 1].player == player}
-        # under the errors that were made, the execution tells the luck by more samples
-        lucks |= {one.number: -one.execution for one in own if turns[one.number - 1].noise == errors}
-        choice, execution = (sum(getattr(one, part) for one in own) for part in ("choice", "execution"))
-        luck = None if frame.luck is None else sum(lucks.values())
-        return Side(frame.players[player], len(own), choice, execution, luck)
+        numbers = [one.number for one in turns if one.player == player]
+        choice = sum(one.choice for one in own)
+        execution = sum(one.execution for one in own if one.number not in told)
+        luck = sum(told.get(number, 0.0) for number in numbers)
+        gained = float(sum(gains[number - 1] for number in numbers)) * (-1.0 if player else 1.0)
+        other = gained - luck + choice + execution
+        return Side(frame.players[player], len(own), choice, execution, luck if frame.luck else None, other)
 
     def sum_all() -> Review:
-        strokes, result = (
-            [found[number] for number in sorted(found)],
-            chances[-1] if winner is None else 1.0 - winner,
-        )
+        strokes = [found[number] for number in sorted(found)]
+        shares = [*chances[:-1:2].tolist(), float(chances[-1])]
         how: dict[str, Any] = {"agent": name, "noise": noise_data(errors), "samples": samples, "seed": seed}
-        return Review(strokes=strokes, sides=(sum_up(0), sum_up(1)), win_chance=chances, result=result, **how)
+        how |= {"result": shares[-1] if winner is None else 1.0 - winner, "between": between}
+        return Review(strokes=strokes, sides=(sum_up(0), sum_up(1)), win_chance=shares, **how)
+
+    def judge_one(turn: Turn, agent: Player, trials: Trials, rough: bool) -> Reviewed:
+        return _judge(turn, agent, errors, trials, told.get(turn.number), rough)
 
     yield 0, 2 * len(mine), sum_all()
     for done, one in enumerate(mine, 1):
-        found[one.number] = _judge(one, player_of(ROUGH), errors, Trials(FEW, 0, seed + 1), True)
+        found[one.number] = judge_one(one, player_of(ROUGH), Trials(FEW, 0, seed + 1), True)
         yield done, 2 * len(mine), sum_all()
     for done, rough in enumerate(sum_all().costliest, 1 + len(mine)):
-        found[rough.number] = _judge(turns[rough.number - 1], asked, errors, trials, False)
+        found[rough.number] = judge_one(turns[rough.number - 1], asked, trials, False)
         yield done, 2 * len(mine), sum_all()
 
 
-def _judge(turn: Turn, agent: Player, noise: Noise, trials: Trials, rough: bool) -> Reviewed:
+def _judge(
+    turn: Turn, agent: Player, noise: Noise, trials: Trials, luck: float | None, rough: bool
+) -> Reviewed:
     """A stroke beside the agent's best, both under the same errors."""
     practice, at = practice_of(noise, turn.options, of_frames=True), one_position(turn.seen[:1])
     ((best,), _) = choose_strokes(practice, agent, at, 1, trials, rivals=0)
     (meant,) = judge_strokes(practice, intend(practice, at, [turn.meant]), trials)
     after = float(practice.judge.value_of(lead_of(at), turn.seen[1:].known_to(practice.options.rules))[0, 0])
-    costs = {"choice": best.figure - meant.figure, "execution": meant.figure - after}
+    execution = meant.figure - after if luck is None else -luck
+    pot = None if meant.kind == "pot" else call_pot(at[0], turn.meant.aim, MISSED)
     return Reviewed(
-        number=turn.number, player=turn.player, meant=meant, best=best, after=after, rough=rough, **costs
+        number=turn.number,
+        player=turn.player,
+        meant=meant,
+        best=best,
+        after=after,
+        choice=best.figure - meant.figure,
+        execution=execution,
+        pot=f"{ball_name(pot[0])} to the {POCKET_WORDS[pot[1]]}" if pot else "",
+        rough=rough,
     )
 
 

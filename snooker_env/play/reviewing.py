@@ -19,7 +19,9 @@ class Reviewing:
         self.found: tuple[int, int, Review | None] = 0, 1, None  # done, of how many, what is known
         self.trouble: str = ""
         self.running: bool = True
-        steps = go_through(frame, players, winner=session.frame.winner, **how)
+        ended = self.acts[-1].what in ("concede", "claim")
+        end = self.acts[-2 if ended else -1].standing
+        steps = go_through(frame, players, winner=session.frame.winner, end=end, **how)
         threading.Thread(target=self._run, args=(steps,), name="snooker review", daemon=True).start()
 
     def report(self) -> dict[str, Any]:

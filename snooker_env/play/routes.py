@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from .._lib.check import choice, integer, number, refuse, truth
 from ..advice import CueStroke, coach
 from ..advice.review import SAMPLES, read_frame
+from ..game.balls import CUE
 from ..game.fouls import AUTO
 from ..game.frame import MOST_BREAK
 from ..planning.position import Position
@@ -333,8 +334,9 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking() as session:
         session.cue = act.played.cue_kind
         session.go_to(reviewing.acts, k)
-        both = {"played": questions.paths(act.played.shot), "best": questions.draw(session, one.best.stroke)}
-        return both | {"table": table_after(before, service.labels, chance)}
+        played, best = questions.paths(act.played.shot), questions.draw(session, one.best.stroke)
+        best["paths"] = {k: best["paths"][k] for k in map(str, (CUE, one.best.ball)) if k in best["paths"]}
+        return {"played": played, "best": best} | {"table": table_after(before, service.labels, chance)}
 
 
 def _again(service: Service, fields: dict[str, Any]) -> None:

@@ -17,12 +17,12 @@ from .._lib.types import NoiseName
 from ..advice.ask import AGENT
 from ..advice.review import size_of
 from ..game.fouls import AUTO
-from ..game.frame import CHOICES, Frame
+from ..game.frame import CHOICES
 from ..game.frame_columns import STROKES
 from ..players import Player, Strokes, player
 from ..players.cue_stroke import cue_strokes
 from ..players.table_report import nominations_of
-from ..replays.chances import ChanceJudge, Standing, win_chances
+from ..replays.chances import ChanceJudge, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS
@@ -262,9 +262,7 @@ class Service:
         """How likely seat 0 was to win after each of some acts; None for nobody says it. ``noise``: see ``judge``."""
         if (judge := self.judge(noise)) is None or not acts:
             return [None] * len(acts)
-        tables = [(act.state["positions"], act.state["on_table"], act.state["frame"]) for act in acts]
-        parts = [(Frame.from_dict(frame), np.array(at), np.array(on)) for at, on, frame in tables]
-        return win_chances(judge, [Standing(*one) for one in parts])
+        return win_chances(judge, [act.standing for act in acts])
 
     def choice_chances(self, session: Session, noise: NoiseName | None = None) -> list[float | None]:
         """How likely the striker wins after each choice that it has after a foul; as ``win_chances``."""

@@ -26,6 +26,7 @@ from ..planning.positions import Positions, of_tables
 from ..players import FRAMES, Strokes
 from ..players.luck import expect_win, luck_of
 from ..players.table_report import nominations_of, visit_of
+from ..replays.chances import Standing
 from ..tasks.frames import Frames, Seat
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES, Options
@@ -53,6 +54,12 @@ class Act:
     room: Room | None = None  # for a stroke: how the cue found room for it
     asked: dict[str, Any] = field(default_factory=dict)  # what was asked for, as JSON types: see ``acts``
     luck: float = 0.0  # of a stroke, in its player's chance to win; 0 in practice
+
+    @property
+    def standing(self) -> Standing:
+        """The frame after it."""
+        places, here = np.array(self.state["positions"]), np.array(self.state["on_table"])
+        return Standing(Frame.from_dict(self.state["frame"]), places, here)
 
 
 class Session:

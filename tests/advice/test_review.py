@@ -3,7 +3,6 @@
 import json
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 import snooker_env as sn
@@ -13,6 +12,7 @@ from snooker_env.advice.recorded import REPLAY, read_document
 from snooker_env.advice.review import go_through, read_frame
 from snooker_env.play.session import Session
 from snooker_env.replays import Replay
+from snooker_env.replays.chances import win_chances
 
 HOW = {"agent": "tactician_100", "noise": "club", "samples": 60, "seed": 5}
 OPTIONS = {"cue": "real", "miss": "clear_path", "game": "snooker"}
@@ -59,25 +59,54 @@ def test_a_review_says_what_advice_says_at_the_same_budget(game):
     assert abs(first.choice) < 2e-3 and first.meant.win == pytest.approx(advice[0].win, abs=2e-3)
     assert max(one.choice for one in others) > 0.05
     for one in found.strokes:
-        assert one.choice + one.execution == pytest.approx(one.best.win - one.after, abs=1e-12)
+        assert one.choice == one.best.win - one.meant.win
 
 
-def test_both_players_have_the_sums_of_their_strokes_and_a_result_without_luck(game):
-    """Under the errors that were made execution is the luck; under others the replay says it."""
+def test_luck_is_that_of_the_replay_and_the_account_adds_up(game):
+    """Whatever the errors of the review; a position that was set up, a decision and a concession are entries, too."""
     _, file, players = game
-    found, other = reviewed(file), reviewed(file, 0, noise="amateur", samples=20)
-    for k, side in enumerate(found.sides):
-        own = [one for one in found.strokes if one.player == k]
-        assert (side.strokes, side.name) == (players.count(k), ("Ann", "Bob")[k])
-        assert side.choice == pytest.approx(sum(one.choice for one in own))
-        assert side.luck == pytest.approx(-sum(one.execution for one in own)) and side.luck != 0.0
-    one, two = found.sides
-    assert found.adjusted == pytest.approx(found.result - one.luck + two.luck)
     kept = read_document(file, {REPLAY: lambda kept: kept})
     told = [sum(luck for luck, by in zip(kept["luck"], players, strict=True) if by == k) for k in (0, 1)]
-    assert [side.luck for side in other.sides] == pytest.approx(told)
-    assert other.sides[1].strokes == 0 and len(other.win_chance) == 5
-    np.testing.assert_allclose(found.win_chance, kept["win_chance"])
+    for found in (reviewed(file), reviewed(file, 0, noise="amateur", samples=20)):
+        assert [side.luck for side in found.sides] == pytest.approx(told) and any(told)
+        for one in found.strokes:
+            assert one.execution == -kept["luck"][one.number - 1]
+        for k, side in enumerate(found.sides):
+            own = [one for one in found.strokes if one.player == k]
+            assert (side.strokes, side.name) == (len(own), ("Ann", "Bob")[k])
+            assert side.choice == pytest.approx(sum(one.choice for one in own)) and side.execution == 0.0
+        one, two = (side.luck - side.choice - side.execution + side.other for side in found.sides)
+        assert found.result == pytest.approx(found.win_chance[0] + one - two + found.between)
+        assert found.adjusted == pytest.approx(found.result - told[0] + told[1])
+        (_, start), *changes, (_, end) = found.account
+        assert start + sum(share for _, share in changes) == end == round(100 * found.result)
+        assert dict(changes)["Bob: luck"] == round(-100 * told[1])
+        if found.noise == "club":
+            assert found.win_chance[0] == pytest.approx(kept["win_chance"][0])
+    assert found.sides[1].strokes == 0 and len(found.win_chance) == 5
+
+
+def test_what_was_set_up_begins_from_its_own_value_and_a_concession_costs_what_was_left():
+    session = Session(seed=4)
+    session.play(CueStroke(speed=2.5, aim=1.5))
+    position = sn.Position(cue=(0.6, 1.0), pink=(0.6, 1.4), black=(0.0, 1.4605), on="pink")
+    session.set_up(position, scores=(0, 6), striker=0, free_ball=False)
+    session.play(CueStroke(speed=1.0, aim=-1.57))
+    if session.frame.phase == "choice":
+        session.choose("play")
+    end = session.acts[session.at - 1].standing
+    frame = read_frame(Replay([session.acts[k].played for k in session.strokes]).to_dict())
+    session.concede()
+    steps = go_through(frame, (0,), winner=session.frame.winner, end=end, **HOW)
+    *_, (_, _, found) = steps
+    judge = sn.player("tactician").at(session.options_with("club"))
+    chances = win_chances(judge, [session.acts[2].standing, end])
+    assert found.win_chance[1:] == chances
+    assert abs(found.concession) == pytest.approx(abs(found.result - chances[1])) and found.concession
+    loser = ("Player 1", "Player 2")[1 - session.frame.winner]
+    changes = dict(found.account)
+    assert changes[f"{loser}: concession"] == round(100 * found.concession)
+    assert abs(found.between) > 0.02 and changes["between the strokes"] == round(100 * found.between)
 
 
 def test_what_was_left_is_worth_what_the_stroke_is_worth_without_errors(tmp_path):
@@ -111,8 +140,8 @@ def test_the_command_prints_the_costliest_and_one_error(game, tmp_path, capsys):
     assert main(asked) == 0
     said = capsys.readouterr().out
     worst = reviewed(file).costliest[0]
-    assert f"stroke {worst.number}, " in said and "thrown away by the choice; the best was " in said
-    assert "Ann: luck " in said and "without luck" in said
+    assert f"stroke {worst.number}, " in said and "lost by the choice; the best was " in said
+    assert "Ann: luck " in said and "Bob: other " in said and "without luck" in said
     assert main([*asked, "--json", "--player", "1"]) == 0
     assert {one["player"] for one in json.loads(capsys.readouterr().out)["strokes"]} == {1}
     visit = sn.SnookerEnv(action="discrete")

@@ -861,9 +861,19 @@ def test_a_frame_is_reviewed_on_the_page_and_played_again_from_its_costliest_str
     rows.first.focus()
     shown.page.keyboard.press("Enter")
     shown.until("page.review.shown !== null && page.review.chosen === argument", first)
-    assert "thrown away by the choice; the best was" in shown.page.inner_text("#review-said")
+    assert "lost by the choice; the best was" in shown.page.inner_text("#review-said")
     lines = shown("page.review.overlay().lines.map(one => [one.colour, one.points.length > 1])")
     assert {colour for colour, _ in lines} == {"#ffffff", "#ffd75e"} and all(long for _, long in lines)
+    best = shown("page.review.shown.best.paths")
+    assert len(best) <= 2 and "0" in best
+    cells = shown(
+        "[...document.querySelectorAll('#review-sides tr')].slice(1).map(row => [...row.cells].map(cell => cell.textContent))"
+    )
+    whole = [[int(re.sub(r"[^\d-]", "", cell.replace("−", "-"))) for cell in row[1:]] for row in cells]
+    last = [row[0] for row in cells].index("end")
+    for own in zip(*whole[: last + 1], strict=True):  # from start to end
+        assert sum(own[:-1]) == own[-1]
+    assert whole[0][0] == round(100 * shown("page.review.found.win_chance[0]"))
     table = shown("page.table")
     shown.page.click("#review-again")
     shown.until(f"page.state.strokes === argument && page.aiming && {SETTLED}", first - 1)

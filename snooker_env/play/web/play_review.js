@@ -12,7 +12,7 @@ const INK = { played: { colour: "#ffffff", width: 0.005 }, best: { colour: "#ffd
 const FIRST = 3, LITTLE = 0.015;
 
 const percent = share => `${Math.round(100 * share)}\u00a0%`.replace(/^-0/, "0").replace("-", "−");
-const signed = share => (share < 0 ? percent(share) : `+${percent(share)}`);
+const signed = share => `${share > 0 ? "+" : ""}${percent(share)}`;
 
 export class Review {
   constructor(app) {
@@ -87,29 +87,36 @@ export class Review {
     by("review-bar").value = done ?? 0;
     by("review-body").hidden = !sides;
     if (sides) {
-      if (!this.line) this.graph(chances);
-      const rows = [["luck", one => (one.luck === null ? "–" : signed(one.luck))], ["choice", one => (one.strokes ? signed(-one.choice) : "–")],
-        ["execution", one => (one.strokes ? signed(-one.execution) : "–")], ["result", (_, k) => percent(k ? 1 - found.result : found.result)],
-        ["without luck", (_, k) => (found.adjusted === null ? "–" : percent(Math.min(1, Math.max(0, k ? 1 - found.adjusted : found.adjusted))))]];
+      if (!this.line) this.graph([...found.concession ? chances : chances.slice(0, -1), found.result, found.result], chances.length - 1);
+      const row = (name, className, ...said) => make("tr", { className }, make("td", { textContent: name }), ...said.map(textContent => make("td", { textContent })));
       const head = make("tr", {}, make("td"), ...app.state.labels.map(textContent => make("th", { scope: "col", textContent })));
-      by("review-sides").replaceChildren(head, ...rows.map(([name, what]) => make("tr", {}, make("td", { textContent: name }), ...sides.map((one, k) => make("td", { textContent: what(one, k) })))));
+      const rows = found.account.map(([name, whole]) => (["start", "end"].includes(name) ? row(name, "end", percent(whole / 100), percent(1 - whole / 100)) : row(name, "", signed(whole / 100), signed(-whole / 100))));
+      if (found.adjusted !== null) {
+        const share = Math.min(1, Math.max(0, found.adjusted));
+        rows.push(row("end without luck", "", percent(share), percent(1 - share)));
+      }
+      by("review-sides").replaceChildren(head, ...rows);
       this.list();
     }
     this.say(trouble);
   }
 
-  graph(chances) {
+  graph(chances, played) {
     const strokes = chances.slice(1).map(() => ({ duration: 1, words: "" })), { labels } = this.app.state;
     by("review-graph").replaceChildren();
+    by("review-axis").textContent = `${labels[0]}: chance to win, by strokes`;
     this.line = new ChanceGraph(by("review-graph"), {
       total: strokes.length, starts: strokes.map((_, k) => k), strokes, replay: { win_chance: chances, luck: null, players: labels },
-      strokeAt: at => Math.min(strokes.length - 1, Math.max(0, Math.floor(at))), skipTo: k => this.near(k + 1),
+      strokeAt: at => Math.min(played - 1, Math.max(0, Math.floor(at))), skipTo: k => this.near(k + 1),
     });
   }
 
   list() {
     const list = by("review-list"), { order } = this, held = list.contains(document.activeElement) && document.activeElement.dataset.stroke;
-    list.replaceChildren(...order.map((one, k) => {
+    const { concession } = this.found, gave = Math.abs(concession) >= LITTLE;
+    const end = make("li", { className: "gave" }, make("b", { textContent: percent(-Math.abs(concession)) }), `${this.app.state.labels[Number(concession > 0)]} conceded`,
+      make("small", { textContent: `choice ${percent(Math.abs(concession))}: so likely was a win` }));
+    list.replaceChildren(...gave ? [end] : [], ...order.map((one, k) => {
       const cost = Math.max(0, one.choice) + Math.max(0, one.execution), parts = [["choice", one.choice], ["execution", one.execution]].filter(([, share]) => share >= LITTLE);
       const button = make("button", {}, make("b", { textContent: cost >= LITTLE ? percent(-cost) : "" }), `${one.number}. ${this.words(one.name)}`,
         make("small", { textContent: parts.map(([name, share]) => `${name} ${percent(share)}`).join(", ") || "nothing lost" }));
@@ -128,10 +135,13 @@ export class Review {
     said.className = trouble ? "trouble" : "";
     const text = trouble || (one ? this.words(one.words) : running ? "Looking at the strokes …" : "Choose a stroke: the costliest come first.");
     const dot = name => make("i", { className: name });
-    said.replaceChildren(text[0].toUpperCase() + text.slice(1), ...one ? [make("small", {}, dot("played"), "as played", dot("best"), "the best", ...one.rough ? [" (a first look)"] : [])] : []);
+    said.replaceChildren(text[0].toUpperCase() + text.slice(1), ...one ? [make("small", {}, dot("played"), "as played", ...this.better ? [dot("best"), "the best"] : [], ...one.rough ? [" (a first look)"] : [])] : []);
     for (const id of ["review-prev", "review-next"]) by(id).disabled = !this.order.length;
     by("review-again").disabled = !one || !this.shown;
   }
+
+  /** Was there a better stroke than the chosen one? */
+  get better() { return this.order.some(one => one.number === this.chosen && one.choice >= LITTLE); }
 
   /** The reviewed stroke nearest to this one in the frame. */
   near(number) {
@@ -171,10 +181,10 @@ export class Review {
     this.app.try(() => ask("again", { stroke }));
   }
 
-  /** Both strokes, for the drawing of the table. */
+  /** The stroke and a better one, for the drawing of the table. */
   overlay() {
     const lines = [], rings = [];
-    for (const [name, ink] of Object.entries(INK)) for (const [ball, points] of Object.entries(this.shown?.[name]?.paths ?? {})) {
+    for (const [name, ink] of Object.entries(INK)) if (name === "played" || this.better) for (const [ball, points] of Object.entries(this.shown?.[name]?.paths ?? {})) {
       lines.push({ points, ...ink });
       const [x, y] = points.at(-1);
       rings.push({ x, y, ball: Number(ball), alpha: name === "best" ? 0.6 : 0.3 });
