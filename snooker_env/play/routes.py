@@ -23,7 +23,7 @@ from .link import open_link, write_link
 from .person import Person
 from .report import report, scene, stroke_report, table_after
 from .reviewing import Reviewing
-from .service import Service, StaleError
+from .service import LINKED, Service, StaleError
 from .session import Session
 
 Handler = Callable[[Service, dict[str, Any]], Any]
@@ -141,6 +141,7 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
     if by_link and not (fields.get("best_of", 1) == 1 and "next" not in fields):
         raise refuse("by_link", True, "must be left out in a match: a link holds one frame")
     with service.acting(anew=True) as session:
+        before = list(session.noise)
         if fields.pop("next", False):
             for name in set(fields) - {"seed"}:
                 raise refuse(name, fields[name], "must be left out with next: the match goes on as it is")
@@ -149,7 +150,9 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
             session.new(**fields)
         if by_link:
             session.noise[1], session.practice = session.noise[0], False
-        service.seats.share(0 if by_link else None)
+        elif LINKED in service.seats.who:
+            session.noise[:] = service.seats.noise_before
+        service.seats.share(0 if by_link else None, before)
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
@@ -165,9 +168,13 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
         choice("cue", cue, CUES)
     with service.acting(any_turn=True, anew="players" in fields) as session:
         if "players" in fields:
-            service.seats.sit(fields["players"])
+            seats, own = service.seats, service.seats.errors_of_host(session)
+            agents = [seats.is_agent(k) for k in (0, 1)]
+            seats.sit(fields["players"])
             service.vacant = False
-            session.noise[:] = [service.seats.usual_noise(k, own) for k, own in enumerate(session.noise)]
+            for k in (0, 1):  # a person does not take over the errors of an agent
+                mine = own if agents[k] and not seats.is_agent(k) else session.noise[k]
+                session.noise[k] = seats.usual_noise(k, mine)
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
@@ -194,6 +201,7 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
     if seat is not None:
         integer("seat", seat, 0, 1)
     with service.acting(pause=True, anew=True) as session:
+        before = list(session.noise)
         if "link" not in fields:
             session.load(fields.get("saved"))
         else:
@@ -201,7 +209,7 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
         if by_link and seat is None:  # who opens it is not who played last
             last, frame = session.acts[-1].player, session.frame
             seat = frame.striker if frame.phase != "over" or last is None else 1 - last
-        service.seats.share(seat)
+        service.seats.share(seat, before)
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -218,7 +226,8 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         answer = decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
     with service.reading() as now:
         seat = session.frame.striker
-        if now.begun == session.begun and not now.practice and not service.seats.is_agent(seat):
+        shown = now.begun == session.begun and _revision(fields) in (None, service.revision)
+        if shown and not now.practice and not service.seats.is_agent(seat):
             now.hints[seat] += 1
     return answer
 

@@ -51,6 +51,7 @@ class Seats:
             self.players.setdefault(level.name, self.players.get(level.agent) or player(level.agent))
         self.persons: list[str] = [PERSON, *[FRIEND] * friends]
         self.who, self._before = [PERSON, PERSON], [PERSON, PERSON]
+        self.noise_before: list[NoiseName] = []  # before a game by link
 
     @property
     def names(self) -> list[str]:
@@ -82,14 +83,19 @@ class Seats:
         """The errors of the level on this seat; of anybody else ``otherwise``."""
         return BY_NAME[self.who[seat]].noise if self.who[seat] in BY_NAME else otherwise
 
+    def errors_of_host(self, session: Session) -> NoiseName:
+        """The errors of the person at the host's page; if none sits there, an amateur's."""
+        return session.noise[self.who.index(PERSON)] if PERSON in self.who else "amateur"
+
     def is_agent(self, seat: int) -> bool:
         """Whether an agent has this seat."""
         return self.who[seat] not in (PERSON, FRIEND, LINKED)
 
-    def share(self, seat: int | None) -> None:
-        """The person plays this seat, and a friend by link the other; None: those who sat there before come back."""
+    def share(self, seat: int | None, noise: list[NoiseName]) -> None:
+        """The person plays this seat, and a friend by link the other; None: those who sat there before come back. ``noise``:
+        the errors until now."""
         if LINKED not in self.who:
-            self._before = self.who
+            self._before, self.noise_before = self.who, noise
         self.who = self._before if seat is None else [PERSON if k == seat else LINKED for k in (0, 1)]
 
     def seen_by(self, me: str) -> list[str]:
@@ -183,7 +189,7 @@ class Service:
             if not self.vacant or session.strokes or session.practice:
                 allowed = "must be free: ask your host to choose you as the opponent, under New game"
                 raise refuse("seat", 2, allowed)
-            self.seats.who[1], session.noise[1] = FRIEND, session.noise[0]
+            self.seats.who[1], session.noise[1] = FRIEND, self.seats.errors_of_host(session)
 
     def check_turn(self) -> None:
         """ValueError unless whoever asks is to play."""
