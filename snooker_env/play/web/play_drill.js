@@ -204,6 +204,7 @@ export class Drills {
     by("drill").classList.toggle("over", Boolean(this.over));
     by("drill-copy").hidden = !(this.now === "day" && this.over);
     by("drill-copy").textContent = "Copy the result";
+    by("drill-again").hidden = Boolean(this.over);  // the large button says "Try again" then
     if (this.now) by("drill-words").textContent = by("drill-words").title = this.words();
   }
 }

@@ -2,7 +2,6 @@
  * How does a person play over many frames? One screen of the person's own file: rating, levels, breaks, pots by distance, and what the coach says.
  */
 
-import { many } from "./play_level.js";
 import { ask, by, confirmed, keep, make } from "./play_parts.js";
 
 /** A rating before the first frame: mean, standard deviation; in steps of so much Elo. */
@@ -56,7 +55,7 @@ export class Person {
     button.textContent = "The coach reads your strokes …";
     try { by("mine-coach-says").textContent = (await ask("coach", {})).text; } catch (error) {
       if (error.field !== "strokes") throw error;
-      by("mine-coach-says").textContent = "Not enough strokes yet: play a frame against one of the five.";
+      by("mine-coach-says").textContent = "Not enough strokes yet: play another frame against one of the five.";
     } finally { button.disabled = false; button.textContent = "Ask the coach"; }
   }
 
@@ -92,7 +91,7 @@ export class Person {
     if (!values.length) return "";
     const most = Math.max(20, ...values), wide = Math.min(34, (W - 40) / values.length), high = value => 70 * value / most;
     const bars = values.map((value, k) => `<rect x="${20 + k * wide}" y="${90 - high(value)}" width="${wide - 2}" height="${high(value) + 1}"/>${wide > 20 ? text(20 + (k + 0.5) * wide - 1, 85 - high(value), value, 'text-anchor="middle"') : ""}`);
-    return `<p>Highest break of each of your last ${many(values.length, "frame")}${wide > 20 ? "" : `, up to ${most}`}:</p>${svg(96, `highest breaks, the last first: ${[...values].reverse().join(", ")}`, bars.join(""))}`;
+    return `<p>Highest break of ${values.length > 1 ? `each of your last ${values.length} frames` : "your last frame"}${wide > 20 ? "" : `, up to ${most}`}:</p>${svg(96, `highest breaks, the last first: ${[...values].reverse().join(", ")}`, bars.join(""))}`;
   }
 
   pots(strokes) {
