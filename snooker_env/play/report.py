@@ -131,15 +131,17 @@ def report(service: Service) -> dict[str, Any]:
         )
         state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
     if host and service.friend_to_play:
-        state["words"] = "Your friend is to play: send the link."
+        state["words"] = "It is your friend's turn: send the link."
+    elif host and LINKED in seats.who and act.what == "new":
+        state["last"] = "New frame. Play first, then send your friend the link."
     fair = act.played is not None and not (act.played.fouls or act.played.points)
     if fair and state["snookered"]:
         state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
     if state["phase"] == "over":
-        state["words"] = " ".join(
-            [state["words"], *_say_luck(service), service.unkept if host else ""]
-        ).strip()
+        state["words"] = f"{state['words']} {service.unkept if host else ''}".strip()
+    state["luck"] = _say_luck(service) if state["phase"] == "over" else ""
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
+    said += [state["luck"]] * bool(state["luck"])
     return state | {"text": say_table(state, lines, said)}
 
 
@@ -159,10 +161,13 @@ def _say_chance(state: dict[str, Any]) -> list[str]:
     return [f"Chance to win, both {errors_words(state['level'])}: {one} {share} %, {other} {100 - share} %."]
 
 
-def _say_luck(service: Service) -> list[str]:
-    """How lucky both were in the frame, in their chances to win; nothing where nobody errs."""
+def _say_luck(service: Service) -> str:
+    """How lucky both were in the frame, in their chances to win; "" where nobody errs."""
     lucks, acts = [0.0, 0.0], service.session.acts
     for k, luck in zip(service.session.strokes, service.session.luck, strict=True):
         lucks[acts[k].player or 0] += luck
-    one, other = (f"{name} {100 * luck:+.0f} %" for name, luck in zip(service.labels, lucks, strict=True))
-    return [f"Luck: {one}, {other}."] if any(lucks) else []
+    shares = [round(100 * luck) for luck in lucks]
+    one, other = (
+        f"{name} {share:{'+' * bool(share)}d} %" for name, share in zip(service.labels, shares, strict=True)
+    )
+    return f"Luck: {one}, {other}." if any(lucks) else ""

@@ -169,9 +169,13 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
         choice("cue", cue, CUES)
     with service.acting(any_turn=True, anew="players" in fields) as session:
         if "players" in fields:
-            service.seats.sit(fields["players"])
+            seats, own = service.seats, service.seats.errors_of_host(session)
+            agents = [seats.is_agent(k) for k in (0, 1)]
+            seats.sit(fields["players"])
             service.vacant = False
-            session.noise[:] = [service.seats.usual_noise(k, own) for k, own in enumerate(session.noise)]
+            for k in (0, 1):  # a person does not take over the errors of an agent
+                mine = own if agents[k] and not seats.is_agent(k) else session.noise[k]
+                session.noise[k] = seats.usual_noise(k, mine)
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
@@ -229,7 +233,8 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         answer = decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
     with service.reading() as now:
         seat = session.frame.striker
-        if now.begun == session.begun and not now.practice and not service.seats.is_agent(seat):
+        shown = now.begun == session.begun and _revision(fields) in (None, service.revision)
+        if shown and not now.practice and not service.seats.is_agent(seat):
             now.hints[seat] += 1
     return answer
 

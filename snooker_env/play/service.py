@@ -52,10 +52,8 @@ class Seats:
             self.players.setdefault(level.name, self.players.get(level.agent) or player(level.agent))
         self.persons: list[str] = [PERSON, *[FRIEND] * friends]
         self.who = [PERSON, PERSON]
-        self._before = (
-            list(self.who),
-            list[NoiseName](),
-        )  # who sat here before a game by link, and their errors
+        # who sat here before a game by link, and their errors
+        self._before: tuple[list[str], list[NoiseName]] = list(self.who), []
 
     @property
     def names(self) -> list[str]:
@@ -86,6 +84,10 @@ class Seats:
     def usual_noise(self, seat: int, otherwise: NoiseName) -> NoiseName:
         """The errors of the level on this seat; of anybody else ``otherwise``."""
         return BY_NAME[self.who[seat]].noise if self.who[seat] in BY_NAME else otherwise
+
+    def errors_of_host(self, session: Session) -> NoiseName:
+        """The errors of the person at the host's page; if none sits there, an amateur's."""
+        return session.noise[self.who.index(PERSON)] if PERSON in self.who else "amateur"
 
     def is_agent(self, seat: int) -> bool:
         """Whether an agent has this seat."""
@@ -197,7 +199,7 @@ class Service:
             if not self.vacant or session.strokes or session.practice:
                 allowed = "must be free: ask your host to choose you as the opponent, under New game"
                 raise refuse("seat", 2, allowed)
-            self.seats.who[1], session.noise[1] = FRIEND, session.noise[0]
+            self.seats.who[1], session.noise[1] = FRIEND, self.seats.errors_of_host(session)
 
     def check_turn(self) -> None:
         """ValueError unless whoever asks is to play."""

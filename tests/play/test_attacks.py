@@ -287,7 +287,8 @@ def test_a_friend_takes_no_seat_that_the_host_has_given_to_another(hosted):
     friend = seat(hosted, FRIEND)
     hosted("api/players", {"players": [PERSON, "ghost_ball"]})
     refused(friend("api/sit", {}), 422, "ask your host")
-    assert hosted("api/players", {"players": [PERSON, FRIEND]})[1]["players"] == [PERSON, FRIEND]
+    told = hosted("api/players", {"players": [PERSON, FRIEND]})[1]
+    assert told["players"] == [PERSON, FRIEND] and told["noise"][0] == told["noise"][1]
     assert friend("api/state")[1]["players"] == [FRIEND, PERSON]
 
 

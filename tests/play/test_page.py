@@ -87,7 +87,7 @@ def test_a_visit_is_played_by_mouse(shown):
     shown.page.click("#play")
     shown.until("page.moving")
     assert shown.page.is_visible("#skip") and not shown.page.is_enabled("#play")
-    assert shown.words == "Player 1 at the table, red on"
+    assert shown.words == "Player 1 is at the table; red is on"
     moved = shown("[page.moving.stroke.at(0.3).x[0], page.moving.stroke.first[0]]")
     assert abs(moved[0] - moved[1]) > 0.05
     shown.page.click("#skip")
@@ -268,7 +268,7 @@ def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
         assert before, f"stroke {k} was not shown"
         for one in before:
             assert one["now"] == now(stroke["ball_on"]) and one["score"] == scores
-            assert one["asked"] == f"ghost ball at the table, {stroke['ball_on']} on"
+            assert one["asked"] == f"ghost ball is at the table; {stroke['ball_on']} is on"
         balls -= {ball for ball in stroke["pots"] if 1 <= ball <= 15}
         break_, scores = stroke["break"], stroke["score"]
         if k + 1 == len(strokes):
@@ -692,7 +692,7 @@ def test_a_link_that_cannot_be_made_or_opened_is_refused_in_one_sentence(shown):
     shown.page.click("#files summary")
     for link, words in (
         ("#replay=" + "A" * 29_993, f"A link can have 30 kB, this one has 31: {instead}"),
-        ("#constructor=AAAA", "This is no link to a position, a stroke, a replay or a game."),
+        ("#constructor=AAAA", "This is not a link to a position, a stroke, a replay or a game."),
         ("#game=AAAA", "The link is damaged: was it copied whole?"),
     ):
         shown.page.fill("#link", link)
@@ -723,6 +723,7 @@ def test_a_friend_by_link_watches_the_visit_and_plays_the_other_seat(shown, chro
     shown.page.click("#friend-new")
     shown.until(f"page.state.by_link && page.aiming && {SETTLED}")
     assert shown.page.is_disabled("#noise-0") and not shown.page.is_visible("#friend")
+    assert "Play first, then send" in shown.page.inner_text("#last")
     shown("page.aim.set({aim: argument, speed: 1})", -pi / 2)
     shown.page.keyboard.press("Enter")
     shown.played(1)
@@ -732,7 +733,9 @@ def test_a_friend_by_link_watches_the_visit_and_plays_the_other_seat(shown, chro
     shown.page.click("#friend-copy")
     shown.until("document.getElementById('friend-words').textContent.includes('pastes it')")
     first = shown("page.friend.text")
-    assert re.fullmatch(r"Your move, stroke 2\. #friend=[\w-]{100,300}", first)
+    assert re.fullmatch(
+        r"Your move, stroke 2\. Paste this message into Link,.* #friend=[\w-]{100,300}", first
+    )
     line("api/new", {"layout": "break_off", "seed": 3})
     friend = Shown(chromium, line)
     friend.page.click("#files summary")
@@ -748,6 +751,8 @@ def test_a_friend_by_link_watches_the_visit_and_plays_the_other_seat(shown, chro
     friend.played(2)
     friend.until("!document.getElementById('friend').hidden")
     answer = friend("page.friend.text")
+    friend("page.friend.open(argument)", first.split("=")[1])  # an older link of the same game
+    friend.until("document.getElementById('last').textContent.includes('older than your game')")
     friend.close()
     shown.page.click("#files summary")
     shown.page.fill("#link", answer)
@@ -799,6 +804,7 @@ def test_the_page_is_small(line):
 def test_a_friend_plays_from_a_phone_and_a_third_person_watches(chromium):  # noqa: F811
     with served("127.0.0.1") as line:
         line.server.service.seats.sit(["person", "ghost_ball"])
+        line("api/players", {"noise": ["amateur", "club"]})
         host = Shown(chromium, line)
         assert host.page.inner_text("#side-1 .name") == "ghost ball"
         host.page.click("#invite-open")
@@ -812,17 +818,16 @@ def test_a_friend_plays_from_a_phone_and_a_third_person_watches(chromium):  # no
         friend.until("page.door.seated")
         watcher = Shown(chromium, line, address=only)
         host.until("page.state.labels[1] === 'Friend'")
+        assert friend("page.state.noise") == ["amateur", "amateur"]
         assert friend("page.state.labels") == ["Friend", "You"] and not friend("page.aiming")
-        assert friend.page.inner_text("#seat") == "Friend is at the table." and not friend.page.is_visible(
-            "#play"
-        )
-        assert watcher.page.inner_text("#seat") == "You watch. Player 1 is at the table."
+        assert friend.page.inner_text("#seat") == "Friend is playing." and not friend.page.is_visible("#play")
+        assert watcher.page.inner_text("#seat") == "You are watching. Player 1 is playing."
         for one in ("#stroke", "#ask", "#undo", "#start", "#set", "#concede"):
             assert not watcher.page.is_visible(one)
         line("api/position", {"position": EASY, "striker": 1})
         for one in (host, friend, watcher):
             one.until("page.state.striker === 1 && page.settled === page.state.revision")
-        assert host.page.inner_text("#seat") == "Friend is at the table." and not host("page.aiming")
+        assert host.page.inner_text("#seat") == "Friend is playing." and not host("page.aiming")
         friend("page.aim.set({aim: argument, speed: 2})", STRAIGHT)
         friend.page.click("#play")
         for one in (friend, host, watcher):

@@ -54,6 +54,18 @@ def test_one_of_the_five_sits_down_with_a_name_and_errors_of_its_own(game):
     assert [one.elo for one in LEVELS] == sorted(one.elo for one in LEVELS)
 
 
+def test_a_hint_that_comes_after_the_stroke_is_not_counted(game, monkeypatch):
+    def late(*args, **how):
+        game("stroke", speed=3.0, aim=1.5)
+        return {}
+
+    revision = game.get("state")["revision"]
+    monkeypatch.setattr("snooker_env.play.questions.suggestions", late)
+    game("advise", revision=revision)
+    state = game.get("state")
+    assert (state["strokes"], state["hints"]) == (1, [0, 0])
+
+
 def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(game, kept):
     assert not kept.path.exists()
     end_frame(game, strokes=1)

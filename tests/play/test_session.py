@@ -143,10 +143,8 @@ def test_a_frame_ends_with_the_luck_of_both():
     session.concede()
     told = report(service)
     service.close()
-    assert (
-        f"Luck: Player 1 +0 %, Player 2 {100 * lucky:+.0f} %." in told["words"]
-        and told["words"] in told["text"]
-    )
+    assert told["luck"] == f"Luck: Player 1 0 %, Player 2 {100 * lucky:+.0f} %."
+    assert told["luck"] in told["text"] and "Luck" not in told["words"]
 
 
 def test_practice_gives_the_table_back():

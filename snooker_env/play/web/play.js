@@ -37,7 +37,7 @@ const LAYOUTS = {
 };
 const CUES = { real: "can be blocked", free: "never blocked" };
 /** What may be chosen after the foul of a player with this name. */
-const CHOICES = { play: () => "Play the table as it lies", play_again: who => `${who} plays again from here`, replace: who => `Put the balls back: ${who} plays again`, anywhere: () => "Put the cue ball anywhere" };
+const CHOICES = { play: () => "Play the balls as they lie", play_again: who => `${who} plays again from here`, replace: who => `Put the balls back: ${who} plays again`, anywhere: () => "Put the cue ball anywhere" };
 /** A phone shows the controls of the stroke alone unless asked for all. */
 const PHONE = matchMedia("(orientation: portrait) and (max-width: 640px), (max-height: 480px) and (orientation: landscape)");
 
@@ -94,7 +94,7 @@ class Page {
     act("undo", () => ask("undo", {}));
     act("redo", () => ask("redo", {}));
     by("concede").onclick = async () => { if (await confirmed("Concede the frame?", "Concede")) this.try(() => ask("concede", {})); };
-    by("new").onclick = () => this.sure("Leave this frame and begin a new game? This cannot be undone.", "New game", () => this.begin());
+    by("new").onclick = () => this.sure(`Leave this frame and begin a new game? ${this.state.by_link ? "This one stays under “Games by link”." : "This cannot be undone."}`, "New game", () => this.begin());
     by("again").onclick = () => this.again();
     by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { next: true, seed: seed() })));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
@@ -263,15 +263,17 @@ class Page {
   hurry() { this.hurried = !by("turn").hidden; this.skip(); }
 
   goOn() {
+    if (this.drills.done) { this.drills.begin(this.drills.now); return; }
     if (this.ended) { by("next").click(); return; }
     this.held = !this.waits;
     if (!this.held && this.state.paused && !this.behind) this.try(() => ask("go", {}));
     this.show();
   }
 
-  /** Ask for confirmation before a game with strokes, or a match, is discarded. */
+  /** Ask for confirmation before a game with strokes, or a match, is discarded that is not over. */
   async sure(question, yes, then) {
-    if (!this.state?.strokes && this.state?.best_of === 1 || await confirmed(question, yes)) then();
+    const { strokes, best_of: length, phase, match_over: ended } = this.state ?? {};
+    if (length === 1 && (!strokes || phase === "over") || ended || await confirmed(question, yes)) then();
   }
 
   begin() {
@@ -314,6 +316,7 @@ class Page {
       if (moved !== this.lay || this.phase === "choice") this.firstAim(state, moved !== this.lay);
       else if (this.chosen === state.revision) this.advisor.changed();
       this.lay = moved;
+      if (state.phase === "over") this.compact();
       this.phase = state.phase;
       this.settled = state.revision;
       this.friend.settled().catch(error => this.trouble(error));
@@ -358,6 +361,7 @@ class Page {
       if (this.near) this.fit();
       if (this.state.players[stroke.player] === "person") this.compact();
       this.stats.turn(false);
+      this.room.changed();
       this.put(data.tables[0]);
     });
   }
@@ -394,7 +398,7 @@ class Page {
 
   get aiming() {
     const { state } = this;
-    return Boolean(state) && !this.behind && !this.drills.dealing && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
+    return Boolean(state) && !this.behind && !this.drills.dealing && !this.drills.done && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
   }
 
   /** Do what is meant for this table alone: a second tap before the answer is none. */
@@ -422,7 +426,7 @@ class Page {
     try {
       const { stroke, state, stale } = await ask("stroke", body);
       if (stale) throw new Error("The table has changed. Check it and play again.");
-      if (stroke) this.known.set(state.strokes - 1, stroke);
+      if (stroke) { this.known.set(state.strokes - 1, stroke); this.advisor.clear(); }
       this.take(state);
     } catch (error) { this.trouble(error); }
     this.show();
@@ -463,6 +467,7 @@ class Page {
 
   mode(kind) {
     this.kind = kind;
+    if (kind === "play") this.compact();
     this.advisor.clear();
     this.show();
     this.settle();
@@ -481,7 +486,7 @@ class Page {
       " ": () => (event.shiftKey ? this.hurry() : this.skip()), Escape: () => (aim.held === "cue" ? aim.up(false) : this.skip()), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
       z: () => this.zoom(), f: () => this.full(), m: () => this.sound.flip(),
       "?": () => this.help(),
-      ...this.ended && { Enter: () => this.goOn() },
+      ...(this.ended || this.drills.done) && { Enter: () => this.goOn() },
       ...this.aiming && {
         ArrowLeft: () => aim.turn(turn), ArrowRight: () => aim.turn(-turn), ArrowUp: () => aim.faster(push), ArrowDown: () => aim.faster(-push),
         w: () => tip(0, 0.05), s: () => tip(0, -0.05), a: () => tip(-0.05, 0), d: () => tip(0.05, 0), c: () => aim.set({ side: 0, top: 0 }),
@@ -523,7 +528,7 @@ class Page {
     by("level-about").textContent = this.menu[this.strength]?.about ?? "";
     const own = by("level").lastChild;
     own.hidden = this.strength !== OWN;
-    own.textContent = `${state.labels[1]}, mistakes: ${this.noise[state.noise[1]]}`;
+    own.textContent = state.by_link ? "as before this game by link" : `${state.labels[1]}, mistakes: ${this.noise[state.noise[1]]}`;
     fill(by("agent"), state.advisers);
     by("practice").checked = state.practice;
     by("side-1").style.visibility = state.practice ? "hidden" : "";
@@ -535,7 +540,7 @@ class Page {
     const { state, table } = this, busy = this.behind, mine = this.aiming, review = this.review.open, setup = this.setup.open || review;
     for (const [id, hide] of [["setup", !this.setup.open], ["review", !review], ["stroke", setup], ["ask", setup], ["act", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
     const who = state.labels[table.striker], on = table.ball_on?.replace("_", " ");
-    by("asked").textContent = review ? "Review of the frame" : setup ? "Set up a position" : this.moving ? `${who} at the table, ${on} on` : table.words;
+    by("asked").textContent = review ? "Review of the frame" : setup ? "Set up a position" : this.moving ? `${who === "You" ? "You’re" : `${who} is`} at the table; ${on} is on` : this.drills.done ? "The drill is over." : table.words;
     if (by("last").className !== "trouble") by("last").textContent = this.drills.said ?? table.last;
     by("asked").title = by("asked").textContent;
     by("last").title = by("last").textContent;
@@ -552,8 +557,8 @@ class Page {
         return button;
       }));
     }
-    by("go").hidden = !this.ended && !this.waits && !this.agentsAlone;
-    by("go").textContent = this.ended ? this.next : this.waits ? "Continue" : "Pause";
+    by("go").hidden = !this.ended && !this.waits && !this.agentsAlone && !this.drills.done;
+    by("go").textContent = this.drills.done ? "Try again" : this.ended ? this.next : this.waits ? "Continue" : "Pause";
     by("play").disabled = !mine;
     by("stroke").classList.toggle("idle", !mine);
     by("skip").hidden = !this.moving;
@@ -566,7 +571,8 @@ class Page {
     by("redo").disabled = !state.redo || this.drills.now;
     by("set").disabled = this.drills.now || state.by_link;
     by("again").disabled = by("slow").disabled = !state.strokes || busy;
-    by("share-stroke").disabled = by("share-replay").disabled = by("replay").disabled = by("stats-open").disabled = !state.strokes;
+    by("share-stroke").disabled = by("share-replay").disabled = by("replay").disabled = !state.strokes;
+    by("stats-open").disabled = !state.strokes || this.drills.now;
     by("review-open").disabled = state.practice || !state.strokes && !this.review.kept;
     by("concede").disabled = !mine && !choosing;
     const named = mine && state.nominations.length > 0;
@@ -592,8 +598,8 @@ class Page {
       put("n-on", "on ", ...dots.map(dot), make("b", { textContent: on + (table.free_ball ? " + free ball" : "") }));
     }
     put("n-reds", "reds ", make("b", { textContent: table.reds }));
-    put("n-left", "left ", make("b", { textContent: table.available }));
-    put("n-aid", helped(this.state).join(", "));
+    put("n-left", ...on ? ["left ", make("b", { textContent: table.available })] : []);
+    put("n-aid", helped(this.drills.now ? { ...this.state, hints: [0, 0], undone: 0 } : this.state).join(", "));
     const left = Math.max(0, Math.ceil(table.time_left ?? 0));
     put("n-time", ...table.time_left === null ? [] : ["time ", make("b", { textContent: `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}` })]);
   }
@@ -638,8 +644,8 @@ class Page {
     const aim = this.aim.wish.aim, cue = view.toScreen(this.balls.x[0] - 0.5 * Math.cos(aim), this.balls.y[0] - 0.5 * Math.sin(aim)), busy = [[px, py], [ix, iy], cue, to ? view.toScreen(...to) : cue];
     const room = ([left, top]) => Math.min(...busy.map(([x_, y_]) => Math.hypot(x_ - left * box.clientWidth, y_ - top * box.clientHeight)));
     if (!this.corner || room(this.corner) < CLEAR * by("loupe").clientWidth) [this.corner] = [[0, 1], [1, 1], [0, 0], [1, 0]].sort((a, b) => room(b) - room(a));  // it stays until it is in the way
-    const [left, top] = this.corner;
-    Object.assign(style, { left: left ? "auto" : "8px", right: left ? "8px" : "auto", top: top ? "auto" : "8px", bottom: top ? "8px" : "auto" });
+    const [left, top] = this.corner, edge = view.upright ? "13%" : "8px";  // beside an upright table it lies between two pockets
+    Object.assign(style, { left: left ? "auto" : "8px", right: left ? "8px" : "auto", top: top ? "auto" : edge, bottom: top ? edge : "auto" });
     by("room").classList.toggle("up", Boolean(top));
     if (loupe.canvas.width < 2 || loupe.canvas.clientWidth * loupe.ratio !== loupe.canvas.width) loupe.resize();
     loupe.upright = view.upright;

@@ -118,8 +118,10 @@ export class Advisor {
     try {
       const found = await ask("advise", { agent: by("agent").value, n: 5, revision });
       this.noise = found.noise;
-      if (found.suggestions && !app.state.practice) app.state.hints[app.state.striker]++;  // as the server does
-      if (found.suggestions && revision === app.state.revision) this.show(found);
+      if (found.suggestions && revision === app.state.revision) {
+        if (!app.state.practice) app.state.hints[app.state.striker]++;  // as the server does
+        this.show(found);
+      }
     } catch (error) {
       by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
     }

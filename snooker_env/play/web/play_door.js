@@ -8,7 +8,7 @@ import { ask, by, isPerson, make } from "./play_parts.js";
 
 const FOR = {
   person: ["Your own phone", "can do all, as here"],
-  friend: ["A friend", "plays seat 2"],
+  friend: ["A friend", "plays seat 2; if it is taken, choose “a friend, on their device” under New game"],
   watcher: ["Watchers", "only look"],
 };
 
@@ -34,8 +34,8 @@ export class Door {
   show() {
     const { host, app, app: { state, moving, me } } = this, mine = state.players[state.striker] === "person", over = state.phase === "over";
     document.body.dataset.me = host || this.seated ? me : "watcher";
-    const other = isPerson(state.players[state.striker]) && !mine ? `${state.labels[state.striker]} is at the table.` : "";
-    const words = me === "watcher" ? `You watch. ${over ? "" : other}` : !host && !this.seated ? "You watch until your host chooses you as the opponent, under New game."
+    const other = isPerson(state.players[state.striker]) && !mine ? `${state.labels[state.striker]} is playing.` : "";
+    const words = me === "watcher" ? `You are watching. ${over ? "" : other}` : !host && !this.seated ? "You are watching until your host chooses you as the opponent, under New game."
       : over ? host ? "" : "Your host begins the next frame." : other;
     by("seat").textContent = words;
     by("seat").hidden = !words || Boolean(moving) || app.setup.open;

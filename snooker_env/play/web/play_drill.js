@@ -3,7 +3,7 @@
  * keeps. The position of the day is dealt from the date, and so are its errors: everybody who plays the same stroke has the same luck.
  */
 
-import { breakWords } from "./play_level.js";
+import { breakWords, many } from "./play_level.js";
 import { ask, by, kept, make } from "./play_parts.js";
 
 const TRIES = 10, POWER = 2, PINK = 0.89225, BLACK = 1.4605;
@@ -73,6 +73,9 @@ export class Drills {
       return button;
     }));
   }
+
+  /** Is there a drill that is over, and was shown to its end? */
+  get done() { return Boolean(this.now && this.over && !this.dealing && !this.app.behind); }
 
   /** The first try of today's position, which counts: {date, score, balls}. */
   get first() { const one = kept.get("day", {}); return one.date === today() ? one : undefined; }
@@ -157,7 +160,8 @@ export class Drills {
       this.list();
     }
     this.show();
-    if (!this.over && !drill.run) await this.deal();
+    if (this.over) app.settle();
+    else if (!drill.run) await this.deal();
   }
 
   async end() {
@@ -183,7 +187,7 @@ export class Drills {
     const { now, tries, score, over, expected, weighed, best } = this, { name, about, run, made, points } = DRILLS[now], record = kept.get("best", {})[now];
     const yours = record === undefined || now === "here" ? "" : ` Your best is ${record}.`;
     if (run && over) {
-      const how = score > 7 ? breakWords(score) : score ? `${score} point${score === 1 ? "" : "s"}` : "nothing potted";
+      const how = score > 7 ? breakWords(score) : score ? many(score, "point") : "nothing potted";
       const counts = now !== "day" ? yours : this.first && this.first.score !== score ? ` Your first try counts: ${this.first.score} of 51.` : " That counts for today.";
       return `${name}: ${how}.${counts}`;
     }
@@ -191,7 +195,7 @@ export class Drills {
     if (run) return `${name}: ${score} so far.`;
     const advised = best?.chance != null ? `, ${(best.chance * tries).toFixed(1)} as advised` : "";
     const chance = weighed === tries ? ` Expected with these mistakes: ${expected.toFixed(1)} as you aimed${advised}.` : "";
-    return `${name}: ${points ? `${score} point${score === 1 ? "" : "s"} in ${tries} tries` : `${score} of ${tries} ${made}`}.${chance}${over ? yours : ""}`;
+    return `${name}: ${points ? `${many(score, "point")} in ${tries} ${tries === 1 ? "try" : "tries"}` : `${score} of ${tries} ${made}`}.${chance}${over ? yours : ""}`;
   }
 
   show() {
@@ -200,6 +204,7 @@ export class Drills {
     by("drill").classList.toggle("over", Boolean(this.over));
     by("drill-copy").hidden = !(this.now === "day" && this.over);
     by("drill-copy").textContent = "Copy the result";
+    by("drill-again").hidden = Boolean(this.over);  // the large button says "Try again" then
     if (this.now) by("drill-words").textContent = by("drill-words").title = this.words();
   }
 }

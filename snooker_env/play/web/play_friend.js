@@ -24,7 +24,7 @@ export class Friend {
   /** {name: [seat, strokes, words, link]}, the last one played last. */
   get games() { return kept.get("friend", {}); }
 
-  get text() { return `${this.words} #friend=${this.link}`; }
+  get text() { return `${this.words} Paste this message into Link, under “Save, share”, on your page of snooker_env: #friend=${this.link}`; }
 
   list() {
     const games = Object.values(this.games).reverse(), words = Object.fromEntries(games.map(([, , said, link]) => [link, said]));
@@ -64,7 +64,10 @@ export class Friend {
     by("friend").hidden = !theirs && !over;
     by("friend-words").textContent = over ? "Send the link: it shows your friend the end." : `Send your friend the link: “${this.words}”`;
     const { games } = this, name = link.slice(0, NAME), now = `${over ? "over" : stroke}, ${over ? state.scores.join(" : ") : theirs ? "friend’s move" : "your move"}`;
-    if (games[name]?.[1] > state.strokes) return;  // an older link was opened: the newer one stays
+    if (games[name]?.[1] > state.strokes) {
+      this.app.trouble(new Error(`This link is older than your game, which stands at stroke ${games[name][1] + 1}: open it under New game, Games by link.`));
+      return;
+    }
     delete games[name];
     kept.set("friend", Object.fromEntries([...Object.entries(games), [name, [mine.seat, state.strokes, now, link]]].slice(-MOST)));
     this.list();

@@ -53,7 +53,10 @@ export class Person {
     const button = by("mine-coach");
     button.disabled = true;
     button.textContent = "The coach reads your strokes …";
-    try { by("mine-coach-says").textContent = (await ask("coach", {})).text; } finally { button.disabled = false; button.textContent = "Ask the coach"; }
+    try { by("mine-coach-says").textContent = (await ask("coach", {})).text; } catch (error) {
+      if (error.field !== "strokes") throw error;
+      by("mine-coach-says").textContent = "Not enough strokes yet: play another frame against one of the five.";
+    } finally { button.disabled = false; button.textContent = "Ask the coach"; }
   }
 
   show({ path, name, frames, strokes }) {
@@ -65,7 +68,7 @@ export class Person {
     });
     by("mine-path").textContent = path;
     by("mine-frames").textContent = frames.length ? `${frames.length} frame${frames.length > 1 ? "s" : ""}, ${won} won. ${breaks.length ? `Highest break: ${breaks[0]}. ` : ""}Breaks of 20 and more: ${breaks.filter(one => one >= 20).slice(0, 12).join(", ") || "none yet"}.`
-      : "No frames yet. Each frame that you finish against an agent is kept.";
+      : "No frames yet. Each frame that you finish against an agent is kept, unless its balls were set up or loaded.";
     by("mine-rating").innerHTML = this.rating(levels);
     by("mine-breaks").innerHTML = this.bars(frames.slice(-LAST).map(one => Math.max(0, ...one.breaks)));
     by("mine-pots").innerHTML = this.pots(strokes);
@@ -81,14 +84,14 @@ export class Person {
     });
     const own = played ? `<path class="whisker" d="M${at(low)} 30H${at(high)}"/><circle cx="${at(value)}" cy="30" r="6"/>${text(at(value), 17, `you, ${value}`, 'text-anchor="middle" class="own"')}` : "";
     const said = played ? `Rating ${value}, with 95 % between ${low} and ${high}, from ${played} rated frame${played > 1 ? "s" : ""}.` : "No rated frame yet.";
-    return `<p>${said} ✓: beaten.</p>${svg(92, said, `<path class="tick" d="M20 40H${W - 20}"/>${marks.join("")}${own}`)}`;
+    return `<p>${said}${levels.some(({ won }) => won) ? " ✓: beaten." : ""}</p>${svg(92, said, `<path class="tick" d="M20 40H${W - 20}"/>${marks.join("")}${own}`)}`;
   }
 
   bars(values) {
     if (!values.length) return "";
     const most = Math.max(20, ...values), wide = Math.min(34, (W - 40) / values.length), high = value => 70 * value / most;
     const bars = values.map((value, k) => `<rect x="${20 + k * wide}" y="${90 - high(value)}" width="${wide - 2}" height="${high(value) + 1}"/>${wide > 20 ? text(20 + (k + 0.5) * wide - 1, 85 - high(value), value, 'text-anchor="middle"') : ""}`);
-    return `<p>Highest break of each of your last ${values.length} frames${wide > 20 ? "" : `, up to ${most}`}:</p>${svg(96, `highest breaks, the last first: ${[...values].reverse().join(", ")}`, bars.join(""))}`;
+    return `<p>Highest break of ${values.length > 1 ? `each of your last ${values.length} frames` : "your last frame"}${wide > 20 ? "" : `, up to ${most}`}:</p>${svg(96, `highest breaks, the last first: ${[...values].reverse().join(", ")}`, bars.join(""))}`;
   }
 
   pots(strokes) {

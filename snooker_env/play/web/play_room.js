@@ -45,6 +45,7 @@ export class Room {
     by("room").textContent = error ? error.message : said ? `${found.words[0].toUpperCase()}${found.words.slice(1)}.` : "";
     by("room").className = found?.unplayable ? "trouble" : "";
     if (found) this.draw();
+    else by("side").replaceChildren();
     this.app.aim.show();
   }
 

@@ -36,7 +36,7 @@ export async function packed(kind, json) {
 export async function unpacked(link) {
   const [, kind, text] = /#(\w+)=([\w-]+)\s*$/.exec(short(link)) ?? [];
   if (kind === "replay" || kind === "friend") return [kind, text];
-  if (!Object.hasOwn(KINDS, kind)) throw new Error("This is no link to a position, a stroke, a replay or a game.");
+  if (!Object.hasOwn(KINDS, kind)) throw new Error("This is not a link to a position, a stroke, a replay or a game.");
   const stream = deflate("DecompressionStream");
   try {
     const bytes = numbers(text.replaceAll("-", "+").replaceAll("_", "/"), Uint8Array);

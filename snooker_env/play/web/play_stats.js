@@ -83,9 +83,9 @@ export class Stats {
     const counts = counted(decoded, app.scene.falls), share = (part, all) => (all ? `${Math.round(100 * part / all)} % (${part} of ${all})` : "–");
     const spent = [0, 1].map(seat => strokes.flatMap((one, k) => (one.player === seat && this.times.has(k) ? [this.times.get(k)] : [])));
     const rows = [
-      ["pots", one => share(one.pots, one.tries)], ["safeties", one => share(one.safe, one.safeties)], ["points a visit", one => (one.visits ? (one.points / one.visits).toFixed(1) : "–")],
+      ["pots", one => share(one.pots, one.tries)], ["safeties", one => share(one.safe, one.safeties)], ["points per visit", one => (one.visits ? (one.points / one.visits).toFixed(1) : "–")],
       ["highest break", one => one.best], ["fouls", one => one.fouls],
-      ["time a stroke", (_, k) => (spent[k].length ? `${(spent[k].reduce((a, b) => a + b) / spent[k].length).toFixed(0)} s` : "–")],
+      ["time per stroke", (_, k) => (spent[k].length ? `${(spent[k].reduce((a, b) => a + b) / spent[k].length).toFixed(0)} s` : "–")],
     ];
     for (const k of [0, 1]) by(`stats-${k}`).textContent = labels[k];
     by("stats-rows").replaceChildren(...rows.map(([name, what]) => make("tr", {}, make("td", { textContent: name }), ...counts.map((one, k) => make("td", { textContent: what(one, k) })))));
