@@ -233,7 +233,7 @@ def test_by_link_two_persons_play_each_its_own_seat(game):
         game("stroke", choice="play")
     assert game("concede")["words"].startswith("Frame over: Friend won.")
     assert game("load", link=game.get("link")["link"], seat=None)["by_link"]["seat"] == 0
-    assert game("load", link=link, seat=0)["words"].startswith("Your friend is to play")
+    assert game("load", link=link, seat=0)["words"].startswith("It is your friend's turn")
     assert game("load", link=link)["players"] == ["person", "person"]  # to watch, take back and try
     changed = standing(EASY)
     for noise in ("club", "none"):
