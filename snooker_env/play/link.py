@@ -143,7 +143,9 @@ def check_course(played: Sequence[Act], acts: Sequence[Act]) -> None:
         return  # another game
     same = played[0].state == acts[0].state and len(played) <= len(acts)
     if not same or any(one.asked != other.asked for one, other in zip(played[1:], acts[1:], strict=False)):
-        raise refuse_what("link", "another course of this game", "must begin with what was played of it here")
+        raise refuse_what(
+            "link", "an older or another course of this game", "must begin with what was played of it here"
+        )
 
 
 def _code_act(digits: Digits, frame: Frame, first: dict[str, Any], asked: dict[str, Any]) -> dict[str, Any]:

@@ -234,11 +234,11 @@ def test_by_link_two_persons_play_each_its_own_seat(game):
     assert game("concede")["words"].startswith("Frame over: Friend won.")
     assert game("load", link=game("link")["link"], seat=None)["by_link"]["seat"] == 0
     with pytest.raises(
-        ValueError, match=r"^link = another course of this game: must begin with what was played"
+        ValueError, match=r"^link = an older or another course of this game: must begin with what was played"
     ):
         game("load", link=link, seat=0)  # an older one
     assert game("load", link=link)["players"] == ["person", "person"]  # to watch, take back and try
-    assert game("load", link=link, seat=0)["words"].startswith("Your friend is to play")
+    assert game("load", link=link, seat=0)["words"].startswith("It is your friend's turn")
     changed = standing(EASY)
     for noise in ("club", "none"):
         changed.noise[:] = [noise, noise]

@@ -751,8 +751,6 @@ def test_a_friend_by_link_watches_the_visit_and_plays_the_other_seat(shown, chro
     friend.played(2)
     friend.until("!document.getElementById('friend').hidden")
     answer = friend("page.friend.text")
-    friend("page.friend.open(argument)", first.split("=")[1])  # an older link of the same game
-    friend.until("document.getElementById('last').textContent.includes('older than your game')")
     friend.close()
     shown.page.click("#files summary")
     shown.page.fill("#link", answer)
@@ -771,6 +769,8 @@ def test_a_friend_by_link_watches_the_visit_and_plays_the_other_seat(shown, chro
     )
     shown.page.select_option("#friend-games", index=1)
     shown.until("page.state.by_link?.seat === 0 && page.state.strokes === 2")
+    shown("page.friend.open(argument)", first.split("=")[1])  # an older link of the same game
+    shown.until("document.getElementById('last').textContent.includes('older')")
     line("api/new", {"layout": "break_off", "seed": 3})
     line("api/players", PERSONS)
 
