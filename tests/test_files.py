@@ -16,9 +16,9 @@ from agents.learning.policy_files import read_policy
 from agents.learning.run_folder import SETTINGS, keep_settings, kept_settings
 from agents.learning.settings import Settings
 from agents.players.trained import load_player
-from snooker_env._lib.files import MOST_JSON, MOST_NPZ, read_npz, strict_json, with_checksum
+from snooker_env._lib.files import MOST_JSON, MOST_NPZ, read_npz, strict_json
 from snooker_env.advice import read_strokes
-from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, text
+from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result
 from snooker_env.play.__main__ import _read as read_position
 from snooker_env.players.requests import read_object
 from snooker_env.players.saved import saved_player
@@ -74,7 +74,6 @@ READERS = {
     "a position": sn.Position.load,
     "strokes and replays": read_strokes,
     "a result": result_of,
-    "a track of texts": lambda file: text._rows_in(file, {"track": "text", "visits": 2}),
     "a report": report.read,
     "a tournament": lambda file: tournament_file.read_incomplete(file, {}, {}, []),
     "settings of a run": in_folder(SETTINGS, lambda folder: kept_settings(folder, Settings)),
@@ -123,25 +122,19 @@ def test_numbers_of_json_are_as_they_were():
 
 
 def test_no_flipped_bit_of_json_that_a_command_goes_on_with_is_used(tmp_path):
-    result, track, run = tmp_path / "result.json", tmp_path / "track.json", tmp_path / "run"
+    result, run = tmp_path / "result.json", tmp_path / "run"
     made = judge(TASKS["SnookerEscape-v0"], Agent.of("random"), episodes=2, out=result)
-    head, rows = (
-        {"track": "text", "visits": 2},
-        [{"table": text.TASK.seeds(2)[0], **dict.fromkeys(text.COUNTS, 1)}],
-    )
-    track.write_text(json.dumps(with_checksum(head | {"rows": rows})))
     run.mkdir()
     keep_settings(run, Settings(seed=3))
     for file, read in (
         (result, lambda: result_of(result)),
-        (track, lambda: text._rows_in(track, head)),
         (run / SETTINGS, lambda: kept_settings(run, Settings)),
     ):
         for _ in flipped(file):
             with pytest.raises(ValueError, match=str(file)):
                 read()
     assert read_result(result) == json.loads(json.dumps(made))
-    assert text._rows_in(track, head) == rows and kept_settings(run, Settings).seed == 3
+    assert kept_settings(run, Settings).seed == 3
 
 
 # Arrays

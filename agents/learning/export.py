@@ -23,10 +23,11 @@ LEARNED, STROKES, SELF_PLAYED = "ppo_value", "strokes", "self_play.pt"
 
 def keep_models(folder):
     """Write the models of the runs FOLDER/ppo_value-0, FOLDER/ppo_value_LEVEL, FOLDER/strokes and FOLDER/self_play, as far
-    as they are there, into results/weights: NAME.zip and its record NAME.json, and self_play.pt."""
-    played = Path(folder) / "self_play" / "weights.pt"
-    if played.is_file():
-        write_atomic(PRETRAINED / SELF_PLAYED, played.read_bytes())
+    as they are there, into results/weights: NAME.zip and its record NAME.json, and self_play.pt with its record."""
+    played, file = Path(folder) / "self_play", PRETRAINED / SELF_PLAYED
+    if (played / "results.json").is_file():
+        write_atomic(file, (played / "weights.pt").read_bytes())
+        write_atomic(file.with_suffix(".json"), (played / "results.json").read_bytes())
     for name in (*map(_name_of, LEVELS), STROKES):
         run = Path(folder) / (f"{name}-0" if name == LEARNED else name)
         if not run.is_dir():

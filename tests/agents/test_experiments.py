@@ -11,6 +11,7 @@ from agents import tournament
 from agents.evaluate import parser
 from agents.learning.agent_training import recipe_of
 from agents.learning.settings import Settings, parse
+from examples import self_play
 from snooker_env.players.weights import levels
 from tests.processes import ROOT
 
@@ -38,7 +39,9 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     lines = listed(tmp_path)
     runs = [line[2:] for line in lines if line[1] == "train.py"]
     comparisons = [line[3:] for line in lines if line[2] == "agents.evaluate"]
-    assert len(runs) == 9 and len(comparisons) == 1 and len(runs) + 2 == len(lines)
+    (played,) = [line[3:] for line in lines if line[2] == "examples.self_play"]
+    assert self_play.parse(played).out == tmp_path / "self_play"
+    assert len(runs) == 9 and len(comparisons) == 1 and len(runs) + 3 == len(lines)
     recipes = {recipe_of(Settings(**parse(run)[1])).name for run in runs}
     assert recipes == {"ppo_value", "strokes"}
     for comparison in comparisons:

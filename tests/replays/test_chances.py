@@ -166,7 +166,7 @@ def test_the_luck_of_a_game_is_that_of_its_end():
         for seat in (0, 1)
     ]
     assert {stroke["player"] for stroke in data["strokes"]} == {0, 1} and min(map(abs, sums)) >= 0.01
-    words = re.search(r"Luck: Player 1 ([+-]\d+) %, Player 2 ([+-]\d+) %\.", told["words"])
+    words = re.search(r"Luck: Player 1 ([+-]\d+) %, Player 2 ([+-]\d+) %\.", told["luck"])
     assert [int(one) for one in words.groups()] == [round(100 * one) for one in sums]
     game.service.close()
 
