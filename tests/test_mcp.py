@@ -1,21 +1,26 @@
 """Can a client of the Model Context Protocol play, only by the rules of its track, and leave a result that checks?"""
 
+import io
 import json
 import sys
 
 import numpy as np
 import pytest
 
+import snooker_env as sn
 from snooker_env.benchmark import faults, read_result
 from snooker_env.benchmark.playing import play_episodes
 from snooker_env.benchmark.results import strokes_of
 from snooker_env.benchmark.tasks import TASKS
 from snooker_env.mcp import server as limits
 from snooker_env.mcp.games import FreeGame, JudgedGame
+from snooker_env.mcp.picture import draw_jpeg
 from snooker_env.mcp.server import TRACKS, Desk, serve
+from snooker_env.physics.table import Table
 from snooker_env.play.routes import POST, answer
 from snooker_env.players import decision_seeds, player
 from snooker_env.players.cue_stroke import cue_strokes
+from snooker_env.render import COLOURS
 from tests.processes import ROOT
 
 pytest.importorskip("mcp")
@@ -209,5 +214,23 @@ def test_each_track_offers_its_own_tools_and_the_command_serves_them_on_standard
     tools, new, advice = anyio.run(conversation)
     assert set(tools) == common and "number" not in tools["play"]["properties"]
     text, picture = new.content
-    assert "x = " not in text.text and "(+0." not in text.text and picture.mime_type == "image/png"
+    assert "x = " not in text.text and "(+0." not in text.text and picture.mime_type == "image/jpeg"
     assert not advice.is_error and '"speed"' in advice.content[0].text
+
+
+def test_the_picture_shows_every_ball_in_its_colour_and_which_red_is_which():
+    import pygame
+
+    position = sn.Position(cue=(0.3, -1.2), reds=[(0.5, 0.5), (-0.5, 1.2)], blue=(-0.7, 0.1), black=(0, 1.46))
+    positions, on_table, _ = position.arrays()
+    jpeg, view = draw_jpeg(Table.of("match"), positions, on_table)
+    image = pygame.surfarray.array3d(pygame.image.load(io.BytesIO(jpeg))).astype(int)
+    for ball in np.flatnonzero(on_table):
+        column, row = view(positions[ball]).round().astype(int)
+        around = image[column - 6 : column + 7, row - 6 : row + 7]
+        assert (np.abs(around - COLOURS[ball]).max(axis=-1) < 60).sum() > 20, ball
+    one, other = (
+        (image[column - 5 : column + 6, row - 5 : row + 6] > 200).all(axis=-1)
+        for column, row in view(positions[1:3]).round().astype(int)
+    )
+    assert one.any() and other.any() and (one != other).any()

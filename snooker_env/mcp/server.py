@@ -12,11 +12,11 @@ from ..game.rule_sets import RULES
 from ..planning import Positions
 from ..play.service import OFFERED, BusyError
 from ..players.requests import STROKE
-from ..render.still import draw_png
 from ..simulation import SimulationError
 from ..tasks.noise import LEVELS
 from .games import ALONE, DEALT, HELD_OUT_SEED, MOST_ADVICE, FreeGame, Game
 from .menu import MEANING, foresee_strokes, take_stroke
+from .picture import draw_jpeg
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -110,13 +110,13 @@ class Desk:
         words = state["words" if self._track == "picture" else "text"]
         if at is None or self._track in ("words", "menu"):
             return words, None
-        png, view = draw_png(self._game.options.rules.table, at.positions[0], at.on_table[0])
+        jpeg, view = draw_jpeg(self._game.options.rules.table, at.positions[0], at.on_table[0])
         if self._track is None:
-            return words, png
+            return words, jpeg
         shown = ("scores", "break", "balls_on", "nominations", "choices", "in_hand")
         said = [f"{name}: {state[name]}" for name in shown] + [f"on the table: {[*state['positions']]}"]
         where = f"The origin is at column {view.x:.0f}, row {view.y:.0f}; {view.scale:.1f} pixels a metre."
-        return "\n".join([words, *said, f"{where} {_AXES}"]), png
+        return "\n".join([words, *said, f"{where} {_AXES}"]), jpeg
 
     def _strokes(self, fields: Fields) -> tuple[str, None]:
         n, at = integer("n", fields.get("n", LISTED), 1, MOST_LISTED), self._lies()
@@ -138,8 +138,8 @@ class Desk:
         elif not {"choice", *STROKE} & set(fields):
             raise refuse_what("speed", "nothing", "must be given, with aim or aim_at")
         happened = self._game.play(fields)
-        words, png = self._look({})
-        return f"{happened}\n\n{words}", png
+        words, jpeg = self._look({})
+        return f"{happened}\n\n{words}", jpeg
 
     def _new(self, fields: Fields) -> tuple[str, bytes | None]:
         integer("number of games", self._games + 1, 1, GAMES)
@@ -181,10 +181,10 @@ def serve(desk: Desk) -> "Server[Any]":
 
     async def call_tool(_: Any, params: types.CallToolRequestParams) -> types.CallToolResult:
         asked = params.name, params.arguments or {}
-        text, png, failed = await anyio.to_thread.run_sync(desk.answer, *asked)
+        text, jpeg, failed = await anyio.to_thread.run_sync(desk.answer, *asked)
         content: list[types.ContentBlock] = [types.TextContent(text=text)]
-        if png is not None:
-            content.append(types.ImageContent(data=base64.b64encode(png).decode(), mime_type="image/png"))
+        if jpeg is not None:
+            content.append(types.ImageContent(data=base64.b64encode(jpeg).decode(), mime_type="image/jpeg"))
         return types.CallToolResult(content=content, is_error=failed)
 
     about = "Snooker by its real physics: look, then play. Units: metres, seconds, radians, from the middle of the table."
