@@ -31,7 +31,7 @@ def train(task: str, row: Row, shots: int, seed: int) -> BaseAlgorithm:
     if TASKS[task].frame:
         options = options.but(opponent="ghost_ball")
     tables = SnookerVecEnv(row.tables or 1, options=options, seed=10_000 * seed)
-    agent, before, rollouts = row.on(tables, seed), count_shots(), 0
+    agent, before, rollouts = row.new_agent(tables, seed), count_shots(), 0
     while (count_shots() - before) * (rollouts + 1) <= shots * rollouts:  # room for one more
         agent.learn(1, reset_num_timesteps=False)  # one rollout
         rollouts += 1

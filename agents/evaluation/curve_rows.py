@@ -95,9 +95,9 @@ class Row:
             tables = gymnasium.make("snooker_env:Snooker-v0", **self.options)
         else:
             tables = SnookerVecEnv(self.tables, threads=threads, **self.options)
-        return self.on(tables, SEEDS * seed), tables
+        return self.new_agent(tables, SEEDS * seed), tables
 
-    def on(self, tables: Any, seed: int) -> BaseAlgorithm:
+    def new_agent(self, tables: Any, seed: int) -> BaseAlgorithm:
         """The untrained agent on these tables."""
         make: Any = self.algorithm
         return make(self.policy, tables, seed=seed, device="cpu", **self.settings)

@@ -28,10 +28,8 @@ from .recorded import CUE_PARTS, call_pot, direction_of, read_balls
 from .stroke_words import POCKET_WORDS, ball_name, percent
 from .suggestions import Suggestion
 
-ROUGH, FEW = (
-    "tactician_100",
-    50,
-)  # who is asked in the first look at all strokes, and how often each is played
+ROUGH, FEW = "tactician_100", 50
+"""Who is asked in the first look at all strokes, and how often each is played."""
 SAMPLES = 500  # how often each is played then, unless another number is asked for
 MISSED = radians(1.0)  # a stroke whose line is so near to that of a pot was meant to pot
 LITTLE = 0.015  # share of the chance to win that is not worth a word: so much is sampling error
@@ -121,9 +119,7 @@ class Review:
     strokes: list[Reviewed]
     sides: tuple[Side, Side]
     win_chance: list[float]  # of the first player, before each stroke, and at the end, before a concession
-    between: (
-        float  # what decisions and positions that were set up between the strokes gained for the first player
-    )
+    between: float  # gained for the first player by decisions and set-ups between the strokes
     result: float  # 1 if the first player won, else its last chance
     agent: str
     noise: str | dict[str, float]
@@ -301,12 +297,11 @@ def _judge(
 def common_noise(errors: list[Noise]) -> Noise:
     """The largest errors, and at least a professional's, for whom the tactician has learned; who makes none errs by hand, as
     an amateur."""
-    return max(
-        *errors, LEVELS["amateur" if any(one.silent for one in errors) else "professional"], key=size_of
-    )
+    least = LEVELS["amateur" if any(one.silent for one in errors) else "professional"]
+    return max([*errors, least], key=_size_of)
 
 
-def size_of(noise: Noise) -> float:
+def _size_of(noise: Noise) -> float:
     """The root mean square error of the direction [deg], lapses included."""
     return noise.direction_deg() * sqrt(1.0 + noise.lapse * (noise.lapse_factor**2 - 1.0))
 

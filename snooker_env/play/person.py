@@ -24,7 +24,7 @@ PLACE = ("cue", "physics", "table")  # what strokes must share to be read by the
 
 
 class Person:
-    """A person's file: the ``name``, ``frames`` as of ``frame_of``, and the last ``MOST_STROKES`` ``strokes``."""
+    """A person's file: the ``name``, ``frames`` as of ``tell_frame``, and the last ``MOST_STROKES`` ``strokes``."""
 
     def __init__(self, path: str | Path):
         self.path: Path = Path(path)
@@ -65,17 +65,8 @@ class Person:
                 "person", str(self.path), f"must be a file that can be written ({error.strerror})"
             ) from None
 
-    def tell(self, session: Session, seat: int, opponent: str, *, same: bool = True) -> Kept:
-        """A frame that is over, and the person's strokes in it: as they were played, with the pots that they tell. ``same``:
-        whether nobody else sat there before its end."""
-        frame = frame_of(session, seat, opponent)
-        frame["rated"] = frame["rated"] and same
-        played = [session.acts[k].played for k in session.strokes]
-        mine = strokes_of(played, player=seat) if any(one and one.player == seat for one in played) else []
-        return frame, [one.to_dict() for one in mine]
-
     def keep(self, frame: dict[str, Any], strokes: list[dict[str, Any]]) -> None:
-        """Keep what ``tell`` told."""
+        """Keep what ``tell_frame`` told."""
 
         def add(kept: dict[str, Any]) -> None:
             kept["frames"] = [*kept["frames"], frame]
@@ -90,8 +81,9 @@ class Person:
         return [Recorded.from_dict(one) for one in same]
 
 
-def frame_of(session: Session, seat: int, opponent: str) -> dict[str, Any]:
-    """The frame that is over, as it is kept: the person's side first; rated are fair frames against a level."""
+def tell_frame(session: Session, seat: int, opponent: str, *, same: bool) -> Kept:
+    """A frame that is over, the person's side first, and the person's strokes in it, with the pots that they tell. Rated are
+    fair frames against a level; ``same``: whether nobody else sat there before its end."""
     sides, level = (seat, 1 - seat), BY_NAME.get(opponent)
     played = [(session.acts[k].player, session.acts[k].asked) for k in session.strokes]
     usual = (session.game, session.layout, session.cue) == ("snooker", "break_off", "real")
@@ -99,7 +91,7 @@ def frame_of(session: Session, seat: int, opponent: str) -> dict[str, Any]:
     own = level is not None and all(
         one["noise"] == (RATED_WITH if player == seat else level.noise) for player, one in played
     )
-    return {
+    frame = {
         "date": date.today().isoformat(),
         "opponent": opponent[:MOST_NAME],
         "noise": [session.noise[side] for side in sides],
@@ -108,8 +100,11 @@ def frame_of(session: Session, seat: int, opponent: str) -> dict[str, Any]:
         "breaks": session.breaks[seat],
         "hints": session.hints[seat],
         "undone": session.undone,
-        "rated": usual and own and bool(played) and not session.hints[seat] and not session.undone,
+        "rated": same and usual and own and bool(played) and not session.hints[seat] and not session.undone,
     }
+    strokes = [session.acts[k].played for k in session.strokes]
+    mine = strokes_of(strokes, player=seat) if any(player == seat for player, _ in played) else []
+    return frame, [one.to_dict() for one in mine]
 
 
 def _check(kept: dict[str, Any]) -> None:

@@ -234,7 +234,7 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading() as now:
         seat = session.frame.striker
         shown = now.begun == session.begun and _revision(fields) in (None, service.revision)
-        if shown and not now.practice and not service.seats.is_agent(seat):
+        if shown and not now.practice and service.seats.who[seat] == service.me:
             now.hints[seat] += 1
     return answer
 
@@ -357,7 +357,6 @@ GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
-    "reviewed": Route(_reviewed, ("stroke",)),
     "replay": Route(partial(_replay, form=Replay.to_dict)),
     "replay.html": Route(partial(_replay, form=Replay.html)),
 }
@@ -381,6 +380,7 @@ POST: dict[str, Route] = {
     "save": Route(_save),
     "load": Route(_load, ("saved", "link", "seat")),
     "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
+    "reviewed": Route(_reviewed, ("stroke",)),
     "again": Route(_again, ("stroke",)),
 }
 

@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from time import monotonic
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from .._lib.check import choice, refuse, refuse_what
 from .._lib.types import NoiseName
 from ..advice.ask import AGENT
-from ..advice.review import size_of
+from ..advice.review import common_noise
 from ..game.fouls import AUTO
 from ..game.frame import CHOICES
 from ..game.frame_columns import STROKES
@@ -28,7 +28,7 @@ from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS
 from .invites import Invite
 from .levels import BY_NAME
-from .person import Person
+from .person import Person, tell_frame
 from .reviewing import Reviewing
 from .session import DECLINED, Act, Session
 
@@ -71,9 +71,9 @@ class Seats:
         better than a professional, for whom the tactician has learned."""
         seats = range(1 if session.practice else 2)
         people = [seat for seat in seats if not self.is_agent(seat)]
-        levels: list[NoiseName] = [session.noise[seat] for seat in people or seats]
-        levels.append("amateur" if people and "none" in levels else "professional")
-        return max(levels, key=lambda name: size_of(LEVELS[name]))
+        errors = [LEVELS[session.noise[seat]] for seat in people or seats]
+        found = common_noise(errors if people else [one for one in errors if not one.silent])
+        return cast(NoiseName, next(name for name, one in LEVELS.items() if one == found))
 
     def sit(self, who: list[str]) -> None:
         """Assign both seats; ValueError for an unknown name."""
@@ -308,20 +308,20 @@ class Service:
         if not session.strokes:
             self._sat.clear()
         self._sat.add(tuple(seats.who))
-        if person is not None and session.frame.phase == "over" and self._over != session.begun:
-            self._over, self.unkept = session.begun, ""
-            people = [seat for seat in (0, 1) if not seats.is_agent(seat)]
-            dealt = all(act.what not in ("set_up", "load") for act in session.acts[: session.at])
-            if len(people) == 1 and dealt and not session.practice:
-                same = len(self._sat) == 1
-                frame = person.tell(session, people[0], seats.who[1 - people[0]], same=same)
-                self._unwritten = partial(person.keep, *frame)
-        if self._unwritten is not None:
-            try:
+        try:
+            if person is not None and session.frame.phase == "over" and self._over != session.begun:
+                self._over, self.unkept = session.begun, ""
+                people = [seat for seat in (0, 1) if not seats.is_agent(seat)]
+                dealt = all(act.what not in ("set_up", "load") for act in session.acts[: session.at])
+                if len(people) == 1 and dealt and not session.practice:
+                    same = len(self._sat) == 1
+                    told = tell_frame(session, people[0], seats.who[1 - people[0]], same=same)
+                    self._unwritten = partial(person.keep, *told)
+            if self._unwritten is not None:
                 self._unwritten()
                 self._unwritten, self.unkept = None, ""
-            except ValueError as error:
-                self.unkept = f"The frame was not kept: {error}."
+        except ValueError as error:
+            self.unkept = f"The frame was not kept: {error}."
 
     def _announce(self):
         self._keep()

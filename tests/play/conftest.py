@@ -2,7 +2,9 @@
 
 import pytest
 
+from tests.play.shown import Shown
 from tests.playing import Asked, served
+from tests.web.chromium import chromium  # noqa: F401
 
 
 @pytest.fixture
@@ -16,3 +18,10 @@ def game():
 def line():
     with served() as one:
         yield one
+
+
+@pytest.fixture
+def shown(chromium, line):  # noqa: F811
+    one = Shown(chromium, line)
+    yield one
+    one.close()

@@ -252,7 +252,6 @@ def test_a_watcher_reads_and_posts_nothing(hosted):
     assert {name for name in GET if watcher(f"api/{name}")[0] != 200} == {
         "replay",
         "replay.html",
-        "reviewed",
     }  # of no stroke, and without a review
     assert watcher("api/scene")[1]["invites"] == [] and hosted("api/state")[1]["revision"] == before
     assert watcher("api/state")[1]["labels"] == ["Player 1", USUAL]

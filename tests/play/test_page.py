@@ -9,72 +9,13 @@ import numpy as np
 import pytest
 
 from snooker_env.play.server import FILES
-from tests.playing import COVERED, EASY, FROZEN, STRAIGHT, Line, served
-from tests.web.chromium import Watched, chromium  # noqa: F401
+from tests.play.shown import PERSONS, SETTLED, Shown
+from tests.playing import COVERED, EASY, FROZEN, STRAIGHT, served
 
 AWAY = 2.0
 """An aim [rad] along which EASY has no ball."""
 VISIT = {**EASY, "reds": [[0.6, 1.4], [-0.6, 1.35], [0.7, 0.9]], "blue": [0.0, 0.0]}
 """Here ghost_ball makes a visit of two reds with the black."""
-
-
-PERSONS = {"players": ["person", "person"], "noise": ["none", "none"], "practice": False, "cue": "real"}
-SETTLED = "page.settled === page.state.revision"
-
-
-class Shown(Watched):
-    """The page of a server's game, its mouse in metres, and what went wrong in it."""
-
-    names = "const page = window.page ?? {}"
-
-    def __init__(self, browser, line: Line, *, new=False, address="", **options):
-        self.line, address = line, address or line.server.address
-        if not new:  # the tutorial has been seen, and the stroke is drawn with all that is known of it
-            kept = {"name": "snooker", "value": json.dumps({"toured": True, "guide": "spread"})}
-            origin = {"origin": f"http://127.0.0.1:{line.server.server_port}", "localStorage": [kept]}
-            options["storage_state"] = {"cookies": [], "origins": [origin]}
-        super().__init__(browser, address, (address, "blob:", "data:"), "page.state", **options)
-
-    def set_up(self, position, **fields):
-        """A position by the protocol, and wait until the page shows it."""
-        self.line("api/players", PERSONS)
-        self.line("api/new", {"layout": "break_off", "seed": 1})
-        status, state, _ = self.line("api/position", {"position": position, **fields})
-        assert status == 200
-        self.until(f"page.state.revision >= argument && {SETTLED} && page.aiming", state["revision"])
-
-    def at(self, x, y):
-        """Where a place [m] is on the screen."""
-        box = self.page.locator("#table").bounding_box()
-        px, py = self("page.view.toScreen(...argument)", [x, y])
-        return box["x"] + px, box["y"] + py
-
-    def drag(self, start, end, steps=8):
-        """The mouse from one place [m] to another, button down."""
-        self.page.mouse.move(*self.at(*start))
-        self.page.mouse.down()
-        self.page.mouse.move(*self.at(*end), steps=steps)
-        self.page.mouse.up()
-
-    def played(self, strokes):
-        """Cut the motion short and wait until so many strokes are shown."""
-        self.until("page.moving || page.state.strokes >= argument", strokes)
-        end = time.monotonic() + 120
-        while not self(f"page.played >= argument && !page.busy && !page.moving && {SETTLED}", strokes):
-            assert time.monotonic() < end
-            self("page.skip()")
-            time.sleep(0.02)
-
-    @property
-    def words(self):
-        return self.page.inner_text("#asked")
-
-
-@pytest.fixture
-def shown(chromium, line):  # noqa: F811
-    one = Shown(chromium, line)
-    yield one
-    one.close()
 
 
 def test_a_visit_is_played_by_mouse(shown):
@@ -385,7 +326,7 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
         (3840, 2160),
     ],
 )
-def test_it_fits_every_screen_and_can_be_touched(chromium, line, size):  # noqa: F811
+def test_it_fits_every_screen_and_can_be_touched(chromium, line, size):
     """The table stands where the screen does, and fills it; buttons are as large as a finger, and grow with the screen."""
     viewport = dict(zip(("width", "height"), size, strict=True))
     shown = Shown(chromium, line, viewport=viewport, has_touch=True, device_scale_factor=1)
@@ -508,7 +449,7 @@ def test_the_strip_aims_finely_and_says_how_full_the_ball_is_struck(shown):
     assert turned == pytest.approx(-50 * 0.01 * pi / 180, abs=1e-6)  # to the right, as the pointer
 
 
-def test_the_first_look_is_calm_and_the_tutorial_is_shown_once(chromium, line):  # noqa: F811
+def test_the_first_look_is_calm_and_the_tutorial_is_shown_once(chromium, line):
     shown = Shown(chromium, line, new=True)
     shown.line("api/new", {"layout": "break_off", "seed": 1})
     shown.until(f"{SETTLED} && page.aiming")
@@ -715,7 +656,7 @@ def test_a_link_that_cannot_be_made_or_opened_is_refused_in_one_sentence(shown):
     ]  # the browser's own line for the refused replay
 
 
-def test_a_friend_by_link_watches_the_visit_and_plays_the_other_seat(shown, chromium):  # noqa: F811
+def test_a_friend_by_link_watches_the_visit_and_plays_the_other_seat(shown, chromium):
     """Begun, played and sent by one browser, opened and answered by another, which knows nothing of it; and opened again."""
     line = shown.line
     shown.page.click("#start summary")
@@ -803,7 +744,7 @@ def test_the_page_is_small(line):
     assert len(files) == len(names) and sum(map(len, files)) < 170_000
 
 
-def test_a_friend_plays_from_a_phone_and_a_third_person_watches(chromium):  # noqa: F811
+def test_a_friend_plays_from_a_phone_and_a_third_person_watches(chromium):
     with served("127.0.0.1") as line:
         line.server.service.seats.sit(["person", "ghost_ball"])
         line("api/players", {"noise": ["amateur", "club"]})

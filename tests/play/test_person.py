@@ -12,9 +12,8 @@ from snooker_env.planning import Position
 from snooker_env.play.__main__ import main
 from snooker_env.play.levels import LEVELS
 from snooker_env.play.person import Person
-from tests.play.test_page import SETTLED, Shown
+from tests.play.shown import SETTLED, Shown
 from tests.playing import EASY, STRAIGHT
-from tests.web.chromium import chromium  # noqa: F401
 
 PIP = {"players": ["person", "Pip"], "practice": False}
 
@@ -172,7 +171,7 @@ def test_a_file_that_is_not_sound_is_one_error_and_stays_as_it_is(game, kept, ca
     assert not game("person", delete=True)["frames"] and not kept.path.exists()
 
 
-def test_my_play_shows_the_file_with_a_rating_and_deletes_it(chromium, line, tmp_path):  # noqa: F811
+def test_my_play_shows_the_file_with_a_rating_and_deletes_it(chromium, line, tmp_path):
     frame = {"date": "2026-11-30", "noise": ["amateur", "club"], "scores": [70, 12], "breaks": [33, 87]}
     frame |= {"hints": 0, "undone": 0, "rated": True, "won": True, "opponent": "Walter"}
     frames = [frame] * 3 + [frame | {"won": False, "breaks": []}] * 2 + [frame | {"rated": False}]
@@ -226,7 +225,7 @@ def try_once(shown, n):
     shown.until("page.drills.tries > argument", n)
 
 
-def test_my_position_is_repeated_with_what_is_to_be_expected(chromium, line):  # noqa: F811
+def test_my_position_is_repeated_with_what_is_to_be_expected(chromium, line):
     shown = Shown(chromium, line)
     shown.set_up(EASY)
     line("api/players", {"noise": ["club", "none"]})
@@ -260,7 +259,7 @@ def test_my_position_is_repeated_with_what_is_to_be_expected(chromium, line):  #
     shown.close()
 
 
-def test_the_position_of_the_day_is_the_same_for_everybody_and_counts_once(chromium, line):  # noqa: F811
+def test_the_position_of_the_day_is_the_same_for_everybody_and_counts_once(chromium, line):
     seen = []
     for seed in (1, 2):
         line("api/players", {"players": ["person", "person"], "noise": ["none", "none"], "practice": False})

@@ -549,14 +549,14 @@ def test_a_frame_is_reviewed_beside_the_game_and_played_again_from_a_stroke(game
     assert game("advise", n=1, samples=5)["suggestions"] and session.state == before
     while found["running"]:
         time.sleep(0.05)
-        found = game.get("reviewed")
+        found = game("reviewed")
     assert found["trouble"] == "" and found["done"] == found["total"] == 6 and found["noise"] == "club"
     assert [one["number"] for one in found["strokes"]] == [1, 2, 3] and sorted(found["costliest"]) == [
         1,
         2,
         3,
     ]
-    drawn = game.get("reviewed", stroke=2)
+    drawn = game("reviewed", stroke=2)
     assert drawn["table"]["scores"] == states[1]["frame"]["scores"] and "0" in drawn["best"]["paths"]
     assert drawn["played"]["paths"]["0"][0] == pytest.approx(states[1]["positions"][0], abs=1e-4)
     game("again", stroke=2)
@@ -567,4 +567,4 @@ def test_a_frame_is_reviewed_beside_the_game_and_played_again_from_a_stroke(game
     assert not game("review", stop=True)["running"]
     game("new", seed=3)
     with pytest.raises(ValueError, match="must be begun first"):
-        game.get("reviewed")
+        game("reviewed")

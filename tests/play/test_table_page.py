@@ -7,19 +7,11 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.advice import POCKET_WORDS
-from tests.play.test_page import SETTLED, Shown
+from tests.play.shown import SETTLED, Shown
 from tests.playing import COVERED
-from tests.web.chromium import chromium  # noqa: F401
 
 CUT = {"cue": [0.0, 0.3], "reds": [[0.3, 1.0], [-0.6, 0.2], [0.5, -0.4]], "black": [0.0, 1.4605]}
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
-
-
-@pytest.fixture
-def shown(chromium, line):  # noqa: F811
-    one = Shown(chromium, line)
-    yield one
-    one.close()
 
 
 def test_each_choice_after_a_foul_shows_its_chance_and_the_best_is_marked(shown):
@@ -59,7 +51,7 @@ def test_the_object_line_goes_where_the_ball_goes(shown, stroke):
     assert abs(atan2(to_y - y, to_x - x) - centres) > 0.02  # else there was no throw to see
 
 
-def test_on_a_phone_a_hint_covers_nothing_of_the_table(chromium, line):  # noqa: F811
+def test_on_a_phone_a_hint_covers_nothing_of_the_table(chromium, line):
     shown = Shown(chromium, line, **PHONE)
     shown.set_up(CUT)
     before = shown.page.locator("#stage").bounding_box()
@@ -122,7 +114,7 @@ def test_set_up_snaps_undoes_and_mirrors(shown):
     assert not shown("page.state.in_hand")
 
 
-def test_the_agent_that_was_named_stays_in_the_menu(chromium, line):  # noqa: F811
+def test_the_agent_that_was_named_stays_in_the_menu(chromium, line):
     seats = line.server.service.seats
     seats.opponents.insert(0, "planner")
     seats.players["planner"] = sn.player("planner")
@@ -138,7 +130,7 @@ def test_the_agent_that_was_named_stays_in_the_menu(chromium, line):  # noqa: F8
     shown.close()
 
 
-def test_loupe_and_tutorial_keep_off_what_matters(chromium, line):  # noqa: F811
+def test_loupe_and_tutorial_keep_off_what_matters(chromium, line):
     """The loupe stays in its corner until something is there, and lies on neither cue ball, contact nor object line."""
     shown = Shown(chromium, line, **PHONE)
     shown.set_up(CUT)

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.play.conftest import line  # noqa: F401
-from tests.play.test_page import SETTLED, Shown
+from tests.play.shown import SETTLED, Shown
 from tests.playing import EASY, STRAIGHT
 from tests.web.chromium import chromium  # noqa: F401
 

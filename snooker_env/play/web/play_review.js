@@ -53,7 +53,7 @@ export class Review {
     while (this.open && this.found.running) {
       await new Promise(done => setTimeout(done, 400));
       try {
-        const found = await ask("reviewed");
+        const found = await ask("reviewed", {});
         if (this.open) this.take(found);
       } catch (error) { this.trouble(error); return; }
     }
@@ -162,7 +162,7 @@ export class Review {
       this.line?.mark(number - 0.5);
       for (const button of by("review-list").querySelectorAll("button")) button.setAttribute("aria-pressed", String(button.dataset.stroke === String(number)));
       try {
-        const shown = await ask("reviewed", undefined, `?stroke=${number}`);
+        const shown = await ask("reviewed", { stroke: number });
         if (this.chosen !== number || !this.open) return;
         this.shown = shown;
         this.app.put(shown.table);
