@@ -17,10 +17,8 @@ from .practice import Practice, one_position, practice_of
 from .stroke_words import against_words
 from .suggestions import Advice, Suggestion
 
-AGENT, OF_FRAMES = (
-    "planner_500",
-    "tactician_1000",
-)  # who is asked if nobody is named: in a visit, and in a frame
+AGENT, OF_FRAMES = "planner_500", "tactician_1000"
+"""Who is asked if nobody is named: in a visit, and in a frame."""
 INSTEAD = "random"  # whose strokes are judged where none of an agent's is fair: many discrete choices
 RIVALS = 4  # strokes of the other kind, pots or not, that the best of a frame is compared with
 SELDOM = 0.05  # chance of a pot below which it is no suggestion
@@ -164,20 +162,24 @@ def _judge_fair(
     practice: Practice, fair: list[Intention], n: int, trials: Trials
 ) -> tuple[list[Suggestion], list[Intention]]:
     """The best way of each of n ideas that is fair in most samples, and the strokes that were not judged."""
+    # the chance to win tells ways apart by what they leave; points need the visits that follow
+    first = trials._replace(visits=0) if practice.options.task == "frame" else trials
     ways: Counter[object] = Counter()
-    waiting, best = [], dict[object, Suggestion]()
+    waiting, best = [], dict[object, tuple[Suggestion, Intention]]()
     for one in fair:
         ways[one.idea] += 1
         if ways[one.idea] <= WAYS:
             waiting.append(one)
     some = n + (WAYS - 1) * (n - 1)
     while waiting and len(best) < n:
-        for one, judged in zip(waiting, judge_strokes(practice, waiting[:some], trials), strict=False):
+        for one, judged in zip(waiting, judge_strokes(practice, waiting[:some], first), strict=False):
             known = best.get(one.idea)
-            if _is_sensible(judged) and (known is None or judged.figure > known.figure):
-                best[one.idea] = judged
+            if _is_sensible(judged) and (known is None or judged.figure > known[0].figure):
+                best[one.idea] = judged, one
         waiting, some = waiting[some:], n - len(best)
-    return list(best.values()), waiting
+    if first == trials or not best:
+        return [judged for judged, _ in best.values()], waiting
+    return judge_strokes(practice, [one for _, one in best.values()], trials), waiting
 
 
 def _lay_first(others: list[Suggestion], spent: list[Suggestion]) -> list[Suggestion]:
