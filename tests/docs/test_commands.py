@@ -22,6 +22,7 @@ SHORT = {
     "benchmarks.execution": "--strokes 40 --visits 4 --levels professional robot",
     "benchmarks.coach": "--players 2 --strokes 10 --pool 10 --levels club",
     "benchmarks.levels": "--frames 2 --budget 30",
+    "benchmarks.page": "--frames 2",
     "benchmarks.fuzz": "--shots 300 --threads 1",
     "snooker_env.watch": "--agent ghost_ball --out {tmp}/visit.html",
     "tests.rules_cases": "tests/data/rules_cases.json",
