@@ -73,8 +73,8 @@ def test_luck_is_that_of_the_replay_and_the_account_adds_up(game):
         assert [side.luck for side in found.sides] == pytest.approx(told) and any(told)
         for one in found.strokes:
             assert one.execution == -kept["luck"][one.number - 1]
-            way = "lost" if one.execution > 0 else "gained"
-            assert f"% {way} by the execution" in str(one) or abs(one.execution) < 0.015
+            for cost, words in ((0.2, "20 % lost by the execution"), (-0.2, "20 % gained by the execution")):
+                assert words in str(replace(one, execution=cost))
         for k, side in enumerate(found.sides):
             own = [one for one in found.strokes if one.player == k]
             assert (side.strokes, side.name) == (len(own), ("Ann", "Bob")[k])
