@@ -1,6 +1,7 @@
 """Does a review say what strokes cost? Against ``advise``, and strokes whose costs are known."""
 
 import json
+import time
 from dataclasses import replace
 
 import pytest
@@ -13,6 +14,7 @@ from snooker_env.advice.review import go_through, read_frame
 from snooker_env.play.session import Session
 from snooker_env.replays import Replay
 from snooker_env.replays.chances import win_chances
+from tests.playing import Asked
 
 HOW = {"agent": "tactician_100", "noise": "club", "samples": 60, "seed": 5}
 OPTIONS = {"cue": "real", "miss": "clear_path", "game": "snooker"}
@@ -71,6 +73,8 @@ def test_luck_is_that_of_the_replay_and_the_account_adds_up(game):
         assert [side.luck for side in found.sides] == pytest.approx(told) and any(told)
         for one in found.strokes:
             assert one.execution == -kept["luck"][one.number - 1]
+            for cost, words in ((0.2, "20 % lost by the execution"), (-0.2, "20 % gained by the execution")):
+                assert words in str(replace(one, execution=cost))
         for k, side in enumerate(found.sides):
             own = [one for one in found.strokes if one.player == k]
             assert (side.strokes, side.name) == (len(own), ("Ann", "Bob")[k])
@@ -81,6 +85,7 @@ def test_luck_is_that_of_the_replay_and_the_account_adds_up(game):
         (_, start), *changes, (_, end) = found.account
         assert start + sum(share for _, share in changes) == end == round(100 * found.result)
         assert dict(changes)["Bob: luck"] == round(-100 * told[1])
+        assert dict(changes)["Ann: choice"] == round(-100 * found.sides[0].choice)
         if found.noise == "club":
             assert found.win_chance[0] == pytest.approx(kept["win_chance"][0])
     assert found.sides[1].strokes == 0 and len(found.win_chance) == 5
@@ -102,6 +107,7 @@ def test_what_was_set_up_begins_from_its_own_value_and_a_concession_costs_what_w
     judge = sn.player("tactician").at(session.options_with("club"))
     chances = win_chances(judge, [session.acts[2].standing, end])
     assert found.win_chance[1:] == chances
+    assert found.result == (session.frame.winner == 0)
     assert abs(found.concession) == pytest.approx(abs(found.result - chances[1])) and found.concession
     loser = ("Player 1", "Player 2")[1 - session.frame.winner]
     changes = dict(found.account)
@@ -109,8 +115,9 @@ def test_what_was_set_up_begins_from_its_own_value_and_a_concession_costs_what_w
     assert abs(found.between) > 0.02 and changes["between the strokes"] == round(100 * found.between)
 
 
-def test_what_was_left_is_worth_what_the_stroke_is_worth_without_errors(tmp_path):
-    """A stroke without errors leaves what its own mean is: the replay and the simulation agree on the chance to win."""
+def test_what_was_left_is_worth_what_the_stroke_is_worth_without_errors(game, tmp_path):
+    """A stroke without errors leaves what its own mean is: the replay and the simulation agree on the chance to win. What
+    errors cost is the rest where nobody knows the luck."""
     session = Session(seed=4)
     for aim in (1.5, 1.8, 1.2):
         if session.frame.phase == "choice":
@@ -121,22 +128,36 @@ def test_what_was_left_is_worth_what_the_stroke_is_worth_without_errors(tmp_path
     found = reviewed(file, noise="none")
     assert [one.execution for one in found.strokes] == pytest.approx([0.0] * 3, abs=1e-9)
     assert found.adjusted is None
+    untold = read_document(game[1], {REPLAY: read_frame})._replace(luck=None)
+    *_, (_, _, found) = go_through(untold, **HOW)
+    for one in found.strokes:
+        assert one.execution == one.meant.win - one.after
+    for side, sign in zip(found.sides, (-100, 100), strict=True):
+        assert dict(found.account)[f"{side.name}: execution"] == round(sign * side.execution)
+    assert max(abs(side.execution) for side in found.sides) > 0.01
+
+
+@pytest.mark.parametrize("seat", [0, 1])
+def test_on_the_page_the_persons_strokes_alone_are_reviewed(seat):
+    game = Asked()
+    game("players", players=["person", "ghost_ball"][:: 1 - 2 * seat], noise=["club", "club"])
+    game("new", breaker=seat)
+    with game.service.acting() as session:
+        session.play(CueStroke(speed=3.0, aim=1.5))
+        if session.frame.phase == "choice":
+            session.choose("play")
+        session.play(CueStroke(speed=2.0, aim=1.8))
+    game("review", samples=1)
+    while game.service.reviewing.running:
+        time.sleep(0.05)
+    found = game.service.reviewing.found[2]
+    assert [(one.number, one.player) for one in found.strokes] == [(1, seat)]
+    game.service.close()
 
 
 def test_the_command_prints_the_costliest_and_one_error(game, tmp_path, capsys):
     _, file, _ = game
-    asked = [
-        "review",
-        str(file),
-        "--noise",
-        "club",
-        "--agent",
-        "tactician_100",
-        "--samples",
-        "60",
-        "--seed",
-        "5",
-    ]
+    asked = f"review {file} --noise club --agent tactician_100 --samples 60 --seed 5".split()
     assert main(asked) == 0
     said = capsys.readouterr().out
     worst = reviewed(file).costliest[0]

@@ -112,7 +112,7 @@ def test_a_rollout_says_whose_stroke_came_next(tmp_path, monkeypatch):
             wanted = 0 if over[k] else 1 if before[k] == after[k] else -1
             assert told["signs"][t, k] == wanted
             won = (1 if winner[k] == before[k] else -1) if over[k] else 0
-            reward = self_play.LEAD * gained[k, before[k]] + self_play.WON * won
+            reward = 0.1 * gained[k, before[k]] + 2.0 * won
             assert told["rewards"][t, k] == pytest.approx(reward, abs=1e-5)
     ends = {
         (int(w), int(b))

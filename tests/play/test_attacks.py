@@ -284,7 +284,15 @@ def test_each_seat_plays_in_its_own_turn_alone(hosted):
 
 
 def test_a_friend_takes_no_seat_that_the_host_has_given_to_another(hosted):
-    friend = seat(hosted, FRIEND)
+    """Nor one of a game that goes on, or alone at the table; it errs as the host does."""
+    friend, session = seat(hosted, FRIEND), hosted.server.service.session
+    session.noise[:], session.practice = ["club", "none"], True
+    refused(friend("api/sit", {}), 422, "ask your host")
+    session.practice = False
+    hosted("api/stroke", {"speed": 3, "aim": 1.5})
+    refused(friend("api/sit", {}), 422, "ask your host")
+    hosted("api/undo", {})
+    assert friend("api/sit", {})[1]["noise"] == ["club", "club"]
     hosted("api/players", {"players": [PERSON, "ghost_ball"]})
     refused(friend("api/sit", {}), 422, "ask your host")
     told = hosted("api/players", {"players": [PERSON, FRIEND]})[1]

@@ -16,7 +16,7 @@ from snooker_env.game.balls import PINK
 from snooker_env.game.fouls import AUTO
 from snooker_env.planning import Position
 from snooker_env.play import link as module
-from snooker_env.play.grid import STEP, steps_of
+from snooker_env.play.grid import STEP, numbers_of, steps_of, stroke_of
 from snooker_env.play.link import LONGEST, open_link, write_link
 from snooker_env.play.session import DECLINED, Session
 from snooker_env.players.table_report import nominations_of
@@ -75,6 +75,16 @@ def test_a_game_is_played_again_bit_by_bit(game):
         assert other.state == session.acts[0].state and other.redo()
         kinds |= {name for act in session.acts for name in act.asked if act.asked[name]}
     assert kinds >= KINDS - ({"choice", "declare"} if game == "shoot_out" else set())
+
+
+def test_strokes_and_places_are_on_the_point_of_the_grid_that_is_nearest():
+    rng, high = np.random.default_rng(2), (7.0, 0.3, 0.3, pi, 0.3)
+    half = np.array([0.5 / 512, 0.5 / 512, 0.5 / 512, pi / 2**22, 0.5 / 1024])
+    for numbers in rng.uniform((0.5, -0.3, -0.3, -pi, 0.0), high, (200, 5)).tolist():
+        wish = CueStroke(**dict(zip(("speed", "side", "top", "aim", "elevation"), numbers, strict=True)))
+        assert (np.abs(stroke_of(numbers_of(wish)).numbers() - numbers) < 1.000001 * half).all()
+    places = rng.uniform(-1.8, 1.8, (200, 2))
+    assert np.abs(steps_of(places) * 2.0**-21 - places).max() <= 2.0**-22
 
 
 def test_balls_come_to_rest_on_the_grid_or_where_they_lay():

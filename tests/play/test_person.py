@@ -7,7 +7,7 @@ from math import log
 
 import pytest
 
-from snooker_env.advice import Recorded
+from snooker_env.advice import CueStroke, Recorded
 from snooker_env.planning import Position
 from snooker_env.play.__main__ import main
 from snooker_env.play.levels import LEVELS
@@ -111,6 +111,37 @@ def test_only_a_fair_frame_against_one_opponent_is_rated(game, kept):
     game("concede")
     game("players", players=["person", "Vera"])  # after its end
     assert rated() == [False, False]
+
+
+def test_a_rated_frame_is_fair_in_each_way_and_the_same_from_either_seat(game, kept):
+    """Pip concedes to the person; what is unfair is so at the first strokes alone."""
+    told, fair = [], {"hints": [0, 1]}  # the person's own first
+    cases = [fair, {"layout": "opened"}, {"game": "six_red"}, {"cue": "free"}, {"undone": 1}]
+    cases += [{"noise": ["club", "beginner"]}, {"noise": ["amateur", "club"]}, {"hints": [1, 0]}]
+    for seat in (0, 1):
+        side, noise = 1 - 2 * seat, ["amateur", "beginner"]
+        game("players", players=["person", "Pip"][::side], noise=noise[::side])
+        for changes in (*cases, {"practice": True}):  # there player 0 has every turn
+            deal = {"layout": "break_off", "game": "snooker"}
+            deal |= {name: value for name, value in changes.items() if name in deal}
+            game("new", seed=8, breaker=seat, **deal)
+            with game.service.acting() as session:
+                for name in changes.keys() - deal.keys():
+                    value = changes[name]
+                    setattr(session, name, value[::side] if isinstance(value, list) else value)
+                while len(session.strokes) < 3 or session.frame.striker == seat:
+                    if len(session.strokes) == 2:
+                        session.noise, session.practice, session.cue = noise[::side], False, "real"
+                    if session.frame.phase == "choice":
+                        session.choose("play")
+                    session.play(CueStroke(speed=3.0, aim=1.5 + len(session.strokes)))
+                session.concede()
+            frame = game("person")["frames"][-1]
+            assert (frame["rated"], frame["won"], frame["noise"]) == (changes is fair, True, noise), changes
+        told.append([kept.read()["frames"][: len(cases)], kept.read()["strokes"][: 2 * len(cases)]])
+        game("person", delete=True)
+    first = told[0][0][0]
+    assert told[0] == told[1] and first["breaks"] and len({*first["scores"]}) == 2
 
 
 def test_what_could_not_be_kept_is_kept_as_soon_as_it_can_be(game, kept):

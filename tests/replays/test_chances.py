@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env.advice import CueStroke
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.frame import frame_of
-from snooker_env.planning import Positions
+from snooker_env.planning import Position, Positions
+from snooker_env.play.session import Session
 from snooker_env.replays.chances import standings_of
 from tests.playing import EASY, STRAIGHT, Asked
 from tests.refusals import refused
@@ -169,6 +171,21 @@ def test_the_luck_of_a_game_is_that_of_its_end():
     words = re.search(r"Luck: Player 1 ([+-]\d+) %, Player 2 ([+-]\d+) %\.", told["luck"])
     assert [int(one) for one in words.groups()] == [round(100 * one) for one in sums]
     game.service.close()
+
+
+def test_luck_is_the_strikers_on_either_seat():
+    """A pot is lucky, a miss is not, and in the mean the same stroke is neither."""
+    told = np.zeros((2, 40, 2))
+    for seat, seed in np.ndindex(2, 40):
+        session, side = Session(seed=seed), 1 - 2 * seat
+        session.noise[:] = ["beginner", "club"][::side]
+        session.set_up(Position(**EASY), scores=(20, 30)[::side], striker=seat, free_ball=False)
+        act = session.play(CueStroke(speed=1.5, aim=STRAIGHT))
+        told[seat, seed] = act.luck, act.played.points > 0
+    assert told[1] == pytest.approx(told[0], abs=1e-9)
+    luck, potted = told[0].T
+    assert luck[potted > 0].mean() > 0.02 and luck[potted == 0].mean() < -0.02
+    assert abs(luck.mean()) < 3.0 * luck.std() / 40**0.5
 
 
 def test_luck_stands_beside_chances_alone(frame):
