@@ -77,7 +77,7 @@ def parser() -> argparse.ArgumentParser:
     table = commands.add_parser("table", help="print the leaderboard of result files")
     table.add_argument("files", nargs="*", metavar="FILE")
     table.add_argument("--markdown", metavar="FILE", help="write it as a page")
-    help_ = "agents that the page names where their result is missing"
+    help_ = "agents that the page names if a result of theirs is missing"
     table.add_argument("--awaited", nargs="+", default=[], metavar="LABEL", help=help_)
     return p
 
@@ -243,7 +243,7 @@ def _degenerate(args: argparse.Namespace) -> int:
     for task in tasks:
         some = list(results(task, folder, args.threads))
         head, rows = board(some, task)
-        print("\n".join([f"{task.id}: {task.measure}", "", *text_table(head, rows, 2), ""]), flush=True)
+        print("\n".join([f"{task.id}: {task.measure}", "", *text_table(head, rows, 3), ""]), flush=True)
         wrong += winners(some)
     print("\n".join(wrong or ["No degenerate policy stands above " + ", ".join(ABOVE) + "."]))
     return int(bool(wrong))
