@@ -1,6 +1,6 @@
 """The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, how agents are judged."""
 
-from ..players.program import AgentError, ProgramPlayer
+from ..players.program import AgentError
 from ..simulation.count import count_shots
 from .agents import Agent
 from .checking import faults
@@ -24,7 +24,6 @@ __all__ = [
     "AgentError",
     "Luck",
     "PlayedStrokes",
-    "ProgramPlayer",
     "Task",
     "count_shots",
     "faults",

@@ -31,16 +31,16 @@ class Agent:
     Attributes
     ----------
     label, sources : str, tuple of str or player
-        Its name in tables, 1 to 20 letters, digits or . + - _; and for each training seed what ``sn.player``
-        makes a player of.
+        The name in tables: 1 to 20 letters, digits or . + - _; for each training seed, an argument that
+        ``sn.player`` accepts.
     options, trust : dict, bool
-        How the actions of models of Stable-Baselines3 are read, and whether code in models may run, as of
-        ``sn.player``.
+        As for ``sn.player``: how to read the actions of models of Stable-Baselines3; whether pickled code in
+        models may run.
     timeout : float
-        The longest time of a program for one stroke [s].
+        The longest time that a program may take for one stroke [s].
     training_shots, shots_declared : int, optional
-        Simulated shots of its training, None: unknown; and of a decision, where this process cannot count
-        them, None: nothing is declared.
+        Shots simulated in training, None if unknown; shots simulated for a decision if this process cannot
+        count them, None to declare nothing.
 
     Examples
     --------
@@ -62,10 +62,10 @@ class Agent:
     def of(
         cls, agent: Source | Path, *, label: str | None = None, training_shots: int | None = None, **more: Any
     ) -> "Agent":
-        """The agent of a text of ``sn.player``, of LABEL=SOURCE,SOURCE,... (training seeds) or of a player.
+        """Make an agent from an argument of ``sn.player``, or from LABEL=SOURCE,SOURCE,... (one for each training seed).
 
-        Label and training shots that are None come from the text or class, and from a player known by name;
-        ``**more``: other attributes. No code of a class or a file runs. ValueError if nothing has that name."""
+        A label or number of training shots that is None follows from the name or class. ``**more``: other
+        attributes. No code of a class or file runs. ValueError if nothing has that name."""
         agent = str(agent) if isinstance(agent, Path) else agent
         sources: list[Source] = [agent]
         if isinstance(agent, str) and not agent.startswith(PROGRAM) and not Path(agent).exists():
@@ -103,7 +103,6 @@ class Agent:
 
     @property
     def program(self) -> bool:
-        """Whether it is an external program."""
         return self.texts[0].startswith(PROGRAM)
 
     @property
@@ -117,7 +116,7 @@ class Agent:
         return all(map(is_player_name, self.texts))
 
     def player(self, task: Task, run: int = 0) -> Player:
-        """The player of training seed ``run``, not yet bound; its code runs. ValueError if it cannot play."""
+        """Return the player of training seed ``run``, not yet bound; its code runs. ValueError if it cannot play the task."""
         source = self.sources[run]
         if self.program and isinstance(source, str):
             return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)
@@ -163,7 +162,6 @@ def claims_player_name(label: str, sources: Sequence[str]) -> bool:
 
 
 def _label(source: Source) -> str:
-    """A label from a source."""
     text = text_of(source)
     if text.startswith(PROGRAM):
         path = Path((text.removeprefix(PROGRAM).split() or ["program"])[-1])

@@ -1,7 +1,7 @@
 """Is a submitted result what it says? Its strokes are played again; all that follows must be equal to the bit."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic
 from .results import complete, strokes_of
 from .schema import fault, faults_of_fields, shorten
-from .tasks import TASKS, Task, task_of
+from .tasks import TASKS, Task
 
 _BUDGET = re.compile(r"_\d+(?=@|$)")
 MOST = 12  # faults of rows, and of strokes, that are named
@@ -27,10 +27,10 @@ SURE = 3.29  # standard errors that a fresh mean may be away: 99.9 %
 
 
 def faults(record: dict[str, Any], threads: int | None = None, *, asking: bool = True) -> list[str]:
-    """Check a result: its fields, and all rows and figures by a replay of its strokes.
+    """Check a result: its fields, and every row and figure by a replay of its strokes.
 
-    Players known by name are asked again for their strokes and decisions: all, or in a random selection of episodes if that
-    would take long.
+    Players known by name must decide on the same strokes again: in all episodes or, if that would take long, in a random
+    selection.
 
     Parameters
     ----------
@@ -136,47 +136,22 @@ def _of_runs(result: dict[str, Any], strokes: Kept) -> list[str]:
 
 def _of_play(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
     """Where do the rows differ from what the strokes play?"""
-    wrong = list[str]()
-    again = _play_again(result, task, strokes, threads)
-    for k, (row, (want, short)) in enumerate(zip(result["rows"], again, strict=True)):
-        name = f"rows[{k}]"
-        if short:
-            wrong.append(fault(f"{name}.strokes", row[STROKES], "more: the episode goes on after them"))
-            continue
-        other = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
-        wrong += [fault(f"{name}.{COLUMNS[c]}", row[c], f"{want[c]}, as its strokes play") for c in other]
-    more = [f"rows: {len(wrong) - MOST} more faults"] if len(wrong) > MOST else []
-    return _elsewhere(result, wrong[:MOST] + more)
-
-
-def _play_again(
-    result: dict[str, Any], task: Task, strokes: Kept, threads: int | None
-) -> Iterator[tuple[list[int], bool]]:
-    """Each row as its strokes play, and whether its episode goes on after them."""
-    rows = result["rows"]
+    wrong, rows = list[str](), result["rows"]
     for first in range(0, len(rows), BATCH):
         some = rows[first : first + BATCH]
         tables = playing.tables_for(task, len(some), threads)
         decide = playing.Repeater(strokes[first : first + BATCH], tables.options.rules.actions.size)
         played = playing.rows_of(task, tables, [row[1] for row in some], decide)
-        for row, want, short in zip(some, played, decide.short.tolist(), strict=True):
-            yield [row[0], *want[1:]], short
-
-
-def count_luck(record: dict[str, Any], threads: int | None = None) -> dict[str, Any]:
-    """A result with the luck of its episodes counted anew from its strokes, by the values that the package holds now; what
-    else is wrong with it, ``faults`` says. ValueError if it is no result."""
-    if wrong := faults_of_fields(record):
-        raise ValueError(wrong[0])
-    task, rows = task_of(record["task"]), record["rows"]
-    record = record | {
-        "rows": [[*row[: len(COLUMNS) - 1], 0] if isinstance(row, list) else row for row in rows]
-    }
-    if wrong := _of_sources(record["agent"]) + _of_rows(record, task):
-        raise ValueError(wrong[0])
-    again = _play_again(record, task, strokes_of(record), threads)
-    rows = [[*row[:-1], want[-1]] for row, (want, _) in zip(record["rows"], again, strict=True)]
-    return complete(record | {"rows": rows}, task)
+        each = zip(some, played, decide.short.tolist(), strict=True)
+        for k, (row, want, short) in enumerate(each, first):
+            name = f"rows[{k}]"
+            if short:
+                wrong.append(fault(f"{name}.strokes", row[STROKES], "more: the episode goes on after them"))
+                continue
+            other = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
+            wrong += [fault(f"{name}.{COLUMNS[c]}", row[c], f"{want[c]}, as its strokes play") for c in other]
+    more = [f"rows: {len(wrong) - MOST} more faults"] if len(wrong) > MOST else []
+    return _elsewhere(result, wrong[:MOST] + more)
 
 
 def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
@@ -244,24 +219,6 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
             must += ", as known players simulate when they are asked again"
             wrong = [fault("timing.simulated_shots", shots, must)]
     return _elsewhere(result, sorted(set(wrong))[:MOST] if len(wrong) > 1 else wrong)
-
-
-def faults_of_replay(
-    record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None
-) -> list[str]:
-    """Have its agent play the first episodes of a sound result again: a line for each whose strokes or row differ."""
-    seeds = TASKS[record["task"]].seeds(record["protocol"]["episodes"])[:episodes]
-    again, wrong, rows = _by(agent, record, seeds, threads), [], record["rows"]
-    kept = {tuple(row[:2]): (row, one.tobytes()) for row, one in zip(rows, strokes_of(record), strict=True)}
-    for row, one in zip(again.rows, again.strokes, strict=True):
-        old = kept.get((row[0], row[1]))
-        if old is not None and old != (row, one.tobytes()):
-            what = "other strokes" if old[0] == row else str(dict(zip(COLUMNS[2:], row[2:], strict=True)))
-            wrong.append(f"run {row[0]}, table {row[1]}: played again {what}, the file has {old[0][2:]}")
-    shots = record["timing"]["simulated_shots"]
-    if not wrong and len(again.rows) == len(rows) and again.simulated != shots:
-        wrong = [fault("timing.simulated_shots", shots, f"{again.simulated}, as the agent played again")]
-    return wrong
 
 
 def afresh(

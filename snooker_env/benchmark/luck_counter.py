@@ -23,22 +23,22 @@ Decide: TypeAlias = Callable[[Bools, int], Singles]
 
 
 class Luck:
-    """The luck of the episodes on n tables as their agent sees it, both sides' in frames. That of a visit holds the table that
-    it was dealt, where the mean over all deals is known.
+    """The luck of the episodes on n tables from the agent's point of view; in frames, of both sides' strokes. The luck of a
+    visit includes the table dealt if the mean over all deals is known.
 
     Parameters
     ----------
     envs : SnookerVectorEnv
-        The tables, before their first reset; an opponent is watched from now on.
+        The tables, before their first reset. From now on an opponent's strokes count, too.
     score : str
-        The score of an episode, as of ``Task``: "points", "legal", "lead" or "won".
+        What an episode scores, as in ``Task``: "points", "legal", "lead" or "won".
 
     Attributes
     ----------
     sums : numpy.ndarray
-        float64 (n,). The luck on each table so far, in units of the score; zero it where an episode begins.
+        float64 (n,). The luck on each table so far, in units of the score; set it to 0 where an episode begins.
     counts : numpy.ndarray
-        bool (n,). Which tables have an episode whose luck counts, at first all.
+        bool (n,). Tables whose luck is counted; at first all.
 
     Examples
     --------
@@ -103,7 +103,6 @@ class WatchedOpponent:
         self._player, self._luck = player, luck
 
     def strokes(self, frames: Frames, which: Ints, crew: Crew) -> Asked:
-        """See ``Opponent.strokes``."""
         asked = self._player.strokes(frames, which, crew)
 
         def turn(copies: Tables, rows: Ints, out: StepOutput) -> None:

@@ -40,7 +40,6 @@ class PlayedEpisodes:
     foresees: bool = False  # whether the player knows what its strokes do, see ``foresees``
 
     def add(self, more: "PlayedEpisodes") -> None:
-        """Add episodes that were played after these."""
         for name in ("rows", "strokes", "decisions", "seconds", "simulated"):
             setattr(self, name, getattr(self, name) + getattr(more, name))
         self.foresees |= more.foresees
@@ -76,7 +75,6 @@ class Decider:
         return actions
 
     def strokes(self) -> Kept:
-        """What was played on each table."""
         tables, actions = (np.concatenate(part) for part in zip(*self._log, strict=True))
         ends = np.cumsum(np.bincount(tables, minlength=len(self._seeds)))
         return np.split(actions[np.argsort(tables, kind="stable")], ends[:-1])

@@ -64,7 +64,6 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
         return made
 
     def mean(values: Floats, *, share: bool = False) -> dict[str, Any]:
-        """The figure of a mean."""
         return of(float(values.mean()), samples.sums(values) / count, score.shape[1] if share else 0)
 
     profile = [t for t in task.thresholds if t <= task.most]
@@ -151,7 +150,7 @@ def write_result(path: str | Path, result: dict[str, Any]) -> None:
     Parameters
     ----------
     path, result : str or Path, dict
-        The file, which after a crash holds the old content or the new one; and what ``judge`` returns.
+        The file, which is replaced in one step; what ``judge`` returns.
 
     Examples
     --------
@@ -178,8 +177,8 @@ def read_result(path: str | Path) -> Any:
     Returns
     -------
     object
-        ValueError if it is not JSON in UTF-8, contains NaN or Infinity, or a key twice in one object; OSError if it
-        cannot be read.
+        The content. ValueError if the file is not JSON in UTF-8, contains NaN or Infinity, or repeats a key of an
+        object; OSError if it cannot be read.
 
     Examples
     --------

@@ -34,12 +34,12 @@ def judge(
     Parameters
     ----------
     task, agent : Task, Agent
-        What is played, and who plays.
+        The task, and the agent that plays it.
     episodes : int, optional
         Number of episodes for each training seed; None: the number of the protocol.
     out, resume : str or Path, bool
-        File for the result, also written once a minute, or None; whether to continue an incomplete result in
-        it. A complete one is left as it is.
+        File for the result, written once a minute and at the end, or None; whether to continue an incomplete
+        result in that file. A complete result is left as it is.
     command : str
         The command line, which is stored in the result.
     threads : int, optional
@@ -50,10 +50,9 @@ def judge(
     Returns
     -------
     dict
-        The result. After Ctrl-C, or when a program that plays fails, it holds the complete batches, and
-        "incomplete" has the reason. ValueError if the agent cannot play the task, or ``out`` holds a result of
-        another run; else what the code of a player raises (``SystemExit`` as RuntimeError): ``out`` then holds the
-        complete batches.
+        The result. After Ctrl-C or the failure of a program it holds the complete batches, and "incomplete"
+        says why. ValueError if the agent cannot play the task, or ``out`` holds the result of another run. Errors of
+        a player's own code are passed on (``SystemExit`` as RuntimeError); ``out`` then holds the complete batches.
 
     Examples
     --------

@@ -48,8 +48,10 @@ def _value(text: str) -> Any:
 
 def add_model_options(parser: ArgumentParser) -> None:
     """Add ``--trust`` and ``--options`` to a command that takes a model's file."""
-    parser.add_argument("--trust", action="store_true", help="let the pickled code in a model's file run")
-    how = "how the actions of a model of Stable-Baselines3 are read, as aim=absolute"
+    parser.add_argument(
+        "--trust", action="store_true", help="allow the pickled code in a model's file to run"
+    )
+    how = "how to read the actions of a model of Stable-Baselines3, for example aim=absolute"
     parser.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
 
 

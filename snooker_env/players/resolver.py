@@ -126,7 +126,6 @@ def is_name(text: str) -> bool:
 
 
 def _built_in(name: str) -> Player | None:
-    """The player of the package with that name."""
     if name in (Random.name, GhostBall.name):
         return Random() if name == Random.name else GhostBall()
     if name == "strokes":
@@ -190,7 +189,6 @@ def _of_object(thing: object) -> Player:
 
 
 def _read(path: Path) -> Any:
-    """What the readers of installed packages make of a file; None if it belongs to none of them."""
     for one in entry_points(group=READERS):
         if _importable(one.module) and (made := one.load()(path)) is not None:
             return made
@@ -198,7 +196,6 @@ def _read(path: Path) -> Any:
 
 
 def _of_file(path: Path, trust: bool, options: dict[str, Any]) -> Player:
-    """The player of a model's file or a run's folder."""
     made = _read(path)
     if made is None:
         from .saved import saved_player

@@ -47,7 +47,6 @@ class StrokeValuePlayer(FramePlayer):
         )
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """See ``Player.play``."""
         at = Positions.of(positions)
         if at.of_frames:
             return self.decide_frames(at, seeds).strokes

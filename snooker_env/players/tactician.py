@@ -48,7 +48,6 @@ class Tactician(FramePlayer):
         self.search = Search(self.judge, self.budget, PolicyProposals(learned.policy))
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """See ``Player.play``."""
         at = Positions.of(positions)
         return self.decide_frames(at, seeds).strokes if at.of_frames else self._visits.play(at, seeds)
 

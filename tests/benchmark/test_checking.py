@@ -8,7 +8,6 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import TASKS, Agent, faults, judge, page
-from snooker_env.benchmark.checking import faults_of_replay
 from snooker_env.benchmark.results import figures_of, pack_strokes, strokes_of
 from snooker_env.benchmark.schema import DATE
 from tests.benchmark.records import put
@@ -98,25 +97,6 @@ def test_what_is_not_known_is_not_official():
     assert faults(changed(**program)) == []
     refused = faults(changed(**program, agent__simulated_shots=None, **{"agent__class": "undeclared"}))
     assert len(refused) == 1 and refused[0].startswith("protocol.official = True: must be False")
-
-
-def test_a_replay_is_of_every_training_seed_by_the_same_agent():
-    two = Agent(label="two", sources=("random", "search_30"), training_shots=0)
-    record = judge(TASKS["SnookerEscape-v0"], two, episodes=6)
-    assert (
-        faults(record) == []
-        and faults_of_replay(record, two, 6) == []
-        and faults_of_replay(record, two, 4) == []
-    )
-    other, strokes = copy.deepcopy(record), strokes_of(record)
-    strokes[8] = -strokes[8]
-    other["strokes"] = pack_strokes(strokes)
-    wrong = faults_of_replay(other, two, 6)
-    assert len(wrong) == 1
-    assert wrong[0].startswith(f"run 1, table {record['rows'][8][1]}: played again other strokes")
-    assert faults_of_replay(other, two, 2) == []
-    with pytest.raises(ValueError, match="must have the 2 training seeds of the file"):
-        faults_of_replay(record, Agent.of("random"), 6)
 
 
 def test_no_free_text_of_a_file_is_on_the_page():

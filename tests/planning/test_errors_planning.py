@@ -92,7 +92,6 @@ obstructions(AT, [0], [(0.0, 0.0)], [1.0, 0.0]) | ends | array of shape | must
 obstructions(AT, [0], [(0.0, 0.0)], [(1.0, 0.0)], ignore=[22]) | ignore | 22 | must
 pots(AT, most=0) | most | 0 | must
 VisitJudge({}, threads=0) | threads | 0 | must
-VisitJudge({}, noise="loud") | noise | 'loud' | must
 VisitJudge(3) | env_or_options | a int | must be an environment
 Search({}) | judge | a dict | must be a VisitJudge or a FrameJudge
 Search(JUDGE, ?) | budget | ? | must | 7; -1; 30.0; "30"; None
@@ -119,7 +118,7 @@ def test_what_cannot_be_planned_is_refused():
     assert pot_aim(**pot).shape == (1,)
     judge, frames = (
         VisitJudge({}, threads=1),
-        FrameJudge({"task": "frame"}, lambda some: np.zeros(len(some)), threads=1),
+        FrameJudge({"task": "frame"}, lambda some: np.zeros(len(some))),
     )
     names = (
         vars(planning)

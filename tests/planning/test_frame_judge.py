@@ -50,7 +50,7 @@ def frame_of(position, scores=(0, 0)):
 
 
 def judge(options=OPTIONS, worth=by_rule, **more):
-    return FrameJudge(options, worth, **{"threads": 1} | more)
+    return FrameJudge(options, worth, **more)
 
 
 def most(plan):
@@ -85,7 +85,7 @@ def test_the_score_is_what_the_stroke_brings_and_leaves():
     """Without errors, the best stroke's points are those of the trial it was: recomputed one by one."""
     at = positions_of(frames_in_play(8, OPTIONS, strokes=4, seed=21))
     at = at[np.flatnonzero(~at.over)]
-    one = judge(noise="none")
+    one = judge(OPTIONS | {"noise": "none"})
     for k, tried in enumerate(Search(one).rank(at, np.arange(len(at)))):
         after = one.outcomes(at, np.full(3, k), tried.strokes.values[:3], np.zeros((3, 5)))
         for j in range(3):

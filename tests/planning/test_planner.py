@@ -96,7 +96,7 @@ def test_noise_given_takes_the_place_of_the_environments_own():
     env = sn.SnookerEnv(noise="club", aim="target")
     env.reset(seed=0)
     exact, strokes = Planner(env, noise="none"), actions(4, 4)
-    assert exact.noise.silent and not Planner(env).noise.silent
+    assert exact.rules.noise.silent and not Planner(env).rules.noise.silent
     silent, rows, keys = Planner(sn.SnookerEnv(aim="target")), [0] * 4, [1, 2, 3, 4]
     assert same(exact.play(env, rows, strokes), silent.play(env, rows, strokes, keys))
     loud = Planner(env, noise={"aim_deg": 3.0})
