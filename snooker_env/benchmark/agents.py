@@ -90,30 +90,26 @@ class Agent:
         number("timeout", made.timeout, 0.0, 1e6, open_low=True)
         if check_model_options(made.options) and any(is_name(text) for text in made.texts):
             raise refuse("options", made.options, LEFT_OUT)
-        if training_shots is None and made.names_players:
+        if training_shots is None and all(map(is_player_name, made.texts)):
             shots = getattr(player_named(sources[0]), "training_shots", None)
             object.__setattr__(made, "training_shots", shots)
         return made
 
     @property
     def texts(self) -> list[str]:
-        """The sources as a file names them."""
+        """The sources, as a result file names them."""
         texts = [text_of(source) for source in self.sources]
         return [text if texts.count(text) == 1 else f"{text} {k}" for k, text in enumerate(texts)]
 
     @property
     def program(self) -> bool:
+        """Whether this is an external program."""
         return self.texts[0].startswith(PROGRAM)
 
     @property
     def batch(self) -> int:
-        """Episodes that it plays side by side."""
+        """Number of episodes that the agent plays side by side."""
         return 1 if self.program else BATCH
-
-    @property
-    def names_players(self) -> bool:
-        """Whether every source is a player of the package, or of one that is installed, by name."""
-        return all(map(is_player_name, self.texts))
 
     def player(self, task: Task, run: int = 0) -> Player:
         """Return the player of training seed ``run``, not yet bound; its code runs. ValueError if it cannot play the task."""
@@ -129,7 +125,7 @@ class Agent:
 
 @contextmanager
 def seat(agent: Agent, task: Task, run: int) -> Iterator[Player]:
-    """The player of one training seed; a program is ended afterwards."""
+    """Yield the player of one training seed; end a program afterwards."""
     player = agent.player(task, run)
     try:
         yield player
@@ -149,7 +145,7 @@ def text_of(source: Source) -> str:
 
 
 def is_player_name(text: str) -> bool:
-    """Whether that is a player of the package, or of one that is installed, with all that it has learned."""
+    """Whether a text names a player of this package or of an installed one, and so its weights."""
     name, at, model = text.partition("@")
     named = ":" not in name and is_name(name) and (not at or model in levels())
     return named or is_degenerate(text)

@@ -114,25 +114,8 @@ def lines(results: Sequence[dict[str, Any]]) -> list[str]:
 
 
 def page(results: Sequence[dict[str, Any]], awaited: Sequence[str] = ()) -> str:
-    """Return the leaderboard as a Markdown page.
-
-    Parameters
-    ----------
-    results : sequence of dict
-        Results without faults, as ``read_result`` returns them.
-    awaited : sequence of str
-        Labels of agents. The page names those that lack a result on some task.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import page
-    >>> page([]).splitlines()[0]
-    '# Leaderboard'
-    """
+    """The leaderboard as a Markdown page, of results without faults. The page names the agents of ``awaited`` that lack a
+    result on some task."""
     there = {(one["task"], one["agent"]["label"]) for one in results}
     lacking = [label for label in awaited if any((task, label) not in there for task in TASKS)]
     missing = [*wrap(f"Still missing on at least one task: {', '.join(lacking)}.", WIDTH), ""]

@@ -26,31 +26,9 @@ class Luck:
     """The luck of the episodes on n tables from the agent's point of view; in frames, of both sides' strokes. The luck of a
     visit includes the table dealt if the mean over all deals is known.
 
-    Parameters
-    ----------
-    envs : SnookerVectorEnv
-        The tables, before their first reset. From now on an opponent's strokes count, too.
-    score : str
-        What an episode scores, as in ``Task``: "points", "legal", "lead" or "won".
-
-    Attributes
-    ----------
-    sums : numpy.ndarray
-        float64 (n,). The luck on each table so far, in units of the score; set it to 0 where an episode begins.
-    counts : numpy.ndarray
-        bool (n,). Tables whose luck is counted; at first all.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import snooker_env as sn
-    >>> from snooker_env.benchmark import Luck
-    >>> envs = sn.SnookerVectorEnv(2, noise="club")
-    >>> luck, _ = Luck(envs, "points"), envs.reset(seed=0)
-    >>> luck.note(np.array([True, False]), np.zeros((2, 4), np.float32))
-    >>> luck.sums.shape, float(luck.sums[1])
-    ((2,), 0.0)
-    """
+    ``envs``: the tables, before their first reset; from then on an opponent's strokes count, too. ``score``: what an episode
+    scores, as in ``Task``. ``sums``, float64 (n,), is the luck so far in units of the score: set it to 0 where an episode
+    begins. ``counts``, bool (n,): tables whose luck is counted, at first all."""
 
     def __init__(self, envs: SnookerVectorEnv, score: str):
         self.sums: Floats = np.zeros(envs.num_envs)

@@ -53,7 +53,7 @@ def foresees(player: Player) -> bool:
 
 
 class Decider:
-    """A player at tables: what it decides is rounded, kept and timed, and its simulated shots are counted."""
+    """Asks a player at tables; rounds, keeps and times its decisions, and counts its simulated shots."""
 
     def __init__(self, player: Player | str, tables: SnookerVectorEnv, seeds: Sequence[int], seed: int):
         self.player: Player = player_named(player).at(tables)
@@ -81,7 +81,7 @@ class Decider:
 
 
 class Repeater:
-    """Decides what a file holds, and knows which episodes went on after their last stroke (``short``)."""
+    """Replays the strokes of a file, and notes which episodes go on after their last stroke (``short``)."""
 
     def __init__(self, strokes: Kept, size: int):
         self._strokes, self._size = strokes, size
@@ -119,7 +119,7 @@ def rounds(tables: SnookerVectorEnv, seeds: list[int], decide: Decide) -> Iterat
 
 
 def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorEnv:
-    """The judged environment of n tables that reads all of a stroke."""
+    """Make n judged tables whose actions hold every part of a stroke."""
     return SnookerVectorEnv(n, task.judged_options(**(FRAMES if task.frame else VISITS)), threads=threads)
 
 

@@ -46,7 +46,7 @@ def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
 
 
 def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] | None:
-    """All figures of an agent's rows, as docs/benchmark_files.md says; None if the runs are not complete."""
+    """Compute all figures of an agent's rows (docs/benchmark_files.md); None if the runs are not complete."""
     columns = matrix(rows)
     if columns is None:
         return None
@@ -55,7 +55,7 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
     count = samples.sums(np.ones(score.shape))
 
     def of(value: float, drawn: Floats, trials: int = 0) -> dict[str, Any]:
-        """A figure; of a share never or always seen in so many ``trials`` with the exact one-sided bound."""
+        """A figure; a share of 0 or 1 in this many ``trials`` has the exact one-sided bound."""
         made = figure(value, drawn) | {"exact": False}
         if made["low"] is None and trials and value in (0.0, 1.0):
             most = bound_if_none(trials)
@@ -81,7 +81,7 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
 
 
 def missing(result: dict[str, Any], task: Task) -> list[str]:
-    """What a result lacks to be official, in a few words each."""
+    """List in a few words each what a result lacks to be official."""
     agent, episodes = result["agent"], result["protocol"]["episodes"]
     reasons = {
         "incomplete": result["incomplete"] is not None,
@@ -93,7 +93,7 @@ def missing(result: dict[str, Any], task: Task) -> list[str]:
 
 
 def complete(record: dict[str, Any], task: Task) -> dict[str, Any]:
-    """The record with all that follows from its other fields, computed anew; ``check`` compares."""
+    """Return the record with every derived field computed again; ``check`` compares."""
     agent, rows, shots = record["agent"], record["rows"], record["timing"]["simulated_shots"]
     declared = agent["simulated_shots"] if agent["declared"] else None
     mean: float | None = shots / max(1, sum(row[STROKES] for row in rows))

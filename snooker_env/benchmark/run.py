@@ -100,7 +100,7 @@ def judge(
 
 
 def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
-    """Play the episodes of one training seed, batch after batch; the first one's player decides on one table, too."""
+    """Play the episodes of one training seed in batches; the first player is also timed on one table."""
     with seat(agent, task, run) as player:
         while len(played.rows) < (run + 1) * len(seeds):
             first = len(played.rows) - run * len(seeds)
@@ -114,7 +114,7 @@ def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
 def read_earlier(
     path: str | Path | None, task: Task, agent: Agent, episodes: int
 ) -> tuple[dict[str, Any] | None, PlayedEpisodes]:
-    """A file of the same run, and what was played for it; None and nothing if there is no file."""
+    """Read the file of the same run and what was played for it; None and no episodes if there is no file."""
     if path is None or not Path(path).exists():
         return None, PlayedEpisodes([])
     result = read_result(path)

@@ -22,23 +22,7 @@ SHRINK = 10  # tables: the share of luck that so many show counts half
 
 
 def iqm(values: ArrayLike) -> float:
-    """Return the inter-quartile mean, the mean of the middle half of the values.
-
-    Parameters
-    ----------
-    values : array_like, float
-        The values, of any shape.
-
-    Returns
-    -------
-    float
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import iqm
-    >>> iqm([0, 1, 2, 99])
-    1.5
-    """
+    """The inter-quartile mean: the mean of the middle half."""
     unique, counts = np.unique(values, return_counts=True)
     return float(_middle_mean(unique, counts[None])[0])
 
@@ -83,25 +67,8 @@ class Resamples:
 
 
 def interval(samples: Floats | Sequence[float]) -> tuple[float, float]:
-    """Return the 95 % percentile interval of bootstrap samples.
-
-    Parameters
-    ----------
-    samples : array_like, float (n,)
-        The samples.
-
-    Returns
-    -------
-    low, high : float
-        NaN if a sample is NaN or all are equal: no century in 500 visits does not prove that there are none.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import interval
-    >>> low, high = interval(range(101))
-    >>> round(low, 6), round(high, 6)
-    (2.5, 97.5)
-    """
+    """The 95 % percentile interval of bootstrap samples. NaN if a sample is NaN or all are equal: no century in 500 visits does
+    not prove that there are none."""
     low, high = np.quantile(samples, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
     return (float(low), float(high)) if np.ptp(samples) > 0 else (float("nan"), float("nan"))
 

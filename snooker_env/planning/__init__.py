@@ -21,7 +21,7 @@ from .position import Position
 from .positions import Positions
 from .pot_geometry import Pots, clear_paths, obstructions, pots
 from .proposals import Proposals, at_pots
-from .prospects import prospects_of, spread_of
+from .prospects import prospects_of
 from .search import Ranked, Search
 from .strokes import Strokes, action_masks
 from .visit_judge import VisitJudge
@@ -48,5 +48,4 @@ __all__ = [
     "pots",
     "processors",
     "prospects_of",
-    "spread_of",
 ]

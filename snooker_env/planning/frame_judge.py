@@ -20,7 +20,6 @@ from .planner import options_in
 from .positions import Positions
 from .pot_geometry import clear_paths
 from .proposals import Proposals, at_balls, over_cushions, safeties
-from .prospects import spread_of
 from .search import BUDGET, Plan, Proposed, Search
 from .stroke_columns import COLUMNS
 from .trials import FrameTrials, turn_to_striker
@@ -81,9 +80,9 @@ class FrameJudge:
 
     Examples
     --------
-    >>> from snooker_env.planning import FrameJudge, prospects_of, spread_of
+    >>> from snooker_env.planning import FrameJudge, prospects_of
     >>> from snooker_env.tasks import Noise
-    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, spread_of(Noise()))[0]).shots
+    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, Noise().spread())[0]).shots
     0
     """
 
@@ -101,7 +100,7 @@ class FrameJudge:
         self.rules: Rules = rules
         self.noise: Noise = rules.noise
         self._trials = FrameTrials(rules, Threads(min(1024, processors())))
-        self.spread: Spread = spread_of(self.noise, rules.physics)
+        self.spread: Spread = self.noise.spread(rules.physics)
         self.dynamics: Dynamics = Dynamics.of(self.rules)
         self.worth: Worth = worth
         self.chance: Chance | None = chance

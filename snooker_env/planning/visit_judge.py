@@ -18,7 +18,7 @@ from .aims import Dynamics
 from .planner import Planner, options_in
 from .positions import Positions
 from .proposals import Proposals, Propose, at_balls, over_cushions
-from .prospects import prospects_of, spread_of
+from .prospects import prospects_of
 from .search import Plan, Proposed, Search
 from .stroke_columns import COLUMNS
 
@@ -84,7 +84,7 @@ class VisitJudge:
         self.planner: Planner = Planner(options, threads=threads)
         self.rules: Rules = self.planner.rules
         self.noise: Noise = self.rules.noise
-        self.spread: Spread = spread_of(self.noise, self.rules.physics)
+        self.spread: Spread = self.noise.spread(self.rules.physics)
         self.dynamics: Dynamics = Dynamics.of(self.rules)
         self.value: Value = self._by_rule if value is None else value
         self.legal: bool = options.reward == "legal"

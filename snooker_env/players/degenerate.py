@@ -1,7 +1,7 @@
 """Which policies look at nothing, and must win no task? Strokes that are silly on any table, and one choice for all tables.
 
-They are no players to play with. ``sn.player`` knows them as ``snooker_env.players.degenerate:softest`` and so on, and as
-``...:constant_67`` a choice of ``action="discrete"``, of which the aim alone is solved."""
+``sn.player`` knows them as ``snooker_env.players.degenerate:softest`` and so on. ``...:constant_67`` plays one choice of
+``action="discrete"``, whose aim is solved for each table."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -32,7 +32,7 @@ def draw_uniform(frames: Frames, which: Ints) -> Floats:
 
 
 class PlayerOpponent:
-    """A bound player as opponent, with a seed of each table's own stream for each stroke."""
+    """A bound player as opponent; the seed of each stroke comes from the table's own stream."""
 
     def __init__(self, player: Player, name: str):
         self.player, self.name = player, name
@@ -74,7 +74,7 @@ class PlayerOpponent:
 
 
 class PoolOpponent:
-    """The members of a pool as opponents in frames with these options; those added later are made ready when they play."""
+    """The members of a pool as opponents in frames with these options; members added later are bound when they play."""
 
     name = "an OpponentPool"
 

@@ -15,7 +15,7 @@ from ..game.frame_columns import PLACE_ANYWHERE, PLAY
 from ..planning.ghost_ball import put_in_hand
 from ..planning.planner import options_in
 from ..planning.positions import Positions, PositionsLike, seeds_of
-from ..planning.prospects import prospects_of, spread_of
+from ..planning.prospects import prospects_of
 from ..planning.search import Ranked
 from ..planning.strokes import Strokes
 from ..planning.worth import apply_decision, decide
@@ -84,7 +84,7 @@ class BoundPlayer:
 
         By default the likeliest pot decides: a striker who is likely to pot gains by playing next."""
         rules, (visits, _) = self.options.rules, place_cue_balls(at, np.zeros(len(at), np.int64))
-        spread = spread_of(rules.noise, rules.physics)
+        spread = rules.noise.spread(rules.physics)
         return 2.0 * prospects_of(visits, spread, most=_POTS, rails=rules.rails)[1].max(axis=1) - 1.0
 
     def start_playing(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints]:

@@ -16,7 +16,6 @@ from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, HALF_LENGTH, HALF_WID
 from ..physics.table import Table
 from ..planning.positions import Positions
 from ..planning.pot_geometry import obstructions, pots
-from ..planning.prospects import spread_of
 from ..tasks.noise import LEVELS
 from ..tasks.pot_chance import pot_chances
 
@@ -57,7 +56,7 @@ class Line:
 def find_lines(positions: list[Positions], on: int, noise: str) -> list[Line]:
     """Lines to pockets for the balls ``on``; ``positions``: the table, with a free ball also for colours."""
     errors = LEVELS[noise]
-    spread = None if errors.silent else spread_of(errors)
+    spread = None if errors.silent else errors.spread()
     tolerances = {}
     for position in positions:
         some = pots(position, most=MOST)

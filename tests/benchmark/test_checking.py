@@ -7,7 +7,8 @@ from functools import cache
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import TASKS, Agent, faults, judge, page
+from snooker_env.benchmark import TASKS, Agent, faults, judge
+from snooker_env.benchmark.leaderboard import page
 from snooker_env.benchmark.results import figures_of, pack_strokes, strokes_of
 from snooker_env.benchmark.schema import DATE
 from tests.benchmark.records import put

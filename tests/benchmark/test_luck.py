@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import TASKS, Luck, play_visits
+from snooker_env.benchmark import TASKS, play_visits
+from snooker_env.benchmark.luck_counter import Luck
 from snooker_env.benchmark.playing import Decider, rounds, rows_of, tables_for
 from snooker_env.benchmark.statistics import adjust
 from snooker_env.game.banks import split_bank

@@ -8,11 +8,11 @@ from scipy import stats
 
 import snooker_env as sn
 from snooker_env._lib.files import with_checksum
-from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, interval, judge, page
+from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, judge
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.leaderboard import lines
+from snooker_env.benchmark.leaderboard import lines, page
 from snooker_env.benchmark.results import read_result
-from snooker_env.benchmark.statistics import bound_if_none
+from snooker_env.benchmark.statistics import bound_if_none, interval
 from snooker_env.planning import Planner
 from snooker_env.players import VISITS, BoundPlayer, Strokes, decision_seeds
 

@@ -5,7 +5,7 @@ import pytest
 
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import touching_balls as touching_kernel
-from snooker_env.planning import FrameJudge, Position, Positions, Search, prospects_of, spread_of
+from snooker_env.planning import FrameJudge, Position, Positions, Search, prospects_of
 from snooker_env.planning.frame_judge import KEPT, PLANS, SURE_OF
 from snooker_env.planning.proposals import EDGE, safeties
 from snooker_env.planning.search import BUDGET
@@ -29,7 +29,7 @@ from tests.planning.test_trials import GAME, frames_in_play, play, positions_of,
 
 OPTIONS = GAME | {"noise": "club", "cue": "real"}
 windows_of, touching_balls = from_python(open_windows), from_python(touching_kernel)
-SPREAD = spread_of(LEVELS["club"])
+SPREAD = LEVELS["club"].spread()
 
 
 def by_rule(at):
@@ -68,17 +68,6 @@ def test_a_pot_that_is_easy_is_played_and_hard_positions_get_more_shots():
     for tried in Search(two).rank(hard, np.arange(6)):
         assert tried.kinds[0] in (1, 2) and (np.diff(tried.samples) <= 0).all()
     assert 1.5 * BUDGET < two.shots / 6 <= most(PLANS[1])
-
-
-def test_many_positions_are_judged_as_each_alone():
-    at = positions_of(frames_in_play(12, OPTIONS, strokes=5, seed=11))
-    at = at[np.flatnonzero(~at.over)]
-    keys = np.arange(len(at)) + 70
-    together = Search(judge()).rank(at, keys)
-    for k in range(len(at)):
-        (alone,) = Search(judge()).rank(at[[k]], keys[[k]])
-        assert np.array_equal(together[k].strokes.values, alone.strokes.values)
-        assert all(map(np.array_equal, together[k][1:], alone[1:]))
 
 
 def test_the_score_is_what_the_stroke_brings_and_leaves():
