@@ -12,7 +12,7 @@ FOLDER = "results/leaderboard"
 Table = tuple[list[str], list[list[str]]]  # heading and rows
 
 LEGEND = (
-    "Ranked by adjusted, the mean score less luck, with its 95 % interval. anchor: looks at nothing, has no rank. training: simulated "
+    "Ranked by adjusted, the mean score less luck, with its 95 % interval. anchor: should win nothing, has no rank. training: simulated "
     "shots of all training. seeds: training seeds. shots: simulated shots a decision (d: declared, not counted). *: not official."
 )
 READ = """\
@@ -27,10 +27,10 @@ stroke; `check` plays each episode again from its seed and computes all figures 
   in all. Two agents whose intervals overlap may be equally strong.
 * **class** says how an agent decides. `planning` simulates shots; `foresight` simulates none but
   computes in closed form what each stroke would do; `model_free` does neither.
-* An `anchor` does not look at the table, and has no rank. It shows what a task pays without skill:
-  `random` strokes, one `constant` choice, the `softest` and the `hardest` stroke at the nearest ball
-  on, a deliberate foul (`away`, `softest_away`), and in frames `play_again`, which makes the opponent
-  play again after every foul.
+* An `anchor` is a policy that should win nothing, and has no rank. It shows what a task pays without
+  skill: `random` strokes, one `constant` choice, the `softest` and the `hardest` stroke at the nearest
+  ball on, a deliberate foul (`away`, `softest_away`), and in frames `play_again`, a `ghost_ball` that
+  makes the opponent play again after every foul.
 * **training** counts the simulated shots of all training, **seeds** the training seeds. **shots**
   counts the simulated shots of one decision; `d` marks a number that the author declared.
 * **result** links to the file, by its date. The file says which command, commit and machine made it.
@@ -55,7 +55,7 @@ trained it. `bash results/make.sh leaderboard` makes this page.
 
 
 def is_anchor(result: dict[str, Any]) -> bool:
-    """Whether the agent of a result looks at nothing."""
+    """Whether the agent of a result is a policy that should win nothing."""
     agent = result["agent"]
     return agent["class"] == "degenerate" or agent["label"] == "random"
 

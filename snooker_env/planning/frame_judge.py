@@ -82,8 +82,8 @@ class FrameJudge:
     --------
     >>> from snooker_env.planning import FrameJudge, prospects_of
     >>> from snooker_env.tasks import Noise
-    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, Noise().spread())[0]).shots
-    0
+    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, Noise().spread())[0]).least
+    30
     """
 
     least = 30
@@ -105,7 +105,6 @@ class FrameJudge:
         self.worth: Worth = worth
         self.chance: Chance | None = chance
         self.foresee: Foresee | None = foresee
-        self.shots: int = 0
 
     def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
         """See ``Judge.plans``: one where a likely pot makes the decision easy, one elsewhere."""
@@ -202,7 +201,6 @@ class FrameJudge:
 
     def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Positions:
         """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5), see ``FrameTrials.play``."""
-        self.shots += len(rows)
         return self._trials.play(at, rows, strokes, errors)
 
     def gains(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Floats:

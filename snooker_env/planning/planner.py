@@ -1,7 +1,6 @@
 """What would strokes lead to? ``Planner`` plays them on copies of positions by the rules."""
 
 import copy
-import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, cast
@@ -108,13 +107,6 @@ class Planner:
         usual = min(1024, processors())
         self._threads = Threads(usual if threads is None else integer("threads", threads, 1, 1024))
         self._visits = TrialVisits(self._rules, 0)
-        self._lock = threading.Lock()
-        self._shots = 0
-
-    @property
-    def shots(self) -> int:
-        """Number of strokes played so far, an int."""
-        return self._shots
 
     @property
     def threads(self) -> int:
@@ -190,8 +182,6 @@ class Planner:
         visits.lay(after, streams, errors)
         out, n = visits.output(), len(told)
         visits.step(told, np.zeros(n, np.bool_), out, self._threads)
-        with self._lock:
-            self._shots += n
         penalty, first = (out.counts[:, column].copy() for column in (I_PENALTY, I_FIRST))
         points = out.reals[:, I_POINTS].copy()
         where = visits.places, visits.potted
@@ -224,12 +214,6 @@ class Planner:
         dynamics = Dynamics.of(self._rules)
         at = Positions.of(positions).known_to(self._rules)
         return solved_aims(at, rows, balls, targets, strokes, ghosts, dynamics)
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_lock"}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state, _lock=threading.Lock())  # a lock belongs to one process
 
 
 def options_in(source: object) -> Options:

@@ -66,8 +66,8 @@ class VisitJudge:
     Examples
     --------
     >>> from snooker_env.planning import VisitJudge
-    >>> VisitJudge({"noise": "club"}).shots
-    0
+    >>> VisitJudge({"noise": "club"}).least
+    8
     """
 
     least = 8
@@ -89,11 +89,6 @@ class VisitJudge:
         self.value: Value = self._by_rule if value is None else value
         self.legal: bool = options.reward == "legal"
         self.pots_only: bool = pots_only
-
-    @property
-    def shots(self) -> int:
-        """Number of strokes simulated so far, an int."""
-        return self.planner.shots
 
     def _by_rule(self, at: Positions) -> Floats:
         constants = SURE if self.noise.silent else RULE_OF_THUMB
