@@ -2,7 +2,6 @@
 errors of several sizes, and the frames are compared with those of professionals.
 
     python -m agents.calibrate FILE [--scales 0.9 1.0 1.1] [--frames 400] [--picture FILE] [--json FILE]
-    python -m agents.calibrate FILE --laws 48 --frames 96
 
 FILE: frames of professionals, a line for each: VISITS/VISITS/MINUTES:SECONDS. VISITS are the points of a player's
 scoring visits, and F4 for 4 points from the other's foul. Before the frames of a match a line M A B may say how many
@@ -10,10 +9,6 @@ seconds both players take for a stroke, 0 where it is not known; lines with # ar
 errors of ``noise="professional"`` (``agents._lib.noise_option``). A visit scores if it pots a ball; its points are its
 break. Frames that are lost are conceded, as in matches. Standard errors are over frames. The chance to win that the
 ``tactician`` sees before each stroke is compared with who won.
-
-With --laws so many laws of errors take the place of the scales (``evaluation.law_fit``): the likeliest, by the matches of
-FILE with even numbers, is shown, and how the likelihood falls with each of its parameters. Matches with odd numbers are for
-testing the law.
 """
 
 import re
@@ -38,16 +33,6 @@ with needs("agents.calibrate"):
     from snooker_env.players.weights import learned_worth
     from snooker_env.tasks import LEVELS
 
-    from .evaluation.law_fit import (
-        FITTED,
-        LEAST_LAWS,
-        LONG_POTS,
-        law_of,
-        long_pots,
-        profile,
-        spread_laws,
-        tables_of,
-    )
     from .learning.frame_self_play import FRAME, TABLES, frames
     from .learning.frame_worth import by_stage, calibration
 
@@ -67,14 +52,14 @@ FIGURES = {
 
 
 def frames_of(text):
-    """The frames of a file: a dict for each, "breaks" (of both players), "fouls", "points" (2,), "strokes", "match"."""
-    frames, shot, match = [], 0.0, 0
+    """The frames of a file: a dict for each, "breaks" (of both players), "fouls", "points" (2,), "strokes"."""
+    frames, shot = [], 0.0
     for line in text.splitlines():
         if not line or line.startswith("#"):
             continue
         if re.fullmatch(r"M( \d+(\.\d+)?){2}\s*", line):
             times = [float(part) for part in line.split()[1:]]
-            shot, match = float(np.mean(times)) if all(times) else 0.0, match + 1
+            shot = float(np.mean(times)) if all(times) else 0.0
             continue
         parts = line.split("/")
         if not re.fullmatch(r"[F\d ]*/[F\d ]*/\d+:\d\d\s*", line):
@@ -90,9 +75,7 @@ def frames_of(text):
                     points[side] += int(visit)
         minutes, seconds = map(int, parts[2].split(":"))
         strokes = (60 * minutes + seconds) / shot if shot else np.nan
-        frames.append(
-            {"breaks": breaks, "fouls": fouls, "points": points, "strokes": strokes, "match": match}
-        )
+        frames.append({"breaks": breaks, "fouls": fouls, "points": points, "strokes": strokes})
     if len(frames) < 2 or not any(one["breaks"] for one in frames):
         raise refuse("file", f"{len(frames)} frames", "must hold two frames and a scoring visit at least")
     return frames
@@ -243,41 +226,13 @@ def _table(title, words, columns):
     return TextTable(title, ["", *columns], rows, 1, 1)
 
 
-def fit_law(real, args):
-    """``law_fit`` with the matches of even numbers; exit code 0."""
-    logs, laws = spread_laws(args.laws, args.frames)
-    noises, figures = [law_of(**law) for law in laws], {name: [] for name in (*FIGURES, "long")}
-    for noise in noises:
-        (parts,) = play_frames([noise], args.frames, args.budget)
-        found = figures_of([one for rows in parts for one in group_frames(rows)])
-        for name, (mean, _) in found.items():
-            figures[name].append(mean)
-        figures["long"].append(long_pots(noise, FIRST_SEED))
-    said = figures_of([one for one in real if one["match"] % 2 == 0])
-    said = {name: said[name] for name in FITTED} | {"long": LONG_POTS}
-    best, least, rows = profile(logs, figures, said, args.laws)
-    show(tables_of(best, least, rows))
-    if args.json:
-        report = {
-            "laws": laws,
-            "figures": figures,
-            "said": said,
-            "best": best,
-            "misfit": least,
-            "profile": rows,
-        }
-        write_json(args.json, report | {"frames": args.frames} | provenance())
-    return 0
-
-
 @command("agents.calibrate")
 def main(argv=None):
     """Play, compare. Exit code 0."""
     p = parser_of("python -m agents.calibrate", __doc__)
     p.add_argument("file", type=Path, help="frames of professionals")
     p.add_argument("--scales", type=float, nargs="+", default=[0.9, 1.0, 1.1], help="[0.9 1.0 1.1]")
-    p.add_argument("--laws", type=int, metavar="N", help="fit the law of errors itself, by N of them")
-    p.add_argument("--frames", type=int, default=400, help="frames of each scale or law [400]")
+    p.add_argument("--frames", type=int, default=400, help="frames of each scale [400]")
     p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
     p.add_argument("--picture", type=Path, metavar="FILE", help="draw the chance to win and who won here")
     p.add_argument("--json", type=Path, metavar="FILE", help="write every figure here")
@@ -285,8 +240,6 @@ def main(argv=None):
     try:
         integer("frames", args.frames, 2, 10**6)
         integer("budget", args.budget, FrameJudge.least, 10**6)
-        if args.laws is not None:
-            integer("laws", args.laws, LEAST_LAWS, 10**4)
         for scale in args.scales:
             number("scales", scale, 0.01, 10.0)
         for name in ("picture", "json"):
@@ -295,8 +248,6 @@ def main(argv=None):
     except (ValueError, OSError) as error:
         p.error(str(error))
     snooker_env.warmup()
-    if args.laws:
-        return fit_law(real, args)
     base = LEVELS["professional"]
     played = play_frames([base.scale(scale) for scale in args.scales], args.frames, args.budget)
     names = [f"scale {scale:g}" for scale in args.scales]

@@ -29,14 +29,10 @@ class Lock:
             self._path.write_text(
                 f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n"
             )
-        self._file = self._path.stat()
 
     def release(self):
-        """Release the folder. If it was moved, and another run has begun at its old path, that one's lock
-        stays."""
         with suppress(OSError):
-            if os.path.samestat(self._file, self._path.stat()):
-                self._path.unlink()
+            self._path.unlink()
         self._lock.release()
 
     def __enter__(self):

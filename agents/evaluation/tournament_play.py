@@ -19,7 +19,8 @@ import numpy as np
 
 from agents._lib.physics_option import physics_option
 from snooker_env import Options, SnookerVectorEnv
-from snooker_env.benchmark import Luck, count_shots
+from snooker_env.benchmark import count_shots
+from snooker_env.benchmark.luck_counter import Luck
 from snooker_env.players import FRAMES, ask_player, decision_seeds
 
 from .tournament_figures import COUNTED, PARTS

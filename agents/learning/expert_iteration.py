@@ -13,7 +13,7 @@ import numpy as np
 
 from snooker_env import SnookerVectorEnv
 from snooker_env.benchmark import count_shots
-from snooker_env.planning import Positions, Search, VisitJudge, spread_of
+from snooker_env.planning import Positions, Search, VisitJudge
 from snooker_env.planning.learned.policy_proposals import PolicyProposals
 from snooker_env.planning.learned.value_features import SIZE, value_features
 
@@ -189,4 +189,4 @@ class ExpertIteration(Part):
 def judge_rewards(venv, policy, threads):
     """Let the tables add the learned value of the afterstate to rewards: reward-to-go for gamma = 0."""
     rules = venv.unwrapped.tables.options.rules
-    venv.judge = value_of(policy.position_value, spread_of(rules.noise, rules.physics), threads)
+    venv.judge = value_of(policy.position_value, rules.noise.spread(rules.physics), threads)

@@ -122,7 +122,9 @@ def try_visits(layers, noise, cue, seeds, rng):
         picks = np.concatenate([order[:, :BEST], rest], axis=1)
         rows = np.repeat(found.rows, tried * ERRORS)
         trials = np.repeat(found.strokes[every, picks].reshape(-1, 5), ERRORS, axis=0)
-        out = planner.play_strokes(visits, rows, trials, errors=planner.noise.draw_errors(rng, len(rows)))
+        out = planner.play_strokes(
+            visits, rows, trials, errors=planner.rules.noise.draw_errors(rng, len(rows))
+        )
         worth, on = out.points, np.flatnonzero(out.goes_on)
         worth[on] += judge(out.afterstates[on])
         kept_seen.append(found.seen[every, picks].astype(np.float16))

@@ -11,7 +11,7 @@ import numpy as np
 from snooker_env import MatchVectorEnv
 from snooker_env.game.balls import REDS_MASK, BallOn
 from snooker_env.game.snookered import is_snookered
-from snooker_env.planning import Positions, prospects_of, spread_of
+from snooker_env.planning import Positions, prospects_of
 from snooker_env.players import FRAMES, ask_player, decision_seeds, player
 
 PLAYER = "tactician_30"
@@ -38,7 +38,7 @@ def play_frames(first, many):
     that are not on the table."""
     tables = MatchVectorEnv(many, **RULES)
     rules, seeds = tables.options.rules, np.arange(first, first + many)
-    spread, who = spread_of(rules.noise, rules.physics), player(PLAYER).at(tables)
+    spread, who = rules.noise.spread(rules.physics), player(PLAYER).at(tables)
     tables.reset(seed=first)
     found, going, number = [[] for _ in range(many)], np.ones(many, bool), 0
     while going.any():

@@ -1,16 +1,13 @@
 """The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, how agents are judged."""
 
-from ..players.program import AgentError, ProgramPlayer
+from ..players.program import AgentError
 from ..simulation.count import count_shots
 from .agents import Agent
 from .checking import faults
-from .leaderboard import page
-from .luck_counter import Luck
 from .playing import COLUMNS
 from .results import read_result, write_result
 from .rollouts import CENTURY, FIGURES, MAXIMUM, PlayedStrokes, play_visits, summary
 from .run import judge
-from .statistics import interval, iqm
 from .tasks import HELD_OUT_SEED, TASKS, Task
 
 __all__ = [
@@ -22,16 +19,11 @@ __all__ = [
     "TASKS",
     "Agent",
     "AgentError",
-    "Luck",
     "PlayedStrokes",
-    "ProgramPlayer",
     "Task",
     "count_shots",
     "faults",
-    "interval",
-    "iqm",
     "judge",
-    "page",
     "play_visits",
     "read_result",
     "summary",

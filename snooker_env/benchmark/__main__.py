@@ -17,11 +17,11 @@ from ..players.model_options import add_model_options, options_of_words
 from ..players.program import AgentError
 from ..progress import ticking
 from .agents import Agent, is_player_name, seat
-from .checking import afresh, count_luck, faults, faults_of_replay
+from .checking import afresh, faults
 from .degenerate_check import ABOVE, results, winners
 from .leaderboard import board, lines, page
 from .playing import COLUMNS
-from .results import missing, read_result, write_result
+from .results import missing, read_result
 from .run import judge
 from .tasks import FREE, FRESH_SEED, SEEDS_END, TASKS, Task, task_of
 from .warmup import warmup
@@ -32,62 +32,61 @@ NOTHING = 0.02
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line."""
-    what = "Judge agents on named tasks by the rules in the documentation, Benchmark."
+    what = "Judge agents on fixed tasks. docs/benchmark.md has the rules."
     p = argparse.ArgumentParser(NAME, description=what)
     commands = p.add_subparsers(dest="command", required=True)
     commands.add_parser("tasks", help="list the tasks")
     run = commands.add_parser("run", help="play a task and write its result file")
-    run.add_argument("tasks", nargs="+", metavar="TASK", help="ids of tasks, or all")
+    run.add_argument("tasks", nargs="+", metavar="TASK", help="task ids, or all")
     _agent(run, required=True)
     add = run.add_argument
-    add("--label", help="name in the tables (default: from the agent)")
-    add("--episodes", type=int, help="fewer episodes, for a first try; such a result is not official")
-    add("--training-shots", type=int, metavar="N", help="all simulated shots of its training; 0: not trained")
-    help_ = "declare simulated shots a decision not counted here"
+    add("--label", help="name of the agent in tables (default: taken from --agent)")
+    add("--episodes", type=int, help="play fewer episodes as a trial; the result is then not official")
+    add(
+        "--training-shots",
+        type=int,
+        metavar="N",
+        help="shots simulated in all of its training; 0 for an untrained agent",
+    )
+    help_ = "declare the shots simulated for one decision if this process cannot count them"
     add("--simulated-shots", type=int, metavar="N", help=help_)
     add("--out", metavar="PATH", help="result file, or folder for several tasks (default: TASK.LABEL.json)")
-    add("--resume", action="store_true", help="go on with an incomplete result file, keep a complete one")
-    add("--force", action="store_true", help="replace result files that are there")
-    check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
+    add("--resume", action="store_true", help="continue an incomplete result file; keep a complete one")
+    add("--force", action="store_true", help="overwrite existing result files")
+    check = commands.add_parser("check", help="verify result files; the exit code is 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
-    help_ = (
-        "first count the luck of their episodes anew from their strokes, as after new weights, and write them"
-    )
-    check.add_argument("--luck", action="store_true", help=help_)
-    help_ = "have --agent play N episodes again: the same strokes?"
-    check.add_argument("--replay", type=int, metavar="N", help=help_)
-    help_ = "have --agent play N episodes on fresh seeds: the same mean?"
+    help_ = "have --agent play N episodes on new seeds and compare the mean scores"
     check.add_argument("--fresh", type=int, metavar="N", help=help_)
     _agent(check, required=False)
     help_ = "threads that play the tables (default: one for each core)"
     for one in (run, check):
         one.add_argument("--threads", type=int, help=help_)
     silly = commands.add_parser(
-        "degenerate", help="do policies that look at nothing win a task? exit code 1 if one does"
+        "degenerate",
+        help="play policies that do not look at the table; the exit code is 1 if one wins a task",
     )
-    silly.add_argument("tasks", nargs="*", metavar="TASK", help="ids of tasks (default: all)")
+    silly.add_argument("tasks", nargs="*", metavar="TASK", help="task ids (default: all)")
     silly.add_argument(
         "--out",
         metavar="FOLDER",
         default="results/leaderboard",
-        help="folder of result files [results/leaderboard]",
+        help="folder of the result files [results/leaderboard]",
     )
     silly.add_argument("--threads", type=int, help=help_)
     table = commands.add_parser("table", help="print the leaderboard of result files")
     table.add_argument("files", nargs="*", metavar="FILE")
-    table.add_argument("--markdown", metavar="FILE", help="write it as a page")
-    help_ = "agents that the page names where their result is missing"
+    table.add_argument("--markdown", metavar="FILE", help="write a Markdown page instead")
+    help_ = "agents that the page names if a result of theirs is missing"
     table.add_argument("--awaited", nargs="+", default=[], metavar="LABEL", help=help_)
     return p
 
 
 def _agent(p: argparse.ArgumentParser, required: bool) -> None:
     """Arguments that name an agent."""
-    what = 'a name, a .zip of Stable-Baselines3, LABEL=ZIP,ZIP (training seeds), MODULE:CLASS or program:"COMMAND"'
+    what = 'player name, .zip of Stable-Baselines3, LABEL=ZIP,ZIP (training seeds), MODULE:CLASS or program:"COMMAND"'
     p.add_argument("--agent", required=required, help=what)
     add_model_options(p)
-    how = "seconds that a program has for a stroke (default: 60)"
+    how = "seconds that a program may take for one stroke (default: 60)"
     p.add_argument("--timeout", type=float, default=60.0, help=how)
 
 
@@ -108,7 +107,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _tasks(args: argparse.Namespace) -> int:
-    """List the tasks."""
     head = ["task", "what", "judged on", "noise", "episodes"]
     rows = [
         [task.id, task.title, task.judged_layout, task.frozen_options["noise"], f"{task.episodes:,}"]
@@ -120,23 +118,22 @@ def _tasks(args: argparse.Namespace) -> int:
 
 
 def _agent_of(args: argparse.Namespace, **more: Any) -> Agent:
-    """The agent that the arguments name."""
     more |= {"options": options_of_words(args.options), "trust": args.trust, "timeout": args.timeout}
     return Agent.of(args.agent, **more)
 
 
 def _run(args: argparse.Namespace) -> int:
-    """Play tasks; whatever is wrong is said before the first one is played."""
+    """Play tasks; wrong arguments are refused before the first one is played."""
     tasks = list(TASKS.values()) if args.tasks == ["all"] else [task_of(name) for name in args.tasks]
     shots = {"training_shots": args.training_shots, "shots_declared": args.simulated_shots}
     agent = _agent_of(args, label=args.label, **shots)
     out = Path(args.out or ".")
     if len(tasks) > 1 and out.suffix == ".json":
-        raise refuse("out", args.out, "must be a folder for several tasks")
+        raise refuse("out", args.out, "must be a folder if there are several tasks")
     files = [out if out.suffix == ".json" else out / f"{task.id}.{agent.label}.json" for task in tasks]
     for task, file in zip(tasks, files, strict=True):
         if file.exists() and not args.resume and not args.force:
-            how = "--resume goes on with an incomplete result, --force replaces it"
+            how = "--resume continues an incomplete result, --force overwrites it"
             raise refuse("out", str(file), f"must be a new file; {how}")
         if args.episodes is not None:
             integer("episodes", args.episodes, 2, task.episodes)
@@ -167,8 +164,8 @@ def _report(result: dict[str, Any], task: Task, file: Path) -> int:
         print(f"{task.id}  {agent['label']}: {score} {unit}, {adjusted} less luck, {where}")
     if why is None and suspicious(result, task):
         print(
-            f"Nearly every episode brought nothing: is that how the actions of {agent['label']} are read? A model that was "
-            "trained with aim=target needs --options aim=target.",
+            f"Nearly every episode scored nothing. Are the actions of {agent['label']} read as in its training? A model trained "
+            "with aim=target needs --options aim=target.",
             file=sys.stderr,
         )
     if result["rows"]:
@@ -190,20 +187,16 @@ def suspicious(result: dict[str, Any], task: Task) -> bool:
 
 
 def _check(args: argparse.Namespace) -> int:
-    """Verify files."""
-    asked = args.replay is not None or args.fresh is not None
+    asked = args.fresh is not None
     if asked != (args.agent is not None):
-        raise refuse("agent", args.agent, "must be given with --replay or --fresh, and only then")
+        raise refuse("agent", args.agent, "must be given with --fresh, and only then")
     if asked and len(args.files) > 1:
         raise refuse("files", args.files, "must be one file with --agent")
     worst = 0
     for file in args.files:
         try:
             result = read_result(file)
-            result = count_luck(result, args.threads) if args.luck else result
             wrong = faults(result, args.threads)
-            if args.luck and not wrong:
-                write_result(file, result)
         except ValueError as error:
             wrong = [str(error).removeprefix(f"path = {str(file)!r}: ")]
         except OSError as error:
@@ -221,21 +214,18 @@ def _check(args: argparse.Namespace) -> int:
 
 
 def _by_agent(args: argparse.Namespace, result: dict[str, Any]) -> list[str]:
-    """What the agent itself says against its file."""
-    agent, wrong = _agent_of(args, label=result["agent"]["label"]), []
-    if args.replay is not None:
-        wrong = faults_of_replay(result, agent, integer("replay", args.replay, 1, 2**20), args.threads)
-    if args.fresh is not None and not wrong:
-        many = integer("fresh", args.fresh, 2, 100_000)
-        seed = int(np.random.default_rng().integers(FRESH_SEED, SEEDS_END - many, endpoint=True))
-        mean, error, wrong = afresh(result, agent, many, seed, args.threads)
-        old = result["figures"]["score"]["value"]
-        print(f"fresh seeds from {seed} on: {mean:.4g}, the file has {old:.4g}, +- {error:.2g} apart")
+    """What the agent's play on fresh seeds says against its file."""
+    agent, many = _agent_of(args, label=result["agent"]["label"]), integer("fresh", args.fresh, 2, 100_000)
+    seed = int(np.random.default_rng().integers(FRESH_SEED, SEEDS_END - many, endpoint=True))
+    mean, error, wrong = afresh(result, agent, many, seed, args.threads)
+    old = result["figures"]["score"]["value"]
+    print(
+        f"mean score on new seeds from {seed} on: {mean:.4g}; in the file: {old:.4g}; standard error: {error:.2g}"
+    )
     return wrong
 
 
 def _degenerate(args: argparse.Namespace) -> int:
-    """Play the degenerate policies and compare them."""
     tasks = [task_of(name) for name in args.tasks] or list(TASKS.values())
     folder, wrong = Path(args.out), list[str]()
     folder.mkdir(parents=True, exist_ok=True)
@@ -243,7 +233,7 @@ def _degenerate(args: argparse.Namespace) -> int:
     for task in tasks:
         some = list(results(task, folder, args.threads))
         head, rows = board(some, task)
-        print("\n".join([f"{task.id}: {task.measure}", "", *text_table(head, rows, 2), ""]), flush=True)
+        print("\n".join([f"{task.id}: {task.measure}", "", *text_table(head, rows, 3), ""]), flush=True)
         wrong += winners(some)
     print("\n".join(wrong or ["No degenerate policy stands above " + ", ".join(ABOVE) + "."]))
     return int(bool(wrong))
@@ -260,7 +250,6 @@ def _sound(files: Sequence[str]) -> list[dict[str, Any]]:
 
 
 def _table(args: argparse.Namespace) -> int:
-    """Print the leaderboard, or write it as a page."""
     results = _sound(args.files)
     if args.markdown:
         write_atomic(args.markdown, page(results, args.awaited))

@@ -31,16 +31,16 @@ class Agent:
     Attributes
     ----------
     label, sources : str, tuple of str or player
-        Its name in tables, 1 to 20 letters, digits or . + - _; and for each training seed what ``sn.player``
-        makes a player of.
+        The name in tables: 1 to 20 letters, digits or . + - _; for each training seed, an argument that
+        ``sn.player`` accepts.
     options, trust : dict, bool
-        How the actions of models of Stable-Baselines3 are read, and whether code in models may run, as of
-        ``sn.player``.
+        As for ``sn.player``: how to read the actions of models of Stable-Baselines3; whether pickled code in
+        models may run.
     timeout : float
-        The longest time of a program for one stroke [s].
+        The longest time that a program may take for one stroke [s].
     training_shots, shots_declared : int, optional
-        Simulated shots of its training, None: unknown; and of a decision, where this process cannot count
-        them, None: nothing is declared.
+        Shots simulated in training, None if unknown; shots simulated for a decision if this process cannot
+        count them, None to declare nothing.
 
     Examples
     --------
@@ -62,10 +62,10 @@ class Agent:
     def of(
         cls, agent: Source | Path, *, label: str | None = None, training_shots: int | None = None, **more: Any
     ) -> "Agent":
-        """The agent of a text of ``sn.player``, of LABEL=SOURCE,SOURCE,... (training seeds) or of a player.
+        """Make an agent from an argument of ``sn.player``, or from LABEL=SOURCE,SOURCE,... (one for each training seed).
 
-        Label and training shots that are None come from the text or class, and from a player known by name;
-        ``**more``: other attributes. No code of a class or a file runs. ValueError if nothing has that name."""
+        A label or number of training shots that is None follows from the name or class. ``**more``: other
+        attributes. No code of a class or file runs. ValueError if nothing has that name."""
         agent = str(agent) if isinstance(agent, Path) else agent
         sources: list[Source] = [agent]
         if isinstance(agent, str) and not agent.startswith(PROGRAM) and not Path(agent).exists():
@@ -90,34 +90,29 @@ class Agent:
         number("timeout", made.timeout, 0.0, 1e6, open_low=True)
         if check_model_options(made.options) and any(is_name(text) for text in made.texts):
             raise refuse("options", made.options, LEFT_OUT)
-        if training_shots is None and made.names_players:
+        if training_shots is None and all(map(is_player_name, made.texts)):
             shots = getattr(player_named(sources[0]), "training_shots", None)
             object.__setattr__(made, "training_shots", shots)
         return made
 
     @property
     def texts(self) -> list[str]:
-        """The sources as a file names them."""
+        """The sources, as a result file names them."""
         texts = [text_of(source) for source in self.sources]
         return [text if texts.count(text) == 1 else f"{text} {k}" for k, text in enumerate(texts)]
 
     @property
     def program(self) -> bool:
-        """Whether it is an external program."""
+        """Whether this is an external program."""
         return self.texts[0].startswith(PROGRAM)
 
     @property
     def batch(self) -> int:
-        """Episodes that it plays side by side."""
+        """Number of episodes that the agent plays side by side."""
         return 1 if self.program else BATCH
 
-    @property
-    def names_players(self) -> bool:
-        """Whether every source is a player of the package, or of one that is installed, by name."""
-        return all(map(is_player_name, self.texts))
-
     def player(self, task: Task, run: int = 0) -> Player:
-        """The player of training seed ``run``, not yet bound; its code runs. ValueError if it cannot play."""
+        """Return the player of training seed ``run``, not yet bound; its code runs. ValueError if it cannot play the task."""
         source = self.sources[run]
         if self.program and isinstance(source, str):
             return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)
@@ -130,7 +125,7 @@ class Agent:
 
 @contextmanager
 def seat(agent: Agent, task: Task, run: int) -> Iterator[Player]:
-    """The player of one training seed; a program is ended afterwards."""
+    """Yield the player of one training seed; end a program afterwards."""
     player = agent.player(task, run)
     try:
         yield player
@@ -150,7 +145,7 @@ def text_of(source: Source) -> str:
 
 
 def is_player_name(text: str) -> bool:
-    """Whether that is a player of the package, or of one that is installed, with all that it has learned."""
+    """Whether a text names a player of this package or of an installed one, and so its weights."""
     name, at, model = text.partition("@")
     named = ":" not in name and is_name(name) and (not at or model in levels())
     return named or is_degenerate(text)
@@ -163,7 +158,6 @@ def claims_player_name(label: str, sources: Sequence[str]) -> bool:
 
 
 def _label(source: Source) -> str:
-    """A label from a source."""
     text = text_of(source)
     if text.startswith(PROGRAM):
         path = Path((text.removeprefix(PROGRAM).split() or ["program"])[-1])

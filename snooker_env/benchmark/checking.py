@@ -1,7 +1,7 @@
 """Is a submitted result what it says? Its strokes are played again; all that follows must be equal to the bit."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,21 +16,21 @@ from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic
 from .results import complete, strokes_of
 from .schema import fault, faults_of_fields, shorten
-from .tasks import TASKS, Task, task_of
+from .tasks import TASKS, Task
 
 _BUDGET = re.compile(r"_\d+(?=@|$)")
 MOST = 12  # faults of rows, and of strokes, that are named
 WORK, SHOTS, TOGETHER = 1e5, 100, 50
-"""How long known players are asked again: decisions, with each so many simulated shots as one more. No player of the package
-takes that long for a whole file, but with large budgets. So many tables are played side by side."""
+"""How many decisions known players make again, where ``SHOTS`` simulated shots count as one more decision: enough for a whole
+file, unless the budget is large. ``TOGETHER`` tables are played side by side."""
 SURE = 3.29  # standard errors that a fresh mean may be away: 99.9 %
 
 
 def faults(record: dict[str, Any], threads: int | None = None, *, asking: bool = True) -> list[str]:
-    """Check a result: its fields, and all rows and figures by a replay of its strokes.
+    """Check a result: its fields, and every row and figure by a replay of its strokes.
 
-    Players known by name are asked again for their strokes and decisions: all, or in a random selection of episodes if that
-    would take long.
+    Players known by name must decide on the same strokes again: in all episodes or, if that would take long, in a random
+    selection.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def faults(record: dict[str, Any], threads: int | None = None, *, asking: bool =
 
 
 def _of_names(record: dict[str, Any]) -> list[str]:
-    """What must be one of a few: without them nothing can be played again."""
+    """Check the fields that allow few values: without them nothing can be replayed."""
     here = (
         ("schema.version", record["schema"]["version"], (schema.VERSION,)),
         ("protocol.version", record["protocol"]["version"], (schema.PROTOCOL,)),
@@ -82,7 +82,7 @@ def _of_names(record: dict[str, Any]) -> list[str]:
 
 
 def _of_sources(agent: dict[str, Any]) -> list[str]:
-    """Are the sources different texts, and does the label not claim another player?"""
+    """Check that the sources are different texts and that the label names no other player."""
     sources, form = agent["sources"], schema.LONG_LINE[0]
     texts = all(isinstance(one, str) and one and form.fullmatch(one) for one in sources)
     if not 0 < len(sources) <= schema.MOST_SOURCES or not texts:
@@ -96,13 +96,13 @@ def _of_sources(agent: dict[str, Any]) -> list[str]:
 
 
 def _player_of(source: str) -> tuple[str, int | None]:
-    """A source, but of a known player without its budget, and that: search, search_120 and search_0120 are one."""
+    """A source as player and budget: search, search_120 and search_0120 are one player."""
     budget = getattr(player_named(source), "budget", None) if is_player_name(source) else None
     return (source if budget is None else _BUDGET.sub("", source)), budget
 
 
 def _of_rows(result: dict[str, Any], task: Task) -> list[str]:
-    """Are the rows those of the protocol's episodes, run by run, or the first of them if it was stopped?"""
+    """Check that the rows are the protocol's episodes, run by run; of a run that was stopped, the first ones."""
     rows, many, runs = result["rows"], result["protocol"]["episodes"], len(result["agent"]["sources"])
     if many > task.episodes:
         return [fault("protocol.episodes", many, f"at most {task.episodes} on {task.id}")]
@@ -124,7 +124,7 @@ def _of_rows(result: dict[str, Any], task: Task) -> list[str]:
 
 
 def _of_runs(result: dict[str, Any], strokes: Kept) -> list[str]:
-    """Two training seeds that play a hundred episodes or more alike are one."""
+    """Refuse training seeds that play a hundred episodes or more alike: they are one."""
     many, known = result["protocol"]["episodes"], {}
     for run in range(len(strokes) // many if many >= 100 else 0):
         whole = b"".join(one.tobytes() for one in strokes[run * many : (run + 1) * many])
@@ -135,52 +135,27 @@ def _of_runs(result: dict[str, Any], strokes: Kept) -> list[str]:
 
 
 def _of_play(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
-    """Where do the rows differ from what the strokes play?"""
-    wrong = list[str]()
-    again = _play_again(result, task, strokes, threads)
-    for k, (row, (want, short)) in enumerate(zip(result["rows"], again, strict=True)):
-        name = f"rows[{k}]"
-        if short:
-            wrong.append(fault(f"{name}.strokes", row[STROKES], "more: the episode goes on after them"))
-            continue
-        other = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
-        wrong += [fault(f"{name}.{COLUMNS[c]}", row[c], f"{want[c]}, as its strokes play") for c in other]
-    more = [f"rows: {len(wrong) - MOST} more faults"] if len(wrong) > MOST else []
-    return _elsewhere(result, wrong[:MOST] + more)
-
-
-def _play_again(
-    result: dict[str, Any], task: Task, strokes: Kept, threads: int | None
-) -> Iterator[tuple[list[int], bool]]:
-    """Each row as its strokes play, and whether its episode goes on after them."""
-    rows = result["rows"]
+    """Replay the strokes and compare the rows."""
+    wrong, rows = list[str](), result["rows"]
     for first in range(0, len(rows), BATCH):
         some = rows[first : first + BATCH]
         tables = playing.tables_for(task, len(some), threads)
         decide = playing.Repeater(strokes[first : first + BATCH], tables.options.rules.actions.size)
         played = playing.rows_of(task, tables, [row[1] for row in some], decide)
-        for row, want, short in zip(some, played, decide.short.tolist(), strict=True):
-            yield [row[0], *want[1:]], short
-
-
-def count_luck(record: dict[str, Any], threads: int | None = None) -> dict[str, Any]:
-    """A result with the luck of its episodes counted anew from its strokes, by the values that the package holds now; what
-    else is wrong with it, ``faults`` says. ValueError if it is no result."""
-    if wrong := faults_of_fields(record):
-        raise ValueError(wrong[0])
-    task, rows = task_of(record["task"]), record["rows"]
-    record = record | {
-        "rows": [[*row[: len(COLUMNS) - 1], 0] if isinstance(row, list) else row for row in rows]
-    }
-    if wrong := _of_sources(record["agent"]) + _of_rows(record, task):
-        raise ValueError(wrong[0])
-    again = _play_again(record, task, strokes_of(record), threads)
-    rows = [[*row[:-1], want[-1]] for row, (want, _) in zip(record["rows"], again, strict=True)]
-    return complete(record | {"rows": rows}, task)
+        each = zip(some, played, decide.short.tolist(), strict=True)
+        for k, (row, want, short) in enumerate(each, first):
+            name = f"rows[{k}]"
+            if short:
+                wrong.append(fault(f"{name}.strokes", row[STROKES], "more: the episode goes on after them"))
+                continue
+            other = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
+            wrong += [fault(f"{name}.{COLUMNS[c]}", row[c], f"{want[c]}, as its strokes play") for c in other]
+    more = [f"rows: {len(wrong) - MOST} more faults"] if len(wrong) > MOST else []
+    return _elsewhere(result, wrong[:MOST] + more)
 
 
 def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
-    """The faults, after a line that says so if the file's machine computes other last bits."""
+    """The faults, after a line that says so if the file's machine rounds differently."""
     made, here = result["machine"]["arithmetic"], arithmetic()
     if not wrong or made == here:
         return wrong
@@ -189,7 +164,7 @@ def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
 
 
 def _differences(value: object, want: object, name: str = "") -> list[str]:
-    """Where does a record differ from what is computed anew?"""
+    """List where a record differs from what was computed again."""
     if isinstance(want, dict) and isinstance(value, dict):
         if set(value) != set(want):
             return [f"{name}: must have the fields {', '.join(want)}"]
@@ -204,10 +179,10 @@ def _differences(value: object, want: object, name: str = "") -> list[str]:
 
 
 def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
-    """Do known players play as in the file, and do class, shots and training fit them?
+    """Have known players play again; compare strokes, class, shots and training.
 
-    They play whole episodes again, decisions after fouls included, on tables in an order that nobody knows beforehand: all
-    of them, or as many as ``WORK`` allows."""
+    They play whole episodes, decisions after fouls included, in an order that nobody can predict: all episodes, or as many
+    as ``WORK`` allows."""
     agent, rows, rng, wrong = result["agent"], result["rows"], np.random.default_rng(), list[str]()
     known = [(run, source) for run, source in enumerate(agent["sources"]) if is_player_name(source)]
     asked = {run: rng.permutation([k for k, row in enumerate(rows) if row[0] == run]) for run, _ in known}
@@ -246,28 +221,10 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
     return _elsewhere(result, sorted(set(wrong))[:MOST] if len(wrong) > 1 else wrong)
 
 
-def faults_of_replay(
-    record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None
-) -> list[str]:
-    """Have its agent play the first episodes of a sound result again: a line for each whose strokes or row differ."""
-    seeds = TASKS[record["task"]].seeds(record["protocol"]["episodes"])[:episodes]
-    again, wrong, rows = _by(agent, record, seeds, threads), [], record["rows"]
-    kept = {tuple(row[:2]): (row, one.tobytes()) for row, one in zip(rows, strokes_of(record), strict=True)}
-    for row, one in zip(again.rows, again.strokes, strict=True):
-        old = kept.get((row[0], row[1]))
-        if old is not None and old != (row, one.tobytes()):
-            what = "other strokes" if old[0] == row else str(dict(zip(COLUMNS[2:], row[2:], strict=True)))
-            wrong.append(f"run {row[0]}, table {row[1]}: played again {what}, the file has {old[0][2:]}")
-    shots = record["timing"]["simulated_shots"]
-    if not wrong and len(again.rows) == len(rows) and again.simulated != shots:
-        wrong = [fault("timing.simulated_shots", shots, f"{again.simulated}, as the agent played again")]
-    return wrong
-
-
 def afresh(
     record: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None
 ) -> tuple[float, float, list[str]]:
-    """Have its agent play on unknown seeds: the mean score, the standard error of its difference to the file, faults."""
+    """Have the agent play on new seeds: the mean score, the standard error of its difference from the file, faults."""
     if record["figures"] is None:
         raise refuse("incomplete", record["incomplete"], "must be null to compare means")
     played = _by(agent, record, range(seed, seed + episodes), threads)
@@ -281,7 +238,7 @@ def afresh(
 
 
 def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes) -> list[str]:
-    """Is it called a player without simulated shots, or without foresight, and is not?"""
+    """Refuse a class that the play contradicts, by simulated shots or foresight."""
     agent, wrong = record["agent"], []
     if agent["class"] in ("model_free", "foresight") and played.simulated:
         shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
@@ -292,7 +249,7 @@ def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes) -> list[
 
 
 def _by(agent: Agent, result: dict[str, Any], seeds: Sequence[int], threads: int | None) -> PlayedEpisodes:
-    """What the agent of a result plays on these tables, with every training seed."""
+    """Play these tables with every training seed of a result's agent."""
     task, runs = TASKS[result["task"]], len(result["agent"]["sources"])
     if len(agent.sources) != runs:
         raise refuse("agent", ",".join(agent.texts), f"must have the {runs} training seeds of the file")

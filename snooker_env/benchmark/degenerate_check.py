@@ -23,8 +23,8 @@ _SCORE = COLUMNS.index("score")
 
 
 def best_constant(task: Task, threads: int | None = None) -> int:
-    """The choice with the best mean on tables of training: the best third of each round plays twice as long. In frames
-    of those at the widest pot, or at the first line without one: each of their episodes takes a planner's decisions."""
+    """Find the choice with the best mean on training tables: after each round the best third plays twice as many episodes.
+    In frames, whose opponents take long to decide, only choices at the widest pot (or the first line without one) are tried."""
     training = replace(task, judged_layout=task.changes["layout"])
     lines = 1 if task.frame else SIZE // STROKES
     left, first, episodes = list(range(lines * STROKES)), 0, FIRST_ROUND
@@ -47,8 +47,8 @@ def best_constant(task: Task, threads: int | None = None) -> int:
 
 
 def results(task: Task, folder: Path, threads: int | None = None) -> Iterator[dict[str, Any]]:
-    """The results of a task: of all degenerate policies, kept in the folder as ``TASK.NAME.json``, and of ``random`` and
-    ``ABOVE``, who play where the folder does not hold theirs. What is there is not played again."""
+    """Yield the results of a task: those of all degenerate policies, kept in the folder as ``TASK.NAME.json``, then those of
+    ``random`` and ``ABOVE``. Results in the folder are not played again."""
     # no constant wins a frame: there it is that of visits
     like = TASKS["SnookerBreak-v0"] if task.score == "won" else task
     file = folder / f"{like.id}.constant.json"
@@ -66,7 +66,7 @@ def results(task: Task, folder: Path, threads: int | None = None) -> Iterator[di
 
 
 def winners(some: list[dict[str, Any]]) -> list[str]:
-    """Which degenerate policies, ``random`` among them, stand above whom, by the results of one task: a line for each."""
+    """List which degenerate policies, ``random`` among them, score above which player in the results of one task."""
     means = {one["agent"]["label"]: one["figures"]["score"]["value"] for one in some}
     wins = [(one, other) for one in means if one not in ABOVE for other in ABOVE if means[one] > means[other]]
     task = some[0]["task"]

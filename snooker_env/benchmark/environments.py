@@ -33,7 +33,6 @@ class TaskVectorEnv(SnookerVectorEnv):
 
 
 def _classes(name: str) -> tuple[type[TaskEnv], type[TaskVectorEnv]]:
-    """The two classes of a task."""
     task = TASKS[f"Snooker{name}-v0"]
     about = f"``{task.id}``: {task.title}. Free: {', '.join(FREE)}."
     what = {"TASK": task.id, "__module__": __name__, "__doc__": about}

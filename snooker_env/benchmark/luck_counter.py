@@ -23,34 +23,12 @@ Decide: TypeAlias = Callable[[Bools, int], Singles]
 
 
 class Luck:
-    """The luck of the episodes on n tables as their agent sees it, both sides' in frames. That of a visit holds the table that
-    it was dealt, where the mean over all deals is known.
+    """The luck of the episodes on n tables from the agent's point of view; in frames, of both sides' strokes. The luck of a
+    visit includes the table dealt if the mean over all deals is known.
 
-    Parameters
-    ----------
-    envs : SnookerVectorEnv
-        The tables, before their first reset; an opponent is watched from now on.
-    score : str
-        The score of an episode, as of ``Task``: "points", "legal", "lead" or "won".
-
-    Attributes
-    ----------
-    sums : numpy.ndarray
-        float64 (n,). The luck on each table so far, in units of the score; zero it where an episode begins.
-    counts : numpy.ndarray
-        bool (n,). Which tables have an episode whose luck counts, at first all.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import snooker_env as sn
-    >>> from snooker_env.benchmark import Luck
-    >>> envs = sn.SnookerVectorEnv(2, noise="club")
-    >>> luck, _ = Luck(envs, "points"), envs.reset(seed=0)
-    >>> luck.note(np.array([True, False]), np.zeros((2, 4), np.float32))
-    >>> luck.sums.shape, float(luck.sums[1])
-    ((2,), 0.0)
-    """
+    ``envs``: the tables, before their first reset; from then on an opponent's strokes count, too. ``score``: what an episode
+    scores, as in ``Task``. ``sums``, float64 (n,), is the luck so far in units of the score: set it to 0 where an episode
+    begins. ``counts``, bool (n,): tables whose luck is counted, at first all."""
 
     def __init__(self, envs: SnookerVectorEnv, score: str):
         self.sums: Floats = np.zeros(envs.num_envs)
@@ -103,7 +81,6 @@ class WatchedOpponent:
         self._player, self._luck = player, luck
 
     def strokes(self, frames: Frames, which: Ints, crew: Crew) -> Asked:
-        """See ``Opponent.strokes``."""
         asked = self._player.strokes(frames, which, crew)
 
         def turn(copies: Tables, rows: Ints, out: StepOutput) -> None:

@@ -40,7 +40,6 @@ class PlayedEpisodes:
     foresees: bool = False  # whether the player knows what its strokes do, see ``foresees``
 
     def add(self, more: "PlayedEpisodes") -> None:
-        """Add episodes that were played after these."""
         for name in ("rows", "strokes", "decisions", "seconds", "simulated"):
             setattr(self, name, getattr(self, name) + getattr(more, name))
         self.foresees |= more.foresees
@@ -54,7 +53,7 @@ def foresees(player: Player) -> bool:
 
 
 class Decider:
-    """A player at tables: what it decides is rounded, kept and timed, and its simulated shots are counted."""
+    """Asks a player at tables; rounds, keeps and times its decisions, and counts its simulated shots."""
 
     def __init__(self, player: Player | str, tables: SnookerVectorEnv, seeds: Sequence[int], seed: int):
         self.player: Player = player_named(player).at(tables)
@@ -76,14 +75,13 @@ class Decider:
         return actions
 
     def strokes(self) -> Kept:
-        """What was played on each table."""
         tables, actions = (np.concatenate(part) for part in zip(*self._log, strict=True))
         ends = np.cumsum(np.bincount(tables, minlength=len(self._seeds)))
         return np.split(actions[np.argsort(tables, kind="stable")], ends[:-1])
 
 
 class Repeater:
-    """Decides what a file holds, and knows which episodes went on after their last stroke (``short``)."""
+    """Replays the strokes of a file, and notes which episodes go on after their last stroke (``short``)."""
 
     def __init__(self, strokes: Kept, size: int):
         self._strokes, self._size = strokes, size
@@ -121,7 +119,7 @@ def rounds(tables: SnookerVectorEnv, seeds: list[int], decide: Decide) -> Iterat
 
 
 def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorEnv:
-    """The judged environment of n tables that reads all of a stroke."""
+    """Make n judged tables whose actions hold every part of a stroke."""
     return SnookerVectorEnv(n, task.judged_options(**(FRAMES if task.frame else VISITS)), threads=threads)
 
 

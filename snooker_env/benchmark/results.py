@@ -46,7 +46,7 @@ def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
 
 
 def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] | None:
-    """All figures of an agent's rows, as docs/benchmark_files.md says; None if the runs are not complete."""
+    """Compute all figures of an agent's rows (docs/benchmark_files.md); None if the runs are not complete."""
     columns = matrix(rows)
     if columns is None:
         return None
@@ -55,7 +55,7 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
     count = samples.sums(np.ones(score.shape))
 
     def of(value: float, drawn: Floats, trials: int = 0) -> dict[str, Any]:
-        """A figure; of a share never or always seen in so many ``trials`` with the exact one-sided bound."""
+        """A figure; a share of 0 or 1 in this many ``trials`` has the exact one-sided bound."""
         made = figure(value, drawn) | {"exact": False}
         if made["low"] is None and trials and value in (0.0, 1.0):
             most = bound_if_none(trials)
@@ -64,7 +64,6 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
         return made
 
     def mean(values: Floats, *, share: bool = False) -> dict[str, Any]:
-        """The figure of a mean."""
         return of(float(values.mean()), samples.sums(values) / count, score.shape[1] if share else 0)
 
     profile = [t for t in task.thresholds if t <= task.most]
@@ -82,7 +81,7 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
 
 
 def missing(result: dict[str, Any], task: Task) -> list[str]:
-    """What a result lacks to be official, in a few words each."""
+    """List in a few words each what a result lacks to be official."""
     agent, episodes = result["agent"], result["protocol"]["episodes"]
     reasons = {
         "incomplete": result["incomplete"] is not None,
@@ -94,7 +93,7 @@ def missing(result: dict[str, Any], task: Task) -> list[str]:
 
 
 def complete(record: dict[str, Any], task: Task) -> dict[str, Any]:
-    """The record with all that follows from its other fields, computed anew; ``check`` compares."""
+    """Return the record with every derived field computed again; ``check`` compares."""
     agent, rows, shots = record["agent"], record["rows"], record["timing"]["simulated_shots"]
     declared = agent["simulated_shots"] if agent["declared"] else None
     mean: float | None = shots / max(1, sum(row[STROKES] for row in rows))
@@ -151,7 +150,7 @@ def write_result(path: str | Path, result: dict[str, Any]) -> None:
     Parameters
     ----------
     path, result : str or Path, dict
-        The file, which after a crash holds the old content or the new one; and what ``judge`` returns.
+        The file, which is replaced in one step; what ``judge`` returns.
 
     Examples
     --------
@@ -178,8 +177,8 @@ def read_result(path: str | Path) -> Any:
     Returns
     -------
     object
-        ValueError if it is not JSON in UTF-8, contains NaN or Infinity, or a key twice in one object; OSError if it
-        cannot be read.
+        The content. ValueError if the file is not JSON in UTF-8, contains NaN or Infinity, or repeats a key of an
+        object; OSError if it cannot be read.
 
     Examples
     --------

@@ -57,10 +57,10 @@ class PlayedStrokes:
     tolerance : float64 (n,)
         Tolerance of the aim of the widest direct pot after the stroke [rad]; 0 if there was none.
     luck : float64 (n,)
-        Points and value of what it left, less their mean over fresh errors of the same stroke [points]; of the first
-        stroke with that of the table dealt.
+        Points of the stroke and value of the position that it left, less the mean of this sum over fresh errors of the
+        same stroke [points]. The first stroke includes the luck of the table dealt.
     decision_seconds, simulated : float, int
-        Time of all decisions of the player [s], and the shots that this process simulated for them.
+        Time that all decisions of the player took [s]; shots that this process simulated for them.
 
     Examples
     --------
@@ -122,18 +122,18 @@ def play_visits(
     Parameters
     ----------
     player, visits : Player or str, int
-        A player, or the name of one, and the number of its visits.
+        The player or its name; the number of visits.
     first_seed : int or sequence of int
-        Seed of the first table, the others have the seeds after it; or the seed of each table.
+        Seed of the first table (the others use the seeds that follow), or the seed of each table.
     seed : int
-        Of what the player draws, the same on each table beside any others.
+        Seed of the player's random numbers, which do not depend on the other tables.
     threads : int, optional
         As in ``SnookerVectorEnv``.
     each : callable, optional
         Called after each round of strokes with the number of visits that still go on.
     **options
-        Options of the environment; left out: the layout "held_out" and "professional" noise. However actions are read
-        there, the player's strokes are played as they are.
+        Options of the environment; defaults: the layout "held_out" and "professional" noise. The player's strokes are
+        played exactly, whatever the options say about actions.
 
     Returns
     -------

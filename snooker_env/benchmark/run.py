@@ -34,12 +34,12 @@ def judge(
     Parameters
     ----------
     task, agent : Task, Agent
-        What is played, and who plays.
+        The task, and the agent that plays it.
     episodes : int, optional
         Number of episodes for each training seed; None: the number of the protocol.
     out, resume : str or Path, bool
-        File for the result, also written once a minute, or None; whether to continue an incomplete result in
-        it. A complete one is left as it is.
+        File for the result, written once a minute and at the end, or None; whether to continue an incomplete
+        result in that file. A complete result is left as it is.
     command : str
         The command line, which is stored in the result.
     threads : int, optional
@@ -50,10 +50,9 @@ def judge(
     Returns
     -------
     dict
-        The result. After Ctrl-C, or when a program that plays fails, it holds the complete batches, and
-        "incomplete" has the reason. ValueError if the agent cannot play the task, or ``out`` holds a result of
-        another run; else what the code of a player raises (``SystemExit`` as RuntimeError): ``out`` then holds the
-        complete batches.
+        The result. After Ctrl-C or the failure of a program it holds the complete batches, and "incomplete"
+        says why. ValueError if the agent cannot play the task, or ``out`` holds the result of another run. Errors of
+        a player's own code are passed on (``SystemExit`` as RuntimeError); ``out`` then holds the complete batches.
 
     Examples
     --------
@@ -101,7 +100,7 @@ def judge(
 
 
 def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
-    """Play the episodes of one training seed, batch after batch; the first one's player decides on one table, too."""
+    """Play the episodes of one training seed in batches; the first player is also timed on one table."""
     with seat(agent, task, run) as player:
         while len(played.rows) < (run + 1) * len(seeds):
             first = len(played.rows) - run * len(seeds)
@@ -115,7 +114,7 @@ def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
 def read_earlier(
     path: str | Path | None, task: Task, agent: Agent, episodes: int
 ) -> tuple[dict[str, Any] | None, PlayedEpisodes]:
-    """A file of the same run, and what was played for it; None and nothing if there is no file."""
+    """Read the file of the same run and what was played for it; None and no episodes if there is no file."""
     if path is None or not Path(path).exists():
         return None, PlayedEpisodes([])
     result = read_result(path)

@@ -84,7 +84,7 @@ PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
 def faults_of_fields(
     record: object, fields: Fields = FIELDS, ranges: Ranges | None = None, version: int = VERSION
 ) -> list[str]:
-    """A line for each fault of a record; ``fields``, ``ranges``: as ``FIELDS``, and beside ``RANGES``."""
+    """List the faults of a record; ``fields`` as ``FIELDS``, ``ranges`` in addition to ``RANGES``."""
     ranges = RANGES | dict(ranges or {})
     if not isinstance(record, dict):
         return ["the file must hold one JSON object"]
@@ -113,7 +113,7 @@ _WORDS = {str: "a text", int: "a whole number", bool: "true or false", list: "a 
 
 
 def _requirement(name, value, ranges):
-    """What is allowed in place of a value that has the right type; None if nothing is wrong with it."""
+    """What a value of the right type must be instead; None if it is sound."""
     if name in ranges and not (ranges[name][0] <= value <= ranges[name][1] and str(value) != "-0.0"):
         return f"between {ranges[name][0]:g} and {ranges[name][1]:g}"
     if name in PATTERNS and not PATTERNS[name][0].fullmatch(value):

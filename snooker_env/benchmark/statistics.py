@@ -17,27 +17,12 @@ from numpy.typing import ArrayLike
 from .._lib.types import Floats
 
 RESAMPLES = 2000  # number of bootstrap samples
+LEVEL = 0.95  # of all intervals and bounds
 SHRINK = 10  # tables: the share of luck that so many show counts half
 
 
 def iqm(values: ArrayLike) -> float:
-    """The inter-quartile mean: the mean of the middle half.
-
-    Parameters
-    ----------
-    values : array_like, float
-        The values, of any shape.
-
-    Returns
-    -------
-    float
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import iqm
-    >>> iqm([0, 1, 2, 99])
-    1.5
-    """
+    """The inter-quartile mean: the mean of the middle half."""
     unique, counts = np.unique(values, return_counts=True)
     return float(_middle_mean(unique, counts[None])[0])
 
@@ -81,34 +66,17 @@ class Resamples:
         return _middle_mean(values, sum(each))
 
 
-def interval(samples: Floats | Sequence[float], level: float = 0.95) -> tuple[float, float]:
-    """The percentile interval of bootstrap samples.
-
-    Parameters
-    ----------
-    samples, level : array_like, float (n,); float
-        The samples, and the coverage of the interval, in (0, 1).
-
-    Returns
-    -------
-    low, high : float
-        NaN if a sample is NaN, or all are equal: no century in 500 visits does not prove that there are none.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import interval
-    >>> low, high = interval(range(101), 0.9)
-    >>> round(low, 6), round(high, 6)
-    (5.0, 95.0)
-    """
-    low, high = np.quantile(samples, [(1 - level) / 2, (1 + level) / 2])
+def interval(samples: Floats | Sequence[float]) -> tuple[float, float]:
+    """The 95 % percentile interval of bootstrap samples. NaN if a sample is NaN or all are equal: no century in 500 visits does
+    not prove that there are none."""
+    low, high = np.quantile(samples, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
     return (float(low), float(high)) if np.ptp(samples) > 0 else (float("nan"), float("nan"))
 
 
-def bound_if_none(n: float, level: float = 0.95) -> float:
+def bound_if_none(n: float) -> float:
     """Upper bound of a share of which ``n`` independent trials showed no case [Clopper & Pearson 1934]: exact, one-sided, about
     3 / n at 95 %. Runs on the same tables count once: it holds for other tables and errors, not for other training seeds."""
-    return 1.0 - (1.0 - level) ** (1.0 / n)
+    return 1.0 - (1.0 - LEVEL) ** (1.0 / n)
 
 
 def figure(value: float, samples: Floats | Sequence[float]) -> dict[str, float | None]:

@@ -32,16 +32,16 @@ class Task:
     Attributes
     ----------
     id, title : str
-        The Gymnasium id, with its version, and the aim of the task in a few words.
+        The Gymnasium id with its version; the aim of the task in a few words.
     changes, judged_layout : mapping, str
-        Options that differ from those of ``Snooker-v0``, and the layout of the judging in place of theirs.
+        Options that differ from the defaults of ``Snooker-v0``; the layout on which agents are judged.
     observation : str
-        What an agent observes unless it chooses otherwise.
+        The default observation.
     score, measure : str
-        The score of an episode, "points", "legal", "lead" or "won", and the name of its mean.
+        What an episode scores: "points", "legal", "lead" or "won"; the name of the mean score.
     episodes, thresholds : int, tuple of int
-        Episodes of an official result for each training seed, and the scores of its performance profile: the
-        share of episodes with at least each of these.
+        Episodes that an official result has for each training seed; scores for which a result gives the share of
+        episodes that reach them.
 
     Examples
     --------
@@ -62,7 +62,7 @@ class Task:
     observation: str = "pots"
 
     def options(self, **free: object) -> Options:
-        """The options of the task as it is trained: frozen ones and these of ``FREE``, no others."""
+        """Return the options for training: the frozen ones, and any of ``FREE``. Others raise an error that names them."""
         frees = ", ".join(FREE)
         for name in (name for name in free if name not in FREE):
             if name == "options":
@@ -76,7 +76,7 @@ class Task:
         return Options(**{**self.changes, **_FORM, "observation": self.observation, **free})
 
     def judged_options(self, **free: object) -> Options:
-        """The options that the task is judged with: ``options(**free)`` on the judged layout."""
+        """Return the options for judging: ``options(**free)`` on the judged layout."""
         return self.options(**free).but(layout=self.judged_layout)
 
     @property
@@ -95,7 +95,7 @@ class Task:
         return self.changes.get("task") == "frame"
 
     def seeds(self, n: int) -> list[int]:
-        """The seeds of the first n judged tables (of racks: of the errors). ValueError for too many."""
+        """Return the seeds of the first n judged tables; in whole frames, those of the errors. ValueError if n is too large."""
         integer("episodes", n, 1, 2**20)
         first, alike = HELD_OUT_SEED, plan_of(self.judged_layout).in_hand
         return list(range(first, first + n)) if alike else tables_of(self.judged_layout, n)
@@ -132,20 +132,20 @@ _LEGAL: dict[str, Any] = _BALLS | {"changes": {"reward": "legal", "one_stroke": 
 _FRAME = {"task": "frame", "opponent": "planner", "miss": "clear_path"}
 _CLUB = {"changes": {"noise": "club"}, "thresholds": _BREAK}
 _SAFE: dict[str, Any] = _BALLS | {"changes": _FRAME | {"one_stroke": True}, "thresholds": _LEAD}
-_WIN: dict[str, Any] = _BALLS | {"changes": _FRAME | {"reward": "win"}}
+_FOUR = "best_pot,search,planner,tactician"  # one of them sits opposite in each frame
+_WIN: dict[str, Any] = _BALLS | {"changes": _FRAME | {"opponent": _FOUR, "reward": "win"}}
 _ALL = (
     _task("Break", "build a break on an opened table", "opened", "points", "held_out", thresholds=_BREAK),
     _task("BreakClub", "the same with a club player's errors", "opened", "points", "held_out", **_CLUB),
     _task("Escape", "one stroke out of a snooker, no foul", "escape", "legal", "held_out_escape", **_LEGAL),
     _task("Safety", "one fair stroke where no pot is on", "safety", "lead", "held_out_safety", **_SAFE),
-    _task("Frame", "win a frame against planner", "break_off", "won", **_WIN),
+    _task("Frame", "win a frame against one of four", "break_off", "won", **_WIN),
 )
 TASKS: dict[str, Task] = {task.id: task for task in _ALL}
 """The tasks of the benchmark by id."""
 
 
 def task_of(name: object) -> Task:
-    """The task with an id."""
     return TASKS[choice("task", name, tuple(TASKS))]
 
 

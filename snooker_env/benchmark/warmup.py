@@ -152,7 +152,7 @@ def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Compile everything, and say how long it took and where the machine code is kept."""
-    about = "Compile every kernel once, or load it: a minute or two, or some seconds. Nothing waits for it afterwards."
+    about = "Compile every kernel once (a minute or two) or load it from the cache (seconds), so that no later command has to wait."
     argparse.ArgumentParser("python -m snooker_env warmup", description=about).parse_args(argv)
 
     def compile_all() -> int:

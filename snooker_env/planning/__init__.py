@@ -8,8 +8,8 @@ A planner works in two steps:
 2. Play them: ``Planner.play`` plays actions, ``Planner.play_strokes`` strokes; both return points, afterstates and
    where each ball stopped.
 
-The caller assigns a value to each afterstate; ``prospects_of`` is a rule of thumb for that. ``Search`` does all of this: it
-returns the best strokes as a judge sees them, of visits (``VisitJudge``) or of frames (``FrameJudge``).
+The caller assigns a value to each afterstate, for example by the rule of thumb ``prospects_of``. ``Search`` combines these
+steps and returns the best strokes by a judge, of visits (``VisitJudge``) or of frames (``FrameJudge``).
 """
 
 from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
@@ -21,7 +21,7 @@ from .position import Position
 from .positions import Positions
 from .pot_geometry import Pots, clear_paths, obstructions, pots
 from .proposals import Proposals, at_pots
-from .prospects import prospects_of, spread_of
+from .prospects import prospects_of
 from .search import Ranked, Search
 from .strokes import Strokes, action_masks
 from .visit_judge import VisitJudge
@@ -48,5 +48,4 @@ __all__ = [
     "pots",
     "processors",
     "prospects_of",
-    "spread_of",
 ]

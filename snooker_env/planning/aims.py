@@ -35,7 +35,6 @@ class Dynamics(NamedTuple):
 
     @classmethod
     def of(cls, rules: Rules) -> "Dynamics":
-        """Those of a game."""
         return cls(rules.physics, rules.fidelity, rules.rails, rules.noise.growth)
 
 

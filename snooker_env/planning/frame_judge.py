@@ -5,15 +5,14 @@ The budget goes where the decision is hard. Where a pot is likely (``EASY``), fe
 pots, several times as many safeties, and escapes where hardly anything is seen."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from .._lib.check import integer, refuse_what
+from .._lib.check import refuse_what
 from .._lib.types import Bools, Environment, Floats, Ints
 from ..game import frame_columns as columns
-from ..tasks.noise import Noise, NoiseLike, Spread
+from ..tasks.noise import Noise, Spread
 from ..tasks.options import Options, Rules
 from ..tasks.threads import Threads, processors
 from .aims import Dynamics
@@ -21,7 +20,6 @@ from .planner import options_in
 from .positions import Positions
 from .pot_geometry import clear_paths
 from .proposals import Proposals, at_balls, over_cushions, safeties
-from .prospects import spread_of
 from .search import BUDGET, Plan, Proposed, Search
 from .stroke_columns import COLUMNS
 from .trials import FrameTrials, turn_to_striker
@@ -70,22 +68,22 @@ class FrameJudge:
     Parameters
     ----------
     env_or_options : Env, VectorEnv, AECEnv, Options or dict
-        Where strokes are played, see ``Planner``; the rules of frames count, too.
+        Where strokes are played, see ``Planner``, including the rules of frames.
     worth : callable
-        Points that the strikers of n ``Positions`` will score in the rest of the frame less the others': (n,).
+        Function of n ``Positions``: the points that each striker will score in the rest of the frame less those of the
+        opponent, float (n,).
     chance : Chance, optional
         The law of the chance to win of an expected lead, see ``planning.worth``. None (default): points alone count.
-    noise, threads : optional
-        As for ``Planner``.
     foresee : callable, optional
-        What safeties promise without a simulated shot; with it many more are considered. None (default): as proposed.
+        Function that judges safeties without simulating a shot, so that many more are considered. None (default): safeties
+        are tried as proposed.
 
     Examples
     --------
-    >>> from snooker_env.planning import FrameJudge, prospects_of, spread_of
+    >>> from snooker_env.planning import FrameJudge, prospects_of
     >>> from snooker_env.tasks import Noise
-    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, spread_of(Noise()))[0]).shots
-    0
+    >>> FrameJudge({"task": "frame"}, worth=lambda at: prospects_of(at, Noise().spread())[0]).least
+    30
     """
 
     least = 30
@@ -96,22 +94,17 @@ class FrameJudge:
         worth: Worth,
         chance: Chance | None = None,
         *,
-        noise: NoiseLike | None = None,
-        threads: int | None = None,
         foresee: Foresee | None = None,
     ):
         rules = options_in(env_or_options).rules
-        self.noise: Noise = rules.noise if noise is None else Noise.of(noise)
-        self.rules: Rules = replace(rules, noise=self.noise)
-        usual = min(1024, processors())
-        self.threads: int = usual if threads is None else integer("threads", threads, 1, 1024)
-        self._trials = FrameTrials(self.rules, Threads(self.threads))
-        self.spread: Spread = spread_of(self.noise, rules.physics)
+        self.rules: Rules = rules
+        self.noise: Noise = rules.noise
+        self._trials = FrameTrials(rules, Threads(min(1024, processors())))
+        self.spread: Spread = self.noise.spread(rules.physics)
         self.dynamics: Dynamics = Dynamics.of(self.rules)
         self.worth: Worth = worth
         self.chance: Chance | None = chance
         self.foresee: Foresee | None = foresee
-        self.shots: int = 0
 
     def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
         """See ``Judge.plans``: one where a likely pot makes the decision easy, one elsewhere."""
@@ -208,7 +201,6 @@ class FrameJudge:
 
     def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Positions:
         """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5), see ``FrameTrials.play``."""
-        self.shots += len(rows)
         return self._trials.play(at, rows, strokes, errors)
 
     def gains(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Floats:

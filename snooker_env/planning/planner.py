@@ -1,7 +1,6 @@
 """What would strokes lead to? ``Planner`` plays them on copies of positions by the rules."""
 
 import copy
-import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, cast
@@ -11,8 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._lib.check import array, integer, refuse, refuse_what
 from .._lib.types import Environment, Floats, Integers, Ints, Scalars, Vectors, Words
-from ..physics.parameters import Physics
-from ..physics.table import Table
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
@@ -110,13 +107,6 @@ class Planner:
         usual = min(1024, processors())
         self._threads = Threads(usual if threads is None else integer("threads", threads, 1, 1024))
         self._visits = TrialVisits(self._rules, 0)
-        self._lock = threading.Lock()
-        self._shots = 0
-
-    @property
-    def shots(self) -> int:
-        """Number of strokes played so far, an int."""
-        return self._shots
 
     @property
     def threads(self) -> int:
@@ -127,21 +117,6 @@ class Planner:
     def rules(self) -> Rules:
         """What decides a stroke's outcome, a ``Rules``."""
         return self._rules
-
-    @property
-    def noise(self) -> Noise:
-        """The execution noise, a ``Noise``."""
-        return self._rules.noise
-
-    @property
-    def physics(self) -> Physics:
-        """The physical constants, a ``Physics``."""
-        return self._rules.physics
-
-    @property
-    def table(self) -> Table:
-        """The table, a ``Table``."""
-        return self._rules.table
 
     def play(
         self,
@@ -161,7 +136,7 @@ class Planner:
         SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
         at, which = self._read(positions, rows)
         told = self._rules.actions.check_many(cast(ArrayLike, actions), len(which))
-        return self._play(at[which], told, _streams(keys, len(which), self.noise.silent), None)
+        return self._play(at[which], told, _streams(keys, len(which), self._rules.noise.silent), None)
 
     def play_strokes(
         self,
@@ -178,21 +153,24 @@ class Planner:
         aim and elevation, and no kicks."""
         at, which = self._read(positions, rows)
         n = len(which)
-        told, streams = check_strokes(strokes, n), _streams(keys, n, self.noise.silent or errors is not None)
+        told, streams = (
+            check_strokes(strokes, n),
+            _streams(keys, n, self._rules.noise.silent or errors is not None),
+        )
         if errors is not None:
             if keys is not None:
                 raise refuse_what(
                     "keys, errors", "both", "must be one of them: the errors are drawn or passed"
                 )
             return self._play(at[which], told, streams, array("errors", errors, (n, COLUMNS)))
-        drawn = np.zeros((n, COLUMNS)) if self.noise.silent else self.noise.errors_of(streams)
-        return self._play(at[which], told, streams, drawn, self.noise.kick)
+        drawn = np.zeros((n, COLUMNS)) if self._rules.noise.silent else self._rules.noise.errors_of(streams)
+        return self._play(at[which], told, streams, drawn, self._rules.noise.kick)
 
     def _read(self, positions: PositionsLike, rows: Integers) -> tuple[Positions, Ints]:
         """The positions as visits, and the checked rows."""
         at = Positions.of(positions).as_visits().known_to(self._rules)
         which = rows_of(at, rows)
-        check_has_stroke(at, which, self.table, self.physics.R)
+        check_has_stroke(at, which, self._rules.table, self._rules.physics.R)
         return at, which
 
     def _play(
@@ -204,8 +182,6 @@ class Planner:
         visits.lay(after, streams, errors)
         out, n = visits.output(), len(told)
         visits.step(told, np.zeros(n, np.bool_), out, self._threads)
-        with self._lock:
-            self._shots += n
         penalty, first = (out.counts[:, column].copy() for column in (I_PENALTY, I_FIRST))
         points = out.reals[:, I_POINTS].copy()
         where = visits.places, visits.potted
@@ -238,12 +214,6 @@ class Planner:
         dynamics = Dynamics.of(self._rules)
         at = Positions.of(positions).known_to(self._rules)
         return solved_aims(at, rows, balls, targets, strokes, ghosts, dynamics)
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_lock"}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state, _lock=threading.Lock())  # a lock belongs to one process
 
 
 def options_in(source: object) -> Options:

@@ -179,7 +179,6 @@ Position.__init__ = _with_names(Position.__init__)
 
 
 def _name_on(on: object, balls: int) -> str:
-    """What is on, as a word of ``ON``."""
     if on is None:
         return BallOn(next_on(balls)).name.lower()
     if isinstance(on, BallOn):
@@ -191,7 +190,6 @@ def _name_on(on: object, balls: int) -> str:
 
 
 def _name(ball: int) -> str:
-    """The name of a ball as a field of ``Position``."""
     if ball == CUE:
         return "cue"
     return f"reds[{ball - 1}]" if ball <= N_REDS else COLOUR_NAMES[ball - N_REDS - 1]

@@ -12,9 +12,8 @@ from ..game.balls import balls_on_kernel, bits
 from ..game.pots import POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS
 from ..physics.cue_room import NO_RAILS
-from ..physics.parameters import PhysicsLike
 from ..tasks.discrete_actions import POTS
-from ..tasks.noise import Noise, Spread
+from ..tasks.noise import Spread
 from ..tasks.rule_of_thumb import RULE_OF_THUMB, points_left, worth_of_pots
 from .positions import Positions
 
@@ -46,31 +45,6 @@ def in_parts(n: int, threads: int, fill: Callable[[slice], None]) -> None:
         list(pool.map(fill, map(slice, ends[:-1], ends[1:])))
 
 
-def spread_of(noise: Noise, physics: PhysicsLike = None) -> Spread:
-    """Return the law of the cue ball's direction in a stroke at 1.5 m/s, tip errors included.
-
-    Parameters
-    ----------
-    noise : Noise
-        The execution noise.
-    physics : str, dict, Physics or None, optional
-        Physical constants, for the squirt of a tip error. Default None: the preset "paper".
-
-    Returns
-    -------
-    Spread
-        The standard deviation ``core`` [rad], at least 1e-5; the probability ``lapse`` of a lapse, and its ``factor``.
-
-    Examples
-    --------
-    >>> from snooker_env.planning import spread_of
-    >>> from snooker_env.tasks import LEVELS
-    >>> round(spread_of(LEVELS["olympiad"]).core * 1e3, 2)
-    2.6
-    """
-    return noise.spread(physics)
-
-
 def prospects_of(
     at: Positions,
     spread: Spread,
@@ -89,7 +63,7 @@ def prospects_of(
     at : Positions
         The n positions.
     spread : Spread
-        The law of the cue ball's direction, see ``spread_of``.
+        The law of the cue ball's direction, ``Noise.spread``.
     constants : tuple of float, optional
         ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
     most, threads : int, optional
@@ -106,9 +80,9 @@ def prospects_of(
 
     Examples
     --------
-    >>> from snooker_env.planning import Position, Positions, prospects_of, spread_of
+    >>> from snooker_env.planning import Position, Positions, prospects_of
     >>> from snooker_env.tasks import LEVELS
-    >>> spread = spread_of(LEVELS["professional"])
+    >>> spread = LEVELS["professional"].spread()
     >>> values, chances = prospects_of(Positions.of(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))), spread)
     >>> bool(values[0] > 0), chances.shape
     (True, (1, 4))

@@ -125,7 +125,6 @@ class Strokes:
 
     @classmethod
     def _of(cls, parts: Iterable[NDArray[Any]]) -> "Strokes":
-        """Strokes of arrays that were checked before."""
         made = object.__new__(cls)
         made.__dict__.update(zip(FIELDS, parts, strict=True))
         return made
@@ -240,7 +239,6 @@ class Strokes:
         return picks
 
     def _place(self, at: Positions) -> list[Floats]:
-        """The two components of the place."""
         x, y = np.where(np.isnan(self.place), at.positions[:, 0], self.place).T
         across = np.clip(x / D_RADIUS, -1.0, 1.0)
         depth = D_RADIUS * np.sqrt(1.0 - across * across)
@@ -276,7 +274,6 @@ def _off_the_tip(strokes, cues):
 
 
 def _wrap(angles: Floats) -> Floats:
-    """The same angles within [-pi, pi]."""
     return angles - 2.0 * np.pi * np.round(angles / (2.0 * np.pi))
 
 

@@ -8,18 +8,17 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .._lib.check import number
 from .._lib.types import Bools, Environment, Floats, Ints
 from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
-from ..tasks.noise import Noise, NoiseLike, Spread
+from ..tasks.noise import Noise, Spread
 from ..tasks.options import Options, Rules
 from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
 from .aims import Dynamics
 from .planner import Planner, options_in
 from .positions import Positions
 from .proposals import Proposals, Propose, at_balls, over_cushions
-from .prospects import prospects_of, spread_of
+from .prospects import prospects_of
 from .search import Plan, Proposed, Search
 from .stroke_columns import COLUMNS
 
@@ -59,18 +58,16 @@ class VisitJudge:
         reward "legal" strokes of all kinds are tried, and the share of them that is no foul is their score.
     value : callable, optional
         Values [points] of n ``Positions``: (n,). Default: the rule of thumb ``prospects_of``.
-    doubtful : float, optional
-        Largest chance of a pot at which strokes at balls and over cushions are tried as well, in [0, 1]; default 0.
     pots_only : bool, optional
-        Score by the chance of the pot alone; without a pot, less that of a foul. Default False.
-    noise, threads : optional
+        Whether only the chance of the pot counts; without a pot, the chance of a foul counts against a stroke. Default False.
+    threads : int, optional
         As for ``Planner``.
 
     Examples
     --------
     >>> from snooker_env.planning import VisitJudge
-    >>> VisitJudge({"noise": "club"}).shots
-    0
+    >>> VisitJudge({"noise": "club"}).least
+    8
     """
 
     least = 8
@@ -80,29 +77,20 @@ class VisitJudge:
         env_or_options: Environment | Options | Mapping[str, Any],
         value: Value | None = None,
         *,
-        doubtful: float = 0.0,
         pots_only: bool = False,
-        noise: NoiseLike | None = None,
         threads: int | None = None,
     ):
         options = options_in(env_or_options)
-        self.planner: Planner = Planner(options, noise=noise, threads=threads)
+        self.planner: Planner = Planner(options, threads=threads)
         self.rules: Rules = self.planner.rules
         self.noise: Noise = self.rules.noise
-        self.spread: Spread = spread_of(self.noise, self.rules.physics)
+        self.spread: Spread = self.noise.spread(self.rules.physics)
         self.dynamics: Dynamics = Dynamics.of(self.rules)
         self.value: Value = self._by_rule if value is None else value
         self.legal: bool = options.reward == "legal"
-        self.doubtful: float = 1.0 if self.legal else number("doubtful", doubtful, 0.0, 1.0)
         self.pots_only: bool = pots_only
 
-    @property
-    def shots(self) -> int:
-        """Number of strokes simulated so far, an int."""
-        return self.planner.shots
-
     def _by_rule(self, at: Positions) -> Floats:
-        """Values of positions by the rule of thumb [points]: float64 (n,)."""
         constants = SURE if self.noise.silent else RULE_OF_THUMB
         rails, threads = self.dynamics.rails, self.planner.threads
         return prospects_of(at, self.spread, constants, threads=threads, rails=rails)[0]
@@ -113,10 +101,10 @@ class VisitJudge:
         return [(plan, np.arange(len(at)))]
 
     def propose(self, search: Search, at: Positions, seeds: Ints, plan: Plan) -> Proposed:
-        """Pots; where none is likelier than ``doubtful``, strokes at balls and over cushions, too."""
+        """Pots; where there are none, or a stroke need only be fair, strokes at balls and over cushions, too."""
         (m,), at = plan.looks, at.as_visits()
         strokes, chances, kinds = self._share(search, search.propose, at, m, seeds)
-        doubt = chances.max(axis=1) <= self.doubtful
+        doubt = chances.max(axis=1) <= (1.0 if self.legal else 0.0)
         if doubt.any():
             strokes, chances, kinds = strokes.copy(), chances.copy(), kinds.copy()
             every = (*search.propose, *WITHOUT_POTS)

@@ -110,7 +110,6 @@ class Random(ChoicePlayer):
     name, training_shots = "random", 0
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
-        """A random number for each choice."""
         masks = available(at, self.options.rules.rails)
         order = np.empty(masks.shape)
         for row, seed in zip(order, seeds.tolist(), strict=True):
@@ -127,7 +126,6 @@ class GhostBall(ChoicePlayer):
     name, training_shots = "ghost_ball", 0
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """See ``Player.play``."""
         return self._play(positions, seeds)[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
@@ -146,7 +144,6 @@ class GhostBall(ChoicePlayer):
         return ranked
 
     def _play(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, Positions]:
-        """What it plays, and from where: visits with placed cue balls."""
         at = Positions.of(positions)
         own = at.positions.copy(), at.on_table.copy(), at.game.copy()
         asked, start = self.turns(*own, at.conditions, seeds_of(seeds, len(at)))

@@ -1,7 +1,7 @@
 """Which policies look at nothing, and must win no task? Strokes that are silly on any table, and one choice for all tables.
 
-They are no players to play with. ``sn.player`` knows them as ``snooker_env.players.degenerate:softest`` and so on, and as
-``...:constant_67`` a choice of ``action="discrete"``, of which the aim alone is solved."""
+``sn.player`` knows them as ``snooker_env.players.degenerate:softest`` and so on. ``...:constant_67`` plays one choice of
+``action="discrete"``, whose aim is solved for each table."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -29,7 +29,6 @@ class Straight(BoundPlayer):
         self.speed, self.away = speed, away
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """See ``Player.play``."""
         at = Positions.of(positions)
         x, y = np.moveaxis(at.positions - at.positions[:, :1], -1, 0)
         balls = at.on_table.copy() if self.away else at.balls_on
@@ -44,7 +43,6 @@ class PlayAgain(GhostBall):
     """``ghost_ball``, who has the other play again after every foul."""
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """See ``Player.play``."""
         at = Positions.of(positions)
         return replace(
             super().play(at, seeds), decision=np.where(at.choice, columns.PLAY_AGAIN, columns.PLAY)
@@ -60,7 +58,6 @@ class Constant(ChoicePlayer):
         self.choice = choice
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
-        """The choice above all others."""
         return np.tile(np.arange(SIZE) == self.choice, (len(at), 1)).astype(float)
 
 
@@ -76,7 +73,6 @@ _CONSTANTS = {f"constant_{choice}": choice for choice in range(SIZE)}
 
 
 def is_degenerate(text: str) -> bool:
-    """Whether that names one of them."""
     name = text.removeprefix(MODULE)
     return name != text and (name in SILLY or name in _CONSTANTS)
 

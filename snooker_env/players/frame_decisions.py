@@ -22,8 +22,6 @@ _IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
 
 
 class Decided(NamedTuple):
-    """What a player does in n positions."""
-
     strokes: Strokes
     tried: list[Ranked | None]  # what its search tried; None where it plays no stroke or found none
     start: Positions  # what the strokes are played from, after decisions, with placed cue balls

@@ -13,7 +13,7 @@ from .._lib.types import Floats, Ints, Words
 from ..game.balls import GREEN, SPOTS, YELLOW
 from ..game.frame_columns import CHOICE, OVER, PHASE, POINTS, STRIKER, VISIT_COLUMNS
 from ..game.layouts import STORED
-from ..planning import Positions, processors, spread_of
+from ..planning import Positions, processors
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.positions import of_tables
 from ..planning.visit_judge import for_opponent
@@ -40,7 +40,7 @@ def value_of(options: Options) -> LearnedValue:
     """The points that a visit is expected to score from a position, as the planner has learned."""
     rules = options.rules
     learned = learned_at(level_for(rules.noise))
-    return LearnedValue(learned.value, spread_of(rules.noise, rules.physics), processors())
+    return LearnedValue(learned.value, rules.noise.spread(rules.physics), processors())
 
 
 def expect_points(options: Options) -> Expected:

@@ -48,13 +48,15 @@ def _value(text: str) -> Any:
 
 def add_model_options(parser: ArgumentParser) -> None:
     """Add ``--trust`` and ``--options`` to a command that takes a model's file."""
-    parser.add_argument("--trust", action="store_true", help="let the pickled code in a model's file run")
-    how = "how the actions of a model of Stable-Baselines3 are read, as aim=absolute"
+    parser.add_argument(
+        "--trust", action="store_true", help="allow the pickled code in a model's file to run"
+    )
+    how = "how to read the actions of a model of Stable-Baselines3, for example aim=absolute"
     parser.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
 
 
 def of_others(path: str | Path) -> bool:
-    """Whether that is a model's ``.zip`` that the repository's ``train.py`` did not make, or an unsound one."""
+    """Whether a path is a model's ``.zip`` that ``train.py`` did not write, or a broken one."""
     try:
         return Path(path).is_file() and not by_train(entries(path))
     except Exception:  # ``SavedModel`` says what is wrong with it
@@ -62,7 +64,7 @@ def of_others(path: str | Path) -> bool:
 
 
 def say_assumption(path: str | Path, options: Mapping[str, Any]) -> None:
-    """Say on stderr, once in a process, that nobody told how the aim of a model with these options is read."""
+    """Say on stderr, once in a process, that the aim of a model is assumed because its options do not name one."""
     if options.get("action", "box") == "box" and "aim" not in options and not _SAID:
         _SAID.append(str(path))
         told = 'for another aim give --options aim=absolute, or options={"aim": "absolute"}'

@@ -16,6 +16,7 @@ from .choices import GhostBall
 from .model_options import of_others
 from .opponent_pool import OpponentPool
 from .player import Player, Strokes
+from .resolver import is_name
 from .resolver import player as player_of
 from .saved import FittingModel, SavedNetwork
 from .seen import SeenPlayer
@@ -31,7 +32,7 @@ def draw_uniform(frames: Frames, which: Ints) -> Floats:
 
 
 class PlayerOpponent:
-    """A bound player as opponent, with a seed of each table's own stream for each stroke."""
+    """A bound player as opponent; the seed of each stroke comes from the table's own stream."""
 
     def __init__(self, player: Player, name: str):
         self.player, self.name = player, name
@@ -73,7 +74,7 @@ class PlayerOpponent:
 
 
 class PoolOpponent:
-    """The members of a pool as opponents in frames with these options; those added later are made ready when they play."""
+    """The members of a pool as opponents in frames with these options; members added later are bound when they play."""
 
     name = "an OpponentPool"
 
@@ -104,7 +105,6 @@ class PoolOpponent:
         return asked
 
     def _draw(self, frames: Frames, which: Ints) -> None:
-        """Draw an opponent where none has been drawn in this frame."""
         new = which[frames.game[which, OPPONENT] == 0]
         if not len(new):
             return
@@ -116,19 +116,24 @@ class PoolOpponent:
 
 
 def _room(n: int) -> Asked:
-    """Room for what is played on n tables."""
     nominated, decisions, declared = np.zeros((3, n), np.int64)
     return np.zeros((n, 5)), np.zeros((n, 2)), nominated, decisions, declared
 
 
 def _write(asked: Asked, rows: Ints, parts: tuple[Floats | Ints, ...]) -> None:
-    """Write what is played on some tables, the arrays of ``Strokes``."""
     for whole, part in zip(asked, parts, strict=True):
         whole[rows] = part
 
 
 def opponent_of(opponent: str | Path | Player | OpponentPool, options: Options) -> Opponent:
-    """The opponent that a name, a player or a pool stands for in frames with these options."""
+    """The opponent that a name, several with commas, a player or a pool stands for in frames with these options."""
+    if (
+        isinstance(opponent, str)
+        and "," in opponent
+        and not is_name(opponent)
+        and not Path(opponent).exists()
+    ):
+        opponent = OpponentPool(opponent.split(","))
     if isinstance(opponent, OpponentPool):
         return PoolOpponent(opponent, options)
     if isinstance(opponent, type):

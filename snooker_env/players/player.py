@@ -15,7 +15,7 @@ from ..game.frame_columns import PLACE_ANYWHERE, PLAY
 from ..planning.ghost_ball import put_in_hand
 from ..planning.planner import options_in
 from ..planning.positions import Positions, PositionsLike, seeds_of
-from ..planning.prospects import prospects_of, spread_of
+from ..planning.prospects import prospects_of
 from ..planning.search import Ranked
 from ..planning.strokes import Strokes
 from ..planning.worth import apply_decision, decide
@@ -29,9 +29,9 @@ RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]  # a dict: fiel
 class Player(Protocol):
     """A player: a function of positions and a seed.
 
-    It may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position, first of all
-    the stroke that ``play`` returns. Advice shows it. One whose ``frames`` is False knows visits alone, and is not
-    asked for advice in frames.
+    A player may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position, with the stroke
+    that ``play`` returns first. Advice shows this ranking. A player whose ``frames`` is False knows only visits and is
+    not asked for advice in frames.
 
     Examples
     --------
@@ -48,7 +48,7 @@ class Player(Protocol):
         ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """Return what it does in n positions, of visits or of frames as the striker sees them.
+        """Return what the player does in n positions, of visits or of frames as the striker sees them.
 
         ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once."""
         ...
@@ -80,16 +80,16 @@ class BoundPlayer:
         """What a player makes once for where it plays."""
 
     def worth(self, at: Positions) -> Floats:
-        """What positions of frames are worth to their strikers, for decisions after fouls: float64 (n,).
+        """Return what positions of frames are worth to their strikers, for decisions after fouls: float64 (n,).
 
-        Here by the likeliest pot: who pots more often than not gains by having the next stroke."""
+        By default the likeliest pot decides: a striker who is likely to pot gains by playing next."""
         rules, (visits, _) = self.options.rules, place_cue_balls(at, np.zeros(len(at), np.int64))
-        spread = spread_of(rules.noise, rules.physics)
+        spread = rules.noise.spread(rules.physics)
         return 2.0 * prospects_of(visits, spread, most=_POTS, rails=rules.rails)[1].max(axis=1) - 1.0
 
     def start_playing(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints]:
-        """From where it plays in n positions: visits after its decisions, with placed cue balls; their places (n, 2), else
-        NaN; and the decisions (n,), the best by ``worth``."""
+        """Return from where the player plays n positions: as visits after its decisions, with cue balls placed; the places
+        (n, 2), NaN where none was placed; the decisions (n,), the best by ``worth``."""
         at, code = Positions.of(positions), self.options.rules.rule_set.code
         decisions, rows = np.full(len(at), PLAY), np.flatnonzero(at.choice)
         if len(rows):
@@ -142,8 +142,8 @@ def decision_seeds(seed: int, tables: Ints, decision: int | Ints) -> Ints:
     Parameters
     ----------
     seed, tables, decision
-        The player's, an int; a number for each table, int (n,), such as the seed that it was dealt from; the
-        number of the decision, of all tables or of each.
+        The player's seed, an int; a number for each table, int (n,), such as the seed of its deal; the number of
+        the decision, one for all tables or one for each.
 
     Returns
     -------
@@ -173,7 +173,7 @@ def ask_player(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats
     player, tables
         The player, bound, and n tables, made with ``VISITS`` or ``FRAMES``.
     going, seeds : numpy.ndarray
-        The tables on which it is asked, bool (n,), and the seeds of these decisions, int64 (n,).
+        Tables on which the player is asked, bool (n,); seeds of these decisions, int64 (n,).
 
     Returns
     -------

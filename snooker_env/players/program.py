@@ -43,23 +43,8 @@ class AgentError(RuntimeError):
 
 
 class ProgramPlayer(BoundPlayer):
-    """An external program as a player. All that ``at`` makes of it share one process.
-
-    Parameters
-    ----------
-    command : str
-        The command line, split as by a shell; no shell runs it. ValueError if it is empty.
-    timeout : float
-        The longest time of an answer [s], in (0, 1e6].
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import ProgramPlayer
-    >>> ProgramPlayer("")
-    Traceback (most recent call last):
-    ...
-    ValueError: player = 'program:': must name a program: program:"python my_player.py"
-    """
+    """An external program as a player: ``command`` is split as by a shell, but no shell runs it; ``timeout`` limits the time
+    of an answer [s]. All that ``at`` makes of it share one process."""
 
     def __init__(self, command: str, *, timeout: float = 60.0):
         try:
@@ -129,12 +114,10 @@ class ProgramPlayer(BoundPlayer):
         )
 
     def _frame(self, at: Positions) -> Frame:
-        """The frame of the one position ``at``."""
         rules, saved = self.options.rules, at.saved or Layouts(at.positions, at.on_table)
         return frame_of(at.game[0], rules.miss, saved, 0, rules.game)
 
     def _state(self, at: Positions) -> dict[str, Any]:
-        """What the one position ``at``, of a frame, is told as."""
         frame = self._frame(at)
         state = report_game(frame, at.positions[0].tolist(), at.on_table[0].tolist(), LABELS)
         turn, lines = report_turn(frame, at, self.options.rules.table, self._noise)
@@ -142,7 +125,6 @@ class ProgramPlayer(BoundPlayer):
         return state | {"text": say_table(state, lines, [state["words"], say_score(state, LABELS)])}
 
     def _ask(self, at: Positions, seed: int) -> dict[str, Any]:
-        """The program's answer to the one position ``at``: an object."""
         answer = self._answer(self._state(at) | {"seed": seed})
         try:
             return read_object(answer.strip())
@@ -151,7 +133,6 @@ class ProgramPlayer(BoundPlayer):
             raise AgentError(f"the program {self._lines.command!r} {what}") from None
 
     def _answer(self, state: dict[str, Any]) -> bytes:
-        """The line that the program answers a state with."""
         return self._lines.ask(json.dumps(state, separators=(",", ":")).encode() + b"\n")
 
 
@@ -178,7 +159,6 @@ class _Lines:
         self._writer.start()
 
     def ask(self, line: bytes) -> bytes:
-        """The answer to a line."""
         if self._process is None:
             self._start()
         until = time.monotonic() + self.timeout
@@ -211,7 +191,6 @@ class _Lines:
         return AgentError(f"the program {self.command!r} {what}")
 
     def close(self) -> None:
-        """End the process."""
         process, self._process = self._process, None
         if process is None:
             return
@@ -251,12 +230,10 @@ class _Lines:
 
 
 def _one_stroke(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:
-    """One stroke."""
     places: Any = None if place is None else np.array([place])
     return Strokes(np.array([values]), places, decision=np.array([decision]))
 
 
 def _short(text: Any) -> str:
-    """A text in at most 80 characters, quoted."""
     text = (text.decode(errors="replace") if isinstance(text, bytes) else text).strip()
     return repr(text if len(text) <= 80 else text[:77] + "...")

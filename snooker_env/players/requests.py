@@ -74,5 +74,4 @@ def read_place(field: str, value: object) -> tuple[float, float]:
 
 
 def read_colour(field: str, value: object) -> int:
-    """Id of the colour with a name."""
     return colour(choice(field, value, COLOUR_NAMES))

@@ -109,7 +109,7 @@ def player(name: object, *, trust: bool = False, options: Mapping[str, Any] | No
 
 
 def players_of(names: Sequence[str], trust: bool, options: Mapping[str, Any]) -> list[Player]:
-    """The players that a command line names; ``options`` are those of the models of Stable-Baselines3 among them."""
+    """The players that a command line names; ``options`` apply to the models of Stable-Baselines3 among them."""
     models = [of_others(name) for name in names]
     its = [options if model else None for model in models]
     made = [player(name, trust=trust, options=one) for name, one in zip(names, its, strict=True)]
@@ -119,14 +119,13 @@ def players_of(names: Sequence[str], trust: bool, options: Mapping[str, Any]) ->
 
 
 def is_name(text: str) -> bool:
-    """Whether that is the name of a player, MODULE:CLASS or a program, and not a file."""
+    """Whether a text is the name of a player, MODULE:CLASS or a program, and not a file."""
     if _SEARCHING.fullmatch(text) is not None or text.startswith(PROGRAM) or text in players():
         return True
     return OWN.fullmatch(text) is not None and not Path(text).exists()
 
 
 def _built_in(name: str) -> Player | None:
-    """The player of the package with that name."""
     if name in (Random.name, GhostBall.name):
         return Random() if name == Random.name else GhostBall()
     if name == "strokes":
@@ -159,7 +158,7 @@ def _find_entry_points() -> dict[str, EntryPoint]:
 
 
 def _importable(module: str) -> bool:
-    """Whether there is a module: a wheel names this repository's ``agents`` but does not hold them."""
+    """Whether a module can be imported: a wheel names this repository's ``agents`` but does not hold them."""
     try:
         return importlib.util.find_spec(module) is not None
     except ModuleNotFoundError:
@@ -190,7 +189,6 @@ def _of_object(thing: object) -> Player:
 
 
 def _read(path: Path) -> Any:
-    """What the readers of installed packages make of a file; None if it belongs to none of them."""
     for one in entry_points(group=READERS):
         if _importable(one.module) and (made := one.load()(path)) is not None:
             return made
@@ -198,7 +196,6 @@ def _read(path: Path) -> Any:
 
 
 def _of_file(path: Path, trust: bool, options: dict[str, Any]) -> Player:
-    """The player of a model's file or a run's folder."""
     made = _read(path)
     if made is None:
         from .saved import saved_player

@@ -62,7 +62,6 @@ class FittingModel:
 
     @property
     def actions(self) -> Any:
-        """The space of its actions."""
         flat: Any = self.options | {"observation": "flat"}
         return Options(**flat).rules.actions.space
 

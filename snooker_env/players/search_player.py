@@ -49,11 +49,9 @@ class SearchPlayer(BoundPlayer):
         self.search = Search(judge, self.budget, propose)
 
     def worth(self, at: Positions) -> Floats:
-        """See ``BoundPlayer.worth``."""
         return super().worth(at) if self._worth is None else self._worth(at).astype(np.float64)
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """See ``Player.play``."""
         return self._play(positions, seeds)[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
@@ -62,7 +60,6 @@ class SearchPlayer(BoundPlayer):
         return [show_strokes(one, strokes[k : k + 1]) for k, one in enumerate(ranked)]
 
     def _play(self, positions: PositionsLike, seeds: Integers) -> tuple[Strokes, list[Ranked]]:
-        """What it plays, and the rankings of its search."""
         visits, places, decisions = self.start_playing(positions, seeds)
         ranked = self.search.rank(visits, seeds)
         best = np.array([one.strokes.values[0] for one in ranked]).reshape(-1, COLUMNS)

@@ -26,10 +26,10 @@ OPTIONS = (*Options.group("action"), *Options.group("view"), "miss")  # with "mi
 
 @runtime_checkable
 class Seen(Protocol):
-    """What acts on observations: a network, or any model of another library.
+    """An object that acts on observations: a network, or a model of another library.
 
-    It may have ``options``, a dict of how its observations look and its actions are read ("action", "aim",
-    "observation", "placement", ... of ``Options``), with "task": "visit" (default) or "frame".
+    Its attribute ``options``, if it has one, is a dict that says how observations look and how actions are read
+    ("action", "aim", "observation", "placement", ... of ``Options``), with "task": "visit" (default) or "frame".
 
     Examples
     --------
@@ -51,17 +51,17 @@ class Seen(Protocol):
 class SeenPlayer(BoundPlayer):
     """A player that shows positions to a ``Seen`` as observations and reads its actions as strokes.
 
-    One that sees visits plays frames too: with a free ball any colour is on; a cue ball in hand that it does
-    not place stands where ``ghost_ball`` puts it; after a foul it plays.
+    A player that sees visits can play frames too: with a free ball any colour is on; a cue ball in hand that its
+    action does not place stands where ``ghost_ball`` puts it; after a foul the player plays on.
 
     Parameters
     ----------
     seen : Seen
-        What acts.
+        The object that acts.
     options : mapping, optional
-        How it sees and acts, see ``Seen``; default: its own attribute ``options``, or none.
+        How ``seen`` observes and acts, see ``Seen``; default: its attribute ``options``, or none.
     name : str, optional
-        What errors call it.
+        The name in errors.
 
     Examples
     --------

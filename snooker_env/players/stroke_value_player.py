@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from .._lib.types import Floats, Integers
-from ..planning import Positions, spread_of
+from ..planning import Positions
 from ..planning.aims import Dynamics
 from ..planning.learned.frame_strokes import FOULS, FrameStrokes
 from ..planning.learned.learned_value import LearnedValue
@@ -38,7 +38,7 @@ class StrokeValuePlayer(FramePlayer):
         rules, level = options.rules, level_for(options.rules.noise)
         learned, self._plain = learned_at(level), GhostBall().at(options)
         layers = learned_strokes() if self._given is None else self._given
-        spread = spread_of(rules.noise, rules.physics)
+        spread = rules.noise.spread(rules.physics)
         # one of the value's networks says almost as much as all, in a quarter of the time
         value, worth = LearnedValue(learned.value[:1], spread), LearnedValue(learned.value, spread)
         self.values = StrokeValue(value, learned.policy, Dynamics.of(rules), rules.noise, layers.visits)
@@ -47,7 +47,6 @@ class StrokeValuePlayer(FramePlayer):
         )
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """See ``Player.play``."""
         at = Positions.of(positions)
         if at.of_frames:
             return self.decide_frames(at, seeds).strokes

@@ -16,7 +16,6 @@ from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, HALF_LENGTH, HALF_WID
 from ..physics.table import Table
 from ..planning.positions import Positions
 from ..planning.pot_geometry import obstructions, pots
-from ..planning.prospects import spread_of
 from ..tasks.noise import LEVELS
 from ..tasks.pot_chance import pot_chances
 
@@ -40,13 +39,11 @@ class Line:
     chance: float | None  # about how likely the seat's noise keeps within the tolerance; None without noise
 
     def to_dict(self) -> dict[str, Any]:
-        """The line as JSON types."""
         names = {"ball": NAMES[self.ball], "pocket": POCKETS[self.pocket]}
         return asdict(self) | names | {"blocked_by": list(self.blocked_by)}
 
     @property
     def words(self) -> str:
-        """The line in words, without the ball's name."""
         way = f"{POCKETS[self.pocket]}: "
         if not self.open:
             return way + (", ".join(self.blocked_by) + " in the way" if self.blocked_by else self.why)
@@ -59,7 +56,7 @@ class Line:
 def find_lines(positions: list[Positions], on: int, noise: str) -> list[Line]:
     """Lines to pockets for the balls ``on``; ``positions``: the table, with a free ball also for colours."""
     errors = LEVELS[noise]
-    spread = None if errors.silent else spread_of(errors)
+    spread = None if errors.silent else errors.spread()
     tolerances = {}
     for position in positions:
         some = pots(position, most=MOST)
@@ -129,7 +126,6 @@ def _say_turn(frame: Frame, labels: tuple[str, str]) -> str:
 
 
 def where(ball: int, x: float, y: float) -> str:
-    """A place in words."""
     for k, spot in enumerate(COLOUR_SPOTS):
         if hypot(x - spot[0], y - spot[1]) < 1e-3:
             return "on its spot" if ball == YELLOW + k else f"on the {NAMES[YELLOW + k]} spot"
@@ -210,7 +206,6 @@ def report_turn(
 
 
 def say_score(state: dict[str, Any], labels: tuple[str, str]) -> str:
-    """Both scores and the break in a sentence."""
     (one, other), (mine, others) = labels, state["scores"]
     return f"Score: {one} {mine}, {other} {others}; break {state['break']}."
 
@@ -236,7 +231,6 @@ def say_table(state: dict[str, Any], lines: list[Line], said: list[str]) -> str:
 
 
 def _facts(state: dict[str, Any]) -> list[str]:
-    """The sentences before the list of balls."""
     if state["phase"] == "over":
         return []
     reds, left = state["reds"], f"{state['available']} points are left on the table"

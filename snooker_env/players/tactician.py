@@ -6,7 +6,7 @@ import numpy as np
 from .._lib.check import integer, refuse, refuse_what
 from .._lib.types import Floats, Integers, Singles
 from ..game import frame_columns as columns
-from ..planning import FrameJudge, Positions, Search, processors, spread_of
+from ..planning import FrameJudge, Positions, Search, processors
 from ..planning.aims import Dynamics
 from ..planning.learned.foresight import Foresight
 from ..planning.learned.learned_value import LearnedValue
@@ -41,14 +41,13 @@ class Tactician(FramePlayer):
         noise, physics = options.rules.noise, options.rules.physics
         layers, chance = learned_worth() if self._given is None else self._given
         learned = learned_at(level_for(noise))
-        value = LearnedValue(learned.value, spread_of(noise, physics), processors())
+        value = LearnedValue(learned.value, noise.spread(physics), processors())
         worth = LearnedWorth(value, layers)
         foresight = Foresight(options.rules, Dynamics.of(options.rules), worth)
         self.judge = FrameJudge(options, worth, chance, foresee=foresight.promise)
         self.search = Search(self.judge, self.budget, PolicyProposals(learned.policy))
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """See ``Player.play``."""
         at = Positions.of(positions)
         return self.decide_frames(at, seeds).strokes if at.of_frames else self._visits.play(at, seeds)
 

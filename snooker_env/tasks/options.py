@@ -176,7 +176,8 @@ class Options:
         Whether an episode ends with its first stroke; in a frame with the first that is no foul, after 20 steps at most.
         Not of a match.
     opponent : str or Path, default "none"
-        Of a frame: "none", or what ``snooker_env.player`` takes: a player's name, a model's ``.zip`` and more.
+        Of a frame: "none", or what ``snooker_env.player`` takes: a player's name, a model's ``.zip`` and more. Several
+        names with commas are a pool, of whom one is drawn for each frame: "search,planner".
         Environments also take objects (docs/environment/opponents.md); their options then say "object".
     trust : bool, default False
         Of a frame: whether code in an opponent's ``.zip`` may run.

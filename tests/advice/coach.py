@@ -13,7 +13,7 @@ import numpy as np
 import snooker_env as sn
 from snooker_env.advice.practice import arrive, find_arrivals, keys, one_position, practice_of, start_from
 from snooker_env.geometry import BAULK_Y
-from snooker_env.planning import clear_paths, prospects_of, spread_of
+from snooker_env.planning import clear_paths, prospects_of
 from snooker_env.tasks import LEVELS
 
 OPTIONS = {"cue": "real", "miss": "clear_path"}
@@ -271,7 +271,7 @@ def measured(case, seeds=SEEDS, samples=SAMPLES, visits=0, agent=None):
         cue, hidden = theirs.positions[:, 0], ~clear_paths(theirs).any_part
         gaps = np.hypot(*(theirs.positions - cue[:, None]).transpose(2, 0, 1))
         far = np.where(theirs.balls_on, gaps, np.inf).min(axis=1) >= FAR
-        chances = prospects_of(theirs, spread_of(LEVELS[NOISE]), rails=practice.options.rules.rails)[1]
+        chances = prospects_of(theirs, LEVELS[NOISE].spread(), rails=practice.options.rules.rails)[1]
         rows["foul"].append(stops.penalty > 0)
         rows["likely"].append(chances.max(axis=1) >= LIKELY)
         rows["baulk"].append(cue[:, 1] < BAULK_Y)
@@ -302,7 +302,7 @@ if __name__ == "__main__":
 
     for name, case in CASES.items():
         here = one_position(case.position, case.scores)
-        on = prospects_of(here, spread_of(LEVELS[NOISE]))[1].max()
+        on = prospects_of(here, LEVELS[NOISE].spread())[1].max()
         found = measured(case, visits=20, agent=sys.argv[1] if sys.argv[1:] else None)
         told = ", ".join(f"{key} {share:.2f}" for key, share in found.shares.items())
         print(f"{name}: likeliest pot {on:.2f}; {told}\n   {unlike(case, found) or 'as a coach wants it'}")

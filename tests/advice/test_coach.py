@@ -8,7 +8,7 @@ from coach import CASES, LIKELY, NOISE, OPTIONS, SAFE, UNLIKE, Case, at, measure
 import snooker_env as sn
 from snooker_env.advice import CueStroke
 from snooker_env.advice.practice import one_position
-from snooker_env.planning import prospects_of, spread_of
+from snooker_env.planning import prospects_of
 from snooker_env.tasks import LEVELS
 
 SEEN = {"seeds": (0,), "samples": 300}
@@ -18,7 +18,7 @@ def test_there_are_twenty_and_no_pot_is_likely_in_any():
     assert len(CASES) == 20 and set(UNLIKE) <= set(CASES)
     for name, case in CASES.items():
         here = one_position(case.position, case.scores)
-        chances = prospects_of(here, spread_of(LEVELS[NOISE]))[1]
+        chances = prospects_of(here, LEVELS[NOISE].spread())[1]
         assert chances.max() < LIKELY, name
         assert case.coach and case.most and set(case.first) <= set(range(1, 22))
         hidden = not sn.planning.clear_paths(case.position).any_part[0]

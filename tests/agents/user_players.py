@@ -35,13 +35,6 @@ class Loud(Softly):
     options: ClassVar = {"noise": "none"}
 
 
-class Discreet(Softly):
-    options: ClassVar = {"action": "discreet"}
-
-
 class Mute:
     options: ClassVar = {}
     act = None
-
-
-silent = 3

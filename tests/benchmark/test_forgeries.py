@@ -9,15 +9,12 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, checking, judge
-from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.checking import afresh, faults
 from snooker_env.benchmark.results import (
     complete,
     figures_of,
     pack_strokes,
-    read_result,
     strokes_of,
-    write_result,
 )
 from snooker_env.benchmark.schema import UNPROVED
 from snooker_env.players import VISITS
@@ -84,38 +81,6 @@ def test_the_name_of_a_known_player_for_other_strokes(name):
     record["agent"] |= {"label": name, "sources": [name]}
     first = OTHER_STROKE.format(0, HARD.seeds(1)[0], name, 0)
     assert first in faults(record)
-
-
-def forged(record, task, episodes, better):
-    """The record with the strokes from the second on that ``better`` plays after the same first ones, and its rows."""
-    hindsight, played = sn.player(better), strokes_of(record)
-
-    class After:
-        def at(self, rules):
-            self.player, self.number = hindsight.at(rules), -1
-            return self
-
-        def play(self, positions, seeds):
-            self.number += 1
-            if self.number:
-                return self.player.play(positions, seeds)
-            return sn.player(record["agent"]["label"]).at(self.player.options).play(positions, seeds)
-
-    other = judge(task, Agent(label="after", sources=(After(),), training_shots=0), episodes=episodes)
-    assert all(a[0].tobytes() == b[0].tobytes() for a, b in zip(strokes_of(other), played, strict=True))
-    other["agent"] |= {name: record["agent"][name] for name in ("label", "sources", "training_shots")}
-    other["timing"]["simulated_shots"] = record["timing"]["simulated_shots"]
-    return complete(other, task)
-
-
-def test_hindsight_from_the_second_stroke_on():
-    """The first stroke is that of ghost_ball, all others are a better player's."""
-    record = judge(BREAK, Agent.of("ghost_ball"), episodes=40)
-    other = forged(record, BREAK, 40, "best_pot")
-    assert other["figures"]["score"]["value"] > 1.5 * record["figures"]["score"]["value"]
-    refused = faults(other)
-    assert refused and all("ghost_ball plays another stroke than number " in line for line in refused)
-    assert not any("number 0 " in line for line in refused)
 
 
 def test_a_decision_after_a_foul_that_the_player_does_not_make():
@@ -193,19 +158,6 @@ def test_a_player_of_the_menu_is_a_class_of_its_own():
 def test_known_players_were_trained_as_they_say(name, training, says):
     record = judge(HARD, Agent(label=name, sources=(name,), training_shots=training), episodes=3)
     assert faults(record) == [says]
-
-
-def test_repeated_keys(official, tmp_path, capsys):
-    file = tmp_path / "twice.json"
-    write_result(file, official)
-    assert read_result(file) == official
-    text = file.read_text(encoding="utf-8")
-    for name in ("task", "official", "figures"):
-        file.write_text(text.replace(f'"{name}":', f'"{name}": 1,\n "{name}":', 1), encoding="utf-8")
-        with pytest.raises(ValueError, match=f"the key '{name}' stands there twice"):
-            read_result(file)
-        assert main(["check", str(file)]) == 1
-        assert f"the key '{name}' stands there twice" in capsys.readouterr().out
 
 
 def test_one_flipped_bit_of_a_stroke(boxes):

@@ -8,11 +8,11 @@ from scipy import stats
 
 import snooker_env as sn
 from snooker_env._lib.files import with_checksum
-from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, interval, judge, page
+from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, judge
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.leaderboard import LEGEND, lines
+from snooker_env.benchmark.leaderboard import lines, page
 from snooker_env.benchmark.results import read_result
-from snooker_env.benchmark.statistics import bound_if_none
+from snooker_env.benchmark.statistics import bound_if_none, interval
 from snooker_env.planning import Planner
 from snooker_env.players import VISITS, BoundPlayer, Strokes, decision_seeds
 
@@ -117,37 +117,43 @@ def test_tables_fit_100_columns(made, capsys):
     assert max(map(len, out.splitlines())) <= 100 and out.count("ghost_ball *") == len(TASKS)
     results = [result(made, name) for name in TASKS]
     for one in results:  # as wide as can be
-        one["agent"] |= {"label": "a" * 20, "simulated_shots": 99_999.0, "declared": True}
-        one["agent"] |= {"class": "undeclared", "budget": "unknown", "sources": ["x"] * 10}
-        for figure in (one["figures"]["score"], one["figures"]["iqm"]):
-            if figure is not None:
-                figure.update(value=130.0, low=120.0, high=140.0)
-        one["figures"]["best"] = 147
-        one["timing"] |= {"seconds": 99.9 * sum(row[3] for row in one["rows"]), "one_table_ms": 99999.0}
+        one["agent"] |= {
+            "label": "a" * 20,
+            "simulated_shots": 99_999.0,
+            "declared": True,
+            "class": "model_free",
+        }
+        one["agent"] |= {"training_shots": 46_101_376, "sources": ["x"] * 10}
+        scale = 1.0 if TASKS[one["task"]].counts else 0.01
+        one["figures"]["adjusted"].update(value=130.0 * scale, low=120.0 * scale, high=140.0 * scale)
     assert max(map(len, lines(results))) <= 100
     assert main(["tasks"]) == 0 and max(map(len, capsys.readouterr().out.splitlines())) <= 100
-    assert page(results).startswith("# Leaderboard\n") and LEGEND[:40] in page(results)
 
 
-def test_the_page_shows_the_best_agent_that_looks_at_nothing_and_thresholds_that_were_reached(made):
+def test_the_page_ranks_agents_and_shows_anchors_without_a_rank(made):
     rows = []
     for label, kind, value in (
-        ("seeing", "model_free", 1.0),
-        ("softest", "degenerate", 2.0),
-        ("hardest", "degenerate", 3.0),
+        ("last", "model_free", 1.0),
+        ("softest", "degenerate", 2.5),
+        ("first", "planning", 3.0),
+        ("random", "model_free", 2.0),
     ):
         one = result(made)
-        one["agent"] |= {"label": label, "class": kind}
-        one["figures"]["score"]["value"] = value
-        one["figures"]["profile"] = [
-            {"at_least": 1, "value": 0.5, "low": 0.4, "high": 0.6, "exact": False},
-            *(
-                {"at_least": t, "value": 0.0, "low": 0.0, "high": 0.1, "exact": True}
-                for t in (10, 25, 50, 75, 100, 147)
-            ),
-        ]
+        one["agent"] |= {"label": label, "class": kind, "simulated_shots": 7.4, "training_shots": 18_403_328}
+        one["figures"]["adjusted"] = {"value": value, "low": value - 0.5, "high": value + 0.5}
+        one["figures"]["score"]["value"], one["date"] = 10 * value, "2026-11-30T09:16:10Z"
+        one["protocol"]["official"] = label != "last"
         rows.append(one)
-    shown = page(rows).splitlines()
-    assert [sum(label in line for line in shown) for label in ("seeing", "softest", "hardest")] == [2, 0, 1]
-    assert [line for line in shown if line.startswith("| agent")] == ["| agent | >= 1 | best |"]
-    assert all(any(label in line for line in lines(rows)) for label in ("seeing", "softest", "hardest"))
+    text = page(rows, ["first", "next"])
+    shown = [line.split(" | ")[:5] for line in text.splitlines() if "](../results" in line]
+    assert shown == [
+        ["| 1", "`first`", "planning", "3.0 [2.5, 3.5]", "30.0"],
+        ["| ", "`softest`", "anchor", "2.5 [2.0, 3.0]", "25.0"],
+        ["| ", "`random`", "anchor", "2.0 [1.5, 2.5]", "20.0"],
+        ["| 2", "`last` *", "model_free", "1.0 [0.5, 1.5]", "10.0"],
+    ]
+    link = "[2026-11-30](../results/leaderboard/SnookerBreak-v0.first.json)"
+    assert f"| 18.4 M | 1 | 7 | {link} |" in text
+    assert "Still missing on at least one task: first, next." in text
+    every = [one | {"task": name} for name in TASKS for one in rows[:1]]
+    assert "missing" not in page(every, ["last"])

@@ -6,8 +6,7 @@ from scipy import stats
 
 from agents.evaluation.entrants import Entrant
 from agents.evaluation.metrics import EntrantMetrics
-from snooker_env.benchmark import iqm
-from snooker_env.benchmark.statistics import Resamples
+from snooker_env.benchmark.statistics import Resamples, iqm
 
 
 def test_iqm_is_scipys_trimmed_mean():

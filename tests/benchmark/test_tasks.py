@@ -14,6 +14,7 @@ from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS
 from snooker_env.benchmark.playing import Repeater, play_episodes, rows_of, tables_for
 from snooker_env.benchmark.tasks import FREE
 from snooker_env.game import layout
+from snooker_env.game.frame_columns import OPPONENT
 from snooker_env.game.layouts import STORED_IN
 from snooker_env.players import BoundPlayer, Strokes
 
@@ -136,3 +137,16 @@ def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_dec
     assert Counted.asked == played.decisions == sum(row["strokes"] for row in rows) > 0
     assert list(map(len, played.strokes)) == [row["strokes"] for row in rows]
     assert rows_of(easy, tables_for(easy, 40), seeds, Repeater(played.strokes, 8)) == played.rows
+
+
+def test_a_frame_meets_one_of_four_players_and_the_same_again():
+    met = []
+    for _ in range(2):
+        envs = tables_for(TASKS["SnookerFrame-v0"], 8)
+        envs.reset(seed=list(range(8)))
+        while not (drawn := envs.tables.game[:, OPPONENT]).all():
+            envs.step(np.zeros((8, envs.action_space.shape[1])))
+        met.append(drawn.tolist())
+    assert met[0] == met[1] and set(met[0]) <= {1, 2, 3, 4} and len(set(met[0])) > 1
+    with pytest.raises(ValueError, match=r"members\[1\] of the OpponentPool: opponent = 'nobody'"):
+        sn.SnookerEnv(task="frame", opponent="random,nobody")

@@ -134,14 +134,3 @@ def test_a_file_holds_the_position_to_the_last_bit_on_any_table(tmp_path):
         "3.0",
         "must be on the table",
     )
-
-
-def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
-    file, position = tmp_path / "one.json", Position(**FULL)
-    position.save(file)
-    monkeypatch.setattr(
-        "snooker_env._lib.files.os.replace", lambda *_: (_ for _ in ()).throw(OSError(28, "full"))
-    )
-    with pytest.raises(OSError, match="full"):
-        Position(cue=(0.0, 0.0), black=(0.0, 1.0)).save(file)
-    assert Position.load(file) == position and len(list(tmp_path.iterdir())) == 1

@@ -34,7 +34,7 @@ from tests.positions import chances_by_width, tables
 
 PLANNER = planning.Planner({"fidelity": "fast"}, threads=1)
 DYNAMICS = Dynamics.of(PLANNER.rules)
-SPREAD = planning.spread_of(LEVELS["club"])
+SPREAD = LEVELS["club"].spread()
 NO_POT = planning.Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0))
 """Both reds lie on the top cushion and hide each other from the corners."""
 

@@ -77,7 +77,5 @@ def test_spread_is_that_of_the_aim_and_of_the_squirt(level):
     b = 1e-3 * noise.offset_mm / physics.R
     squirt = atan(2.5 * b * sqrt(1 - b * b) / (1 + physics.end_mass_ratio + 2.5 * (1 - b * b)))
     spread = hypot(radians(noise.aim_deg), squirt) * hypot(1.0, noise.growth * 1.5)
-    assert prospects.spread_of(noise, physics) == pytest.approx(
-        (spread, noise.lapse, noise.lapse_factor), rel=1e-3
-    )
-    assert prospects.spread_of(Noise(), physics) == (1e-5, 0.0, 1.0)
+    assert noise.spread(physics) == pytest.approx((spread, noise.lapse, noise.lapse_factor), rel=1e-3)
+    assert Noise().spread(physics) == (1e-5, 0.0, 1.0)

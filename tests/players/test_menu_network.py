@@ -1,11 +1,10 @@
-"""Does the package's agent of the menu play as the trained model does, without PyTorch, the same for one position or many?"""
+"""Does the package's agent of the menu play as the trained model does, without PyTorch?"""
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import play_visits, summary
-from snooker_env.players import VISITS
 from snooker_env.players.menu_network import MenuNetwork
 from snooker_env.players.weights import learned_menu
 from tests.processes import python
@@ -25,15 +24,6 @@ def test_it_chooses_as_the_model_that_was_trained():
     masks = env.action_masks()
     chosen = MenuNetwork(learned_menu("visits"), "visit").act(observed, masks, np.arange(60))
     assert np.array_equal(chosen, wanted) and masks[np.arange(60), chosen].all() and len(set(chosen)) > 10
-
-
-def test_one_position_or_many_are_the_same_bits():
-    env = sn.SnookerVectorEnv(12, **OPTIONS, **VISITS)
-    env.reset(seed=2)
-    at, player = sn.planning.Positions.of(env), sn.player("strokes").at(env)
-    together = player.play(at, np.arange(12)).values
-    alone = [player.play(at[[k]], [k]).values[0] for k in range(12)]
-    assert np.array_equal(together, alone)
 
 
 def test_it_makes_more_than_the_widest_pot():

@@ -17,7 +17,7 @@ from tests.refusals import refuse_each
 from tests.tables import begun
 
 SEARCHING = ("best_pot_30", "search_30", "planner_30", "tactician_30")
-NAMES = ("random", "ghost_ball", "stroke_value", "ppo_value", f"{MODULE}softest_away", *SEARCHING)
+NAMES = ("random", "ghost_ball", "stroke_value", "strokes", "ppo_value", f"{MODULE}softest_away", *SEARCHING)
 
 
 def of_visits(n, layout="random:6", seed=5):

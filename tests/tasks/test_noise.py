@@ -9,7 +9,6 @@ import pytest
 from snooker_env import Physics, SnookerEnv
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue import strike
-from snooker_env.planning import spread_of
 from snooker_env.tasks.noise import LEVELS, Noise, chance_within, execute_stroke
 from tests.kernels import from_python
 from tests.tables import after_strike, begun
@@ -115,7 +114,7 @@ def test_the_chance_to_stay_within_is_that_of_the_errors_drawn():
     noise = Noise(aim_deg=0.1, lapse=0.07, lapse_factor=5.0)
     errors, spread = (
         np.radians(0.1) * noise.draw_errors(np.random.default_rng(4), 200_000)[:, 3],
-        spread_of(noise),
+        noise.spread(),
     )
     for within in (0.3, 1.0, 2.0, 6.0):
         chance = from_python(chance_within)(within * spread.core, spread)

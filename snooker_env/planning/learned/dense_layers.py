@@ -60,7 +60,7 @@ class Layers:
     def __init__(self, weights: Sequence[tuple[Any, Any]], activation: str):
         turned = [np.array(weight.T, np.float32, order="C") for weight, _ in weights]
         self._layers = [(w, np.array(bias, np.float32)) for w, (_, bias) in zip(turned, weights, strict=True)]
-        self._between = ACTIVATIONS[activation]
+        self._between = activation  # by name: a lambda cannot be pickled
 
     @property
     def weights(self) -> list[tuple[Any, Any]]:
@@ -71,7 +71,7 @@ class Layers:
         """The last layer's results (n, out) for rows (n, in): float32."""
         for k, (weight, bias) in enumerate(self._layers):
             if k:
-                self._between(rows)
+                ACTIVATIONS[self._between](rows)
             before = np.ascontiguousarray(rows, np.float32)
             rows = np.empty((len(rows), len(bias)), np.float32)
             linear(before, weight, bias, rows)

@@ -18,7 +18,7 @@ POINTS = 40.0  # unit of U [points]
 
 class LearnedValue:
     """The value [points] of n ``Positions``: called with them, it returns float32 (n,). ``members``: the
-    layers (weight (out, in), bias (out,)) of each network. ``spread``: see ``spread_of``."""
+    layers (weight (out, in), bias (out,)) of each network. ``spread``: see ``Noise.spread``."""
 
     def __init__(
         self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: Spread, threads: int = 1

@@ -49,7 +49,6 @@ def layers_of(arrays: Mapping[str, Singles], of: str) -> list[tuple[Singles, Sin
 
 
 def learned_of(arrays: Mapping[str, Singles]) -> Learned:
-    """The policy and the value in the arrays of a file."""
     policy = {name: (arrays[f"policy/{name}/weight"], arrays[f"policy/{name}/bias"]) for name in LAYERS}
     layers = layers_of(arrays, "value")
     members = [[(weight[m], bias[m]) for weight, bias in layers] for m in range(len(layers[0][0]))]
@@ -97,7 +96,6 @@ def learned_strokes(path: Path = FOLDER / STROKES) -> StrokeLayers:
 
 
 def levels() -> list[str]:
-    """The levels that there are weights for."""
     return [level for level in LEVELS if (FOLDER / f"{level}.npz").is_file()]
 
 

@@ -98,14 +98,6 @@ def test_a_player_of_ones_own_is_compared(tmp_path):
     rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in read(file)["results"]}
     assert rows.keys() == {"Softly", "me", "ghost_ball"}
     assert rows["Softly"] == rows["me"] != rows["ghost_ball"]
-    for name, why in (
-        (f"{users}:silent", f"player = '{users}:silent': must be MODULE:CLASS of a player .TypeError"),
-        (f"{users}:Nobody", f"player = '{users}:Nobody': must be MODULE:CLASS of a player .AttributeError"),
-        (f"{users}:Discreet", "action = 'discreet'"),
-        ("nothere:Soft", "player = 'nothere:Soft': .*ModuleNotFoundError"),
-    ):
-        with pytest.raises(ValueError, match=why):
-            evaluate.Entrant.of(name).trained()
 
 
 def test_a_path_with_a_colon_is_a_path(models, tmp_path):

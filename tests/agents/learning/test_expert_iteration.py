@@ -9,7 +9,7 @@ from agents.learning import expert_iteration
 from agents.learning.expert_iteration import FRESH, ExpertIteration, judge_rewards
 from agents.learning.hyperparameters import Recipe
 from agents.learning.value_network import value_of
-from snooker_env.planning import Positions, spread_of
+from snooker_env.planning import Positions
 from snooker_env.planning.learned.learned_value import LearnedValue
 from snooker_env.planning.learned.policy_proposals import PolicyProposals
 from snooker_env.planning.learned.value_features import value_features
@@ -152,5 +152,5 @@ def test_ppo_is_judged_by_the_models_own_value():
     assert venv.judge is None
     judge_rewards(venv, model.policy, 2)
     at = Positions.of(tables(10, layout="random:5"))
-    expected = value_of(model.policy.position_value, spread_of(LEVELS["professional"]))(at)
+    expected = value_of(model.policy.position_value, LEVELS["professional"].spread())(at)
     assert np.array_equal(venv.judge(at), expected) and venv.judge.threads == 2

@@ -158,15 +158,3 @@ def test_a_link_is_followed(tmp_path):
     (tmp_path / "link").symlink_to(tmp_path / "file")
     write_atomic(tmp_path / "link", b"new")
     assert (tmp_path / "link").is_symlink() and (tmp_path / "file").read_bytes() == b"new"
-
-
-def test_a_folder_that_was_moved_leaves_the_lock_of_another_run_alone(tmp_path):
-    folder = tmp_path / "run"
-    folder.mkdir()
-    first = lock.Lock(folder)
-    folder.rename(tmp_path / "moved")
-    folder.mkdir()
-    with lock.Lock(folder):
-        first.release()
-        with pytest.raises(ValueError, match="no other process"):
-            lock.Lock(folder)

@@ -9,7 +9,7 @@ import torch
 
 from agents.learning.value_learning import LAMBDA, ValueLearning
 from agents.learning.value_network import MEMBERS, POINTS, ValueNetwork, value_of
-from snooker_env.planning import Positions, Search, VisitJudge, spread_of
+from snooker_env.planning import Positions, Search, VisitJudge
 from snooker_env.planning.learned.value_features import LOGIT, SIZE, value_features
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.noise import Spread
@@ -178,7 +178,7 @@ def test_learning_goes_on_from_a_saved_state_bit_for_bit():
             assert list(one.losses) == list(whole.losses) and one.mean_target == whole.mean_target
 
 
-ERRORS = spread_of(LEVELS["professional"])
+ERRORS = LEVELS["professional"].spread()
 
 
 def network(seed=0, scale=1.0):

@@ -7,7 +7,7 @@ import pytest
 
 from snooker_env.game import COLOUR_NAMES, VALUES
 from snooker_env.geometry import SIDES
-from snooker_env.planning import Position, Positions, pots, spread_of
+from snooker_env.planning import Position, Positions, pots
 from snooker_env.planning.learned.value_features import (
     COLOUR_ENTRIES,
     LOGIT,
@@ -20,7 +20,7 @@ from snooker_env.tasks import LEVELS
 from snooker_env.tasks.noise import Spread
 from tests.positions import chances_by_width, tables
 
-SPREAD = spread_of(LEVELS["professional"])
+SPREAD = LEVELS["professional"].spread()
 OF_ALL = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES
 """The first entry of the whole position."""
 LIKELIEST, BALL_ON, LEFT, SIDE, COUNT = OF_ALL + 10, OF_ALL + 14, OF_ALL + 22, OF_ALL + 25, OF_ALL + 26
