@@ -50,7 +50,6 @@ def play_episode(who: Player, seed: int, **options: object) -> SnookerEnv:
 
 
 def describe(played: Replay) -> Iterator[str]:
-    """A line for each stroke."""
     for k, stroke in enumerate(played.to_dict()["strokes"], 1):
         cue = stroke["cue"]
         spin = f"side {cue['side']:+.2f}, top {cue['top']:+.2f}"
@@ -58,7 +57,6 @@ def describe(played: Replay) -> Iterator[str]:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line."""
     p = argparse.ArgumentParser(prog=f"python -m {NAME}", description=str(__doc__).split("\n\n")[0])
     add = p.add_argument
     add("--agent", help=f"a player, a model's .zip or MODULE:CLASS [{USUAL}; with --frame {TACTICIAN}]")
@@ -121,7 +119,6 @@ def _film_options(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
-    """The environment after the visit or frame that is wanted, or the longest visit; its seed and its players."""
     name = args.agent or (TACTICIAN if args.frame else USUAL)
     other = args.opponent or name
     # a model of others opposite acts as it was trained to, not as the table's options say
@@ -145,7 +142,6 @@ def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
 
 
 def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
-    """Play, print, write."""
     env, seed, names = find_episode(args)
     if args.frame:
         scores = env.tables.standing(0)["scores"]

@@ -190,25 +190,23 @@ def _lay_first(others: list[Suggestion], spent: list[Suggestion]) -> list[Sugges
 
 
 def _is_sensible(one: Suggestion) -> bool:
-    """Whether a stroke is fair in most samples, and no pot that hardly ever goes."""
     return one.foul <= 0.5 and (one.kind != "pot" or one.chance >= SELDOM)
 
 
 def _sort_by_win(strokes: list[Suggestion]) -> list[Suggestion]:
     """Strokes of a frame, best first; of those that win as often as the best of them, the one with the most points first."""
+
+    def net_points(one: Suggestion) -> float:
+        """Expected points of the visit, less those left to the other."""
+        return one.points - (1.0 - one.chance if one.kind == "pot" else 1.0) * (one.leaves or 0.0)
+
     waiting, out = sorted(strokes, key=lambda one: -one.figure), []
     while waiting:
         best = waiting[0].figure
         alike = [one for one in waiting if one.figure >= best - min(ALIKE, FEW * best)]
-        out += sorted(alike, key=lambda one: -_net_points(one))
+        out += sorted(alike, key=net_points, reverse=True)
         waiting = waiting[len(alike) :]
     return out
-
-
-def _net_points(one: Suggestion) -> float:
-    """Points to expect of a stroke and its visit, less those that it leaves to the other."""
-    comes = 1.0 - one.chance if one.kind == "pot" else 1.0
-    return one.points - comes * (one.leaves or 0.0)
 
 
 def _compare(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:

@@ -51,6 +51,10 @@ class Practice:
         """A fast search, with which visits are played on."""
         return Search(VisitJudge(self.options), QUICK)
 
+    def worth(self, at: list[Positions]) -> Floats:
+        """The worth of positions of frames to their strikers (n,)."""
+        return np.asarray(self.judge.worth(join(at)), np.float64) if at else np.empty(0)
+
     def play(self, at: Positions, rows: Ints, strokes: Floats, keys: Words | None = None) -> Outcomes:
         """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without.
 

@@ -71,7 +71,6 @@ class Reviewed:
 
     @property
     def name(self) -> str:
-        """What the stroke was meant for, in few words."""
         return f"missed pot, {self.pot}" if self.pot else name_stroke(self.meant)
 
     @property
@@ -80,7 +79,6 @@ class Reviewed:
         return max(0.0, self.choice) + max(0.0, self.execution)
 
     def to_dict(self) -> dict[str, Any]:
-        """As JSON types, with words."""
         shares = {"meant": self.meant.figure, "best": self.best.figure}
         return vars(self) | shares | {"name": self.name, "words": str(self)}
 
@@ -162,11 +160,9 @@ class Review:
 
     @property
     def costliest(self) -> list[Reviewed]:
-        """The strokes, those that cost most first."""
         return sorted(self.strokes, key=lambda one: -one.cost)
 
     def to_dict(self) -> dict[str, Any]:
-        """As JSON types."""
         lists = {
             "strokes": [one.to_dict() for one in self.strokes],
             "sides": [x._asdict() for x in self.sides],
@@ -208,7 +204,6 @@ def name_stroke(one: Suggestion) -> str:
 
 
 def _parts(one: Suggestion) -> list[str]:
-    """The words of a stroke, part by part."""
     return one.words.removeprefix("no fair stroke found: ").split("; ")[0].split(", ")
 
 

@@ -42,7 +42,6 @@ class FreeGame:
 
     @property
     def options(self) -> Options:
-        """The options of who plays."""
         session = self._service.session
         return session.options_with(session.noise[0])
 
@@ -95,15 +94,12 @@ class FreeGame:
 
 
 class _Client(ProgramPlayer):
-    """The client as a player: it plays what its last call asked for."""
-
     fields: dict[str, Any]
 
     def _stroke(self, at: Positions, seed: int) -> Any:
         return self._read(self.fields, at, "play")
 
     def told(self, at: Positions) -> dict[str, Any]:
-        """The state of the one position ``at``."""
         return self._state(begun(at))
 
 
@@ -121,7 +117,6 @@ class JudgedGame:
         self._deal()
 
     def _deal(self) -> None:
-        """The next table, if there is one."""
         done = len(self._played.rows)
         if done < len(self._seeds):
             seed = [self._seeds[done]]
@@ -141,7 +136,6 @@ class JudgedGame:
         return state | {"words": f"{where} {state['words']}", "text": f"{where}\n{state['text']}"}
 
     def lies(self) -> Positions | None:
-        """As of ``FreeGame``."""
         return Positions.of(self._tables) if len(self._played.rows) < len(self._seeds) else None
 
     def play(self, fields: dict[str, Any]) -> str:

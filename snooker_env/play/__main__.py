@@ -126,7 +126,6 @@ def _invite(server: "PlayServer") -> None:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    """The JSON object in a file."""
     read = read_json(path, "position")
     if not isinstance(read, dict):
         raise refuse_what("position", str(path), "must hold a JSON object")

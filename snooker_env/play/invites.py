@@ -12,8 +12,6 @@ ROUTES = ("192.0.2.1", "10.255.255.254", "172.31.255.254", "192.168.255.254")
 
 
 class Invite(NamedTuple):
-    """What brings another device to the table."""
-
     who: str  # ``PERSON``, ``FRIEND`` or ``WATCHER`` of ``service``: what it may do there
     addresses: list[str]
     qr: str  # the QR code of the first address, as the source of an image; "" without segno
@@ -21,7 +19,6 @@ class Invite(NamedTuple):
 
 
 def invite(who: str, addresses: list[str]) -> Invite:
-    """An invitation by at least one address."""
     try:
         import segno
     except ImportError:

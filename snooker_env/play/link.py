@@ -59,7 +59,6 @@ class Digits:
         return value
 
     def one_of(self, values: Sequence[T], value: T | None = None) -> T:
-        """One of some values."""
         known = 0 if value is None or self.reads else values.index(value)
         return values[self.within(0, len(values) - 1, known)]
 
@@ -179,7 +178,6 @@ def _setting(asked: dict[str, Any], first: dict[str, Any], frame: Frame) -> tupl
 
 
 def _do(session: Session, asked: dict[str, Any]) -> None:
-    """Do what was asked for."""
     if "choice" in asked:
         session.choose(asked["choice"])
     elif "declare" in asked:

@@ -66,7 +66,6 @@ class Person:
             ) from None
 
     def keep(self, frame: dict[str, Any], strokes: list[dict[str, Any]]) -> None:
-        """Keep what ``tell_frame`` told."""
 
         def add(kept: dict[str, Any]) -> None:
             kept["frames"] = [*kept["frames"], frame]

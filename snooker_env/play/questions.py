@@ -21,7 +21,6 @@ MOST_SUGGESTIONS = 10
 
 
 def exact(session: Session, stroke: CueStroke) -> Shot:
-    """The stroke without execution errors."""
     twin = session.twin()
     twin.noise = ["none", "none"]
     played = twin.play(stroke).played

@@ -98,7 +98,6 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
 
 
 def report(service: Service) -> dict[str, Any]:
-    """The current state of the game."""
     session, seats, labels = service.session, service.seats, service.labels
     frame, act = session.frame, session.acts[session.at - 1]
     before = session.acts[session.at - 2] if session.at > 1 else None
@@ -146,7 +145,6 @@ def report(service: Service) -> dict[str, Any]:
 
 
 def _last_visit(session: Session) -> int:
-    """How many strokes were played before the last visit."""
     players = [session.acts[k].player for k in session.strokes]
     return max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
 

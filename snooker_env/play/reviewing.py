@@ -25,7 +25,6 @@ class Reviewing:
         threading.Thread(target=self._run, args=(steps,), name="snooker review", daemon=True).start()
 
     def report(self) -> dict[str, Any]:
-        """How far it is, and what is known."""
         done, total, found = self.found
         told = {"running": self.running, "done": done, "total": total, "trouble": self.trouble}
         return told if found is None else told | found.to_dict()

@@ -52,7 +52,6 @@ def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def take_stroke(session: Session, fields: dict[str, Any]) -> CueStroke:
-    """The stroke in a request; the cue ball is placed first."""
     if "place" in fields:
         session.place(*read_place("place", fields["place"]))
     return read_stroke(fields, session.as_visit(), {"cue": session.cue})
@@ -254,7 +253,6 @@ def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
-    """The revision that a request is about; None for the current one."""
     return integer("revision", fields["revision"], 0, MOST) if "revision" in fields else None
 
 
@@ -266,7 +264,6 @@ def _errors(fields: dict[str, Any], samples: int, noise: str) -> dict[str, Any]:
 
 
 def _own(service: Service) -> Person:
-    """The person's file."""
     if service.person is None:
         raise refuse("person", None, "must be named: this server keeps no person's file")
     return service.person
@@ -345,7 +342,6 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _again(service: Service, fields: dict[str, Any]) -> None:
-    """Put the game back to before a stroke that was reviewed."""
     with service.acting(pause=True, any_turn=True) as session:
         reviewing = _reviewing(service)
         session.go_to(reviewing.acts, reviewing.act_of(fields.get("stroke"))[0])

@@ -72,8 +72,6 @@ class RefusedError(Exception):
 
 
 class PlayHandler(BaseHTTPRequestHandler):
-    """One connection."""
-
     server: "PlayServer"
     who: str  # whose token the request has shown
     protocol_version = default_request_version = "HTTP/1.1"

@@ -57,7 +57,6 @@ class Seats:
 
     @property
     def names(self) -> list[str]:
-        """The players that may sit down: persons and the agents."""
         return [*self.persons, *self.players]
 
     def advisers(self, practice: bool) -> list[str]:
@@ -76,7 +75,6 @@ class Seats:
         return cast(NoiseName, next(name for name, one in LEVELS.items() if one == found))
 
     def sit(self, who: list[str]) -> None:
-        """Assign both seats; ValueError for an unknown name."""
         if not isinstance(who, list) or len(who) != 2:
             raise refuse("players", who, "must be two names")
         self.who = [choice(f"players[{k}]", name, self.names) for k, name in enumerate(who)]
@@ -90,7 +88,6 @@ class Seats:
         return session.noise[self.who.index(PERSON)] if PERSON in self.who else "amateur"
 
     def is_agent(self, seat: int) -> bool:
-        """Whether an agent has this seat."""
         return self.who[seat] not in (PERSON, FRIEND, LINKED)
 
     def share(self, seat: int, noise: list[NoiseName]) -> None:
@@ -112,7 +109,6 @@ class Seats:
         return [persons.get(who, who) for who in self.who]
 
     def label(self, seat: int, me: str = PERSON) -> str:
-        """The player's name on the page of ``me``."""
         seen = self.seen_by(me)
         if self.is_agent(seat):
             name = seen[seat].replace("_", " ")  # as the page lists it
@@ -170,7 +166,6 @@ class Service:
         self._thread.start()
 
     def close(self) -> None:
-        """Stop the agents."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()
@@ -279,7 +274,6 @@ class Service:
                 self._changed.wait(left)
 
     def go_on(self) -> None:
-        """Let the agent play whose turn it is."""
         with self._changed:
             if not self.paused:
                 return  # it is thinking already: another page was first
@@ -287,7 +281,6 @@ class Service:
             self._announce()
 
     def agent_to_play(self) -> bool:
-        """Whether it is an agent's turn."""
         frame = self.session.frame
         return frame.phase != "over" and self.seats.is_agent(frame.striker)
 
@@ -299,7 +292,6 @@ class Service:
 
     @property
     def thinking(self) -> bool:
-        """Whether an agent is thinking about its stroke, or about to."""
         return self.agent_to_play() and not self.paused
 
     def _keep(self) -> None:

@@ -95,7 +95,6 @@ class Session:
 
     @property
     def frame(self) -> Frame:
-        """The current frame."""
         return self.tables.frame(0)
 
     @property
@@ -127,7 +126,6 @@ class Session:
 
     @property
     def layout(self) -> str:
-        """How the table was dealt."""
         return self._options.layout
 
     @property
@@ -142,7 +140,6 @@ class Session:
 
     @property
     def miss(self) -> str:
-        """The rule for a foul and a miss."""
         return self._options.miss
 
     def room(self, stroke: CueStroke) -> Room:
@@ -151,23 +148,19 @@ class Session:
 
     @property
     def state(self) -> dict[str, Any]:
-        """The table as JSON types, with the fields ``STATE``."""
         state = self.tables.get_state(0)
         return {name: state[name] for name in STATE}
 
     @property
     def strokes(self) -> list[int]:
-        """Indices of the acts that are strokes, in order."""
         return [k for k, act in enumerate(self.acts[: self.at]) if act.played is not None]
 
     @property
     def luck(self) -> list[float]:
-        """The luck of each of the strokes, in its player's chance to win."""
         return [self.acts[k].luck for k in self.strokes]
 
     @property
     def position(self) -> Positions:
-        """The frame as its striker sees it."""
         return of_tables(self.tables)
 
     def as_visit(self) -> Positions:
@@ -234,7 +227,6 @@ class Session:
         return self._options.but(layout=layout or self._options.layout, game=rules, miss=miss)
 
     def _play_by(self, options: Options) -> None:
-        """Take these options, on an empty table."""
         self._options, self._with = options, {}
         self.tables = Frames(options.rules, 1)
 
@@ -381,7 +373,6 @@ class Session:
         self._go(at)
 
     def save(self) -> dict[str, Any]:
-        """The current game as JSON types."""
         game = {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
         return {"format": "snooker-game", "version": 1, **game}
 

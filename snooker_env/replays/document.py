@@ -154,7 +154,6 @@ class Replay:
         return re.sub(r"\{\{(title|module|data)\}\}", lambda place: parts[place[1]], page)
 
     def _repr_html_(self) -> str:
-        """In a notebook: the page in a frame."""
         return (
             f'<iframe srcdoc="{html.escape(self.html(), quote=True)}" '
             'sandbox="allow-scripts" title="snooker replay" '

@@ -56,7 +56,6 @@ def film_stroke(
 
 
 def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Size) -> Iterator[Bytes]:
-    """The pictures of what ``film_strokes`` gives."""
     from ..render.pygame_view import rgb_array
 
     fps, speed = _rate("fps", fps), _rate("speed", speed)

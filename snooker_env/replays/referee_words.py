@@ -56,7 +56,6 @@ def on_words(ball_on: BallOn) -> str:
 
 
 def foul_words(fouls: Foul) -> list[str]:
-    """The names of these fouls."""
     return [words for foul, words in FOUL_WORDS.items() if foul & fouls]
 
 
@@ -66,7 +65,6 @@ def errors_words(noise: object) -> str:
 
 
 def pots_of(shot: Shot) -> list[int]:
-    """The balls that were potted, in order of time."""
     return shot.events["i"][shot.events["kind"] == EventKind.POT].tolist()
 
 
@@ -126,8 +124,6 @@ def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar 
 
 
 class Game(NamedTuple):
-    """What a player may strike."""
-
     on_table: Bools
     ball_on: BallOn
     free_ball: bool
