@@ -118,9 +118,9 @@ def _invite(server: "PlayServer") -> None:
     """Print the addresses for other devices, and the one for the host's own phone as a QR code."""
     print("In the same network, unencrypted, so pass them on in one that you trust:\n")
     for one, words in zip(server.service.invites, ("you, on a phone", "a friend", "watchers"), strict=True):
-        print(*(f"    {words:16} {address}" for address in one.addresses), sep="\n")
+        print(*(f"    {words:16} {address}" for address in one["addresses"]), sep="\n")
     if sys.stdout.isatty():
-        rows = server.service.invites[0].drawn.splitlines()
+        rows = server.service.invites[0]["drawn"].splitlines()
         print("", *(f"\x1b[97;40m{row}\x1b[0m" for row in rows), sep="\n")
     print()
 

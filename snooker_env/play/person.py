@@ -85,7 +85,7 @@ def tell_frame(session: Session, seat: int, opponent: str, *, same: bool) -> Kep
     fair frames against a level; ``same``: whether nobody else sat there before its end."""
     sides, level = (seat, 1 - seat), BY_NAME.get(opponent)
     played = [(session.acts[k].player, session.acts[k].asked) for k in session.strokes]
-    usual = (session.game, session.layout, session.cue) == ("snooker", "break_off", "real")
+    usual = (session.game, session.options.layout, session.cue) == ("snooker", "break_off", "real")
     usual = usual and all(one["cue"] == "real" and not one["practice"] for _, one in played)
     own = level is not None and all(
         one["noise"] == (RATED_WITH if player == seat else level.noise) for player, one in played

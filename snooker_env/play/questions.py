@@ -62,7 +62,7 @@ def draw(session: Session, stroke: CueStroke) -> dict[str, Any]:
 def scatter(session: Session, stroke: CueStroke, **errors: Any) -> dict[str, Any]:
     """Where cue ball and object ball stop with ``errors`` (noise, samples, seed), and the paths without them."""
     shot = exact(session, stroke)
-    stops = destinations(session.as_visit(), stroke, **errors, options={"cue": session.cue})
+    stops = destinations(session.as_visit(), stroke, **errors, options=session.options)
     figures = {
         name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "scored", "points")
     }
@@ -77,16 +77,11 @@ def decision(session: Session, service: Service, agent: str) -> dict[str, Any]:
     return {"choice": CHOICES[int(decided.decision[0])], "choices": found}
 
 
-def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: object) -> dict[str, Any]:
+def suggestions(session: Session, seats: Seats, *, agent: str, n: int, **errors: Any) -> dict[str, Any]:
     """At most n strokes of the agent, in words, data and paths; their order."""
-    how = {**errors, "n": n, "options": {"cue": session.cue}}
-    at = session.as_visit()
-    if not session.practice:  # alone at the table nobody wins
-        at, how["options"] = (
-            session.position,
-            {"cue": session.cue, "miss": session.miss, "game": session.game},
-        )
-    advice, out = advise(at, agent=seats.players[agent], **how), []
+    at = session.as_visit() if session.practice else session.position  # alone at the table nobody wins
+    advice = advise(at, agent=seats.players[agent], n=n, options=session.options, **errors)
+    out = []
     for one in advice:
         names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
         names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}

@@ -44,7 +44,7 @@ def scene(service: Service) -> dict[str, Any]:
         "cues": list(CUES),
         "games": list(RULES),
         "me": service.me,
-        "invites": [one._asdict() for one in service.invites] if service.me == PERSON else [],
+        "invites": service.invites if service.me == PERSON else [],
     }
 
 

@@ -12,7 +12,6 @@ from ..advice import CueStroke, coach
 from ..advice.review import SAMPLES, read_frame
 from ..game.balls import CUE
 from ..game.fouls import AUTO
-from ..game.frame import MOST_BREAK
 from ..planning.position import Position
 from ..players.requests import STROKE, read_colour, read_place, read_stroke
 from ..replays import Replay
@@ -23,9 +22,8 @@ from . import questions
 from .link import check_course, open_link, write_link
 from .person import Person
 from .report import report, scene, stroke_report, table_after
-from .reviewing import Reviewing
-from .service import LINKED, Service, StaleError
-from .session import Session
+from .service import LINKED, Reviewing, Service, StaleError
+from .session import Session, read_levels
 
 Handler = Callable[[Service, dict[str, Any]], Any]
 
@@ -54,7 +52,7 @@ def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def take_stroke(session: Session, fields: dict[str, Any]) -> CueStroke:
     if "place" in fields:
         session.place(*read_place("place", fields["place"]))
-    return read_stroke(fields, session.as_visit(), {"cue": session.cue})
+    return read_stroke(fields, session.as_visit(), session.options)
 
 
 def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -93,7 +91,7 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
         free = truth("free_ball", fields.get("free_ball", False))
         position = position_of(fields.get("position"))
         with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
-            session.set_up(position, scores=(one, other), striker=striker, free_ball=free, check=check)
+            session.set_up(position, scores=(one, other), striker=striker, free_ball=free)
     except ValueError as error:
         if not check:
             raise
@@ -101,18 +99,12 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     return {"sound": True, "error": None} if check else None
 
 
-def position_of(fields: object) -> Position:
-    """A ``Position`` from JSON types; ValueError, with the name of the ball or field, if it is invalid."""
-    names = tuple(Position.__dataclass_fields__)
-    if not isinstance(fields, dict):
-        form = '{"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}'
-        raise refuse("position", fields, f"must be an object: {form}")
-    for name in fields:
-        choice("field of position", name, [n for n in names if n not in ("table", "over")])
-    points: dict[str, Any] = {"points": integer("points", fields.get("points", 0), 0, MOST_BREAK)}
-    if not isinstance(fields.get("reds", []), list):
-        raise refuse("reds", fields["reds"], "must be a list of places [x, y]")
-    return Position(**fields | points)
+def position_of(fields: Any) -> Position:
+    """The ``Position`` of JSON types; ValueError names the ball or the field that is invalid."""
+    position = Position.from_dict(fields)
+    if position.over:
+        raise refuse("over", True, "must be false: there is no stroke to play")
+    return position
 
 
 def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
@@ -125,24 +117,14 @@ def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bo
 
 
 def _new(service: Service, fields: dict[str, Any]) -> None:
-    kinds = {
-        "layout": str,
-        "seed": int,
-        "breaker": int,
-        "game": str,
-        "best_of": int,
-        "next": bool,
-        "by_link": bool,
-    }
-    for name, kind in kinds.items():
-        if name in fields and type(fields[name]) is not kind:
-            raise refuse(name, fields[name], f"must be of type {kind.__name__}")
-    by_link = fields.pop("by_link", False)
-    if by_link and not (fields.get("best_of", 1) == 1 and "next" not in fields):
+    by_link, follows = (truth(name, fields.pop(name, False)) for name in ("by_link", "next"))
+    if not isinstance(fields.get("layout", ""), str):
+        raise refuse("layout", fields["layout"], "must be the name of a layout")
+    if by_link and (follows or fields.get("best_of", 1) != 1):
         raise refuse("by_link", True, "must be left out in a match: a link holds one frame")
     with service.acting(anew=True) as session:
         noise = list(session.noise)
-        if fields.pop("next", False):
+        if follows:
             for name in set(fields) - {"seed"}:
                 raise refuse(name, fields[name], "must be left out with next: the match goes on as it is")
             session.next_frame(**fields)
@@ -158,10 +140,7 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
 def _players(service: Service, fields: dict[str, Any]) -> None:
     noise, practice, cue = fields.get("noise"), fields.get("practice"), fields.get("cue")
     if noise is not None:
-        if not isinstance(noise, list) or len(noise) != 2:
-            raise refuse("noise", noise, "must be two names")
-        for k, name in enumerate(noise):
-            choice(f"noise[{k}]", name, LEVELS)
+        read_levels("noise", noise)
     if practice is not None:
         truth("practice", practice)
     if cue is not None:
@@ -186,14 +165,9 @@ def _concede(service: Service, fields: dict[str, Any]) -> None:
         session.concede()
 
 
-def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _pass_on(service: Service, fields: dict[str, Any], form: Callable[[Session], Any]) -> Any:
     with service.reading() as session:
-        return session.save()
-
-
-def _link(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    with service.reading() as session:
-        return {"link": write_link(session)}
+        return form(session)
 
 
 def _load(service: Service, fields: dict[str, Any]) -> None:
@@ -372,8 +346,9 @@ POST: dict[str, Route] = {
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede, friend=True),
     "sit": Route(lambda service, fields: service.sit_down(), friend=True),
-    "link": Route(_link),  # it holds the random stream: the host's alone
-    "save": Route(_save),
+    # both hold the random stream: the host's alone
+    "link": Route(partial(_pass_on, form=lambda session: {"link": write_link(session)})),
+    "save": Route(partial(_pass_on, form=Session.save)),
     "load": Route(_load, ("saved", "link", "seat")),
     "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
     "reviewed": Route(_reviewed, ("stroke",)),

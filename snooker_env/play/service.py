@@ -6,6 +6,7 @@ has seen. An agent's stroke is dropped if the game has changed in the meantime."
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import partial
 from time import monotonic
 from typing import Any, cast
@@ -15,7 +16,7 @@ import numpy as np
 from .._lib.check import choice, refuse, refuse_what
 from .._lib.types import NoiseName
 from ..advice.ask import AGENT
-from ..advice.review import common_noise
+from ..advice.review import FrameRecord, Review, Reviewed, common_noise, go_through
 from ..game.fouls import AUTO
 from ..game.frame import CHOICES
 from ..game.frame_columns import STROKES
@@ -26,15 +27,14 @@ from ..replays.chances import ChanceJudge, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS
-from .invites import Invite
 from .levels import BY_NAME
 from .person import Person, tell_frame
-from .reviewing import Reviewing
 from .session import DECLINED, Act, Session
 
 PERSON = "person"  # who sits at the page of the host
 FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
 LINKED = "friend_by_link"  # who plays elsewhere, from the link of the game
+_ASKING: ContextVar[str] = ContextVar("who asks", default=PERSON)
 OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")  # agents that can always be chosen
 
 
@@ -126,6 +126,45 @@ class Seats:
         return decided
 
 
+class Reviewing:
+    """A review of the acts of a game, which is made while it is ``running``."""
+
+    def __init__(self, session: Session, frame: FrameRecord, players: Sequence[int], **how: Any):
+        self.begun: int = session.begun
+        self.acts: list[Act] = session.acts[: session.at]
+        self._strokes: list[int] = session.strokes
+        self.found: tuple[int, int, Review | None] = 0, 1, None  # done, of how many, what is known
+        self.trouble: str = ""
+        self.running: bool = True
+        ended = self.acts[-1].what in ("concede", "claim")
+        end = self.acts[-2 if ended else -1].standing
+        steps = go_through(frame, players, winner=session.frame.winner, end=end, **how)
+        threading.Thread(target=self._run, args=(steps,), name="snooker review", daemon=True).start()
+
+    def report(self) -> dict[str, Any]:
+        done, total, found = self.found
+        told = {"running": self.running, "done": done, "total": total, "trouble": self.trouble}
+        return told if found is None else told | found.to_dict()
+
+    def act_of(self, number: object) -> tuple[int, Reviewed, float]:
+        """Of a stroke: the index of its act, what is known, and the first player's chance before; ValueError for no such."""
+        found = self.found[2]
+        for one in found.strokes if found else ():
+            if found and one.number == number:
+                return self._strokes[one.number - 1], one, found.win_chance[one.number - 1]
+        raise refuse("stroke", number, "must be the number of a stroke that was reviewed")
+
+    def _run(self, steps):
+        try:
+            for found in steps:
+                if not self.running:
+                    return
+                self.found = found
+        except Exception as error:  # a custom agent may raise anything: the page says it
+            self.trouble = f"{type(error).__name__}: {error}"
+        self.running = False
+
+
 LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 
 
@@ -140,7 +179,6 @@ class StaleError(RuntimeError):
 class Service:
     """One game, its seats, and the thread in which agents think."""
 
-    me: str = PERSON  # who asks: see ``asked_by``
     paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
     trouble: str  # why the last agent did not play, or ""
 
@@ -157,7 +195,7 @@ class Service:
         self.reviewing: Reviewing | None = None
         self.revision: int = 0
         self.paused, self.trouble = False, ""
-        self.invites: list[Invite] = []  # what the host may pass on, if others can come to the table
+        self.invites: list[dict[str, Any]] = []  # what the host may pass on, if others can come to the table
         self.vacant: bool = True  # whether a friend may sit down without having been chosen
         self._changed = threading.Condition(threading.RLock())
         self._asking = threading.BoundedSemaphore(2)
@@ -172,11 +210,19 @@ class Service:
             if self.reviewing:
                 self.reviewing.running = False
 
-    def asked_by(self, me: str) -> "Service":
-        """The same game for requests of the host (``PERSON``), of the ``FRIEND`` or of a ``WATCHER``."""
-        other = object.__new__(_Asked)
-        other.__dict__, other.me = self.__dict__, me
-        return other
+    @property
+    def me(self) -> str:
+        """Who asks: see ``asked_by``."""
+        return _ASKING.get()
+
+    @contextmanager
+    def asked_by(self, me: str) -> Iterator["Service"]:
+        """In this context the ``PERSON`` (the host), the ``FRIEND`` or a ``WATCHER`` asks."""
+        before = _ASKING.set(me)
+        try:
+            yield self
+        finally:
+            _ASKING.reset(before)
 
     @property
     def labels(self) -> tuple[str, str]:
@@ -374,9 +420,3 @@ class Service:
             nominated == DECLINED and session.frame.free_ball
         )
         session.play(stroke, nominated=nominated if sensible else AUTO)
-
-
-class _Asked(Service):
-    """A service that shares all but ``me`` with another."""
-
-    __slots__ = ("me",)
