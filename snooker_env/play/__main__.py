@@ -86,18 +86,13 @@ def service_of(args: argparse.Namespace) -> "Service":
 
 def warm_up(service: "Service") -> None:
     """Compile what a stroke and a question need, so that nobody waits in the middle of a game."""
-    from ..advice import CueStroke
-    from . import questions
-    from .report import report
+    from .routes import GET, POST, answer
 
-    with service.asking() as session:
-        if session.frame.phase == "stroke":
-            stroke = CueStroke(speed=2.0, aim=1.0)
-            questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
-            for name in {service.seats.advisers(session.practice)[0], service.seats.who[1]}:
-                service.seats.decide(name, session)
-    with service.reading():
-        report(service)
+    if service.session.frame.phase == "stroke":
+        answer(service, POST["destinations"], {"speed": 2.0, "aim": 1.0, "samples": 16})
+        for name in {service.seats.advisers(service.session.practice)[0], service.seats.who[1]}:
+            service.seats.decide(name, service.session.twin())
+    answer(service, GET["state"], {})
 
 
 def _server(service: "Service", port: int | None, host: str | None = None) -> "PlayServer":

@@ -16,10 +16,11 @@ from ..replays.referee_words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .levels import LEVELS
-from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import LINKED, PERSON, Service
 from .session import Act, Session
 
+MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
+MOST_SUGGESTIONS = 10
 STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
 
 

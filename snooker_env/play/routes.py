@@ -5,23 +5,31 @@ A handler takes the checked fields of a request and returns JSON types; a ValueE
 import re
 from collections.abc import Callable
 from functools import partial
+from math import atan2
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from .._lib.check import choice, integer, number, refuse, truth
-from ..advice import CueStroke, coach
+from ..advice import CueStroke, Suggestion, advise, coach, destinations
 from ..advice.review import SAMPLES, read_frame
-from ..game.balls import CUE
+from ..game.balls import CUE, NAMES
 from ..game.fouls import AUTO
+from ..game.frame import CHOICES
+from ..geometry import POCKETS
+from ..physics.engine import EventKind
 from ..planning.position import Position
 from ..players.requests import STROKE, read_colour, read_place, read_stroke
+from ..render.scene import trace_paths
 from ..replays import Replay
+from ..replays.encode import pack
+from ..simulation.shot import Shot
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
-from . import questions
 from .link import check_course, open_link, write_link
 from .person import Person
-from .report import report, scene, stroke_report, table_after
+from .report import MOST_SAMPLES, MOST_SUGGESTIONS, report, scene, stroke_report, table_after
 from .service import LINKED, Reviewing, Service, StaleError
 from .session import Session, read_levels
 
@@ -193,29 +201,78 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    n = integer("n", fields.get("n", 5), 1, questions.MOST_SUGGESTIONS)
+    n, seats = integer("n", fields.get("n", 5), 1, MOST_SUGGESTIONS), service.seats
     with service.asking(_revision(fields)) as session:
-        first = service.seats.advisers(session.practice)[0]
-        agent = choice("agent", fields.get("agent", first), service.seats.players)
-        errors = _errors(fields, 200, service.seats.level(session))
-        foul = session.frame.phase == "choice"
+        agent = choice("agent", fields.get("agent", seats.advisers(session.practice)[0]), seats.players)
+        errors = _errors(fields, 200, seats.level(session))
         session.noise[:] = [errors["noise"]] * 2  # the question's own: nothing is played
-        decided = questions.decision(session, service, agent) if foul else {"choice": None, "choices": []}
-        if foul:
+        answer: dict[str, Any] = {"choice": None, "choices": []}
+        if session.frame.phase == "choice":
+            answer["choice"] = CHOICES[int(seats.decide(agent, session).decision[0])]
+            chances = zip(
+                session.frame.choices, service.choice_chances(session, errors["noise"]), strict=True
+            )
+            answer["choices"] = [{"choice": what, "win": win} for what, win in chances]
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
-        answer = decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
+        at = session.as_visit() if session.practice else session.position  # alone at the table nobody wins
+        advice = advise(at, agent=seats.players[agent], n=n, options=session.options, **errors)
+        answer |= {"agent": agent, "order": advice.order, "noise": advice.noise}
+        answer["suggestions"] = [_draw_suggestion(session, one) for one in advice]
     with service.reading() as now:
         seat = session.frame.striker
         shown = now.begun == session.begun and _revision(fields) in (None, service.revision)
-        if shown and not now.practice and service.seats.who[seat] == service.me:
+        if shown and not now.practice and seats.who[seat] == service.me:
             now.hints[seat] += 1
     return answer
 
 
+def _draw_suggestion(session: Session, one: Suggestion) -> dict[str, Any]:
+    """A suggestion in words, data and paths."""
+    names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
+    names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
+    return one.to_dict() | names | _draw(session, one.stroke)
+
+
+def _play_exactly(session: Session, stroke: CueStroke) -> Shot:
+    """The stroke without execution errors, on a copy of the table."""
+    twin = session.twin()
+    twin.noise = ["none", "none"]
+    if stroke.place is not None:
+        twin.place(*stroke.place)
+    played = twin.play(stroke).played
+    assert played is not None
+    return played.shot
+
+
+def _hits(shot: Shot) -> Any:
+    """The events in which the cue ball met a ball."""
+    return shot.events[(shot.events["kind"] == EventKind.BALL_BALL) & (shot.events["i"] == CUE)]
+
+
+def _draw(session: Session, stroke: CueStroke) -> dict[str, Any]:
+    return _paths(_play_exactly(session, stroke))
+
+
+def _paths(shot: Shot) -> dict[str, Any]:
+    """Paths of a shot's balls [m], rounded to 0.1 mm; the ball struck first, the pots and the duration."""
+    hits, lines = _hits(shot), trace_paths(shot, range(len(shot.positions)), step=0.04)
+    return {
+        "paths": {str(ball): np.round(points, 4).tolist() for ball, (points, _) in lines.items()},
+        "first": NAMES[hits["j"][0]] if len(hits) else None,
+        "pots": [[NAMES[ball], POCKETS[shot.potted[ball]]] for ball in np.flatnonzero(shot.potted >= 0)],
+        "duration": shot.duration,
+    }
+
+
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
-        errors = _errors(fields, 500, session.noise[session.frame.striker])
-        return questions.scatter(session, take_stroke(session, fields), **errors)
+        errors, stroke = (
+            _errors(fields, 500, session.noise[session.frame.striker]),
+            take_stroke(session, fields),
+        )
+        stops = destinations(session.as_visit(), stroke, options=session.options, **errors)
+        places = {name: pack(getattr(stops, name), "f4") for name in ("cue", "ball")}
+        return _draw(session, stroke) | vars(stops) | places
 
 
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -223,7 +280,12 @@ def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         twin = session.twin()
     stroke = take_stroke(twin, fields)
     room = twin.room(stroke).to_dict()
-    return room | questions.leaving(twin, stroke) if twin.frame.phase == "stroke" else room
+    if twin.frame.phase != "stroke":
+        return room
+    shot, first, heads = _play_exactly(twin, stroke), None, None
+    for at, ball in _hits(shot)[["time", "j"]][:1].tolist():
+        first, heads = NAMES[ball], atan2(*shot.at(at)[1][ball, 1::-1].tolist())
+    return room | {"first": first, "heads": heads}
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
@@ -233,7 +295,7 @@ def _revision(fields: dict[str, Any]) -> int | None:
 def _errors(fields: dict[str, Any], samples: int, noise: str) -> dict[str, Any]:
     """Noise, samples and seed of a question; ``noise``, ``samples``: unless they are given."""
     noise = choice("noise", fields.get("noise", noise), LEVELS)
-    samples = integer("samples", fields.get("samples", samples), 1, questions.MOST_SAMPLES)
+    samples = integer("samples", fields.get("samples", samples), 1, MOST_SAMPLES)
     return {"noise": noise, "samples": samples, "seed": integer("seed", fields.get("seed", 0), 0, MOST)}
 
 
@@ -310,7 +372,7 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking() as session:
         session.cue = act.played.cue_kind
         session.go_to(reviewing.acts, k)
-        played, best = questions.paths(act.played.shot), questions.draw(session, one.best.stroke)
+        played, best = _paths(act.played.shot), _draw(session, one.best.stroke)
         best["paths"] = {k: best["paths"][k] for k in map(str, (CUE, one.best.ball)) if k in best["paths"]}
         return {"played": played, "best": best} | {"table": table_after(before, service.labels, chance)}
 
