@@ -1,8 +1,8 @@
-"""How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
+"""Watch an agent play a visit or a frame: printed stroke by stroke, and written as a replay or a film.
 
-Without --out the replay, an HTML file, is opened in the browser. Visits are played with a real cue on held-out tables,
-the seeds one after the other, as ``benchmark.play_visits`` does; --at-least takes the first of --tries visits with so many
-points, else the longest. With --frame: a frame against --opponent, with the miss rule "clear_path"."""
+Without --out the replay, an HTML file, opens in the browser. Visits are played with a real cue on held-out tables, one seed
+after the other, as ``benchmark.play_visits`` does; --at-least shows the first of --tries visits with that many points, else the
+longest. With --frame the agent plays a frame against --opponent, with the miss rule "clear_path"."""
 
 import argparse
 import tempfile
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ._lib.check import integer, number, refuse
+from ._lib.check import integer, number, refuse, refuse_what
 from ._lib.command import exit_code
 from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
@@ -61,21 +61,16 @@ def parser() -> argparse.ArgumentParser:
     add = p.add_argument
     add("--agent", help=f"a player, a model's .zip or MODULE:CLASS [{USUAL}; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
-    add("--opponent", help="its player [the agent itself]")
-    add("--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser")
-    add("--layout", default="held_out", help="of the tables [%(default)s: those of judging]")
-    add("--noise", default="professional", help="execution noise [%(default)s]")
-    add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table [%(default)s]")
-    add(
-        "--at-least",
-        type=int,
-        default=0,
-        metavar="POINTS",
-        help="show the first visit with so many, or the longest",
-    )
+    add("--opponent", help="the other player of the frame [the agent itself]")
+    add("--out", type=Path, help="write FILE.html, .json, .mp4 or .gif instead of opening the browser")
+    add("--layout", default="held_out", help="layout of the tables [%(default)s: those of the benchmark]")
+    add("--noise", default="professional", help="execution errors [%(default)s]")
+    add("--seed", type=int, default=HELD_OUT_SEED, help="seed of the first table [%(default)s]")
+    least = "show the first visit with so many points, else the longest"
+    add("--at-least", type=int, default=0, metavar="POINTS", help=least)
     add("--tries", type=int, default=200, help="most visits played to find it [%(default)s]")
-    add("--speed", type=float, default=1.0, help="of a film, over that of the play")
-    add("--size", help="of a film, WIDTHxHEIGHT, both even")
+    add("--speed", type=float, help="speed of a film, as a multiple of real time")
+    add("--size", help="size of a film, WIDTHxHEIGHT, both even")
     add("--fps", type=float, help="pictures a second of a film")
     add_model_options(p)
     return p
@@ -89,32 +84,28 @@ def _film_options(args: argparse.Namespace) -> dict[str, Any]:
     if suffix in FILMS:
         encoder_file()  # what is missing is said before anything is played
     film: dict[str, Any] = {}
-    for name, usual, most in (("speed", 1.0, 100.0), ("fps", None, 240.0)):
-        if (value := getattr(args, name)) != usual:
+    for name, most in (("speed", 100.0), ("fps", 240.0)):
+        if (value := getattr(args, name)) is not None:
             film[name] = number(name, value, 0.0, most, open_low=True)
     if args.size is not None:
-        width, _, height = args.size.partition("x")
-        if not (width.isdigit() and height.isdigit()) or int(width) % 2 or int(height) % 2:
-            even = "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders want them"
-            raise refuse("size", args.size, even)
-        film["size"] = int(width), int(height)
+        sides = [int(side) for side in args.size.split("x") if side.isdigit()]
+        if len(sides) != 2 or any(side % 2 for side in sides):
+            raise refuse("size", args.size, "must be WIDTHxHEIGHT such as 1280x720, both even")
+        film["size"] = tuple(sides)
     if film and suffix not in FILMS:
         raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
     if args.opponent and not args.frame:
-        allowed = "must be left out without --frame: nobody plays against a visit"
-        raise refuse("opponent", args.opponent, allowed)
+        raise refuse("opponent", args.opponent, "must be left out without --frame")
     if args.frame and args.at_least:
         raise refuse("at_least", args.at_least, "must be left out with --frame")
     integer("seed", args.seed, 0, 2**63)
     integer("tries", args.tries, 1, 10**9)
-    if args.out:
-        if args.out.is_dir():
-            raise refuse("out", str(args.out), "must be a file, not a folder")
-        try:
+    try:
+        if args.out:
             args.out.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            words = f"must be a file that can be written ({error.strerror})"
-            raise refuse("out", str(args.out), words) from None
+    except OSError as error:
+        what = f"a file that cannot be written ({error.strerror})"
+        raise refuse_what("out", what, "must lie in a folder") from None
     return film
 
 
@@ -150,18 +141,20 @@ def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     else:
         made = f"{names[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
-    title = f"{' - '.join(names)}, {args.noise}'s errors, {where.split(',')[0]}"  # does not tell how it ends
+    title = f"{' - '.join(names)}, {args.noise}'s errors, {where.split(',')[0]}"  # without the result
     judge = check_judge(player(TACTICIAN).at(env)) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
     print(*describe(played), sep="\n")
     print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")
     if env.points < args.at_least:
-        print(f"No visit of {args.at_least} points in {args.tries} tries: this one is the longest.")
+        print(f"No visit reached {args.at_least} points in {args.tries} tries: this one is the longest.")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
     played.save(file, **film)
     print(f"written: {file}", flush=True)
     if not args.out and not webbrowser.open(file.as_uri()):
-        print("No browser was found: open this file in one, or choose its place with --out break.html")
+        print(
+            "No browser was found: open this file in one, or choose where to write it with --out break.html"
+        )
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from .._lib.check import choice, integer, refuse, truth
+from .._lib.check import choice, integer, refuse, refuse_what, truth
 from .._lib.types import NoiseName
 from ..benchmark.agents import Agent
 from ..benchmark.playing import Decider, PlayedEpisodes, Repeater, rows_of, tables_for
@@ -63,6 +63,9 @@ class FreeGame:
         """The table as the page gets it, once the opponent has played."""
         while (state := answer(self._service, GET["state"], {}))["thinking"]:
             self._service.wait(state["revision"], 25.0)
+        if state["trouble"]:
+            what = f"ended by an error of the opponent ({state['trouble']})"
+            raise refuse_what("game", what, "must be begun again with new_game")
         return state
 
     def lies(self) -> Positions | None:
@@ -86,11 +89,10 @@ class FreeGame:
             raise refuse("advice", False, "must be allowed by new_game: this game is played without")
         found = answer(self._service, POST["advise"], {"n": integer("n", n, 1, MOST_ADVICE)})
         head = [f"{found['agent']} would choose {found['choice']}."] if found["choice"] else []
-        lines = [
-            f"{one['words']}: {json.dumps({name: one[name] for name in STROKE if one.get(name) is not None})}"
-            for one in found["suggestions"]
-        ]
-        return "\n".join([*head, *lines]) or "No fair stroke was found."
+        strokes = found["suggestions"]
+        fields = [{name: one[name] for name in STROKE if one.get(name) is not None} for one in strokes]
+        lines = [f"{one['words']}: {json.dumps(its)}" for one, its in zip(strokes, fields, strict=True)]
+        return "\n".join([*head, *lines])
 
 
 class _Client(ProgramPlayer):

@@ -1,6 +1,7 @@
 """What may a client call? The tools of a track, within limits; an error is one sentence."""
 
 import base64
+import io
 import json
 import threading
 from collections.abc import Callable
@@ -8,15 +9,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .._lib.check import choice, integer, refuse, refuse_what
 from .._lib.install import missing
+from .._lib.types import Bools, Floats
+from ..game.balls import N_REDS
 from ..game.rule_sets import RULES
+from ..physics.table import Table
 from ..planning import Positions
 from ..play.service import OFFERED, BusyError
 from ..players.requests import STROKE
+from ..render.pygame_balls import BOLD, pygame_, typeset
+from ..render.pygame_view import View, draw
+from ..render.scene import scene
 from ..simulation import SimulationError
 from ..tasks.noise import LEVELS
 from .games import ALONE, DEALT, HELD_OUT_SEED, MOST_ADVICE, FreeGame, Game
 from .menu import MEANING, foresee_strokes, take_stroke
-from .picture import draw_jpeg
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -26,6 +32,7 @@ GAMES, CALLS = 100, 20_000  # the most of a session
 LONGEST = 1_000  # the longest arguments of a call, as JSON [characters]
 SHOWN = 200  # of each end of an error [characters]
 LISTED, MOST_LISTED = 20, 160  # strokes that the menu lists
+SIZE = (1280, 720)  # of the picture, with the score bar, which is cut off
 
 Fields = dict[str, Any]
 _POT = '{"pot": [ball, pocket]} instead of aim, as ["red 3", "middle left"]; throw is solved for'
@@ -132,8 +139,8 @@ class Desk:
 
     def _play(self, fields: Fields) -> tuple[str, bytes | None]:
         if "number" in fields:
-            for name in set(fields) - {"number"}:
-                raise refuse(name, fields[name], "must be left out with number")
+            if len(fields) > 1:
+                raise refuse_what("number", "one argument of several", "must be given alone")
             fields = take_stroke(fields["number"], self._lies(), self._game.options)
         elif not {"choice", *STROKE} & set(fields):
             raise refuse_what("speed", "nothing", "must be given, with aim or aim_at")
@@ -152,6 +159,19 @@ class Desk:
         assert isinstance(self._game, FreeGame)
         self._lies()
         return self._game.advise(fields.get("n", 3)), None
+
+
+def draw_jpeg(table: Table, positions: Floats, on_table: Bools) -> tuple[bytes, View]:
+    """The JPEG of a table with balls (22, 2) [m], and where its points lie in the picture."""
+    one, view, out = scene(table, positions, on_table), View.of(table, SIZE), io.BytesIO()
+    pygame = pygame_()
+    surface = pygame.image.frombuffer(draw(one, view), SIZE, "RGB")
+    for ball, place in zip(one.ids.tolist(), view(one.positions).tolist(), strict=True):
+        if 0 < ball <= N_REDS:
+            number = typeset(str(ball), (255, 255, 255), 1.6 * one.ball_radius * view.scale, BOLD)
+            surface.blit(number, number.get_rect(center=[round(x) for x in place]))
+    pygame.image.save(surface.subsurface((0, 0, view.width, view.height - view.bar)), out, "table.jpg")
+    return out.getvalue(), view
 
 
 def _check_length(arguments: Fields) -> None:
