@@ -193,7 +193,7 @@ position position=EASY | {"pink": [2.0, 0.0]} | pink =
 position position=EASY | {"reds": [[0.6, 1.4], [0.61, 1.4]]} | reds[1] =
 position position=EASY | {"on": "blue"} | on =
 position position=EASY | {"in_hand": True} | in_hand =
-position position=EASY | {"colour": [0, 0]} | field of position =
+position position=EASY | {"colour": [0, 0]} | key of position =
 position position=EASY | {"reds": "x"} | reds =
 position position=EASY | {"points": 1.5} | points =
 players cue="short" | cue = 'short'
