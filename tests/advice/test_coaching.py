@@ -90,7 +90,6 @@ def test_errors_of_strokes_meant_and_played(noise):
         assert one.high - one.low == pytest.approx(
             2.0 * 1.96 * whole * spread.value / np.sqrt(3000), rel=0.15
         )
-    assert found.noise.direction_deg(speed=2.0) == pytest.approx(found.direction.value)
 
 
 def test_without_lapses_the_interval_is_that_of_chi_square(monkeypatch):
@@ -232,7 +231,6 @@ def test_growth_with_the_speed_is_estimated(g):
     )
     ratio = np.array([one.direction.value / true for one, true in zip(found, truth, strict=True)])
     assert abs(ratio.mean() - 1.0) < 0.07
-    assert found[0].noise.direction_deg(speed=found[0].at) == pytest.approx(found[0].direction.value)
 
 
 def test_an_error_grows_as_strokes_under_that_noise_do():
@@ -345,8 +343,8 @@ def test_the_command(tmp_path, capsys):
     assert main(["coach", str(tmp_path / "mine.json"), *TOLD, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["called"] == 2
     for text, words in (
-        ("{", "or a replay ('snooker-replay') (Expecting"),
-        ('{"format": "other"}', "must be a file of strokes ('snooker-strokes') or a replay"),
+        ("{", "or 'snooker-replay' (Expecting"),
+        ('{"format": "other"}', "must have the format 'snooker-strokes' or 'snooker-replay'"),
         ('{"format": "snooker-strokes", "version": 2, "strokes": []}', "must be 1"),
         ('{"format": "snooker-strokes", "version": 1, "strokes": []}', "must hold at least one stroke"),
         ('{"format": "snooker-strokes", "version": 1, "strokes": [{"colour": 1}]}', "strokes[0]"),
@@ -359,8 +357,6 @@ def test_the_command(tmp_path, capsys):
     assert main(["coach", str(tmp_path / "none.json")]) == 2
     assert main(["coach", str(tmp_path / "mine.json"), *TOLD[2:]]) == 2
     assert "cue = None: must be given (options={'cue': ...}, --cue)" in capsys.readouterr().err
-    assert main(["coach", str(tmp_path / "mine.json"), *TOLD, "--target", "best"]) == 2
-    assert "target = 'best'" in capsys.readouterr().err
 
 
 WRONG = """

@@ -76,7 +76,7 @@ def test_fouls_are_left_out_and_others_judged_where_all_are_fouls():
     assert advice.own and [one.stroke for one in advice] == [thin] and not foul(advice[0])
     advice = sn.advise(COVERED, agent=Given(BLUE_FIRST, AWAY), **QUICK)
     assert not advice.own and advice.agent == "given" and not any(map(foul, advice))
-    assert advice.order.startswith("given has no fair stroke here; these are not its own. ")
+    assert advice.order.startswith("given has no fair stroke here; these strokes are not its own. ")
     assert str(advice).startswith(advice.order)
     assert advice.to_dict()["own"] is False
 

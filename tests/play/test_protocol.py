@@ -356,7 +356,7 @@ def test_hints_are_those_of_advise_one_for_each_stroke(game, layout, agent, pots
     asked = {"noise": "amateur", "samples": 40, "seed": 3}
     game.service.seats.players["mine"] = player("stroke_value")
     session, by = game.session, game.service.seats.players[agent]
-    options = {"cue": session.cue, "miss": session.miss}
+    options = {"cue": session.cue, "miss": session.options.miss}
     advised = advise(session.position, agent=by, n=5, options=options, **asked)
     ideas = [(one.ball, one.pocket) if one.kind == "pot" else one.words for one in advised]
     found = game("advise", agent=agent, n=5, **asked)
