@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from snooker_env.advice import CueStroke
-from snooker_env.game.balls import PINK
+from snooker_env.game.balls import BLACK, CUE, PINK
 from snooker_env.game.fouls import AUTO
 from snooker_env.planning import Position
 from snooker_env.play import link as module
@@ -215,6 +215,16 @@ def test_what_is_not_sound_is_refused_in_one_sentence_and_changes_nothing(monkey
         monkeypatch.setattr(Session, "play", fail)
         open_link(other, link)
     assert other.save() == before and other.acts == acts
+
+
+def test_balls_that_overlap_are_refused_although_the_check_is_theirs(monkeypatch):
+    monkeypatch.setattr(module, "NEAR", 2**24)  # else no place of a link is far enough from that of the stroke
+    session = standing(EASY)
+    places = session.play(CueStroke(speed=1.0, aim=-2.5)).state["positions"]
+    open_link(Session(), write_link(session))
+    places[CUE] = (steps_of(places[BLACK]) * STEP).tolist()
+    with pytest.raises(ValueError, match="^link, stroke 1: what it leaves = other places"):
+        open_link(Session(), write_link(session))
 
 
 def fail(self, *args, **kwargs):

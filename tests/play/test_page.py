@@ -90,6 +90,14 @@ def test_after_a_foul_the_choices_are_shown(shown):
     open_to = shown("[...document.querySelectorAll('#choices button')].map(b => b.dataset.choice)")
     assert open_to == ["play", "play_again", "replace"]
     assert shown.page.is_visible("#choices") and not shown.page.is_visible("#play")
+    wins = shown("page.state.choice_wins")
+    buttons = (
+        "[...document.querySelectorAll('#choices button')].map(b => [b.lastChild.innerText, b.className])"
+    )
+    best = ["best" if win == max(wins) else "" for win in wins]
+    assert shown(buttons) == [[f"win {100 * win:.0f} %", kind] for win, kind in zip(wins, best, strict=True)]
+    asked = shown.line("api/advise", {"n": 1, "samples": 20})[1]["choices"]
+    assert [one["win"] for one in asked] == wins and len(set(wins)) == 3
     twice = "[1, 2].forEach(() => document.querySelector(argument).click())"
     shown(twice, "#choices button[data-choice=replace]")  # the second tap is none
     shown.until("page.state.phase === 'stroke' && page.settled === page.state.revision && !page.sending")

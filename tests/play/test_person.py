@@ -79,6 +79,8 @@ def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(gam
     assert game("undo")["undone"] == 1
     game("concede")
     assert len(game("person")["frames"]) == 1  # the same frame
+    game("new", seed=9)
+    game("concede")  # without a stroke
     game("new", seed=2)
     game("advise", n=1, samples=10)
     assert game.get("state")["hints"] == [1, 0]
@@ -88,7 +90,7 @@ def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(gam
     game("new", seed=4)
     game("position", position=EASY)
     game("concede")  # of a position that was set up nothing is kept
-    assert [one["rated"] for one in kept.read()["frames"]] == [True, False, False]
+    assert [one["rated"] for one in kept.read()["frames"]] == [True, False, False, False]
 
 
 def test_only_a_fair_frame_against_one_opponent_is_rated(game, kept):
