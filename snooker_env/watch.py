@@ -152,9 +152,7 @@ def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     played.save(file, **film)
     print(f"written: {file}", flush=True)
     if not args.out and not webbrowser.open(file.as_uri()):
-        print(
-            "No browser was found: open this file in one, or choose where to write it with --out break.html"
-        )
+        print("No browser was found. Open this file in one, or choose where to write it with --out.")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -36,7 +36,7 @@ class Person:
             kept = strict_json(read_bytes(self.path, MOST_JSON)) if self.path.exists() else dict(EMPTY)
             _check(kept)
         except (ValueError, TypeError, KeyError, AttributeError) as error:
-            why = f"must be a person's file; move it away, or name another with --person ({error})"
+            why = f"must be a person's file ({error}); move this one away, or name another with --person"
             raise refuse("person", str(self.path), why) from None
         return kept
 

@@ -51,7 +51,7 @@ def scene(service: Service) -> dict[str, Any]:
 
 _DECIDED = {
     "play": "played on",
-    "play_again": "asked for another stroke from there",
+    "play_again": "asked the opponent to play again",
     "replace": "had the balls put back",
     "anywhere": "took the cue ball in hand",
 }
@@ -110,6 +110,7 @@ def report(service: Service) -> dict[str, Any]:
     of_session += ["breaks", "hints", "undone"]
     state |= turn | {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
+    by_link = host and LINKED in seats.who
     state |= {
         "players": seats.seen_by(service.me),
         "labels": list(labels),
@@ -119,20 +120,17 @@ def report(service: Service) -> dict[str, Any]:
         "choice_wins": service.choice_chances(session),
         "paused": host and service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
-        "undo": host and session.at > 1 and LINKED not in seats.who,
+        "undo": host and session.at > 1 and not by_link,
         "redo": host and session.at < len(session.acts),
-        "by_link": {"seat": seats.who.index(PERSON), "visit": _last_visit(session)}
-        if host and LINKED in seats.who
-        else None,
+        "by_link": {"seat": seats.who.index(PERSON), "visit": _last_visit(session)} if by_link else None,
     }
     if service.agent_to_play():
-        waits = (
-            "waits: press Continue." if state["paused"] else "waits." if service.paused else "is thinking."
-        )
+        waits = "is waiting: press Continue." if host else "is waiting."
+        waits = waits if service.paused else "is thinking."
         state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
     if host and service.friend_to_play:
         state["words"] = "It is your friend's turn: send the link."
-    elif host and LINKED in seats.who and act.what == "new":
+    elif by_link and act.what == "new":
         state["last"] = "New frame. Play first, then send your friend the link."
     fair = act.played is not None and not (act.played.fouls or act.played.points)
     if fair and state["snookered"]:

@@ -246,11 +246,11 @@ class Service:
         """ValueError unless whoever asks is to play."""
         striker = self.session.frame.striker
         if self.agent_to_play():
-            raise refuse("turn", self.labels[striker], "must be a person's: an agent is to play")
+            raise refuse("turn", self.labels[striker], "must be a person's: it is an agent's turn")
         if self.friend_to_play:
             raise refuse("turn", "Friend", "must be yours: send the link of the game")
         if self.seats.who[striker] != self.me and self.session.frame.phase != "over":
-            raise refuse("turn", self.labels[striker], "must be yours: the other player is to play")
+            raise refuse("turn", self.labels[striker], "must be yours: it is the other player's turn")
 
     @contextmanager
     def reading(self, revision: int | None = None) -> Iterator[Session]:
@@ -270,7 +270,7 @@ class Service:
             if not (any_turn or anew):
                 self.check_turn()
             elif not anew and LINKED in self.seats.who:
-                raise refuse("game", "by link", "must stay as it is played: begin another game first")
+                raise refuse("game", "by link", "must not be changed: begin another game first")
             with session.as_a_whole():
                 yield session
             self.paused, self.trouble = pause, ""
@@ -380,7 +380,7 @@ class Service:
                 decided = self.seats.decide(who, twin)
             # a custom player may raise anything: it is reported, and the game waits
             except Exception as error:
-                trouble = f"{who} gave no stroke ({type(error).__name__}: {error})"
+                trouble = f"{who} failed to choose a stroke ({type(error).__name__}: {error})"
             with self._changed:
                 if self.revision != revision or self._closed:
                     continue

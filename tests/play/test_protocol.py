@@ -286,7 +286,9 @@ def test_an_agent_that_fails_is_reported_and_the_game_waits(game):
     game("position", position=EASY)
     game("players", players=["broken", "person"])
     state = waited(game, lambda s: not s["thinking"])
-    assert state["trouble"].startswith("broken gave no stroke") and state["words"] == state["trouble"]
+    assert (
+        state["trouble"].startswith("broken failed to choose a stroke") and state["words"] == state["trouble"]
+    )
     assert state["strokes"] == 0
     game("players", players=["person", "person"])
     assert game.get("state")["trouble"] == ""

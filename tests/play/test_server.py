@@ -116,7 +116,7 @@ def test_a_browser_that_is_not_found_is_said_with_the_address(found, monkeypatch
     monkeypatch.setattr("snooker_env.play.server.PlayServer.serve_forever", end)
     assert main(["--seed", "1"]) == 0
     said = capsys.readouterr().out
-    assert (f"No browser was found: open {opened[0]} in one." in said) is not found
+    assert (f"No browser was found. Open {opened[0]} in one." in said) is not found
     assert opened[0].startswith("http://127.0.0.1:") and opened[0] in said.split("\n\n")[1]
 
 
