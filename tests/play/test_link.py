@@ -225,7 +225,7 @@ def test_balls_that_overlap_are_refused_although_the_check_is_theirs(monkeypatch
     places = session.play(CueStroke(speed=1.0, aim=-2.5)).state["positions"]
     open_link(Session(), write_link(session))
     places[CUE] = (steps_of(places[BLACK]) * STEP).tolist()
-    with pytest.raises(ValueError, match="^link, stroke 1: what it leaves = other places"):
+    with pytest.raises(ValueError, match=r"^link, stroke 1: what it leaves = other places"):
         open_link(Session(), write_link(session))
 
 

@@ -128,7 +128,7 @@ def test_with_host_the_command_prints_an_address_for_each_person_and_a_qr_code(m
     monkeypatch.setattr("snooker_env.play.server.PlayServer.serve_forever", lambda self, **_: None)
     assert main(["--host", "127.0.0.1", "--no-browser", "--seed", "1"]) == 0
     said = capsys.readouterr().out
-    first, _, others = said.partition("In the same network")
+    first, _, others = said.partition("for the same network")
     addresses = re.findall(r"(?m)^    .*(http://127.0.0.1:\d+/[\w-]{32}/)$", others)
     assert len(set(addresses)) == 3 and addresses[0] in first
     rows = re.findall(r"(?m)^\x1b\[97;40m(.+)\x1b\[0m$", others)
