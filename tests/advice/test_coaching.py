@@ -7,7 +7,6 @@ from math import atan2
 
 import numpy as np
 import pytest
-from snooker_env.advice.costs import count_costs, value_strokes
 
 import snooker_env as sn
 from snooker_env.advice import (
@@ -20,6 +19,7 @@ from snooker_env.advice import (
 )
 from snooker_env.advice import errors as estimating
 from snooker_env.advice.__main__ import main
+from snooker_env.advice.coach import count_costs, value_strokes
 from snooker_env.advice.errors import Estimate
 from snooker_env.advice.practice import practice_of
 from snooker_env.advice.recorded import agree_options
