@@ -109,7 +109,7 @@ def one_position(source: Any, scores: Any = None) -> Positions:
     if len(at) != 1:
         raise refuse_what("position", f"{len(at)} positions", "must be one position")
     if at.over[0]:
-        raise refuse("position.over", True, "must be False: the visit has ended, there is no stroke to play")
+        raise refuse("position.over", True, "must be False: there is no stroke to play")
     at = at.copy()
     at.game[:, columns.POINTS] = 0  # only future points count, and no break can exceed what a table allows
     if scores is not None:
@@ -126,9 +126,9 @@ def one_position(source: Any, scores: Any = None) -> Positions:
 def _with_scores(at: Positions, scores: ArrayLike) -> Positions:
     """A position of a visit as one of a frame with these scores of the striker and of the other."""
     if at.of_frames:
-        raise refuse("scores", scores, "must be None: the position is of a frame, which has its own")
+        raise refuse("scores", scores, "must be None: the position of a frame has its own")
     if not isinstance(scores, list | tuple) or len(scores) != 2:
-        raise refuse("scores", scores, "must be two integers: of the striker and of the other")
+        raise refuse("scores", scores, "must be two integers: of the striker and of the opponent")
     mine, others = (integer(f"scores[{k}]", score, 0, MOST_SCORE) for k, score in enumerate(scores))
     at = begun(at)
     at.game[:, [columns.SCORE_0, columns.SCORE_1]] = mine, others

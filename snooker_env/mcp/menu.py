@@ -1,4 +1,4 @@
-"""What does a model read of the menu of strokes? Of each what closed forms foresee, as numbers and in words."""
+"""What does a model read about the menu of strokes? What closed forms foresee of each."""
 
 from typing import Any
 
@@ -20,8 +20,8 @@ from ..tasks.options import Options
 from ..tasks.stroke_menu import DECISIONS, SPEEDS, TOPS
 
 MEANING = (
-    "speed: m/s; chance: that the ball is potted; x, y: where the cue ball stops; next: points that what is left is worth to "
-    "whoever plays it; promise: points, chance times what the pot and the next ones bring."
+    "speed: m/s; chance: of potting the ball; x, y: where the cue ball stops; next: worth of the position left, in points, to "
+    "whoever plays next; promise: chance times the points of this pot and the next ones."
 )
 _SHOWN = {
     "speed": (columns.F_SPEED, FASTEST),

@@ -1,4 +1,4 @@
-"""What may a client call? The tools of a track, within limits; an error is one sentence."""
+"""Which tools may a client call? Those of a track, within limits; an error is one sentence."""
 
 import base64
 import io
@@ -35,22 +35,25 @@ LISTED, MOST_LISTED = 20, 160  # strokes that the menu lists
 SIZE = (1280, 720)  # of the picture, with the score bar, which is cut off
 
 Fields = dict[str, Any]
-_POT = '{"pot": [ball, pocket]} instead of aim, as ["red 3", "middle left"]; throw is solved for'
+_POT = 'instead of aim: {"pot": [ball, pocket]}, as {"pot": ["red 3", "middle left"]}; throw is compensated'
 _PLAY = {
-    "speed": {"type": "number", "description": "of the ball off the cue, 0.2 to 7 m/s"},
+    "speed": {"type": "number", "description": "speed of the cue ball off the cue, 0.2 to 7 m/s"},
     "aim": {"type": "number", "description": "direction of the cue ball [rad], anticlockwise from +x"},
     "aim_at": {"type": "object", "description": _POT},
-    "side": {"type": "number", "description": "tip offset to the right over the radius; with top within 0.5"},
-    "top": {"type": "number", "description": "tip offset upwards: above 0 follows, below 0 draws"},
-    "elevation": {"type": "number", "description": "of the cue, 0 to 0.52 rad"},
-    "place": {"type": "array", "description": "where a cue ball in hand is put first, [x, y] in metres"},
-    "nominate": {"type": "string", "description": "a colour that may be named"},
+    "side": {"type": "number", "description": "tip offset to the right, in ball radii; with top within 0.5"},
+    "top": {
+        "type": "number",
+        "description": "tip offset upwards, in ball radii: positive follows, negative draws",
+    },
+    "elevation": {"type": "number", "description": "elevation of the cue, 0 to 0.52 rad"},
+    "place": {"type": "array", "description": "where to place a cue ball in hand, [x, y] in metres"},
+    "nominate": {"type": "string", "description": "the colour to nominate"},
     "choice": {"type": "string", "description": "after a foul of the opponent: one of the choices"},
-    "number": {"type": "integer", "description": "a stroke of the menu, alone"},
+    "number": {"type": "integer", "description": "number of a stroke on the menu; give no other argument"},
 }
 _AXES = (
-    "y grows to the right of the picture, to the black end, which pockets call top; x grows downwards, to what they call "
-    "right. An aim of 0 rad points down, of 1.571 to the right."
+    'y grows to the right of the picture, towards the black end ("top" in the names of pockets); x grows downwards '
+    '("right"). An aim of 0 rad points down, 1.571 points right.'
 )
 
 
@@ -76,11 +79,11 @@ class Desk:
         left_out = ({"nominate", "choice"} if not free else set()) | ({"number"} if not menu else set())
         strokes = {name: field for name, field in _PLAY.items() if name not in left_out}
         self.tools: dict[str, Tool] = {
-            "look": Tool("The table as it lies.", {}, self._look),
-            "play": Tool("Play a stroke, and see the table after it.", strokes, self._play),
+            "look": Tool("Show the table.", {}, self._look),
+            "play": Tool("Play a stroke and show the table after it.", strokes, self._play),
         }
         if menu:
-            about = "Strokes with what closed forms foresee of each, the best first; nothing is simulated."
+            about = "List strokes, best first, with what closed forms foresee of each; nothing is simulated."
             self.tools["strokes"] = Tool(about, {"n": _up_to(MOST_LISTED, LISTED)}, self._strokes)
         if free:
             fields = {
@@ -89,14 +92,14 @@ class Desk:
                 "noise": {"enum": [*LEVELS], "default": "professional"},
                 "game": {"enum": [*RULES], "default": "snooker"},
                 "seed": _up_to(HELD_OUT_SEED - 1, 0, 0),
-                "advice": {"type": "boolean", "description": "whether advise may be called (default: not)"},
+                "advice": {"type": "boolean", "description": "whether advise may be called (default: no)"},
             }
-            self.tools["new_game"] = Tool("Begin a frame, or practice alone.", fields, self._new)
-            advises = Tool("What an agent would play here.", {"n": _up_to(MOST_ADVICE, 3)}, self._advise)
+            self.tools["new_game"] = Tool("Start a frame, or practice alone.", fields, self._new)
+            advises = Tool("Say what an agent would play here.", {"n": _up_to(MOST_ADVICE, 3)}, self._advise)
             self.tools["advise"] = advises
 
     def answer(self, name: str, arguments: Fields) -> tuple[str, bytes | None, bool]:
-        """Words and a picture, and whether the call was refused; then the words say why, and nothing has changed."""
+        """Words, a picture, and whether the call was refused; if so, the words say why, and nothing has changed."""
         with self._one:
             self._calls += 1
             try:
@@ -122,13 +125,15 @@ class Desk:
             return words, jpeg
         shown = ("scores", "break", "balls_on", "nominations", "choices", "in_hand")
         said = [f"{name}: {state[name]}" for name in shown] + [f"on the table: {[*state['positions']]}"]
-        where = f"The origin is at column {view.x:.0f}, row {view.y:.0f}; {view.scale:.1f} pixels a metre."
+        where = (
+            f"The origin is at column {view.x:.0f}, row {view.y:.0f}; {view.scale:.1f} pixels are a metre."
+        )
         return "\n".join([words, *said, f"{where} {_AXES}"]), jpeg
 
     def _strokes(self, fields: Fields) -> tuple[str, None]:
         n, at = integer("n", fields.get("n", LISTED), 1, MOST_LISTED), self._lies()
         found = foresee_strokes(at, self._game.options)
-        head = f"The best {min(n, len(found))} of {len(found)} strokes, by closed forms. {MEANING}"
+        head = f"The best {min(n, len(found))} of {len(found)} strokes. {MEANING}"
         return "\n".join([head, *map(json.dumps, found[:n])]), None
 
     def _lies(self) -> Positions:
@@ -207,5 +212,5 @@ def serve(desk: Desk) -> "Server[Any]":
             content.append(types.ImageContent(data=base64.b64encode(jpeg).decode(), mime_type="image/jpeg"))
         return types.CallToolResult(content=content, is_error=failed)
 
-    about = "Snooker by its real physics: look, then play. Units: metres, seconds, radians, from the middle of the table."
+    about = "Snooker with real physics. Look, then play. Metres, seconds, radians; the origin is the middle of the table."
     return Server("snooker_env", instructions=about, on_list_tools=list_tools, on_call_tool=call_tool)
