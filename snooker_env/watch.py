@@ -70,8 +70,6 @@ def parser() -> argparse.ArgumentParser:
     add("--at-least", type=int, default=0, metavar="POINTS", help=least)
     add("--tries", type=int, default=200, help="most visits played to find it [%(default)s]")
     add("--speed", type=float, help="speed of a film, as a multiple of real time")
-    add("--size", help="size of a film, WIDTHxHEIGHT, both even")
-    add("--fps", type=float, help="pictures a second of a film")
     add_model_options(p)
     return p
 
@@ -83,17 +81,9 @@ def _film_options(args: argparse.Namespace) -> dict[str, Any]:
         raise refuse("out", str(args.out), f"must end in {', '.join(SUFFIXES)}")
     if suffix in FILMS:
         encoder_file()  # what is missing is said before anything is played
-    film: dict[str, Any] = {}
-    for name, most in (("speed", 100.0), ("fps", 240.0)):
-        if (value := getattr(args, name)) is not None:
-            film[name] = number(name, value, 0.0, most, open_low=True)
-    if args.size is not None:
-        sides = [int(side) for side in args.size.split("x") if side.isdigit()]
-        if len(sides) != 2 or any(side % 2 for side in sides):
-            raise refuse("size", args.size, "must be WIDTHxHEIGHT such as 1280x720, both even")
-        film["size"] = tuple(sides)
+    film = {} if args.speed is None else {"speed": number("speed", args.speed, 0.0, 100.0, open_low=True)}
     if film and suffix not in FILMS:
-        raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
+        raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --speed")
     if args.opponent and not args.frame:
         raise refuse("opponent", args.opponent, "must be left out without --frame")
     if args.frame and args.at_least:

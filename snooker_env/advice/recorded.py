@@ -17,7 +17,7 @@ import numpy as np
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
 from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
 from .._lib.types import Bools, CueKind, Floats
-from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
+from ..game.balls import CUE, N_BALLS, BallOn, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
 from ..physics import cloth
 from ..physics.cue import strike
@@ -161,8 +161,7 @@ class Recorded:
 
     @classmethod
     def from_dict(cls, kept: Mapping[str, Any]) -> "Recorded":
-        """Make a stroke of a dict of ``to_dict``; ``ball`` may be the name of a colour, ``pocket`` a name of
-        ``snooker_env.POCKETS``. ValueError for an unknown key."""
+        """Make a stroke of a dict of ``to_dict``; ValueError for an unknown key."""
         if not isinstance(kept, Mapping):
             allowed = "must be a dict of the fields of Recorded"
             raise refuse_what("stroke", f"a {type(kept).__name__}", allowed)
@@ -175,12 +174,7 @@ class Recorded:
         for name in ("position", "after"):
             if made.get(name) is not None:
                 made[name] = Position.from_dict(made[name])
-        if made.get("table") is not None:
-            made["table"] = table_from(made["table"])
-        if isinstance(made.get("ball"), str):
-            made["ball"] = NAMES.index(choice("ball", made["ball"], NAMES[16:]))
-        if isinstance(made.get("pocket"), str):
-            made["pocket"] = POCKETS.index(choice("pocket", made["pocket"], POCKETS))
+        made["table"] = made.get("table") and table_from(made["table"])
         return cls(**made)
 
 

@@ -155,8 +155,6 @@ class PlayHandler(BaseHTTPRequestHandler):
         if head.get("Sec-Fetch-Site", "none").lower() not in ("none", "same-origin"):
             raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
         token, _, name = parts.path.removeprefix("/").partition("/")
-        # the printed address ends with "/", and clients often append "/api/state"
-        name = re.sub("^/+(?=api/)", "", name)
         self.who = self.server.whose(token if parts.path.startswith("/") else "")
         if not self.who:
             raise self._last(403, "the address must hold this server's token: open the one that it printed")
