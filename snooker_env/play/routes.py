@@ -6,11 +6,12 @@ import re
 from collections.abc import Callable
 from functools import partial
 from math import atan2
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from .._lib.check import choice, integer, number, refuse, truth
+from .._lib.types import CueKind
 from ..advice import CueStroke, Suggestion, advise, coach, destinations
 from ..advice.review import SAMPLES, read_frame
 from ..game.balls import CUE, NAMES
@@ -28,7 +29,6 @@ from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
 from .link import check_course, open_link, write_link
-from .person import Person
 from .report import MOST_SAMPLES, MOST_SUGGESTIONS, report, scene, stroke_report, table_after
 from .service import LINKED, Reviewing, Service, StaleError
 from .session import Session, read_levels
@@ -146,13 +146,9 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
-    noise, practice, cue = fields.get("noise"), fields.get("practice"), fields.get("cue")
-    if noise is not None:
-        read_levels("noise", noise)
-    if practice is not None:
-        truth("practice", practice)
-    if cue is not None:
-        choice("cue", cue, CUES)
+    noise = read_levels("noise", fields["noise"]) if "noise" in fields else None
+    practice = truth("practice", fields["practice"]) if "practice" in fields else None
+    cue = choice("cue", fields["cue"], CUES) if "cue" in fields else None
     with service.acting(any_turn=True, anew="players" in fields) as session:
         if "players" in fields:
             seats, own = service.seats, service.seats.errors_of_host(session)
@@ -165,7 +161,7 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
-        session.cue = session.cue if cue is None else cue
+        session.cue = cast(CueKind, cue) or session.cue
 
 
 def _concede(service: Service, fields: dict[str, Any]) -> None:
@@ -209,10 +205,8 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         answer: dict[str, Any] = {"choice": None, "choices": []}
         if session.frame.phase == "choice":
             answer["choice"] = CHOICES[int(seats.decide(agent, session).decision[0])]
-            chances = zip(
-                session.frame.choices, service.choice_chances(session, errors["noise"]), strict=True
-            )
-            answer["choices"] = [{"choice": what, "win": win} for what, win in chances]
+            wins, choices = service.choice_chances(session, errors["noise"]), session.frame.choices
+            answer["choices"] = [{"choice": x, "win": win} for x, win in zip(choices, wins, strict=True)]
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
         at = session.as_visit() if session.practice else session.position  # alone at the table nobody wins
         advice = advise(at, agent=seats.players[agent], n=n, options=session.options, **errors)
@@ -266,10 +260,8 @@ def _paths(shot: Shot) -> dict[str, Any]:
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
-        errors, stroke = (
-            _errors(fields, 500, session.noise[session.frame.striker]),
-            take_stroke(session, fields),
-        )
+        errors = _errors(fields, 500, session.noise[session.frame.striker])
+        stroke = take_stroke(session, fields)
         stops = destinations(session.as_visit(), stroke, options=session.options, **errors)
         places = {name: pack(getattr(stops, name), "f4") for name in ("cue", "ball")}
         return _draw(session, stroke) | vars(stops) | places
@@ -299,16 +291,10 @@ def _errors(fields: dict[str, Any], samples: int, noise: str) -> dict[str, Any]:
     return {"noise": noise, "samples": samples, "seed": integer("seed", fields.get("seed", 0), 0, MOST)}
 
 
-def _own(service: Service) -> Person:
-    if service.person is None:
-        raise refuse("person", None, "must be named: this server keeps no person's file")
-    return service.person
-
-
 def _person(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     """What the file holds, and where it lies; first a name is given, or the file deleted."""
     with service.reading():
-        person = _own(service)
+        person = service.own_file()
         if "name" in fields:
             person.change(lambda kept: kept.update(name=fields["name"]))
         if truth("delete", fields.get("delete", False)):
@@ -317,7 +303,7 @@ def _person(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _coach(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    strokes = _own(service).strokes()
+    strokes = service.own_file().strokes()
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: play a frame against one of the five first")
     with service.asking():
@@ -347,23 +333,15 @@ def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
             advisers = service.seats.advisers(practice=False)
             agent = service.seats.players[choice("agent", fields.get("agent", advisers[0]), advisers)]
             people = [seat for seat in (0, 1) if not service.seats.is_agent(seat)] or (0, 1)
-            errors, frame = (
-                _errors(fields, SAMPLES, service.seats.level(session)),
-                _replay(service, {}, Replay.to_dict),
-            )
-            service.reviewing = Reviewing(session, read_frame(frame), people, agent=agent, **errors)
-    return _reviewing(service).report()
-
-
-def _reviewing(service: Service) -> Reviewing:
-    if service.reviewing is None or service.reviewing.begun != service.session.begun:
-        raise refuse("review", None, "must be begun first: this game has not been reviewed")
-    return service.reviewing
+            frame = read_frame(_replay(service, {}, Replay.to_dict))
+            errors = _errors(fields, SAMPLES, service.seats.level(session))
+            service.reviewing = Reviewing(session, frame, people, agent=agent, **errors)
+    return service.own_review().report()
 
 
 def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     """The review so far, or of a stroke its table, and both strokes drawn."""
-    reviewing = _reviewing(service)
+    reviewing = service.own_review()
     if "stroke" not in fields:
         return reviewing.report()
     k, one, chance = reviewing.act_of(fields.get("stroke"))
@@ -379,7 +357,7 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 def _again(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(pause=True, any_turn=True) as session:
-        reviewing = _reviewing(service)
+        reviewing = service.own_review()
         session.go_to(reviewing.acts, reviewing.act_of(fields.get("stroke"))[0])
         session.undone += 1
 

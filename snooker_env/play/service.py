@@ -179,22 +179,18 @@ class StaleError(RuntimeError):
 class Service:
     """One game, its seats, and the thread in which agents think."""
 
-    paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
-    trouble: str  # why the last agent did not play, or ""
-
-    unkept: str  # why the frame that is over is not in the person's file, or ""
-
     def __init__(self, session: Session, seats: Seats, person: Person | None = None):
         self.session: Session = session
         self.seats: Seats = seats
         self.person: Person | None = person
         self._over, self._sat = 0, set[tuple[str, ...]]()  # the last game that ended; who sat in this one
         self._unwritten: Callable[[], None] | None = None  # keeps a frame that could not be kept yet
-        self.unkept = ""
+        self.unkept: str = ""  # why the frame that is over is not in the person's file
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
         self.reviewing: Reviewing | None = None
         self.revision: int = 0
-        self.paused, self.trouble = False, ""
+        self.paused: bool = False  # whether an agent waits for ``go_on``
+        self.trouble: str = ""  # why the last agent did not play
         self.invites: list[dict[str, Any]] = []  # what the host may pass on, if others can come to the table
         self.vacant: bool = True  # whether a friend may sit down without having been chosen
         self._changed = threading.Condition(threading.RLock())
@@ -291,9 +287,7 @@ class Service:
             self._asking.release()
 
     def judge(self, noise: NoiseName | None = None) -> ChanceJudge | None:
-        """Who says how likely each seat wins, with these errors, by default those of ``Seats.level``.
-
-        None in practice, where nobody wins."""
+        """Estimates chances to win with these errors, by default those of ``Seats.level``; None in practice."""
         if self.session.practice:
             return None
         options = self.session.options_with(noise or self.seats.level(self.session))
@@ -311,6 +305,16 @@ class Service:
         """How likely the striker wins after each choice that it has after a foul; as ``win_chances``."""
         chances = self.win_chances([session.twin().choose(what) for what in session.frame.choices], noise)
         return [one if one is None or session.frame.striker == 0 else 1.0 - one for one in chances]
+
+    def own_file(self) -> Person:
+        if self.person is None:
+            raise refuse("person", None, "must be named: this server keeps no person's file")
+        return self.person
+
+    def own_review(self) -> Reviewing:
+        if self.reviewing is None or self.reviewing.begun != self.session.begun:
+            raise refuse("review", None, "must be begun first: this game has not been reviewed")
+        return self.reviewing
 
     def wait(self, revision: int, seconds: float) -> None:
         """Return when the revision has changed, or after that time."""

@@ -2,9 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
-from .._lib.types import Bools
 from ..game.balls import N_REDS, NAMES, BallOn, mask_of_present, points_available
 from ..game.fouls import Foul
 from ..game.frame_columns import BALL_ON
@@ -101,12 +99,12 @@ def bars(
             potted = [] if not one.break_before else None
         here = one.shot.on_table.copy()
         here[pots_of(one.shot)] = True
-        game = Game(here, one.ball_on, one.free_ball)
-        before = _bar(game, names, scores, one.player, one.break_before, potted)
+        on = here, one.ball_on, one.free_ball
+        before = _bar(*on, names, scores, one.player, one.break_before, potted)
         if one.points and potted is not None:
             potted = potted + pots_of(one.shot)
-        run, game = one.break_before + one.points, Game(one.on_table, one.next_on, one.next_free_ball)
-        after = _bar(game, names, one.scores, one.player, run, potted, sentence(one, names))
+        run, on = one.break_before + one.points, (one.on_table, one.next_on, one.next_free_ball)
+        after = _bar(*on, names, one.scores, one.player, run, potted, sentence(one, names))
         made.append((before, after))
         run = run if one.points else 0
     if chances is None:
@@ -118,20 +116,13 @@ def bars(
 def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar | None = None) -> ScoreBar:
     """The bar for table k as it stands; ``last``: the bar after the stroke that led there, if known."""
     now, last = tables.standing(k), last or ScoreBar()
-    game = Game(tables.on_table[k], BallOn(tables.game[k, BALL_ON]), now["next_free_ball"])
+    on = tables.on_table[k], BallOn(tables.game[k, BALL_ON]), now["next_free_ball"]
     of_player = players, now["scores"], now["next_player"], now["break_points"]
-    return _bar(game, *of_player, last.potted if now["break_points"] else (), last.words)
+    return _bar(*on, *of_player, last.potted if now["break_points"] else (), last.words)
 
 
-class Game(NamedTuple):
-    on_table: Bools
-    ball_on: BallOn
-    free_ball: bool
-
-
-def _bar(game, players, scores, striker, break_points, potted, words=""):
+def _bar(on_table, ball_on, free_ball, players, scores, striker, break_points, potted, words=""):
     """A bar; without players none of their scores."""
-    on_table, ball_on, free_ball = game
     who = (tuple(players), scores, striker) if players else ((), (), None)
     left = points_available(mask_of_present(on_table) & ~1, ball_on, free_ball) if ball_on >= 0 else 0
     on, reds = "free ball" if free_ball else on_words(ball_on), int(on_table[1 : N_REDS + 1].sum())
