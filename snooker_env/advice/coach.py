@@ -193,7 +193,6 @@ def coach(
             parts[name] = Estimate(value=value, low=low, high=high, strokes=int(many))
     ranked = sorted((name for name in parts if parts[name].value > 0.0), key=lambda name: -parts[name].value)
     most = ranked[0] if ranked else None
-    drill = {"potting": _potting, "position": _position, "safety": _safety}
     by_part: dict[str, Floats] = {name: points[:, k] for k, name in enumerate(PARTS)}
     largest = (drawn.argmax(axis=1) == PARTS.index(most)) & (drawn.max(axis=1) > 0.0) if most else np.zeros(1)
     return Coaching(
@@ -208,7 +207,7 @@ def coach(
         costs=parts,
         most=most,
         sure=float(largest.mean()),
-        drills=tuple(drill[name](kept, parts[name], by_part[name], found.errors) for name in ranked),
+        drills=tuple(_choose_drill(name, kept, parts[name], by_part[name]) for name in ranked),
     )
 
 
@@ -304,18 +303,6 @@ def _interval(mean: float, variance: float, n: int) -> Estimate:
     return Estimate(value=mean, low=max(0.0, mean - half), high=min(float(n), mean + half), strokes=n)
 
 
-def _potting(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
-    """Pots as wide as the costliest ones."""
-    sums = dict.fromkeys(WORDS, 0.0)
-    for one, points in zip(strokes, lost.tolist(), strict=True):
-        if points and (found := find_pot(one.position, one)) is not None:
-            wide = degrees(found[1])
-            sums["easy" if wide > WIDE else "medium" if wide > NARROW else "hard"] += points
-    worst = max(sums, key=lambda name: sums[name])
-    most = f"most of the {cost.value:.1f} points a visit lost by missed pots were lost at pots"
-    return Drill(layout=f"pots:{worst}", reason=f"{most} with a tolerance of {WORDS[worst]} degrees")
-
-
 def find_pot(at: Position | Positions, one: Recorded) -> tuple[int, float] | None:
     """The row of the called pot among the direct ones, and its tolerance [rad]; None if it is not direct."""
     direct = pots(at, 16)
@@ -323,27 +310,22 @@ def find_pot(at: Position | Positions, one: Recorded) -> tuple[int, float] | Non
     return (int(which[0]), float(direct.tolerance[0, which[0]])) if len(which) else None
 
 
-def _position(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
-    """The line-up: pots are easy there, and the speed decides."""
-    reason = f"the positions left after pots cost {cost.value:.1f} points a visit"
-    if errors.speed is not None and errors.direction is not None:
-        base = LEVELS[BASE]
-        usual = base.direction_deg(speed=errors.at)
-        fast, aside = errors.speed.value / base.speed_rel, errors.direction.value / usual
-        if fast > 1.25 * aside:
-            reason += f", and the error of speed is {fast:.1f} times a professional's, that of direction {aside:.1f} times"
-    return Drill(layout="line_up", reason=reason)
-
-
-def _safety(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
-    """Escapes, if most was lost where no straight path led to a ball on; else safeties."""
-    most = f"most of the {cost.value:.1f} points a visit lost in safety were lost"
-    hidden = ~clear_paths([one.position for one in strokes]).any_part
-    if lost[hidden].sum() > 0.5 * lost.sum():
-        return Drill(layout="escape", reason=f"{most} when snookered")
-    missed = np.array([one.ball is not None for one in strokes])
-    if lost[missed].sum() > 0.5 * lost.sum():
-        reason = f"{most} by what missed pots left"
-    else:
-        reason = f"strokes that end the visit cost {cost.value:.1f} points a visit"
-    return Drill(layout="safety", reason=reason)
+def _choose_drill(part: str, strokes: list[Recorded], cost: Estimate, lost: Floats) -> Drill:
+    """What to practise against a cost: pots as wide as those that cost most; the line-up, where pots are easy and the cue ball
+    decides; escapes, if most was lost when snookered, else safeties."""
+    points = f"{cost.value:.1f} points a visit"
+    if part == "position":
+        return Drill(layout="line_up", reason=f"the positions left after pots cost {points}")
+    if part == "safety":
+        hidden = ~clear_paths([one.position for one in strokes]).any_part
+        if lost[hidden].sum() > 0.5 * lost.sum():
+            return Drill(layout="escape", reason=f"most of {points} lost in safety were lost when snookered")
+        return Drill(layout="safety", reason=f"strokes that end the visit cost {points}")
+    sums = dict.fromkeys(WORDS, 0.0)
+    for one, own in zip(strokes, lost.tolist(), strict=True):
+        if own and (found := find_pot(one.position, one)) is not None:
+            wide = degrees(found[1])
+            sums["easy" if wide > WIDE else "medium" if wide > NARROW else "hard"] += own
+    worst = max(sums, key=lambda name: sums[name])
+    where = f"at pots with a tolerance of {WORDS[worst]} degrees"
+    return Drill(layout=f"pots:{worst}", reason=f"most of {points} lost by missed pots were lost {where}")

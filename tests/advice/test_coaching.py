@@ -328,8 +328,8 @@ def test_the_drill_is_that_of_the_largest_cost():
     better = {"potting": Estimate(value=-2.0, low=-3.0, high=1.0, strokes=5)}
     said = str(replace(found, costs=better, most=None, drills=())).splitlines()
     assert said[-2:] == [
-        "potting gains 2.00 [-1.00, 3.00] points a visit, 5 strokes",
-        "nothing to practise: no part costs points beside the target",
+        "potting gains 2.00 [-1.00, 3.00] points a visit, from 5 strokes",
+        "nothing to practise: no part costs more than at the target level",
     ]
     same = coached([missed] * 9 + [made])
     assert same == found
@@ -364,7 +364,7 @@ ball=21 | pocket | None | must
 ball=3, pocket=0 | ball | 3 | must
 potted=True | potted | True | must
 points=17 | points | 17 | must
-played={"speed": 1.0} | played | without 'aim' | must
+played={"speed": 1.0} | played | without speed and aim | must
 scores=(1,) | scores | (1,) | must
 guessed=True | guessed | True | must
 guessed=True, ball=21, pocket=4, played=CUE, intended=MEANT | guessed | True | must
