@@ -380,7 +380,8 @@ def simulate_pots(strokes: list[Recorded], practice: Practice, seed: int) -> Cal
     called = [strokes[k] for k in rows]
     meant, many = solve_strokes(called, practice), len(RADII) * WAYS
     # each stroke has errors of its own, so that equal strokes tell more together
-    ways = np.stack([spread_normals(WAYS, seed + k) for k in range(len(called))])
+    normal = np.vectorize(NormalDist().inv_cdf)
+    ways = np.stack([normal(sobol_points(WAYS, 5, seed + k)) for k in range(len(called))])
     ways /= np.linalg.norm(ways, axis=2)[..., None]
     errors = (RADII[:, None, None] * ways[:, None]).reshape(-1, 5)
     at = Positions.of([one.position for one in called])
@@ -404,7 +405,3 @@ def chi5(x: Floats) -> Floats:
     """The distribution function of the length of five standard normal numbers."""
     half = np.vectorize(erf)(x / sqrt(2.0))
     return half - sqrt(2.0 / pi) * np.exp(-0.5 * x * x) * (x + x**3 / 3.0)
-
-
-def spread_normals(n: int, seed: int) -> Floats:
-    return np.vectorize(NormalDist().inv_cdf)(sobol_points(n, 5, seed))

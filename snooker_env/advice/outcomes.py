@@ -62,7 +62,10 @@ def judge_strokes(practice: Practice, strokes: list[Intention], trials: Trials) 
         made = no_foul & (stops.potted[mine, one.ball] == one.pocket) if one.kind == "pot" else no_foul
         chance, stayed = float(made.mean()), stops.potted[mine, CUE] < 0
         points, interval = expect_points(stops.points[mine], stops.goes_on[mine], rest)
-        middle, spread = _cloud(stops.places[mine, CUE][stayed])
+        middle, spread = None, None
+        if len(places := stops.places[mine, CUE][stayed]):
+            x, y = places.mean(axis=0).tolist()
+            middle, spread = (x, y), float(np.sqrt(((places - (x, y)) ** 2).sum(axis=1).mean()))
         foul = float((~no_foul).mean())
         figures = say.figures_words(one.kind, chance, points, foul if look else None)
         out.append(
@@ -149,14 +152,6 @@ def expect_points(points: Floats, goes_on: Bools, rest: Floats) -> tuple[float, 
     variance += share * share * float(rest.var(ddof=1)) / len(rest) if len(rest) > 1 else 0.0
     half = Z * sqrt(variance)
     return mean, (max(0.0, mean - half), mean + half)
-
-
-def _cloud(places: Floats) -> tuple[tuple[float, float] | None, float | None]:
-    """The mean of points (m, 2) and their root mean square distance from it; None, None without points."""
-    if not len(places):
-        return None, None
-    x, y = places.mean(axis=0).tolist()
-    return (x, y), float(np.sqrt(((places - (x, y)) ** 2).sum(axis=1).mean()))
 
 
 def _say_why(kind: str, chance: float, look: dict[str, Any]) -> str:

@@ -278,12 +278,11 @@ def common_noise(errors: list[Noise]) -> Noise:
     """The largest errors, at least a professional's, which the tactician has learned with; a player without errors counts
     as an amateur."""
     least = LEVELS["amateur" if any(one.silent for one in errors) else "professional"]
-    return max([*errors, least], key=_size_of)
-
-
-def _size_of(noise: Noise) -> float:
-    """The root mean square error of the direction [deg], lapses included."""
-    return noise.direction_deg() * sqrt(1.0 + noise.lapse * (noise.lapse_factor**2 - 1.0))
+    # by the root mean square error of the direction, lapses included
+    return max(
+        [*errors, least],
+        key=lambda one: one.direction_deg() * sqrt(1.0 + one.lapse * (one.lapse_factor**2 - 1.0)),
+    )
 
 
 def read_frame(kept: Mapping[str, Any]) -> FrameRecord:

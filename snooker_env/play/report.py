@@ -17,7 +17,7 @@ from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .levels import LEVELS
 from .service import LINKED, PERSON, Service
-from .session import Act, Session
+from .session import Act
 
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
@@ -110,7 +110,8 @@ def report(service: Service) -> dict[str, Any]:
     of_session += ["breaks", "hints", "undone"]
     state |= turn | {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
-    by_link = host and LINKED in seats.who
+    by_link, players = host and LINKED in seats.who, [session.acts[k].player for k in session.strokes]
+    visit = max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
     state |= {
         "players": seats.seen_by(service.me),
         "labels": list(labels),
@@ -122,7 +123,7 @@ def report(service: Service) -> dict[str, Any]:
         "strokes": len(session.strokes),
         "undo": host and session.at > 1 and not by_link,
         "redo": host and session.at < len(session.acts),
-        "by_link": {"seat": seats.who.index(PERSON), "visit": _last_visit(session)} if by_link else None,
+        "by_link": {"seat": seats.who.index(PERSON), "visit": visit} if by_link else None,
     }
     if service.agent_to_play():
         waits = "is waiting: press Continue." if host else "is waiting."
@@ -141,11 +142,6 @@ def report(service: Service) -> dict[str, Any]:
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
     said += [state["luck"]] * bool(state["luck"])
     return state | {"text": say_table(state, lines, said)}
-
-
-def _last_visit(session: Session) -> int:
-    players = [session.acts[k].player for k in session.strokes]
-    return max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
 
 
 def _say_chance(state: dict[str, Any]) -> list[str]:
