@@ -73,9 +73,7 @@ class Told(Grid):
         super().settle(tables, before)
         here = _sum(tables.positions[0], tables.on_table[0], tables.frame(0))
         if self._digits.within(0, CHECK - 1) != here or not is_sound(tables):
-            allowed = (
-                "must be as in the link: another processor computes differently, or the link was changed"
-            )
+            allowed = "must be as in the link: another processor differs, or the link was changed"
             raise refuse_what("what it leaves", "other places or scores here", allowed)
 
     def put(self, tables: Frames, ball: int) -> None:
@@ -126,9 +124,7 @@ def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
             try:
                 asked = _code_act(digits, session.frame, first, {})
                 if agreed and _setting(asked, first, session.frame) != _setting({}, first, session.frame):
-                    raise refuse(
-                        "noise", asked["noise"], "must stay as at the beginning, and so must the cue"
-                    )
+                    raise refuse("noise", asked["noise"], "must stay as at the beginning, as must the cue")
                 _do(session, asked)
             except (ValueError, SimulationError) as error:
                 raise ValueError(f"link, stroke {len(session.strokes) + 1}: {error}") from None

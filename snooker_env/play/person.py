@@ -4,8 +4,7 @@ The file is read before each use and written whole, so two servers may share it.
 never written over."""
 
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from datetime import date
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -40,33 +39,23 @@ class Person:
             raise refuse("person", str(self.path), why) from None
         return kept
 
-    def change(self, how: Callable[[dict[str, Any]], object]) -> None:
-        """Change what the file holds, check it, and write it whole."""
+    def change(self, how: Callable[[dict[str, Any]], object] | None) -> None:
+        """Change what the file holds, check it, and write it whole; None removes the file."""
         kept = self.read()
-        how(kept)
-        _check(kept)
-        with self._written():
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            write_atomic(self.path, json.dumps(kept, allow_nan=False) + "\n")
-
-    def delete(self) -> None:
-        """Remove the file, unless it is not a person's."""
-        self.read()
-        with self._written():
-            self.path.unlink(missing_ok=True)
-
-    @contextmanager
-    def _written(self) -> Iterator[None]:
-        """ValueError for a file that cannot be written."""
+        if how is not None:
+            how(kept)
+            _check(kept)
         try:
-            yield
+            if how is None:
+                self.path.unlink(missing_ok=True)
+            else:
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+                write_atomic(self.path, json.dumps(kept, allow_nan=False) + "\n")
         except OSError as error:
-            raise refuse(
-                "person", str(self.path), f"must be a file that can be written ({error.strerror})"
-            ) from None
+            allowed = f"must be a file that can be written ({error.strerror})"
+            raise refuse("person", str(self.path), allowed) from None
 
     def keep(self, frame: dict[str, Any], strokes: list[dict[str, Any]]) -> None:
-
         def add(kept: dict[str, Any]) -> None:
             kept["frames"] = [*kept["frames"], frame]
             kept["strokes"] = [*kept["strokes"], *strokes][-MOST_STROKES:]

@@ -298,7 +298,7 @@ def _person(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         if "name" in fields:
             person.change(lambda kept: kept.update(name=fields["name"]))
         if truth("delete", fields.get("delete", False)):
-            person.delete()
+            person.change(None)
         return person.read() | {"path": str(person.path)}
 
 
