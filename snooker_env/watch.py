@@ -23,11 +23,11 @@ from .players.model_options import add_model_options, of_others, options_of_word
 from .players.resolver import players_of
 from .replays import Replay, replay
 from .replays.chances import check_judge
+from .replays.document import SUFFIXES
 from .replays.film import encoder_file
 
 NAME = "snooker_env.watch"
 FILMS = (".mp4", ".gif")
-SUFFIXES = (".html", ".json", *FILMS)
 USUAL, TACTICIAN = "planner", "tactician"  # who plays a visit and a frame unless someone is named
 FRAME = {"task": "frame", "cue": "real", "miss": "clear_path"}  # options of a frame that is watched
 

@@ -110,7 +110,6 @@ class Replay:
         if (asked := check_judge(judge)) is not None:
             self.win_chance = tuple(win_chances(asked, standings_of(self.strokes)))
         self.luck: tuple[float, ...] | None = check_luck(luck, len(self.strokes), asked is not None)
-        self._data: dict[str, Any] | None = None
 
     @property
     def shots(self) -> list[Shot]:
@@ -124,26 +123,23 @@ class Replay:
         return f"Replay({len(self)} strokes, {self.title!r})"
 
     def to_dict(self) -> dict[str, Any]:
-        """The replay as JSON types (docs/play/replay.md), to be treated as read-only; ValueError if a shot has no path or more
-        than 22 balls."""
-        if self._data is None:
-            physics, *others = (shot.physics for shot in self.shots)
-            same = all(one == physics for one in others)  # shots on several kinds of cloth may be shown
-            self._data = {
-                "format": FORMAT,
-                "version": VERSION,
-                "title": self.title,
-                "players": list(self.players),
-                "scene": scene_data(self.table),
-                "table": table_data(self.table),
-                "physics": physics_data(physics) if same else None,
-                "R": physics.R,
-                "spin_decel": physics.spin_decel,
-                "strokes": [encode_stroke(stroke, self.players) for stroke in self.strokes],
-                "win_chance": self.win_chance and list(self.win_chance),
-                "luck": self.luck and list(self.luck),
-            }
-        return dict(self._data)
+        """The replay as JSON types (docs/play/replay.md); ValueError if a shot has no path or more than 22 balls."""
+        physics, *others = (shot.physics for shot in self.shots)
+        same = all(one == physics for one in others)  # shots on several kinds of cloth may be shown
+        return {
+            "format": FORMAT,
+            "version": VERSION,
+            "title": self.title,
+            "players": list(self.players),
+            "scene": scene_data(self.table),
+            "table": table_data(self.table),
+            "physics": physics_data(physics) if same else None,
+            "R": physics.R,
+            "spin_decel": physics.spin_decel,
+            "strokes": [encode_stroke(stroke, self.players) for stroke in self.strokes],
+            "win_chance": self.win_chance and list(self.win_chance),
+            "luck": self.luck and list(self.luck),
+        }
 
     def html(self) -> str:
         """The replay as one HTML page that needs no other file and no network; errors as in ``to_dict``."""
