@@ -175,6 +175,8 @@ class Recorded:
             if made.get(name) is not None:
                 made[name] = Position.from_dict(made[name])
         made["table"] = made.get("table") and table_from(made["table"])
+        if isinstance(made.get("pocket"), str):
+            made["pocket"] = POCKETS.index(choice("pocket", made["pocket"], POCKETS))
         return cls(**made)
 
 
