@@ -104,7 +104,7 @@ class Coaching:
             if one is not None:
                 value, low, high = (f"{scale * x:.3g}" for x in (one.value, one.low, one.high))
                 often = f"{one.value / usual:.1f} times a professional's"
-                said = f"{value} {unit} [{low}, {high}], {often}, from {one.strokes} strokes"
+                said = f"{value} {unit} [{low}, {high}], {often}, {one.source}"
             lines.append(f"error of {name}: {said}")
         if errors.direction is not None:
             law = "grows with the cue speed V as sqrt(1 + (g V)^2)"
@@ -125,7 +125,7 @@ class Coaching:
         for name, one in self.costs.items():
             what, sign = ("gains", -1.0) if one.value < 0.0 else ("costs", 1.0)
             low, high = sorted((sign * one.low, sign * one.high))
-            words = f"{abs(one.value):.2f} [{low:.2f}, {high:.2f}] points a visit, from {one.strokes} strokes"
+            words = f"{abs(one.value):.2f} [{low:.2f}, {high:.2f}] points a visit, {one.source}"
             lines.append(f"{name} {what} {words}")
         if self.most is not None:
             lines.append(f"{self.most} costs most ({100 * self.sure:.0f} % sure)")

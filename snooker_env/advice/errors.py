@@ -55,6 +55,10 @@ class Estimate:
     high: float
     strokes: int
 
+    @property
+    def source(self) -> str:
+        return f"from {self.strokes} stroke{'s' * (self.strokes != 1)}"
+
     def __str__(self) -> str:
         return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
 
