@@ -637,10 +637,10 @@ def test_a_link_that_cannot_be_made_or_opened_is_refused_in_one_sentence(shown):
     assert len(shown.page.evaluate(code, text[:40_000])) < 30_000
     instead = "use Save or Replay file instead."
     said = shown.page.evaluate(code, text)
-    assert re.fullmatch(r"A link can have 30 kB, this one has (3\d): " + instead, said)
+    assert re.fullmatch(r"A link can hold 30 kB, but this one needs (3\d) kB: " + instead, said)
     shown.page.click("#files summary")
     for link, words in (
-        ("#replay=" + "A" * 29_993, f"A link can have 30 kB, this one has 31: {instead}"),
+        ("#replay=" + "A" * 29_993, f"A link can hold 30 kB, but this one needs 31 kB: {instead}"),
         ("#constructor=AAAA", "This is not a link to a position, a stroke, a replay or a game."),
         ("#game=AAAA", "The link is damaged: was it copied whole?"),
     ):

@@ -231,7 +231,7 @@ def test_my_play_shows_the_file_with_a_rating_and_deletes_it(chromium, line, tmp
     known, found = shown("import('./play_person.js').then(({rate}) => argument.map(rate))", results)
     spread = 1.96 * 400 / log(10) / (1500 * 2 / 9) ** 0.5  # two wins for a loss are 400 lg 2 points
     assert known == pytest.approx([1620.4 - spread, 1620.4, 1620.4 + spread], abs=6)
-    assert f"Rating {found[1]}, with 95 % between {found[0]} and {found[2]}, from 5 rated frames" in text
+    assert f"Rating {found[1]} (95 % interval {found[0]} to {found[2]}), from 5 rated frames" in text
     assert "100 %, 3 of 3" in text  # 0.9 m and 0.9 m
     shown.page.click("#mine-coach")
     shown.until("document.getElementById('mine-coach-says').innerText.includes('pots: 3 of 3 made')")

@@ -21,7 +21,7 @@ function deflate(Stream) {
 const through = (bytes, stream) => new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer();
 
 function short(link) {
-  if (link.length > MOST) throw new Error(`A link can hold ${MOST / 1000} kB, but this one needs ${Math.ceil(link.length / 1000)}: use Save or Replay file instead.`);
+  if (link.length > MOST) throw new Error(`A link can hold ${MOST / 1000} kB, but this one needs ${Math.ceil(link.length / 1000)} kB: use Save or Replay file instead.`);
   return link;
 }
 
