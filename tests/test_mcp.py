@@ -3,6 +3,7 @@
 import io
 import json
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -236,15 +237,20 @@ def test_the_picture_shows_every_ball_in_its_colour_and_which_red_is_which():
 
 
 def test_an_opponent_that_fails_ends_the_game_with_one_sentence():
-    class Broken:
-        def at(self, options):
-            raise RuntimeError("broken")
+    def fail(options):
+        raise RuntimeError("broken")
 
     game = FreeGame()
     desk = Desk(game, "words")
     assert not desk.answer("new_game", {"opponent": "random"})[2]
-    game._service.seats.players["random"] = Broken()
-    for name, fields in (("play", {"speed": 0.5, "aim": -1.6}), ("look", {}), ("play", {"speed": 1.0, "aim": 0.0})):
+    game._service.seats.players["random"] = SimpleNamespace(at=fail)
+    for name, fields in (
+        ("play", {"speed": 0.5, "aim": -1.6}),
+        ("look", {}),
+        ("play", {"speed": 1.0, "aim": 0.0}),
+    ):
         text, _, failed = desk.answer(name, fields)
-        assert failed and "RuntimeError: broken" in text and text.endswith("must be begun again with new_game")
+        assert (
+            failed and "RuntimeError: broken" in text and text.endswith("must be begun again with new_game")
+        )
     assert not desk.answer("new_game", {})[2] and not desk.answer("look", {})[2]

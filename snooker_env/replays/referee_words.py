@@ -100,11 +100,11 @@ def bars(
         here = one.shot.on_table.copy()
         here[pots_of(one.shot)] = True
         on = here, one.ball_on, one.free_ball
-        before = _bar(*on, names, scores, one.player, one.break_before, potted)
+        before = _bar(on, names, scores, one.player, one.break_before, potted)
         if one.points and potted is not None:
             potted = potted + pots_of(one.shot)
         run, on = one.break_before + one.points, (one.on_table, one.next_on, one.next_free_ball)
-        after = _bar(*on, names, one.scores, one.player, run, potted, sentence(one, names))
+        after = _bar(on, names, one.scores, one.player, run, potted, sentence(one, names))
         made.append((before, after))
         run = run if one.points else 0
     if chances is None:
@@ -118,12 +118,13 @@ def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar 
     now, last = tables.standing(k), last or ScoreBar()
     on = tables.on_table[k], BallOn(tables.game[k, BALL_ON]), now["next_free_ball"]
     of_player = players, now["scores"], now["next_player"], now["break_points"]
-    return _bar(*on, *of_player, last.potted if now["break_points"] else (), last.words)
+    return _bar(on, *of_player, last.potted if now["break_points"] else (), last.words)
 
 
-def _bar(on_table, ball_on, free_ball, players, scores, striker, break_points, potted, words=""):
-    """A bar; without players none of their scores."""
+def _bar(on, players, scores, striker, break_points, potted, words=""):
+    """A bar; without players none of their scores. ``on``: the balls on the table, the ball on, and whether it is free."""
+    on_table, ball_on, free_ball = on
     who = (tuple(players), scores, striker) if players else ((), (), None)
     left = points_available(mask_of_present(on_table) & ~1, ball_on, free_ball) if ball_on >= 0 else 0
-    on, reds = "free ball" if free_ball else on_words(ball_on), int(on_table[1 : N_REDS + 1].sum())
-    return ScoreBar(*who, break_points, tuple(potted or ()), reds, left, on, words)
+    named, reds = "free ball" if free_ball else on_words(ball_on), int(on_table[1 : N_REDS + 1].sum())
+    return ScoreBar(*who, break_points, tuple(potted or ()), reds, left, named, words)
