@@ -1,8 +1,8 @@
-"""How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
+"""Watch an agent play a visit or a frame: printed stroke by stroke, and written as a replay or a film.
 
-Without --out the replay, an HTML file, is opened in the browser. Visits are played with a real cue on held-out tables,
-the seeds one after the other, as ``benchmark.play_visits`` does; --at-least takes the first of --tries visits with so many
-points, else the longest. With --frame: a frame against --opponent, with the miss rule "clear_path"."""
+Without --out the replay, an HTML file, opens in the browser. Visits are played with a real cue on held-out tables, one seed
+after the other, as ``benchmark.play_visits`` does; --at-least shows the first of --tries visits with that many points, else the
+longest. With --frame the agent plays a frame against --opponent, with the miss rule "clear_path"."""
 
 import argparse
 import tempfile
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ._lib.check import integer, number, refuse
+from ._lib.check import integer, number, refuse, refuse_what
 from ._lib.command import exit_code
 from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
@@ -23,11 +23,11 @@ from .players.model_options import add_model_options, of_others, options_of_word
 from .players.resolver import players_of
 from .replays import Replay, replay
 from .replays.chances import check_judge
+from .replays.document import SUFFIXES
 from .replays.film import encoder_file
 
 NAME = "snooker_env.watch"
 FILMS = (".mp4", ".gif")
-SUFFIXES = (".html", ".json", *FILMS)
 USUAL, TACTICIAN = "planner", "tactician"  # who plays a visit and a frame unless someone is named
 FRAME = {"task": "frame", "cue": "real", "miss": "clear_path"}  # options of a frame that is watched
 
@@ -50,7 +50,6 @@ def play_episode(who: Player, seed: int, **options: object) -> SnookerEnv:
 
 
 def describe(played: Replay) -> Iterator[str]:
-    """A line for each stroke."""
     for k, stroke in enumerate(played.to_dict()["strokes"], 1):
         cue = stroke["cue"]
         spin = f"side {cue['side']:+.2f}, top {cue['top']:+.2f}"
@@ -58,27 +57,19 @@ def describe(played: Replay) -> Iterator[str]:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command line."""
     p = argparse.ArgumentParser(prog=f"python -m {NAME}", description=str(__doc__).split("\n\n")[0])
     add = p.add_argument
     add("--agent", help=f"a player, a model's .zip or MODULE:CLASS [{USUAL}; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
-    add("--opponent", help="its player [the agent itself]")
-    add("--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser")
-    add("--layout", default="held_out", help="of the tables [%(default)s: those of judging]")
-    add("--noise", default="professional", help="execution noise [%(default)s]")
-    add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table [%(default)s]")
-    add(
-        "--at-least",
-        type=int,
-        default=0,
-        metavar="POINTS",
-        help="show the first visit with so many, or the longest",
-    )
+    add("--opponent", help="the other player of the frame [the agent itself]")
+    add("--out", type=Path, help="write FILE.html, .json, .mp4 or .gif instead of opening the browser")
+    add("--layout", default="held_out", help="layout of the tables [%(default)s: those of the benchmark]")
+    add("--noise", default="professional", help="execution errors [%(default)s]")
+    add("--seed", type=int, default=HELD_OUT_SEED, help="seed of the first table [%(default)s]")
+    least = "show the first visit with so many points, else the longest"
+    add("--at-least", type=int, default=0, metavar="POINTS", help=least)
     add("--tries", type=int, default=200, help="most visits played to find it [%(default)s]")
-    add("--speed", type=float, default=1.0, help="of a film, over that of the play")
-    add("--size", help="of a film, WIDTHxHEIGHT, both even")
-    add("--fps", type=float, help="pictures a second of a film")
+    add("--speed", type=float, help="speed of a film, as a multiple of real time")
     add_model_options(p)
     return p
 
@@ -90,38 +81,25 @@ def _film_options(args: argparse.Namespace) -> dict[str, Any]:
         raise refuse("out", str(args.out), f"must end in {', '.join(SUFFIXES)}")
     if suffix in FILMS:
         encoder_file()  # what is missing is said before anything is played
-    film: dict[str, Any] = {}
-    for name, usual, most in (("speed", 1.0, 100.0), ("fps", None, 240.0)):
-        if (value := getattr(args, name)) != usual:
-            film[name] = number(name, value, 0.0, most, open_low=True)
-    if args.size is not None:
-        width, _, height = args.size.partition("x")
-        if not (width.isdigit() and height.isdigit()) or int(width) % 2 or int(height) % 2:
-            even = "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders want them"
-            raise refuse("size", args.size, even)
-        film["size"] = int(width), int(height)
+    film = {} if args.speed is None else {"speed": number("speed", args.speed, 0.0, 100.0, open_low=True)}
     if film and suffix not in FILMS:
-        raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
+        raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --speed")
     if args.opponent and not args.frame:
-        allowed = "must be left out without --frame: nobody plays against a visit"
-        raise refuse("opponent", args.opponent, allowed)
+        raise refuse("opponent", args.opponent, "must be left out without --frame")
     if args.frame and args.at_least:
         raise refuse("at_least", args.at_least, "must be left out with --frame")
     integer("seed", args.seed, 0, 2**63)
     integer("tries", args.tries, 1, 10**9)
-    if args.out:
-        if args.out.is_dir():
-            raise refuse("out", str(args.out), "must be a file, not a folder")
-        try:
+    try:
+        if args.out:
             args.out.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            words = f"must be a file that can be written ({error.strerror})"
-            raise refuse("out", str(args.out), words) from None
+    except OSError as error:
+        what = f"a file that cannot be written ({error.strerror})"
+        raise refuse_what("out", what, "must lie in a folder") from None
     return film
 
 
 def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
-    """The environment after the visit or frame that is wanted, or the longest visit; its seed and its players."""
     name = args.agent or (TACTICIAN if args.frame else USUAL)
     other = args.opponent or name
     # a model of others opposite acts as it was trained to, not as the table's options say
@@ -145,7 +123,6 @@ def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
 
 
 def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
-    """Play, print, write."""
     env, seed, names = find_episode(args)
     if args.frame:
         scores = env.tables.standing(0)["scores"]
@@ -154,18 +131,18 @@ def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     else:
         made = f"{names[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
-    title = f"{' - '.join(names)}, {args.noise}'s errors, {where.split(',')[0]}"  # does not tell how it ends
+    title = f"{' - '.join(names)}, {args.noise}'s errors, {where.split(',')[0]}"  # without the result
     judge = check_judge(player(TACTICIAN).at(env)) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
     print(*describe(played), sep="\n")
     print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")
     if env.points < args.at_least:
-        print(f"No visit of {args.at_least} points in {args.tries} tries: this one is the longest.")
+        print(f"No visit reached {args.at_least} points in {args.tries} tries: this one is the longest.")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
     played.save(file, **film)
     print(f"written: {file}", flush=True)
     if not args.out and not webbrowser.open(file.as_uri()):
-        print("No browser was found: open this file in one, or choose its place with --out break.html")
+        print("No browser was found. Open this file in one, or choose where to write it with --out.")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

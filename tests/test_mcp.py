@@ -3,6 +3,7 @@
 import io
 import json
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,8 +15,7 @@ from snooker_env.benchmark.results import strokes_of
 from snooker_env.benchmark.tasks import TASKS
 from snooker_env.mcp import server as limits
 from snooker_env.mcp.games import FreeGame, JudgedGame
-from snooker_env.mcp.picture import draw_jpeg
-from snooker_env.mcp.server import TRACKS, Desk, serve
+from snooker_env.mcp.server import TRACKS, Desk, draw_jpeg, serve
 from snooker_env.physics.table import Table
 from snooker_env.play.routes import POST, answer
 from snooker_env.players import decision_seeds, player
@@ -234,3 +234,23 @@ def test_the_picture_shows_every_ball_in_its_colour_and_which_red_is_which():
         for column, row in view(positions[1:3]).round().astype(int)
     )
     assert one.any() and other.any() and (one != other).any()
+
+
+def test_an_opponent_that_fails_ends_the_game_with_one_sentence():
+    def fail(options):
+        raise RuntimeError("broken")
+
+    game = FreeGame()
+    desk = Desk(game, "words")
+    assert not desk.answer("new_game", {"opponent": "random"})[2]
+    game._service.seats.players["random"] = SimpleNamespace(at=fail)
+    for name, fields in (
+        ("play", {"speed": 0.5, "aim": -1.6}),
+        ("look", {}),
+        ("play", {"speed": 1.0, "aim": 0.0}),
+    ):
+        text, _, failed = desk.answer(name, fields)
+        assert (
+            failed and "RuntimeError: broken" in text and text.endswith("must be begun again with new_game")
+        )
+    assert not desk.answer("new_game", {})[2] and not desk.answer("look", {})[2]

@@ -6,8 +6,8 @@ and left middle. Left and right are as seen from the baulk end: right is the yel
 from ..players.cue_stroke import CueStroke
 from .ask import advise
 from .coach import Coaching, coach
-from .destinations import Destinations, destinations
 from .errors import PlayerErrors
+from .outcomes import Destinations, destinations
 from .recorded import Recorded, read_strokes, strokes_of, write_strokes
 from .room import Room
 from .stroke_words import POCKET_WORDS

@@ -1,5 +1,5 @@
-"""``python -m snooker_env.advice coach FILE``, ``review FILE``: what do recorded strokes say of a player, what did those of a
-frame cost?"""
+"""``python -m snooker_env.advice coach FILE``, ``review FILE``: what recorded strokes say about a player, and what those of a
+frame cost."""
 
 import argparse
 import json
@@ -19,48 +19,44 @@ TABLES = ("match", "tight")  # presets of snooker's size
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print what recorded strokes say of a player, or what those of a frame cost."""
+    """Print what recorded strokes say about a player, or what those of a frame cost."""
     parser = argparse.ArgumentParser("python -m snooker_env.advice")
-    asked = parser.add_subparsers(dest="question", required=True)
-    about = "A player's errors, pots made and expected, what costs most, and drills."
-    of_player = asked.add_parser("coach", help="what recorded strokes say of a player", description=about)
+    asked = parser.add_subparsers(required=True)
+    about = "Estimate a player's errors, expected pots and costs from recorded strokes, and choose drills."
+    of_player = asked.add_parser("coach", help="what recorded strokes say about a player", description=about)
     about = (
-        "What each stroke of a frame cost against an agent's best: by the choice of it, and by its errors."
+        "Compare each stroke of a frame with an agent's best: what the choice cost, and what the errors cost."
     )
     of_frame = asked.add_parser("review", help="what the strokes of a frame cost", description=about)
-    for one, file in (
-        (of_player, "recorded strokes (JSON), or a replay (JSON or page)"),
-        (of_frame, "a replay of a frame (JSON or page)"),
-    ):
+    of_player.set_defaults(find=_coach, name="coach")
+    of_frame.set_defaults(find=_review, name="review")
+    files = "recorded strokes (JSON), or a replay (JSON or page)", "a replay of a frame (JSON or page)"
+    for one, file in zip((of_player, of_frame), files, strict=True):
         one.add_argument("file", metavar="FILE", help=file)
-        one.add_argument("--player", type=int, choices=(0, 1), help="of a replay of a frame: whose strokes")
+        one.add_argument("--player", type=int, choices=(0, 1), help="whose strokes, in a replay of a frame")
         one.add_argument("--seed", type=int, default=0, help="seed of the simulated strokes (default: 0)")
         one.add_argument("--json", action="store_true", help="print all figures as JSON")
-    target = f"whom costs are counted against: {', '.join(LEVELS)} (default: professional)"
-    of_player.add_argument("--target", default="professional", help=target)
+    target = "level that costs are counted against (default: %(default)s)"
+    of_player.add_argument("--target", choices=LEVELS, default="professional", help=target)
     for name, names in (("cue", CUES), ("physics", PHYSICS), ("table", TABLES)):
-        of_player.add_argument(
-            f"--{name}", choices=names, help="of the strokes, where the file does not say it"
-        )
-    of_frame.add_argument("--agent", help="whose best strokes count (default: tactician)")
-    of_frame.add_argument(
-        "--noise", choices=LEVELS, help="errors of all strokes (default: those of the players)"
-    )
-    of_frame.add_argument(
-        "--samples", type=int, default=SAMPLES, help=f"how often a stroke is played (default: {SAMPLES})"
-    )
+        of_player.add_argument(f"--{name}", choices=names, help=f"{name} of strokes whose file does not say")
+    of_frame.add_argument("--agent", help="agent whose best strokes are compared (default: tactician)")
+    noise = "execution errors of all strokes (default: those of the players)"
+    of_frame.add_argument("--noise", choices=LEVELS, help=noise)
+    samples = "simulations of each stroke (default: %(default)s)"
+    of_frame.add_argument("--samples", type=int, default=SAMPLES, help=samples)
     args = parser.parse_args(argv)
 
     def show() -> int:
         try:
-            found = _coach(args) if args.question == "coach" else _review(args)
+            found = args.find(args)
         except (ValueError, OSError) as error:
             print(f"error: {error}", file=sys.stderr)
             return 2
         print(json.dumps(found.to_dict(), indent=1) if args.json else found)
         return 0
 
-    return exit_code(f"{parser.prog} {args.question}", show)
+    return exit_code(f"{parser.prog} {args.name}", show)
 
 
 def _coach(args: argparse.Namespace) -> Coaching:

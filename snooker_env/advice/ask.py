@@ -44,41 +44,39 @@ def advise(
 ) -> Advice:
     """Return the strokes that a player would play in a position, best first, and their outcomes.
 
-    docs/play/advice.md says how strokes are judged and ordered. Each is played ``samples`` times, with the same
-    execution errors whichever player is asked; those errors are drawn from ``seed`` alone, independent of the random
-    stream that a saved state carries, so advice never reveals the errors of the next stroke.
+    docs/play/advice.md explains how strokes are judged and ordered. Each is played ``samples`` times, with the same
+    execution errors whichever player is asked. The errors come from ``seed`` alone, not from the random stream of a saved
+    state, so advice never reveals the errors of the next stroke.
 
     Parameters
     ----------
     position : Position, dict, Positions or environment
-        One position, as ``Positions.of`` takes it, or a ``Position.to_dict()``. With the cue ball in hand
-        each stroke has its ``place``. Points of the break so far do not count.
+        One position, as ``Positions.of`` takes it, or a ``Position.to_dict()``. With the cue ball in hand each stroke has
+        its ``place``. Points of the break so far do not count.
     agent : str, Path or player, optional
-        The player, as ``snooker_env.player`` takes it, in a frame one that knows frames ("tactician",
-        "stroke_value", your own). One without ``rank`` has one stroke. Default None: "planner_500", in a frame
-        "tactician".
+        The player, as ``snooker_env.player`` takes it; in a frame one that knows frames ("tactician", "stroke_value", your
+        own). A player without ``rank`` has one stroke. Default None: "planner_500", in a frame "tactician_1000".
     scores : (int, int), optional
-        Of the striker and of the other, in [0, 1000]: they make a frame of a position of a visit. Default None:
-        it is what it is.
+        Scores of the striker and of the opponent, in [0, 1000], which turn a position of a visit into one of a frame.
     noise : str, dict or Noise
         Execution errors with which strokes are chosen and judged.
     n : int
-        Largest number of strokes, in [1, 100]: of all ways to pot a ball into one pocket the best, and likewise
+        Largest number of strokes, in [1, 100]. Of all ways to pot a ball into one pocket only the best counts, and likewise
         of safeties off a red, or the same colour, that leave the cue ball in the same third of the table.
     samples : int
-        How often each stroke is played, in [1, 100000]. Without noise each is played once.
+        Number of simulations of each stroke, in [1, 100000]; without noise there is one.
     visits : int
-        How many visits of each stroke are continued, in [0, 100000]; 0: ``points`` is that of the stroke.
+        How many visits are continued after each stroke, in [0, 100000]; with 0, ``points`` are those of the stroke alone.
     seed : int
-        Seed of the noise samples, in [0, 2**63].
+        Seed of the execution errors, in [0, 2**63].
     options : dict or Options, optional
-        An ``Options``, or a dict with "physics", "table", "fidelity", "cue" and, in a frame, "miss" and "game".
-        Default None: those of ``position`` if it is an environment, else the defaults.
+        An ``Options``, or a dict with "physics", "table", "fidelity", "cue" and, in a frame, "miss" and "game". Default None:
+        those of ``position`` if it is an environment, else the defaults.
 
     Returns
     -------
     Advice
-        A sequence of ``Suggestion``. ValueError if an argument is invalid, or there is no stroke to play.
+        A sequence of ``Suggestion``. ValueError if an argument is invalid or there is no stroke to play.
 
     Examples
     --------
@@ -128,7 +126,7 @@ def name_player(agent: object, at: Positions) -> tuple[str, Player]:
     asked = player_of(agent)
     name = str(agent) if isinstance(agent, str | Path) else getattr(asked, "name", "") or type(asked).__name__
     if at.of_frames and not getattr(asked, "frames", True):
-        allowed = f'must know frames, as "{OF_FRAMES}" or "stroke_value" do: this player knows visits alone'
+        allowed = f'must know frames, as "{OF_FRAMES}" or "stroke_value" do: this player only knows visits'
         raise refuse("agent", name, allowed)
     return name, asked
 
@@ -190,25 +188,23 @@ def _lay_first(others: list[Suggestion], spent: list[Suggestion]) -> list[Sugges
 
 
 def _is_sensible(one: Suggestion) -> bool:
-    """Whether a stroke is fair in most samples, and no pot that hardly ever goes."""
     return one.foul <= 0.5 and (one.kind != "pot" or one.chance >= SELDOM)
 
 
 def _sort_by_win(strokes: list[Suggestion]) -> list[Suggestion]:
     """Strokes of a frame, best first; of those that win as often as the best of them, the one with the most points first."""
+
+    def net_points(one: Suggestion) -> float:
+        """Expected points of the visit, less those left to the other."""
+        return one.points - (1.0 - one.chance if one.kind == "pot" else 1.0) * (one.leaves or 0.0)
+
     waiting, out = sorted(strokes, key=lambda one: -one.figure), []
     while waiting:
         best = waiting[0].figure
         alike = [one for one in waiting if one.figure >= best - min(ALIKE, FEW * best)]
-        out += sorted(alike, key=lambda one: -_net_points(one))
+        out += sorted(alike, key=net_points, reverse=True)
         waiting = waiting[len(alike) :]
     return out
-
-
-def _net_points(one: Suggestion) -> float:
-    """Points to expect of a stroke and its visit, less those that it leaves to the other."""
-    comes = 1.0 - one.chance if one.kind == "pot" else 1.0
-    return one.points - comes * (one.leaves or 0.0)
 
 
 def _compare(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:

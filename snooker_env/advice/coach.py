@@ -1,6 +1,7 @@
 """What costs a player most, and what should be practised? ``coach``: errors, pots made and expected, costs, drills.
 
-Costs are those of ``costs``, with the 95 % interval of a bootstrap over strokes (docs/play/coach.md)."""
+Costs are points of a frame lost by potting, position and safety, with the 95 % interval of a bootstrap over strokes
+(docs/play/coach.md)."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -9,67 +10,59 @@ from typing import Any
 
 import numpy as np
 
-from .._lib.check import choice
-from .._lib.types import Floats
-from ..planning import clear_paths, pots
+from .._lib.check import refuse_what
+from .._lib.types import Floats, Ints
+from ..planning import Position, Positions, Proposals, Search, clear_paths, pots
+from ..planning.proposals import Asking, strokes_at
+from ..planning.sobol import sobol_points
+from ..planning.worth import lead_of, pass_after_miss
 from ..tasks.noise import LEVELS, NoiseLike
-from .costs import PARTS, count_costs
-from .errors import (
-    BASE,
-    SCALES,
-    CalledPots,
-    Estimate,
-    Fit,
-    PlayerErrors,
-    fit_errors,
-    list_chances,
-    list_strokes,
-)
-from .practice import Practice, practice_of
+from .errors import BASE, SCALES, CalledPots, Estimate, Fit, PlayerErrors, fit_errors, list_chances
+from .practice import JUDGING, Practice, keys, one_position, practice_of
 from .recorded import Recorded, agree_options
 
 WIDE, NARROW = 0.23, 0.06  # tolerances [deg] above which a pot is easy, below which hard, as of ``pots:D``
 RESAMPLES = 2000
-WORDS = {
-    "easy": "pots of which the aim may err by more than 0.23 degrees",
-    "medium": "pots of which the aim may err by 0.06 to 0.23 degrees",
-    "hard": "pots of which the aim may err by less than 0.06 degrees",
-}
+PARTS = ("potting", "position", "safety")
+SAMPLES = 24  # simulations of the best stroke at a called pot
+SLOW, FAST, TIP = 0.8, 4.5, 0.35
+"""Range of the strokes tried there: cue speeds [m/s], and the largest height of the tip over R."""
+WORDS = {"easy": "more than 0.23", "medium": "0.06 to 0.23", "hard": "less than 0.06"}  # [deg]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drill:
-    """What to practise, and why."""
+    """What to practise: the ``layout`` of an environment or of the page, and the ``reason`` in one sentence."""
 
-    layout: str  # as of an environment, and ``--layout`` of the page
-    reason: str  # in one sentence
+    layout: str
+    reason: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class Coaching:
-    """What ``coach`` found.
+    """The result of ``coach``.
 
     Attributes
     ----------
     errors : PlayerErrors
         The player's errors of execution.
     strokes, visits, called, made : int
-        Numbers of strokes and of visits; of the strokes with a called pot whose outcome is known, and of those made.
+        Numbers of strokes and of visits; of called pots whose outcome is known, and of those made.
     expected : Estimate or None
-        How many of these a player with such errors makes, and the 95 % interval of that number: the errors' own interval
-        and the luck of the pots. Where the errors were estimated from these very pots it must agree.
+        How many of the called pots a player with these errors makes. The 95 % interval covers the uncertainty of the errors
+        and the luck of the pots. If the errors were estimated from these very pots, it agrees with ``made``.
     likely : Estimate or None
-        The same of a player of the target level, whose errors are known.
+        How many of them a player of the target level makes.
     target : str or dict
         The level that costs are counted against.
     costs : dict of str to Estimate
-        "potting", "position", "safety": points lost in a visit against the target; without one of which no stroke is known.
+        "potting", "position", "safety": points lost in each visit against the target. A part without strokes is left out.
     most : str or None
-        Which of these costs most; None where none is known, or none is positive.
+        The part that costs most; None if no part is known or costs anything.
     sure : float
-        The share of the bootstrap's samples in which it does.
+        The share of the bootstrap's samples in which that part costs most.
     drills : tuple of Drill
-        What to practise, first what costs most: each a ``layout`` of this package, and the ``reason`` in one sentence.
+        What to practise, the costliest part first: each has the ``layout`` to play and the ``reason`` in one sentence.
 
     Examples
     --------
@@ -98,29 +91,25 @@ class Coaching:
 
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types."""
-        return asdict(self) | {"drills": [asdict(one) for one in self.drills]}
+        return asdict(self)
 
     def __str__(self) -> str:
         errors, lines = self.errors, [f"{self.strokes} strokes in {self.visits} visits"]
-        at = f"{errors.at:.3g} m/s"
-        base = LEVELS[BASE]
+        at, base, unknown = f"{errors.at:.3g} m/s", LEVELS[BASE], "cannot be estimated from these strokes"
         for name, one, unit, scale, usual in (
             (f"direction, at {at}", errors.direction, "deg", 1.0, base.direction_deg(speed=errors.at)),
             ("speed", errors.speed, "%", 100.0, base.speed_rel),
         ):
-            if one is None:
-                lines.append(f"error of {name}: no stroke tells it")
-                continue
-            value, low, high = scale * one.value, scale * one.low, scale * one.high
-            often = f"{one.value / usual:.1f} times a professional's, from {one.strokes} strokes"
-            lines.append(f"error of {name}: {value:.3g} {unit} [{low:.3g}, {high:.3g}], {often}")
+            said = unknown
+            if one is not None:
+                value, low, high = (f"{scale * x:.3g}" for x in (one.value, one.low, one.high))
+                often = f"{one.value / usual:.1f} times a professional's"
+                said = f"{value} {unit} [{low}, {high}], {often}, {one.source}"
+            lines.append(f"error of {name}: {said}")
         if errors.direction is not None:
-            one, law = errors.growth, "with the cue speed V it grows as sqrt(1 + (g V)^2)"
-            lines.append(
-                f"{law}, g = {one} s/m"
-                if one
-                else f"strokes of about {at} do not tell how it grows with the speed"
-            )
+            law = "grows with the cue speed V as sqrt(1 + (g V)^2)"
+            said = f"{law}, g = {errors.growth} s/m" if errors.growth else f"at other speeds {unknown}"
+            lines.append(f"the error of direction {said}")
         for name, one, unit, scale, words in (
             ("aims", errors.aside, "deg", 1.0, ("left", "right")),
             ("strikes", errors.faster, "%", 100.0, ("too hard", "too softly")),
@@ -130,18 +119,20 @@ class Coaching:
                 lines.append(f"on average {name} {scale * abs(one.value):.2g} {unit} {way}")
         if self.expected is not None and self.likely is not None:
             one = self.expected
-            such = f"such errors make {one.value:.0f} [{one.low:.0f}, {one.high:.0f}]"
-            made = f"pots: {self.made} of {self.called} made; {such}, the target {self.likely.value:.0f}"
-            lines.append(made)
+            expected = f"{one.value:.0f} [{one.low:.0f}, {one.high:.0f}]"
+            made = f"pots: {self.made} of {self.called} made, {expected} expected with these errors"
+            lines.append(f"{made}, {self.likely.value:.0f} at the target level")
         for name, one in self.costs.items():
             what, sign = ("gains", -1.0) if one.value < 0.0 else ("costs", 1.0)
             low, high = sorted((sign * one.low, sign * one.high))
-            words = f"{abs(one.value):.2f} [{low:.2f}, {high:.2f}] points a visit, {one.strokes} strokes"
+            words = f"{abs(one.value):.2f} [{low:.2f}, {high:.2f}] points a visit, {one.source}"
             lines.append(f"{name} {what} {words}")
         if self.most is not None:
-            lines.append(f"{self.most} costs most: so it is in {100 * self.sure:.0f} % of the resamples")
+            lines.append(f"{self.most} costs most ({100 * self.sure:.0f} % sure)")
         drills = [f"practise {one.layout}: {one.reason}" for one in self.drills]
-        lines += drills or ["nothing to practise: no part costs points beside the target"] * bool(self.costs)
+        lines += drills or ["nothing to practise: no part costs more than at the target level"] * bool(
+            self.costs
+        )
         return "\n".join(lines)
 
 
@@ -157,15 +148,15 @@ def coach(
     target : str, dict or Noise
         Errors of the player that costs are counted against.
     options : dict or Options, optional
-        Where they were played, as in ``advise``: what the strokes do not say of "cue", "physics" and "table"; in a frame
-        also "miss" and "game".
+        Where the strokes were played, as in ``advise``: "cue", "physics" and "table" if the strokes do not say them; in a
+        frame also "miss" and "game".
     seed : int
         Seed of the simulated strokes, in [0, 2**63].
 
     Returns
     -------
     Coaching
-        ValueError if an argument is invalid, no stroke says anything of an error, or nothing says where they were played.
+        ValueError if an argument is invalid, no error can be estimated, or it is not known where the strokes were played.
 
     Examples
     --------
@@ -179,27 +170,29 @@ def coach(
     >>> report.made, report.errors.speed is None
     (3, True)
     """
-    kept = list_strokes(strokes)
+    kept = list(strokes)
+    for k, one in enumerate(kept):
+        if not isinstance(one, Recorded):
+            raise refuse_what(f"strokes[{k}]", f"a {type(one).__name__}", "must be a Recorded")
+    if not kept:
+        raise refuse_what("strokes", "none", "must hold at least one stroke")
     options = agree_options(kept, options)
-    if isinstance(target, str):
-        choice("target", target, LEVELS)
     bench = practice_of(target, options, of_frames=True)
     physical = {name: getattr(bench.options, name) for name in ("physics", "table", "fidelity", "cue")}
     base = practice_of(BASE, physical)
     found = fit_errors(kept, base, seed)
     kept = found.strokes
     points, counts = count_costs(kept, bench, seed)
-    visits = count_visits(kept)
+    visits = sum(not one.goes_on for one in kept) + kept[-1].goes_on  # the last may go on
     rng = np.random.default_rng((seed, RESAMPLES))
-    drawn = points[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / max(1, visits)
-    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), points.sum(axis=0) / max(1, visits)
+    drawn = points[rng.integers(0, len(kept), (RESAMPLES, len(kept)))].sum(axis=1) / visits
+    ends, sums = np.quantile(drawn, (0.025, 0.975), axis=0), points.sum(axis=0) / visits
     parts: dict[str, Estimate] = {}
     for name, (value, low, high), many in zip(PARTS, np.vstack([sums, ends]).T.tolist(), counts, strict=True):
         if many:
             parts[name] = Estimate(value=value, low=low, high=high, strokes=int(many))
     ranked = sorted((name for name in parts if parts[name].value > 0.0), key=lambda name: -parts[name].value)
     most = ranked[0] if ranked else None
-    drill = {"potting": _potting, "position": _position, "safety": _safety}
     by_part: dict[str, Floats] = {name: points[:, k] for k, name in enumerate(PARTS)}
     largest = (drawn.argmax(axis=1) == PARTS.index(most)) & (drawn.max(axis=1) > 0.0) if most else np.zeros(1)
     return Coaching(
@@ -214,13 +207,72 @@ def coach(
         costs=parts,
         most=most,
         sure=float(largest.mean()),
-        drills=tuple(drill[name](kept, parts[name], by_part[name], found.errors) for name in ranked),
+        drills=tuple(_choose_drill(name, kept, parts[name], by_part[name]) for name in ranked),
     )
 
 
-def count_visits(strokes: Sequence[Recorded]) -> int:
-    """The number of visits in strokes of one player, in order; the last may go on."""
-    return sum(not one.goes_on for one in strokes) + strokes[-1].goes_on
+def count_costs(strokes: list[Recorded], bench: Practice, seed: int) -> tuple[Floats, Ints]:
+    """Points lost against the errors of ``bench``, (n, 3) by ``PARTS``; how many strokes tell each, (3,)."""
+    parts, counts = np.zeros((len(strokes), 3)), np.zeros(3, np.int64)
+    known = [k for k, one in enumerate(strokes) if one.after is not None]
+    at = {k: one_position(strokes[k].position, strokes[k].scores) for k in known}
+    worths = bench.worth([at[k] for k in known])
+    left = value_strokes(bench, [strokes[k] for k in known])
+    for k, worth, value in zip(known, worths, left, strict=True):
+        one = strokes[k]
+        if one.ball is None:
+            parts[k, 2] = worth - value
+            counts[2] += 1
+            continue
+        if one.potted is None or (best := play_best_pot(bench, at[k], one, seed)) is None:
+            continue
+        p, made, missed = best
+        parts[k, 0] = (p - bool(one.potted)) * (made - missed)
+        parts[k, 1 if one.potted else 2] = (made if one.potted else missed) - value
+        counts += [1, bool(one.potted), not one.potted]
+    return parts, counts
+
+
+def value_strokes(bench: Practice, strokes: list[Recorded]) -> Floats:
+    """What strokes were worth as they came (n,): points, and the worth of what they left."""
+    out = np.array([float(one.points - one.penalty) for one in strokes])
+    going = [k for k, one in enumerate(strokes) if one.after is not None and not one.after.over]
+    after = []
+    for one in (strokes[k] for k in going):
+        scores = one.scores[0] + one.points, one.scores[1] + one.penalty
+        scores = tuple(min(score, 1000) for score in (scores if one.goes_on else scores[::-1]))
+        after.append(one_position(one.after, scores))
+    signs = np.array([1.0 if strokes[k].goes_on else -1.0 for k in going])
+    out[going] += signs * bench.worth(after)
+    return out
+
+
+def play_best_pot(
+    bench: Practice, at: Positions, one: Recorded, seed: int
+) -> tuple[float, float, float] | None:
+    """The target's best stroke at the called pot: chance, worth if made and if missed; None if not direct."""
+    judge, found = bench.judge, find_pot(at, one)
+    if found is None:
+        return None
+
+    def at_the_pot(asking: Asking, at: Positions, m: int, seeds: Ints) -> Proposals:
+        u = sobol_points(m, 2, seed)
+        tips = np.column_stack([SLOW * (FAST / SLOW) ** u[:, 0], np.zeros(m), TIP * (2.0 * u[:, 1] - 1.0)])
+        return strokes_at(at, np.full((1, m), found[0]), tips[None], asking.spread, asking.dynamics)
+
+    (ranked,) = Search(judge, propose=at_the_pot).rank(at, [seed])
+    best = ranked.strokes[ranked.kinds == 0][:1].values
+    if not len(best):
+        return None
+    many = 1 if bench.sure else SAMPLES
+    stops = bench.play(at, np.zeros(many, np.int64), np.repeat(best, many, 0), keys(seed, JUDGING, many))
+    went = (stops.potted[:, one.ball] == one.pocket) & (stops.penalty == 0)
+    if not went.any():
+        return None
+    worth = judge.value_of(np.repeat(lead_of(at), many), stops.afterstates)[:, 1]
+    # where it is never missed: a miss would leave the balls about as they lie
+    left = float(worth[~went].mean()) if not went.all() else -float(judge.worth(pass_after_miss(at))[0])
+    return float(went.mean()), float(worth[went].mean()), left
 
 
 def _expect_of_target(pots: CalledPots, bench: Practice) -> Estimate | None:
@@ -251,45 +303,29 @@ def _interval(mean: float, variance: float, n: int) -> Estimate:
     return Estimate(value=mean, low=max(0.0, mean - half), high=min(float(n), mean + half), strokes=n)
 
 
-def _potting(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
-    """Pots as wide as those that cost most."""
-    sums = dict.fromkeys(WORDS, 0.0)
-    for one, points in zip(strokes, lost.tolist(), strict=True):
-        if points and (wide := measure_width(one)) is not None:
-            sums["easy" if wide > WIDE else "medium" if wide > NARROW else "hard"] += points
-    worst = max(sums, key=lambda name: sums[name])
-    share = f"of {cost.value:.1f} points a visit lost by missed pots most were lost at {WORDS[worst]}"
-    return Drill(layout=f"pots:{worst}", reason=share)
-
-
-def measure_width(one: Recorded) -> float | None:
-    """The tolerance of the called pot [deg], if it is direct."""
-    direct = pots(one.position, 16)
+def find_pot(at: Position | Positions, one: Recorded) -> tuple[int, float] | None:
+    """The row of the called pot among the direct ones, and its tolerance [rad]; None if it is not direct."""
+    direct = pots(at, 16)
     which = np.flatnonzero((direct.ball[0] == one.ball) & (direct.pocket[0] == one.pocket))
-    return degrees(float(direct.tolerance[0, which[0]])) if len(which) else None
+    return (int(which[0]), float(direct.tolerance[0, which[0]])) if len(which) else None
 
 
-def _position(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
-    """The line-up: pots are easy there, and the speed decides."""
-    reason = f"the positions left after pots are {cost.value:.1f} points a visit worse than the target's"
-    if errors.speed is not None and errors.direction is not None:
-        base = LEVELS[BASE]
-        usual = base.direction_deg(speed=errors.at)
-        fast, aside = errors.speed.value / base.speed_rel, errors.direction.value / usual
-        if fast > 1.25 * aside:
-            reason += f", and the error of speed is {fast:.1f} times a professional's, that of direction {aside:.1f}"
-    return Drill(layout="line_up", reason=reason)
-
-
-def _safety(strokes: list[Recorded], cost: Estimate, lost: Floats, errors: PlayerErrors) -> Drill:
-    """Escapes, if most was lost where no straight path led to a ball on; else safeties."""
-    hidden = ~clear_paths([one.position for one in strokes]).any_part
-    if lost[hidden].sum() > 0.5 * lost.sum():
-        reason = f"of {cost.value:.1f} points a visit lost in safety most were lost when snookered"
-        return Drill(layout="escape", reason=reason)
-    missed = np.array([one.ball is not None for one in strokes])
-    if lost[missed].sum() > 0.5 * lost.sum():
-        reason = f"of {cost.value:.1f} points a visit lost in safety most were left on by missed pots"
-    else:
-        reason = f"strokes that leave the table to the other cost {cost.value:.1f} points a visit"
-    return Drill(layout="safety", reason=reason)
+def _choose_drill(part: str, strokes: list[Recorded], cost: Estimate, lost: Floats) -> Drill:
+    """What to practise against a cost: pots as wide as those that cost most; the line-up, where pots are easy and the cue ball
+    decides; escapes, if most was lost when snookered, else safeties."""
+    points = f"{cost.value:.1f} points a visit"
+    if part == "position":
+        return Drill(layout="line_up", reason=f"the positions left after pots cost {points}")
+    if part == "safety":
+        hidden = ~clear_paths([one.position for one in strokes]).any_part
+        if lost[hidden].sum() > 0.5 * lost.sum():
+            return Drill(layout="escape", reason=f"most of {points} lost in safety were lost when snookered")
+        return Drill(layout="safety", reason=f"strokes that end the visit cost {points}")
+    sums = dict.fromkeys(WORDS, 0.0)
+    for one, own in zip(strokes, lost.tolist(), strict=True):
+        if own and (found := find_pot(one.position, one)) is not None:
+            wide = degrees(found[1])
+            sums["easy" if wide > WIDE else "medium" if wide > NARROW else "hard"] += own
+    worst = max(sums, key=lambda name: sums[name])
+    where = f"at pots with a tolerance of {WORDS[worst]} degrees"
+    return Drill(layout=f"pots:{worst}", reason=f"most of {points} lost by missed pots were lost {where}")

@@ -5,7 +5,7 @@ professional's, and how the first grow with the cue speed, by the likelihoods of
 estimated"."""
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from math import erf, hypot, pi, radians, remainder, sqrt
 from statistics import NormalDist
 from typing import Any, NamedTuple
@@ -18,7 +18,7 @@ from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
 from ..planning import Positions
 from ..planning.aims import STEEPEST_CUE
 from ..planning.sobol import sobol_points
-from ..tasks.noise import LEVELS, POT_SPEED, TWICE, Noise
+from ..tasks.noise import LEVELS, POT_SPEED, TWICE
 from .practice import Practice
 from .recorded import CALLED, Recorded, direction_of, squirt
 from .room import room_for
@@ -55,30 +55,33 @@ class Estimate:
     high: float
     strokes: int
 
+    @property
+    def source(self) -> str:
+        return f"from {self.strokes} stroke{'s' * (self.strokes != 1)}"
+
     def __str__(self) -> str:
         return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
 
 
 @dataclass(frozen=True, kw_only=True)
 class PlayerErrors:
-    """A player's errors of execution, as ``coach`` estimates them. An ``Estimate`` has ``value``, the ends ``low``
-    and ``high`` of its 95 % interval, and the number of ``strokes`` that it was learned from.
+    """A player's errors of execution, estimated by ``coach``. An ``Estimate`` has a ``value``, the ends ``low`` and ``high``
+    of its 95 % interval, and the number of ``strokes`` that it is based on. An error that cannot be estimated is None.
 
     Attributes
     ----------
     direction : Estimate or None
-        Standard deviation of the cue ball's direction, but for lapses, at the cue speed ``at`` [deg]; None if no stroke
-        tells it.
+        Standard deviation of the cue ball's direction outside lapses, at the cue speed ``at`` [deg].
     at : float
-        Cue speed [m/s]: 1.5, or the nearest between the quartiles of the strokes' speeds.
+        Cue speed [m/s]: 1.5, or the nearest speed between the quartiles of the strokes' speeds.
     growth : Estimate or None
-        The g [s/m] of the law that errors of direction grow with the cue speed V as sqrt(1 + (g V)^2), see ``Noise``.
-        None if all strokes are of about one speed.
+        The g [s/m] in the law sqrt(1 + (g V)^2), by which errors of direction grow with the cue speed V, see ``Noise``.
+        None if all strokes have about one speed.
     speed : Estimate or None
-        Standard deviation of the speed, but for lapses, as a share of the speed.
+        Standard deviation of the speed outside lapses, as a share of the speed.
     aside, faster : Estimate or None
-        Mean errors: of the direction, anticlockwise (to the left as the player sees it) [deg, at the speed ``at``], and of
-        the speed, as a share. Only of strokes that were measured.
+        Mean errors of measured strokes: of the direction, anticlockwise (to the player's left) [deg, at the speed ``at``],
+        and of the speed, as a share of it.
 
     Examples
     --------
@@ -99,24 +102,6 @@ class PlayerErrors:
     aside: Estimate | None
     faster: Estimate | None
 
-    @property
-    def noise(self) -> Noise:
-        """Execution errors like the player's, a ``Noise``, with a professional's proportions and lapses; of an error that is
-        not known, as many times a professional's as the other."""
-        base = LEVELS[BASE]
-        growth = base.growth if self.growth is None else self.growth.value
-        turned = self.direction and self.direction.value / base.direction_deg(speed=self.at)
-        hurried = self.speed and self.speed.value / base.speed_rel
-        many, fast = turned or hurried or 1.0, hurried or turned or 1.0
-        still = many * hypot(1.0, base.growth * self.at) / hypot(1.0, growth * self.at)
-        errors = {"aim_deg": base.aim_deg * still, "offset_mm": base.offset_mm * still}
-        errors |= {"elevation_deg": base.elevation_deg * many, "speed_rel": base.speed_rel * fast}
-        return replace(base, **errors, growth=growth)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return all attributes by name as JSON types."""
-        return asdict(self)
-
 
 class CalledPots(NamedTuple):
     """The strokes with a called pot: their rows, and the chances of the pots for each of ``SCALES`` at their own speeds."""
@@ -134,17 +119,6 @@ class Fit(NamedTuple):
     direction: Floats | None  # the posterior of its error over ``GROWTHS`` and ``SCALES``
     pots: CalledPots  # those that were called
     strokes: list[Recorded]  # without the guessed pots that were likelier to be safeties
-
-
-def list_strokes(strokes: Any) -> list[Recorded]:
-    """Strokes as a list; ValueError unless there is one, and all are ``Recorded``."""
-    kept = list(strokes)
-    for k, one in enumerate(kept):
-        if not isinstance(one, Recorded):
-            raise refuse_what(f"strokes[{k}]", f"a {type(one).__name__}", "must be a Recorded")
-    if not kept:
-        raise refuse_what("strokes", "none", "must hold at least one stroke")
-    return kept
 
 
 def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
@@ -178,14 +152,12 @@ def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
             growth = estimate_growth(likeliest, n)
         aside = estimate_mean(directions[known] / more[int(likeliest.argmax()), known], unit)
     v = seen.speeds[~np.isnan(seen.speeds)]
-    speed = (
-        estimate(normalise(weigh_errors(v, np.ones((1, len(v))))[0]), base.speed_rel, len(v))
-        if len(v)
-        else None
-    )
+    speed = None
+    if len(v):
+        speed = estimate(normalise(weigh_errors(v, np.ones((1, len(v))))[0]), base.speed_rel, len(v))
     if direction is None and speed is None:
         allowed = "with intended and played, with a pot and played, or with a pot and potted"
-        raise refuse_what("strokes", "none that tells an error", f"must hold strokes {allowed}")
+        raise refuse_what("strokes", "none that shows an error", f"must hold strokes {allowed}")
     found = {"aside": aside, "faster": estimate_mean(v, base.speed_rel)}
     errors = PlayerErrors(direction=direction, at=at, growth=growth, speed=speed, **found)
     return Fit(errors, weights, pots, strokes)
@@ -301,7 +273,6 @@ class Measurement(NamedTuple):
 
 
 def measure_errors(strokes: list[Recorded], practice: Practice) -> Measurement:
-    """Errors of direction and speed of strokes."""
     directions, widths, speeds = np.full((3, len(strokes)), np.nan)
     paces = np.full(len(strokes), POT_SPEED)
     base, physics = LEVELS[BASE], practice.options.rules.physics
@@ -413,7 +384,8 @@ def simulate_pots(strokes: list[Recorded], practice: Practice, seed: int) -> Cal
     called = [strokes[k] for k in rows]
     meant, many = solve_strokes(called, practice), len(RADII) * WAYS
     # each stroke has errors of its own, so that equal strokes tell more together
-    ways = np.stack([spread_normals(WAYS, seed + k) for k in range(len(called))])
+    normal = np.vectorize(NormalDist().inv_cdf)
+    ways = np.stack([normal(sobol_points(WAYS, 5, seed + k)) for k in range(len(called))])
     ways /= np.linalg.norm(ways, axis=2)[..., None]
     errors = (RADII[:, None, None] * ways[:, None]).reshape(-1, 5)
     at = Positions.of([one.position for one in called])
@@ -437,8 +409,3 @@ def chi5(x: Floats) -> Floats:
     """The distribution function of the length of five standard normal numbers."""
     half = np.vectorize(erf)(x / sqrt(2.0))
     return half - sqrt(2.0 / pi) * np.exp(-0.5 * x * x) * (x + x**3 / 3.0)
-
-
-def spread_normals(n: int, seed: int) -> Floats:
-    """n evenly spread standard normal points (n, 5)."""
-    return np.vectorize(NormalDist().inv_cdf)(sobol_points(n, 5, seed))

@@ -2,18 +2,34 @@
 
 The visits that strokes leave, the player's or the other's, are played on by a fast search, with errors, many at once."""
 
+from dataclasses import dataclass, field
 from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from .._lib.check import integer
 from .._lib.types import Bools, Floats, Ints
 from ..game.balls import CUE
 from ..planning import Outcomes, Positions, clear_paths
+from ..planning.positions import PositionsLike
 from ..planning.worth import lead_of
+from ..players.cue_stroke import CueStroke, StrokeLike
+from ..tasks.noise import NoiseLike
 from . import stroke_words as say
 from .intentions import Intention
-from .practice import GOING_ON, JUDGING, Practice, arrive, find_arrivals, join, keys
+from .practice import (
+    GOING_ON,
+    JUDGING,
+    Practice,
+    arrive,
+    find_arrivals,
+    join,
+    keys,
+    one_position,
+    practice_of,
+    start_from,
+)
 from .suggestions import Suggestion
 
 Z = 1.959964  # standard deviations of a 95 % interval
@@ -21,8 +37,6 @@ OFTEN = 0.05  # share of misses from which is said what a missed pot leaves
 
 
 class Trials(NamedTuple):
-    """How strokes are judged, as in ``advise``."""
-
     samples: int
     visits: int
     seed: int
@@ -48,7 +62,10 @@ def judge_strokes(practice: Practice, strokes: list[Intention], trials: Trials) 
         made = no_foul & (stops.potted[mine, one.ball] == one.pocket) if one.kind == "pot" else no_foul
         chance, stayed = float(made.mean()), stops.potted[mine, CUE] < 0
         points, interval = expect_points(stops.points[mine], stops.goes_on[mine], rest)
-        middle, spread = _cloud(stops.places[mine, CUE][stayed])
+        middle, spread = None, None
+        if len(places := stops.places[mine, CUE][stayed]):
+            x, y = places.mean(axis=0).tolist()
+            middle, spread = (x, y), float(np.sqrt(((places - (x, y)) ** 2).sum(axis=1).mean()))
         foul = float((~no_foul).mean())
         figures = say.figures_words(one.kind, chance, points, foul if look else None)
         out.append(
@@ -137,16 +154,103 @@ def expect_points(points: Floats, goes_on: Bools, rest: Floats) -> tuple[float, 
     return mean, (max(0.0, mean - half), mean + half)
 
 
-def _cloud(places: Floats) -> tuple[tuple[float, float] | None, float | None]:
-    """The mean of points (m, 2) and their root mean square distance from it; None, None without points."""
-    if not len(places):
-        return None, None
-    x, y = places.mean(axis=0).tolist()
-    return (x, y), float(np.sqrt(((places - (x, y)) ** 2).sum(axis=1).mean()))
-
-
 def _say_why(kind: str, chance: float, look: dict[str, Any]) -> str:
-    """The words of what a stroke of a frame leads to."""
     seldom = kind == "pot" and 1.0 - chance < OFTEN
     reply = "" if seldom else say.reply_words(kind, look["replies"], look["leaves"], look["snookers"])
     return f"{reply and f', {reply}'}; win chance {say.percent(look['win'])}"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Destinations:
+    """Where the balls of a stroke stop under execution errors; returned by ``destinations``.
+
+    Attributes
+    ----------
+    samples : int
+        How often the stroke was played.
+    cue, ball : numpy.ndarray
+        float64 (m, 2). Where the cue ball and the object ball stopped [m], in the samples in which they stayed on the
+        table, before respotting. The object ball is the one that the stroke hits first without errors; (0, 2) if none.
+    potted, in_off, foul, scored : float
+        Shares of the samples in which the object ball was potted, the cue ball was potted, there was a foul, points were
+        scored.
+    points : float
+        Mean points of the stroke.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import destinations
+    >>> position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> stops = destinations(position, {"speed": 1.8, "aim": 0.8}, noise="none")
+    >>> stops.samples, stops.cue.shape, stops.foul
+    (1, (1, 2), 0.0)
+    """
+
+    samples: int
+    cue: Floats = field(repr=False)
+    ball: Floats = field(repr=False)
+    potted: float
+    in_off: float
+    foul: float
+    scored: float
+    points: float
+
+
+def destinations(
+    position: PositionsLike,
+    stroke: StrokeLike,
+    *,
+    noise: NoiseLike = "professional",
+    samples: int = 500,
+    seed: int = 0,
+    options: object = None,
+) -> Destinations:
+    """Simulate a stroke with execution errors: where the balls stop, and how often it pots and fouls.
+
+    Parameters
+    ----------
+    position, stroke, noise
+        As in ``advise``; the intended stroke is a ``CueStroke``, a ``Suggestion`` or a dict with fields of ``CueStroke``.
+    samples : int
+        Number of simulations, in [1, 1000000]; without noise there is one.
+    seed : int
+        Seed of the execution errors, in [0, 2**63]. With one seed all strokes meet the same errors, so the places change
+        smoothly with the stroke.
+    options
+        As in ``advise``.
+
+    Returns
+    -------
+    Destinations
+        ValueError if an argument is invalid, or there is no stroke to play.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import destinations
+    >>> position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> stops = destinations(position, {"speed": 1.8, "aim": 0.8}, samples=100)
+    >>> stops.samples, stops.cue.shape[1]
+    (100, 2)
+    """
+    integer("samples", samples, 1, 1_000_000)
+    integer("seed", seed, 0, 2**63)
+    practice, struck = practice_of(noise, options, position), CueStroke.of(stroke)
+    start, row = start_from(one_position(position).as_visits(), struck), struck.numbers()[None]
+    tries = 1 if practice.sure else samples
+    rows = np.zeros(tries, np.int64)
+    ball = int(practice.play(start, rows[:1], row).first[0])
+    stops = practice.play(start, rows, np.repeat(row, tries, 0), keys(seed, JUDGING, tries))
+    stayed = stops.potted[:, CUE] < 0
+    here = stops.potted[:, ball] < 0 if ball > 0 else np.zeros(tries, np.bool_)
+    return Destinations(
+        samples=tries,
+        cue=stops.places[stayed, CUE],
+        ball=stops.places[here, max(0, ball)],
+        potted=float(1.0 - here.mean()) if ball > 0 else 0.0,
+        in_off=float(1.0 - stayed.mean()),
+        foul=float((stops.penalty > 0).mean()),
+        scored=float((stops.points > 0).mean()),
+        points=float(stops.points.mean()),
+    )

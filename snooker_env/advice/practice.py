@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .._lib.check import choice, integer, refuse, refuse_what
 from .._lib.types import Bools, Floats, Ints, Words
@@ -50,6 +49,10 @@ class Practice:
     def quick(self) -> Search:
         """A fast search, with which visits are played on."""
         return Search(VisitJudge(self.options), QUICK)
+
+    def worth(self, at: list[Positions]) -> Floats:
+        """The worth of positions of frames to their strikers (n,)."""
+        return np.asarray(self.judge.worth(join(at)), np.float64) if at else np.empty(0)
 
     def play(self, at: Positions, rows: Ints, strokes: Floats, keys: Words | None = None) -> Outcomes:
         """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without.
@@ -105,30 +108,24 @@ def one_position(source: Any, scores: Any = None) -> Positions:
     if len(at) != 1:
         raise refuse_what("position", f"{len(at)} positions", "must be one position")
     if at.over[0]:
-        raise refuse("position.over", True, "must be False: the visit has ended, there is no stroke to play")
+        raise refuse("position.over", True, "must be False: there is no stroke to play")
     at = at.copy()
     at.game[:, columns.POINTS] = 0  # only future points count, and no break can exceed what a table allows
-    if scores is not None:
-        at = _with_scores(at, scores)
+    if scores is not None:  # a position of a visit becomes one of a frame
+        if at.of_frames:
+            raise refuse("scores", scores, "must be None: the position of a frame has its own")
+        if not isinstance(scores, list | tuple) or len(scores) != 2:
+            raise refuse("scores", scores, "must be two integers: of the striker and of the opponent")
+        both = [integer(f"scores[{k}]", score, 0, MOST_SCORE) for k, score in enumerate(scores)]
+        at = begun(at)
+        at.game[:, [columns.SCORE_0, columns.SCORE_1]] = both
+        at.game[:, columns.STROKES] = not at.on_table.all()  # else it is the break-off
     if at.choice[0]:
         at = apply_decision(at, columns.PLAY)
     if at.of_frames:
         at.game[:, columns.PHASE] = columns.STROKE  # who has won the lot begins
     if at.anywhere[0]:  # the places that strokes know are those of the D
         at.game[:, [columns.IN_HAND, columns.ANYWHERE]] = 0
-    return at
-
-
-def _with_scores(at: Positions, scores: ArrayLike) -> Positions:
-    """A position of a visit as one of a frame with these scores of the striker and of the other."""
-    if at.of_frames:
-        raise refuse("scores", scores, "must be None: the position is of a frame, which has its own")
-    if not isinstance(scores, list | tuple) or len(scores) != 2:
-        raise refuse("scores", scores, "must be two integers: of the striker and of the other")
-    mine, others = (integer(f"scores[{k}]", score, 0, MOST_SCORE) for k, score in enumerate(scores))
-    at = begun(at)
-    at.game[:, [columns.SCORE_0, columns.SCORE_1]] = mine, others
-    at.game[:, columns.STROKES] = not at.on_table.all()  # else it is the break-off
     return at
 
 

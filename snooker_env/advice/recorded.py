@@ -1,11 +1,11 @@
-"""What is recorded of a stroke, and how is it read from a file? ``Recorded``: what was meant, what was played, what came.
-Who knows how much of a stroke: docs/play/coach.md."""
+"""What is recorded of a stroke, and how is it read from a file? ``Recorded``: what was meant, played and left."""
 
 import base64
 import binascii
 import json
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from functools import partial
 from math import atan2, hypot, pi, radians, remainder
@@ -17,7 +17,7 @@ import numpy as np
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
 from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
 from .._lib.types import Bools, CueKind, Floats
-from ..game.balls import CUE, N_BALLS, NAMES, BallOn, next_on
+from ..game.balls import CUE, N_BALLS, BallOn, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
 from ..physics import cloth
 from ..physics.cue import strike
@@ -32,11 +32,9 @@ from ..tasks.options import CUES, Options
 
 FORMAT, VERSION, REPLAY = "snooker-strokes", 1, "snooker-replay"
 VERSIONS = {FORMAT: VERSION, REPLAY: 2}  # of files that are read
-WHAT = {FORMAT: f"a file of strokes ({FORMAT!r})", REPLAY: f"a replay ({REPLAY!r})"}
 T = TypeVar("T")
-PLAYED_ON = ("cue", "physics", "table")  # what errors are told by beside the strokes: never assumed
-# How far a stroke may be from the pot that it is guessed for: 4 sigma of a club player's hard one
-CALLED = radians(2.0)
+PLAYED_ON = ("cue", "physics", "table")  # without these no error can be estimated: they are never assumed
+CALLED = radians(2.0)  # how far a stroke may be from its guessed pot: 4 sigma of a club player's hard one
 CUE_PARTS = ("speed", "side", "top", "aim", "elevation")
 MOST_PENALTY, MOST_POINTS = 7, 16
 FASTEST_CUE = 100.0  # [m/s]; under the law of errors a beginner's hardest stroke reaches 30 in a lapse
@@ -46,34 +44,33 @@ _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', 
 
 @dataclass(frozen=True, kw_only=True)
 class Recorded:
-    """One stroke of a player as it was recorded, immutable; ValueError for a field that is out of range.
+    """One recorded stroke of a player, immutable; ValueError for a field that is out of range. None means not known.
 
     Parameters
     ----------
     position : Position
-        The balls before the stroke, and what was on.
+        The balls before the stroke, and the ball on.
     intended : CueStroke, optional
         The stroke as it was meant.
     played : dict of str to float, optional
-        The stroke as it was played: "speed" [m/s], "side", "top" (over R), "aim" of the cue, "elevation" [rad], as
-        ``Played.cue``. Here ``aim`` is the direction of the cue itself, without its squirt.
+        The stroke as it was played: "speed" [m/s], "side", "top" (over R), "aim" and "elevation" [rad], as ``Played.cue``.
+        Here ``aim`` is the direction of the cue itself, without squirt.
     speed : float, optional
-        About how hard it was struck [m/s], in [0.2, 7], where neither stroke is known.
+        Roughly how hard the ball was struck [m/s], in [0.2, 7], if neither stroke is known.
     ball, pocket : int, optional
-        Id of the ball and index into ``snooker_env.POCKETS`` of the pot that was meant; both or none. None: a safety, an
-        escape.
+        The pot that was meant: id of the ball and index into ``snooker_env.POCKETS``. Both None: a safety or an escape.
     potted : bool, optional
         Whether that ball went into that pocket without a foul.
     guessed : bool
-        Whether ``ball`` and ``pocket`` were only told from the line of the stroke: it may have been a safety. Default False.
+        Whether the pot was only guessed from the line of the stroke, which may have been a safety. Default False.
     points, penalty : int
-        What the stroke scored, in [0, 16], and what it gave away, in [0, 7].
+        Points scored, in [0, 16], and given away, in [0, 7].
     after : Position, optional
-        The balls that whoever plays next meets; ``over=True`` where nobody does. None: not known.
+        The balls for the next stroke; ``over=True`` if there is none.
     scores : (int, int)
-        Of a frame: of the player and of the other, before the stroke. Default (0, 0).
+        In a frame, the scores of the player and of the opponent before the stroke. Default (0, 0).
     cue : {"free", "real"}, optional
-        Whether rails and balls were in the way of the cue. None: not known, as the next two.
+        Whether rails and balls were in the way of the cue.
     physics : str, dict or Physics, optional
         The constants of the table, as of ``Physics.of``.
     table : str or Table, optional
@@ -115,7 +112,7 @@ class Recorded:
         if self.intended is not None:
             put("intended", CueStroke.of(self.intended))
         if self.played is not None:
-            put("played", _cue(self.played))
+            put("played", _check_cue(self.played))
         if self.speed is not None:
             put("speed", number("speed", self.speed, MIN_SPEED, MAX_SPEED))
         if (self.ball is None) != (self.pocket is None):
@@ -132,12 +129,12 @@ class Recorded:
                 raise refuse("potted", self.potted, "must be left out: no pot was meant")
         put("guessed", truth("guessed", self.guessed))
         if self.guessed and (self.ball is None or self.played is None or self.intended is not None):
-            told = "without a pot and the stroke played, which it is told from, and with intended"
-            raise refuse("guessed", True, f"must be False {told}")
+            allowed = "must be False with intended, and without a pot or the stroke played"
+            raise refuse("guessed", True, allowed)
         put("points", integer("points", self.points, 0, MOST_POINTS))
         put("penalty", integer("penalty", self.penalty, 0, MOST_PENALTY))
         if not isinstance(self.scores, list | tuple) or len(self.scores) != 2:
-            raise refuse("scores", self.scores, "must be two integers: of the player and of the other")
+            raise refuse("scores", self.scores, "must be two integers: of the player and of the opponent")
         put("scores", tuple(integer(f"scores[{k}]", one, 0, 1000) for k, one in enumerate(self.scores)))
         if self.cue is not None:
             choice("cue", self.cue, CUES)
@@ -164,8 +161,7 @@ class Recorded:
 
     @classmethod
     def from_dict(cls, kept: Mapping[str, Any]) -> "Recorded":
-        """Make the stroke that a dict of ``to_dict`` describes; ``ball`` may be the name of a colour, ``pocket`` a name of
-        ``snooker_env.POCKETS``. ValueError for an unknown key."""
+        """Make a stroke of a dict of ``to_dict``; ValueError for an unknown key."""
         if not isinstance(kept, Mapping):
             allowed = "must be a dict of the fields of Recorded"
             raise refuse_what("stroke", f"a {type(kept).__name__}", allowed)
@@ -174,28 +170,23 @@ class Recorded:
             choice("field of the stroke", key, names)
         made = dict(kept)
         if "position" not in made:
-            raise refuse_what("stroke", "a dict without 'position'", "must say where the balls lay")
+            raise refuse_what("stroke", "a dict without 'position'", "must have one")
         for name in ("position", "after"):
             if made.get(name) is not None:
                 made[name] = Position.from_dict(made[name])
-        if made.get("table") is not None:
-            made["table"] = table_from(made["table"])
-        if isinstance(made.get("ball"), str):
-            made["ball"] = NAMES.index(choice("ball", made["ball"], NAMES[16:]))
+        made["table"] = made.get("table") and table_from(made["table"])
         if isinstance(made.get("pocket"), str):
             made["pocket"] = POCKETS.index(choice("pocket", made["pocket"], POCKETS))
         return cls(**made)
 
 
-def _cue(played: object) -> dict[str, float]:
-    """``Recorded.played`` as five numbers; what is left out of tip and elevation is 0."""
-    if not isinstance(played, Mapping):
-        raise refuse_what("played", f"a {type(played).__name__}", f"must be a dict with {list(CUE_PARTS)}")
+def _check_cue(played: object) -> dict[str, float]:
+    """``Recorded.played`` as five numbers; tip and elevation are 0 if they are left out."""
+    if not isinstance(played, Mapping) or not {"speed", "aim"} <= set(played):
+        what = f"a {type(played).__name__} without speed and aim"
+        raise refuse_what("played", what, f"must be a dict with {list(CUE_PARTS)}")
     for key in played:
         choice("field of played", key, CUE_PARTS)
-    for key in ("speed", "aim"):
-        if key not in played:
-            raise refuse_what("played", f"a dict without {key!r}", f"must be a dict with {list(CUE_PARTS)}")
     ends = {"speed": (0.0, FASTEST_CUE), "side": (-1.0, 1.0), "top": (-1.0, 1.0), "elevation": (0.0, pi / 2)}
     return {name: number(f"played.{name}", played.get(name, 0.0), *ends.get(name, ())) for name in CUE_PARTS}
 
@@ -229,14 +220,14 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
     Parameters
     ----------
     path : str or Path
-        The file: ``.json`` of ``write_strokes`` or of ``snooker_env.replay``, or the ``.html`` of a replay.
+        A ``.json`` file of ``write_strokes`` or of ``snooker_env.replay``, or the ``.html`` file of a replay.
     player : int, optional
-        Of a replay of a frame: whose strokes, 0 or 1. Default None: all are of one player.
+        In a replay of a frame, whose strokes to read, 0 or 1. Default None: all are of one player.
 
     Returns
     -------
     list of Recorded
-        At least one. ValueError names what is wrong in the file; OSError if it cannot be read.
+        At least one stroke. ValueError names what is wrong in the file; OSError if it cannot be read.
 
     Examples
     --------
@@ -260,7 +251,7 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
 
 def read_document(path: str | Path, readers: Mapping[str, Callable[[dict[str, Any]], T]]) -> T:
     """What the reader of its format makes of a file, JSON or the page of a replay; ValueError, OSError as ``read_strokes``."""
-    allowed = f"must be {' or '.join(WHAT[form] for form in readers)}"
+    allowed = f"must have the format {' or '.join(map(repr, readers))}"
     try:
         text = read_bytes(path, MOST_JSON).decode("utf-8")
         page = _DATA.search(text)
@@ -270,8 +261,6 @@ def read_document(path: str | Path, readers: Mapping[str, Callable[[dict[str, An
     form = kept.get("format") if isinstance(kept, dict) else None
     if not isinstance(form, str) or form not in readers:
         raise refuse("path", str(path), allowed)
-    if not isinstance(kept.get("strokes"), list):
-        raise refuse_what(f"strokes of {path}", f"a {type(kept.get('strokes')).__name__}", "must be a list")
     if kept.get("version") != VERSIONS[form] or kept["version"] is True:
         raise refuse(f"version of {path}", kept.get("version"), f"must be {VERSIONS[form]}")
     try:
@@ -285,21 +274,21 @@ def read_document(path: str | Path, readers: Mapping[str, Callable[[dict[str, An
 def strokes_of(
     source: Any, *, player: int | None = None, intended: Sequence[CueStroke | None] | None = None
 ) -> list[Recorded]:
-    """The recorded strokes of an environment that keeps its history, of its strokes, or of a replay.
+    """Return the recorded strokes of an environment that keeps its history, of its strokes, or of a replay.
 
     Parameters
     ----------
     source : environment, sequence of Played, or Replay
         As ``snooker_env.replay`` takes it.
     player : int, optional
-        Of a frame: whose strokes, 0 or 1. Default None: all are of one player.
+        In a frame, whose strokes, 0 or 1. Default None: all are of one player.
     intended : sequence of CueStroke or None, optional
-        How each stroke of ``source`` was meant, the other player's too; None where it is not known.
+        How each stroke of ``source`` was meant, of both players; None for a stroke of which this is not known.
 
     Returns
     -------
     list of Recorded
-        ValueError for bare shots, or another number of ``intended``.
+        ValueError for bare shots, or if the length of ``intended`` differs.
 
     Examples
     --------
@@ -320,14 +309,20 @@ def strokes_of(
 
 def _from_strokes(kept: Mapping[str, Any], player: int | None) -> list[Recorded]:
     if player is not None:
-        raise refuse("player", player, "must be left out: such a file is of one player")
+        raise refuse("player", player, "must be left out: a file of strokes is of one player")
     made = []
     for k, one in enumerate(kept["strokes"]):
-        try:
+        with _in_stroke(k):
             made.append(Recorded.from_dict(one))
-        except ValueError as error:
-            raise ValueError(f"strokes[{k}]: {error}") from None
     return made
+
+
+@contextmanager
+def _in_stroke(k: int) -> Iterator[None]:
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"strokes[{k}]: {error}") from None
 
 
 def _from_replay(
@@ -336,27 +331,24 @@ def _from_replay(
     made = []
     if player is None and len({one["player"] for one in kept["strokes"]}) > 1:
         raise refuse("player", None, "must be 0 or 1: the replay is of two players")
-    before, where = (0, 0), {"physics": kept.get("physics"), "table": kept.get("table")}
-    if where["table"] is not None:
-        where["table"] = table_from(where["table"])
+    before, table = (0, 0), kept.get("table")
+    where = {"physics": kept.get("physics"), "table": table and table_from(table)}
     for k, one in enumerate(kept["strokes"]):
         if one["player"] is None or one["cue"] is None or one["n"] != N_BALLS:
             raise refuse_what(f"strokes[{k}]", "a bare shot", "must be of a visit or a frame, with a referee")
         who, scores = integer(f"strokes[{k}].player", one["player"], 0, 1), before
         before = tuple((*one["score"], 0)[:2])
         if player is None or who == player:
-            try:
+            with _in_stroke(k):
                 meant = None if intended is None else intended[k]
                 made.append(_of_replay(one, (scores[who], scores[1 - who]), meant, where))
-            except ValueError as error:
-                raise ValueError(f"strokes[{k}]: {error}") from None
     return made
 
 
 def _of_replay(
     one: Mapping[str, Any], scores: tuple[int, int], intended: CueStroke | None, where: dict[str, Any]
 ) -> Recorded:
-    """A stroke of a replay, played on the table ``where``; which pot was meant is told from the line of the stroke."""
+    """A stroke of a replay, played on the table ``where``; the pot that was meant is guessed from the line of the stroke."""
     (start, here), (rest, left), fell = read_balls(one)
     word = one["ball_on"].replace(" ", "_")
     position = _position(start, here, None if word == "free_ball" else word)
@@ -383,7 +375,7 @@ def _of_replay(
 
 
 def read_balls(one: Mapping[str, Any]) -> tuple[tuple[Floats, Bools], tuple[Floats, Bools], dict[int, int]]:
-    """Of a stroke of a replay: the balls (22, 2), (22,) before it and after it, and the pockets of those potted."""
+    """The balls (22, 2), (22,) before and after a stroke of a replay, and the pockets of those potted."""
     start, here = _numbers(one["start"], "f8", 2), _present(one["on_table"])
     which, states = _numbers(one["paths"]["u1"], "u1", 2).astype(int).T
     rest, left = start.copy(), here.copy()
@@ -416,7 +408,7 @@ def _position(places: Floats, here: Any, on: str | None) -> Position:
 
 
 def direction_of(played: Mapping[str, float], physics: Physics) -> float:
-    """The direction in which the cue ball leaves a level cue [rad]: that of the cue, and its squirt."""
+    """The direction in which the cue ball leaves a level cue [rad]: that of the cue, plus squirt."""
     return played["aim"] + squirt(played["side"], physics)
 
 
@@ -428,27 +420,28 @@ def squirt(side: float, physics: Physics) -> float:
 
 
 def agree_options(strokes: Sequence[Recorded], options: object) -> Any:
-    """``options`` with what the strokes say of where they were played; ValueError where they contradict, or none says it."""
+    """``options`` completed by the strokes with where they were played; ValueError if they contradict, or none says it."""
     if not (options is None or isinstance(options, Options | Mapping)):
         allowed = f"must be None, an Options, or a dict with keys as {PLAYED_ON}"
         raise refuse_what("options", f"a {type(options).__name__}", allowed)
-    asked = {name: getattr(options, name) for name in PLAYED_ON} if isinstance(options, Options) else options
-    kept: dict[str, Any] = dict(asked or {})
+    of_options = isinstance(options, Options)
+    kept: dict[str, Any] = (
+        {name: getattr(options, name) for name in PLAYED_ON} if of_options else dict(options or {})
+    )
     for name in PLAYED_ON:
         said = [getattr(one, name) for one in strokes]
         if name not in kept and None in said:
-            allowed = f"must be given (options={{{name!r}: ...}}, --{name}): the strokes do not say it"
+            allowed = f"must be given (options={{{name!r}: ...}}, --{name}): the strokes do not hold it"
             raise refuse(name, None, allowed)
         whose = "options say" if name in kept else "the first stroke says"
         usual = _data(name, kept.setdefault(name, said[0]))
         for k, one in enumerate(said):
             if one is not None and (data := _data(name, one)) != usual:
-                words = [
-                    each["name"] if name == "table" and isinstance(each, dict) else each
-                    for each in (data, usual)
-                ]
-                raise refuse(f"strokes[{k}].{name}", words[0], f"must be {words[1]!r}, as {whose}")
-    return options if isinstance(options, Options) else kept
+                own, other = (
+                    each.get("name", each) if isinstance(each, dict) else each for each in (data, usual)
+                )
+                raise refuse(f"strokes[{k}].{name}", own, f"must be {other!r}, as {whose}")
+    return options if of_options else kept
 
 
 def _data(name: str, value: Any) -> Any:
@@ -459,7 +452,7 @@ def _data(name: str, value: Any) -> Any:
 
 
 def call_pot(position: Position, direction: float, within: float = CALLED) -> tuple[int, int] | None:
-    """Ball and pocket of the direct pot whose line is nearest to a direction [rad]; None if none is ``within`` [rad]."""
+    """Ball and pocket of the direct pot with the line nearest to a direction [rad]; None if none is ``within`` [rad]."""
     direct = pots(position, 16)
     x, y = position.cue or (0.0, 0.0)
     aside = [

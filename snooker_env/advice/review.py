@@ -1,4 +1,4 @@
-"""What did the strokes of a frame cost, by the choice of them and by their errors? In the chance to win, as ``advise`` sees it."""
+"""What did the strokes of a frame cost? Choice and errors, in the chance to win that ``advise`` counts."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -57,21 +57,20 @@ class FrameRecord(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Reviewed:
-    """A stroke beside the agent's best one, in the chance to win of who played it; ``rough``: by few samples."""
+    """A stroke beside the agent's best, in the chance to win of its player; ``rough``: by few samples."""
 
     number: int
     player: int
     meant: Suggestion
     best: Suggestion
     after: float  # what the stroke left as it was played
-    choice: float  # what it cost to mean it: the best's mean less its own
-    execution: float  # what its errors cost: the luck with the other sign; where nobody knows it, its mean less what it left
-    pot: str  # the pot that it was likely meant for though it misses without errors, in words; "" for none
+    choice: float  # the cost of the choice: the best's mean less its own
+    execution: float  # the cost of its errors: the luck with the other sign; if that is not known, its mean less what it left
+    pot: str  # the pot that it was likely meant for although it misses without errors, in words; "" for none
     rough: bool
 
     @property
     def name(self) -> str:
-        """What the stroke was meant for, in few words."""
         return f"missed pot, {self.pot}" if self.pot else name_stroke(self.meant)
 
     @property
@@ -80,7 +79,6 @@ class Reviewed:
         return max(0.0, self.choice) + max(0.0, self.execution)
 
     def to_dict(self) -> dict[str, Any]:
-        """As JSON types, with words."""
         shares = {"meant": self.meant.figure, "best": self.best.figure}
         return vars(self) | shares | {"name": self.name, "words": str(self)}
 
@@ -101,20 +99,19 @@ class Reviewed:
 
 
 class Side(NamedTuple):
-    """The sums of a player in its own chance to win. What all its strokes gained is ``luck`` - ``choice`` - ``execution`` +
-    ``other``."""
+    """A player's sums, in their own chance to win: all their strokes gained luck - choice - execution + other."""
 
     name: str
     strokes: int  # that were reviewed
-    choice: float  # what they cost by the choice
-    execution: float  # and by errors, of those whose luck nobody knows
-    luck: float | None  # of all its strokes; None if nobody knows it
+    choice: float
+    execution: float  # of the strokes whose luck is not known
+    luck: float | None  # of all strokes; None if not known
     other: float  # how much more the best strokes were worth than the position, and strokes that were not reviewed
 
 
 @dataclass(frozen=True, kw_only=True)
 class Review:
-    """What is known of a frame: strokes in their order, so far as they were looked at, and both players' sums."""
+    """What is known of a frame: its reviewed strokes in order, and both players' sums."""
 
     strokes: list[Reviewed]
     sides: tuple[Side, Side]
@@ -128,13 +125,13 @@ class Review:
 
     @property
     def adjusted(self) -> float | None:
-        """The result less the luck of the first player, plus that of the other: on average right, so it may leave [0, 1]."""
+        """The result less the first player's luck, plus the other's: right on average, so it may leave [0, 1]."""
         one, other = (side.luck for side in self.sides)
         return None if one is None or other is None else self.result - one + other
 
     @property
     def concession(self) -> float:
-        """What the concession that ended the frame gained for the first player, negative where it conceded."""
+        """What the first player gained by a concession, negative if they conceded."""
         return self.result - self.win_chance[-1]
 
     @property
@@ -143,40 +140,26 @@ class Review:
         start, end = (round(100 * share) for share in (self.win_chance[0], self.result))
         names, rows, loser = [side.name for side in self.sides], {}, int(self.concession > 0.0)
         for k, (one, sign) in enumerate(zip(self.sides, (100, -100), strict=True)):
-            parts = {"choice": -one.choice, "luck": one.luck, "execution": -one.execution, "other": one.other}
-            here = {
-                "luck": one.luck is not None,
-                "execution": one.execution,
-                "choice": one.strokes,
-                "other": True,
-            }
-            rows |= {(k, name): round(sign * (share or 0.0)) for name, share in parts.items() if here[name]}
-        ends = {
-            (None, "between the strokes"): round(100 * self.between),
-            (loser, "concession"): round(100 * self.concession),
-        }
-        rows |= {who: share for who, share in ends.items() if share}
+            parts = {"choice": -one.choice if one.strokes else None, "luck": one.luck}
+            parts |= {"execution": -one.execution or None, "other": one.other}
+            rows |= {(k, name): round(sign * share) for name, share in parts.items() if share is not None}
+        ends = ((None, "between the strokes"), self.between), ((loser, "concession"), self.concession)
+        rows |= {who: round(100 * gained) for who, gained in ends if round(100 * gained)}
         rows[0, "other"] += end - start - sum(rows.values())  # rounding must not spoil the sum
         said = [(what if k is None else f"{names[k]}: {what}", share) for (k, what), share in rows.items()]
         return [("start", start), *said, ("end", end)]
 
     @property
     def costliest(self) -> list[Reviewed]:
-        """The strokes, those that cost most first."""
         return sorted(self.strokes, key=lambda one: -one.cost)
 
     def to_dict(self) -> dict[str, Any]:
-        """As JSON types."""
-        lists = {
+        told = {"adjusted": self.adjusted, "concession": self.concession, "account": self.account}
+        told |= {
             "strokes": [one.to_dict() for one in self.strokes],
-            "sides": [x._asdict() for x in self.sides],
+            "sides": [one._asdict() for one in self.sides],
         }
-        return (
-            vars(self)
-            | lists
-            | {"adjusted": self.adjusted, "concession": self.concession, "account": self.account}
-            | {"costliest": [x.number for x in self.costliest]}
-        )
+        return vars(self) | told | {"costliest": [one.number for one in self.costliest]}
 
     def __str__(self) -> str:
         head, rows = ["stroke", "player", "meant", "wins", "best", "choice", "execution", "left"], []
@@ -186,17 +169,15 @@ class Review:
             rows.append([str(one.number), self.sides[one.player].name, one.name, *said])
         lines = [*text_table(head, rows, 3), "", *map(str, self.costliest[:3]), ""]
         head = ["", *(side.name for side in self.sides)]
-        account = [
-            [name, f"{share} %", f"{100 - share} %"]
-            if name in ("start", "end")
-            else [name, f"{share:+} %", f"{-share:+} %"]
-            for name, share in self.account
-        ]
-        lines += text_table(head, account, 1)
-        known = (
-            "" if self.adjusted is None else f", without luck {percent(min(1.0, max(0.0, self.adjusted)))}"
-        )
-        return "\n".join([*lines, f"{self.sides[0].name}: result {percent(self.result)}{known}"])
+        (start, *changes, end), rows = self.account, []
+        for name, share in changes:
+            rows.append([name, f"{share:+} %", f"{-share:+} %"])
+        ends = ([name, f"{share} %", f"{100 - share} %"] for name, share in (start, end))
+        lines += text_table(head, [next(ends), *rows, next(ends)], 1)
+        said = f"{self.sides[0].name}: result {percent(self.result)}"
+        if self.adjusted is not None:
+            said += f", without luck {percent(min(1.0, max(0.0, self.adjusted)))}"
+        return "\n".join([*lines, said])
 
 
 def name_stroke(one: Suggestion) -> str:
@@ -208,7 +189,6 @@ def name_stroke(one: Suggestion) -> str:
 
 
 def _parts(one: Suggestion) -> list[str]:
-    """The words of a stroke, part by part."""
     return one.words.removeprefix("no fair stroke found: ").split("; ")[0].split(", ")
 
 
@@ -225,9 +205,9 @@ def go_through(
 ) -> Iterator[tuple[int, int, Review]]:
     """Review a frame; yield how many steps are done, of how many, and what is known.
 
-    A rough look at all strokes of the ``players``, with errors of its own, gives their order. Then the costliest first are
-    judged as ``advise`` does with ``n=1`` and ``visits=0``. ``end``: the frame as it stood at last, before the other than the
-    ``winner`` conceded; None: as the last stroke left it."""
+    A rough look at all strokes of the ``players``, with errors of its own, gives their order. Then the strokes are judged, the
+    costliest first, as ``advise`` does with ``n=1`` and ``visits=0``. ``end``: the frame before the loser conceded; None: as
+    the last stroke left it."""
     trials = Trials(integer("samples", samples, 1, 100_000), 0, integer("seed", seed, 0, 2**62))
     turns, mine = frame.turns, [one for one in frame.turns if one.player in players]
     if not mine:
@@ -295,15 +275,14 @@ def _judge(
 
 
 def common_noise(errors: list[Noise]) -> Noise:
-    """The largest errors, and at least a professional's, for whom the tactician has learned; who makes none errs by hand, as
-    an amateur."""
+    """The largest errors, at least a professional's, which the tactician has learned with; a player without errors counts
+    as an amateur."""
     least = LEVELS["amateur" if any(one.silent for one in errors) else "professional"]
-    return max([*errors, least], key=_size_of)
-
-
-def _size_of(noise: Noise) -> float:
-    """The root mean square error of the direction [deg], lapses included."""
-    return noise.direction_deg() * sqrt(1.0 + noise.lapse * (noise.lapse_factor**2 - 1.0))
+    # by the root mean square error of the direction, lapses included
+    return max(
+        [*errors, least],
+        key=lambda one: one.direction_deg() * sqrt(1.0 + one.lapse * (one.lapse_factor**2 - 1.0)),
+    )
 
 
 def read_frame(kept: Mapping[str, Any]) -> FrameRecord:

@@ -1,4 +1,4 @@
-"""Has the cue room for a stroke, and what is in its way? ``Room``: how a stroke is played over rails and balls."""
+"""Does the cue have room for a stroke? ``Room``: how a stroke is played over rails and balls."""
 
 from dataclasses import asdict, dataclass
 from math import degrees
@@ -22,17 +22,16 @@ class Room:
 
     Attributes
     ----------
-    elevation : float
-        Elevation at which the stroke is played [rad]: its own, or the least one.
-    side, top : float
-        Tip offsets over R at which it is played.
+    elevation, side, top : float
+        Elevation [rad] and tip offsets over R at which the stroke is played: its own, or what rails and balls leave.
     raised, moved, unplayable : bool
-        Whether the cue is raised; whether its tip is moved, because a cue of 45 degrees does not reach the one that
-        was meant; whether even this does not help, so that nobody can play the stroke.
+        Whether the cue is raised; whether the tip is moved, because a cue of 45 degrees does not reach the point that was
+        meant; whether not even this helps, so that nobody can play the stroke.
     over : str or None
-        What is in the way: "rail", or the name of a ball; None if nothing is.
+        The obstacle: "rail", or the name of a ball; None if there is none.
     behind : float
-        How far behind the cue ball's centre that is, along the cue [m]: a rail's edge, a ball's centre; 0 if nothing.
+        Distance of the obstacle behind the cue ball's centre, along the cue [m], to a rail's edge or a ball's centre; 0 if
+        there is none.
 
     Examples
     --------
@@ -53,18 +52,18 @@ class Room:
 
     @property
     def words(self) -> str:
-        """What is done to the stroke, in words; "" for nothing, and for less than half a degree."""
+        """What the cue does for room, in words; "" for nothing, and for less than half a degree."""
         what = self.over and ("a red" if self.over.startswith("red") else f"the {self.over}")
         over = f" over {what}" if what else ""
         if self.unplayable:
-            return f"no room for the cue{over}: raised to {degrees(self.elevation):.0f} degrees, nobody plays that"
+            return f"no room for the cue{over}: nobody can play it, raised to {degrees(self.elevation):.0f} degrees"
         parts = []
         if self.raised and degrees(self.elevation) >= 0.5:
             parts.append(f"cue raised to {degrees(self.elevation):.0f} degrees{over}")
         if self.moved:
             tip = f"{abs(self.top):.2f} {'above' if self.top >= 0.0 else 'below'} the middle"
             aside = f", {abs(self.side):.2f} {'right' if self.side > 0 else 'left'}" if self.side else ""
-            parts.append(f"tip moved up to {tip}{aside}{'' if parts else over}")
+            parts.append(f"tip moved to {tip}{aside}{'' if parts else over}")
         return ", ".join(parts)
 
     def to_dict(self) -> dict[str, Any]:

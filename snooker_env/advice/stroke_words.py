@@ -143,7 +143,6 @@ def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> 
 
 
 def percent(share: float) -> str:
-    """A share in whole percent."""
     return f"{100.0 * share:.0f} %"
 
 

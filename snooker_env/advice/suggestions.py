@@ -1,8 +1,8 @@
 """What does ``advise`` return? ``Advice``: strokes with their outcomes, each a ``Suggestion``."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, fields
-from typing import Any, overload
+from typing import Any
 
 from .._lib.types import Place
 from ..planning import Position
@@ -20,34 +20,32 @@ class Suggestion(CueStroke):
     speed, aim, side, top, elevation, place
         As in ``CueStroke``.
     room : Room
-        How the cue finds room for it: ``cue="real"`` may raise it and move its tip.
+        How the cue finds room for the stroke: a real cue may be raised and its tip moved.
     kind : {"pot", "contact", "safety", "escape", "in-off", "foul"}
-        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores nothing;
-        "safety" in a frame, where that is judged; "escape" where no straight path leads to a ball on. "in-off": it loses
-        the cue ball. "foul": any other foul.
+        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores nothing; in a
+        frame, where this is judged, "safety"; "escape" if no straight path leads to a ball on. "in-off": it loses the cue
+        ball. "foul": any other foul.
     ball, pocket, first : int
-        Id of the ball that it pots without errors or, if none, strikes first or plays away from, and its pocket, an
-        index into ``snooker_env.POCKETS``; id of the ball that it strikes first. -1 if none.
-    chance : float
-        Of a pot: the share of the samples in which that ball went into that pocket without a foul; of another stroke, the
-        share without a foul.
-    chance_interval : (float, float)
-        Wilson's 95 % interval of the chance; without noise, the chance itself twice.
+        Id of the ball that the stroke pots without errors (if none, of the ball that it strikes first or plays away from);
+        the pocket, an index into ``snooker_env.POCKETS``; id of the ball that it strikes first. -1 if none.
+    chance, chance_interval : float, (float, float)
+        Of a pot, the share of samples in which that ball went into that pocket without a foul; of another stroke, the share
+        without a foul. Wilson's 95 % interval of the chance; without noise, the chance itself twice.
     points, points_interval : float, (float, float)
-        Expected points of the visit from this stroke on, continued by a fast search, and the 95 % interval of that
-        mean by the sampling error.
+        Expected points of the visit from this stroke on, continued by a fast search, with the 95 % interval of the
+        sampling error.
     foul, in_off : float
-        Shares of the samples with a foul, and in which the cue ball was potted.
-    stops : (float, float) or None
-        Mean stopping point of the cue ball [m] where it stayed on the table; None if it never did.
-    spread : float or None
-        Root of the mean square distance from that point [m].
+        Shares of the samples with a foul, and with the cue ball potted.
+    stops, spread : (float, float), float or None
+        Mean stopping point of the cue ball [m] in the samples in which it stayed on the table, and the root mean square
+        distance from that point [m]; None if it never stayed.
     win, win_interval, against, replies, leaves, snookers : float, (float, float), float, float, float, float or None
-        Of a frame, else None, see docs/play/advice.md: the chance to win it and the 95 % interval by the sampling error; of the first
-        stroke the chance to win of the best one of the other sort; where the opponent comes to the table, the share of its
-        next visits in which it pots, their mean points, and how often it is snookered (None if it never comes).
+        Only of a frame (docs/play/advice.md). ``win``: the chance to win, with the 95 % interval of the sampling error.
+        ``against``: of the first stroke, the chance to win of the best stroke of the other kind. ``replies``, ``leaves``,
+        ``snookers``: how often the opponent pots next, their mean points, and how often they are snookered; None if the
+        opponent never comes to the table.
     words : str
-        All this in one line of text.
+        All of this in one line of text.
 
     Examples
     --------
@@ -83,7 +81,7 @@ class Suggestion(CueStroke):
 
     @property
     def figure(self) -> float:
-        """What it is ordered by: in a frame the chance to win, else a pot's points, or the share without a foul."""
+        """The figure that orders strokes: in a frame the chance to win, else the points of a pot, or the share without a foul."""
         return self.win if self.win is not None else self.points if self.kind == "pot" else self.chance
 
     @property
@@ -101,8 +99,8 @@ class Suggestion(CueStroke):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Advice(Sequence[Suggestion]):
-    """The strokes that an agent would play in a position, best first: a sequence of ``Suggestion``.
+class Advice:
+    """The strokes that an agent would play in a position, best first; a sequence of ``Suggestion``.
 
     Attributes
     ----------
@@ -111,13 +109,13 @@ class Advice(Sequence[Suggestion]):
     position : Position
         The position.
     scores : (int, int) or None
-        Of a frame: the scores of the striker and of the other.
+        In a frame, the scores of the striker and of the opponent.
     agent : str
         Name of the agent.
     own : bool
-        Whether the strokes are the agent's own; False where none is fair, so that others were judged, too.
+        Whether the strokes are the agent's own; False if none of those is fair, so that others were judged, too.
     noise : str or dict
-        Execution errors: a level's name, or the fields of ``Noise``.
+        Execution errors: the name of a level, or the fields of ``Noise``.
     samples, visits, seed : int
         As in ``advise``.
 
@@ -146,19 +144,16 @@ class Advice(Sequence[Suggestion]):
     def __len__(self) -> int:
         return len(self.suggestions)
 
-    @overload
-    def __getitem__(self, index: int) -> Suggestion: ...
+    def __iter__(self) -> Iterator[Suggestion]:
+        return iter(self.suggestions)
 
-    @overload
-    def __getitem__(self, index: slice) -> tuple[Suggestion, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> Suggestion | tuple[Suggestion, ...]:
+    def __getitem__(self, index: int) -> Suggestion:
         return self.suggestions[index]
 
     @property
     def order(self) -> str:
-        """Whose strokes these are if not the agent's own, by what they are ordered, and with whose errors, in words."""
-        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are not its own. "
+        """In words, what orders the strokes, with whose errors, and whether they are not the agent's own."""
+        whose = "" if self.own else f"{self.agent} has no fair stroke here; these strokes are not its own. "
         errors = errors_words(self.noise)
         if self.scores is not None:
             return f"{whose}By chance to win, {errors}:"

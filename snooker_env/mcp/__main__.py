@@ -17,19 +17,19 @@ JUDGED = tuple(name for name, task in TASKS.items() if not task.frame)  # visits
 
 
 def _arguments(words: list[str]) -> argparse.Namespace:
-    about = """A server of the Model Context Protocol on standard input and output. Without --out a client begins games as
-        it likes; with --out it plays the judged tables of a task once, in order, and the file is one that
-        python -m snooker_env benchmark check verifies."""
+    about = """Serve the Model Context Protocol on standard input and output. Without --out a client starts games as it likes.
+        With --out it plays the judged tables of a task once, in order, and python -m snooker_env benchmark check can verify
+        the file."""
     p = argparse.ArgumentParser(NAME, description=about)
     add = p.add_argument
     add("--track", choices=TRACKS, help="what the client sees (default: words, menu and picture)")
-    add("--out", metavar="FILE", help="result file; one that is incomplete is gone on with")
+    add("--out", metavar="FILE", help="result file; an incomplete one is continued")
     add("--task", choices=JUDGED, default=JUDGED[0], help="with --out: the task (default: %(default)s)")
-    add("--episodes", type=int, default=VISITS, help="with --out: tables (default: %(default)s)")
-    add("--label", help="with --out: name in the result (default: mcp)")
-    help_ = "with --out: all simulated shots of its training; 0: not trained on any"
-    add("--training-shots", type=int, metavar="N", help=help_)
-    add("--simulated-shots", type=int, metavar="N", help="with --out: simulated shots of a decision")
+    add("--episodes", type=int, default=VISITS, help="with --out: number of tables (default: %(default)s)")
+    add("--label", help="with --out: name of the model in the result (default: mcp)")
+    shots = "with --out: simulated shots in the model's training (0: none)"
+    add("--training-shots", type=int, metavar="N", help=shots)
+    add("--simulated-shots", type=int, metavar="N", help="with --out: simulated shots for each decision")
     return p.parse_args(words)
 
 

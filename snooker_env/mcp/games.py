@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from .._lib.check import choice, integer, refuse, truth
+from .._lib.check import choice, integer, refuse, refuse_what, truth
 from .._lib.types import NoiseName
 from ..benchmark.agents import Agent
 from ..benchmark.playing import Decider, PlayedEpisodes, Repeater, rows_of, tables_for
@@ -42,7 +42,6 @@ class FreeGame:
 
     @property
     def options(self) -> Options:
-        """The options of who plays."""
         session = self._service.session
         return session.options_with(session.noise[0])
 
@@ -64,6 +63,9 @@ class FreeGame:
         """The table as the page gets it, once the opponent has played."""
         while (state := answer(self._service, GET["state"], {}))["thinking"]:
             self._service.wait(state["revision"], 25.0)
+        if state["trouble"]:
+            what = f"ended by an error of the opponent ({state['trouble']})"
+            raise refuse_what("game", what, "must be begun again with new_game")
         return state
 
     def lies(self) -> Positions | None:
@@ -87,23 +89,19 @@ class FreeGame:
             raise refuse("advice", False, "must be allowed by new_game: this game is played without")
         found = answer(self._service, POST["advise"], {"n": integer("n", n, 1, MOST_ADVICE)})
         head = [f"{found['agent']} would choose {found['choice']}."] if found["choice"] else []
-        lines = [
-            f"{one['words']}: {json.dumps({name: one[name] for name in STROKE if one.get(name) is not None})}"
-            for one in found["suggestions"]
-        ]
-        return "\n".join([*head, *lines]) or "No fair stroke was found."
+        strokes = found["suggestions"]
+        fields = [{name: one[name] for name in STROKE if one.get(name) is not None} for one in strokes]
+        lines = [f"{one['words']}: {json.dumps(its)}" for one, its in zip(strokes, fields, strict=True)]
+        return "\n".join([*head, *lines])
 
 
 class _Client(ProgramPlayer):
-    """The client as a player: it plays what its last call asked for."""
-
     fields: dict[str, Any]
 
     def _stroke(self, at: Positions, seed: int) -> Any:
         return self._read(self.fields, at, "play")
 
     def told(self, at: Positions) -> dict[str, Any]:
-        """The state of the one position ``at``."""
         return self._state(begun(at))
 
 
@@ -121,7 +119,6 @@ class JudgedGame:
         self._deal()
 
     def _deal(self) -> None:
-        """The next table, if there is one."""
         done = len(self._played.rows)
         if done < len(self._seeds):
             seed = [self._seeds[done]]
@@ -141,7 +138,6 @@ class JudgedGame:
         return state | {"words": f"{where} {state['words']}", "text": f"{where}\n{state['text']}"}
 
     def lies(self) -> Positions | None:
-        """As of ``FreeGame``."""
         return Positions.of(self._tables) if len(self._played.rows) < len(self._seeds) else None
 
     def play(self, fields: dict[str, Any]) -> str:

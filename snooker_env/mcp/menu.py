@@ -1,4 +1,4 @@
-"""What does a model read of the menu of strokes? Of each what closed forms foresee, as numbers and in words."""
+"""What does a model read about the menu of strokes? What closed forms foresee of each."""
 
 from typing import Any
 
@@ -20,8 +20,8 @@ from ..tasks.options import Options
 from ..tasks.stroke_menu import DECISIONS, SPEEDS, TOPS
 
 MEANING = (
-    "speed: m/s; chance: that the ball is potted; x, y: where the cue ball stops; next: points that what is left is worth to "
-    "whoever plays it; promise: points, chance times what the pot and the next ones bring."
+    "speed: m/s; chance: of potting the ball; x, y: where the cue ball stops; next: worth of the position left, in points, to "
+    "whoever plays next; promise: chance times the points of this pot and the next ones."
 )
 _SHOWN = {
     "speed": (columns.F_SPEED, FASTEST),
@@ -40,9 +40,14 @@ _SHOWN = {
 class _Reader:
     """Sees the menu of one position and takes the stroke of a number."""
 
-    def __init__(self, frame: bool, number: int):
-        self.options = {"task": "frame" if frame else "visit", "action": "strokes", "observation": "strokes"}
+    def __init__(self, at: Positions, options: Options, number: int):
+        task = "frame" if at.of_frames else "visit"
+        self.options = {"task": task, "action": "strokes", "observation": "strokes"}
         self.number = number
+        try:
+            self.strokes = SeenPlayer(self, name="menu").at(options).play(at, [0])
+        except ValueError as error:
+            raise ValueError(str(error).removeprefix("player menu: act(...) returned ")) from None
 
     def act(self, observations: Floats, masks: Bools, seeds: Ints) -> list[int]:
         """The number, once it is known to be on the menu."""
@@ -55,28 +60,17 @@ class _Reader:
 
 def take_stroke(number: int, at: Positions, options: Options) -> dict[str, Any]:
     """The stroke with this number, as fields of ``POST api/stroke``."""
-    return _read(number, at, options)[1]
-
-
-def _read(number: int, at: Positions, options: Options) -> tuple[_Reader, dict[str, Any]]:
-    reader = _Reader(at.of_frames, number)
-    try:
-        strokes = SeenPlayer(reader, name="menu").at(options).play(at, [0])
-    except ValueError as error:
-        raise ValueError(str(error).removeprefix("player menu: act(...) returned ")) from None
+    strokes = _Reader(at, options, number).strokes
     decision = int(strokes.decision[0])
     if decision != PLAY:
-        return reader, {"choice": CHOICES[decision]}
-    fields = {
-        name: value for name, value in cue_strokes(strokes, at)[0].to_dict().items() if value is not None
-    }
-    return reader, fields | ({"choice": "play"} if at.choice[0] else {})
+        return {"choice": CHOICES[decision]}
+    fields = cue_strokes(strokes, at)[0].to_dict() | ({"choice": "play"} if at.choice[0] else {})
+    return {name: value for name, value in fields.items() if value is not None}
 
 
 def foresee_strokes(at: Positions, options: Options) -> list[dict[str, Any]]:
     """What is foreseen of each stroke on the menu, the best first: pots by their promise, then others."""
-    reader, _ = _read(0, at, options)
-    named = _name_pots(at)
+    reader, named = _Reader(at, options, 0), _name_pots(at)
     rows = reader.row[: len(reader.there) * STROKE_SIZE].reshape(-1, STROKE_SIZE).astype(float)
     found = []
     for number in np.flatnonzero(reader.there).tolist():

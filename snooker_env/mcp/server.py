@@ -1,6 +1,7 @@
-"""What may a client call? The tools of a track, within limits; an error is one sentence."""
+"""Which tools may a client call? Those of a track, within limits; an error is one sentence."""
 
 import base64
+import io
 import json
 import threading
 from collections.abc import Callable
@@ -8,15 +9,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .._lib.check import choice, integer, refuse, refuse_what
 from .._lib.install import missing
+from .._lib.types import Bools, Floats
+from ..game.balls import N_REDS
 from ..game.rule_sets import RULES
+from ..physics.table import Table
 from ..planning import Positions
 from ..play.service import OFFERED, BusyError
 from ..players.requests import STROKE
+from ..render.pygame_balls import BOLD, pygame_, typeset
+from ..render.pygame_view import View, draw
+from ..render.scene import scene
 from ..simulation import SimulationError
 from ..tasks.noise import LEVELS
 from .games import ALONE, DEALT, HELD_OUT_SEED, MOST_ADVICE, FreeGame, Game
 from .menu import MEANING, foresee_strokes, take_stroke
-from .picture import draw_jpeg
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -26,24 +32,28 @@ GAMES, CALLS = 100, 20_000  # the most of a session
 LONGEST = 1_000  # the longest arguments of a call, as JSON [characters]
 SHOWN = 200  # of each end of an error [characters]
 LISTED, MOST_LISTED = 20, 160  # strokes that the menu lists
+SIZE = (1280, 720)  # of the picture, with the score bar, which is cut off
 
 Fields = dict[str, Any]
-_POT = '{"pot": [ball, pocket]} instead of aim, as ["red 3", "middle left"]; throw is solved for'
+_POT = 'instead of aim: {"pot": [ball, pocket]}, as {"pot": ["red 3", "middle left"]}; throw is compensated'
 _PLAY = {
-    "speed": {"type": "number", "description": "of the ball off the cue, 0.2 to 7 m/s"},
+    "speed": {"type": "number", "description": "speed of the cue ball off the cue, 0.2 to 7 m/s"},
     "aim": {"type": "number", "description": "direction of the cue ball [rad], anticlockwise from +x"},
     "aim_at": {"type": "object", "description": _POT},
-    "side": {"type": "number", "description": "tip offset to the right over the radius; with top within 0.5"},
-    "top": {"type": "number", "description": "tip offset upwards: above 0 follows, below 0 draws"},
-    "elevation": {"type": "number", "description": "of the cue, 0 to 0.52 rad"},
-    "place": {"type": "array", "description": "where a cue ball in hand is put first, [x, y] in metres"},
-    "nominate": {"type": "string", "description": "a colour that may be named"},
+    "side": {"type": "number", "description": "tip offset to the right, in ball radii; with top within 0.5"},
+    "top": {
+        "type": "number",
+        "description": "tip offset upwards, in ball radii: positive follows, negative draws",
+    },
+    "elevation": {"type": "number", "description": "elevation of the cue, 0 to 0.52 rad"},
+    "place": {"type": "array", "description": "where to place a cue ball in hand, [x, y] in metres"},
+    "nominate": {"type": "string", "description": "the colour to nominate"},
     "choice": {"type": "string", "description": "after a foul of the opponent: one of the choices"},
-    "number": {"type": "integer", "description": "a stroke of the menu, alone"},
+    "number": {"type": "integer", "description": "number of a stroke on the menu; give no other argument"},
 }
 _AXES = (
-    "y grows to the right of the picture, to the black end, which pockets call top; x grows downwards, to what they call "
-    "right. An aim of 0 rad points down, of 1.571 to the right."
+    'y grows to the right of the picture, towards the black end ("top" in the names of pockets); x grows downwards '
+    '("right"). An aim of 0 rad points down, 1.571 points right.'
 )
 
 
@@ -69,11 +79,11 @@ class Desk:
         left_out = ({"nominate", "choice"} if not free else set()) | ({"number"} if not menu else set())
         strokes = {name: field for name, field in _PLAY.items() if name not in left_out}
         self.tools: dict[str, Tool] = {
-            "look": Tool("The table as it lies.", {}, self._look),
-            "play": Tool("Play a stroke, and see the table after it.", strokes, self._play),
+            "look": Tool("Show the table.", {}, self._look),
+            "play": Tool("Play a stroke and show the table after it.", strokes, self._play),
         }
         if menu:
-            about = "Strokes with what closed forms foresee of each, the best first; nothing is simulated."
+            about = "List strokes, best first, with what closed forms foresee of each; nothing is simulated."
             self.tools["strokes"] = Tool(about, {"n": _up_to(MOST_LISTED, LISTED)}, self._strokes)
         if free:
             fields = {
@@ -82,14 +92,14 @@ class Desk:
                 "noise": {"enum": [*LEVELS], "default": "professional"},
                 "game": {"enum": [*RULES], "default": "snooker"},
                 "seed": _up_to(HELD_OUT_SEED - 1, 0, 0),
-                "advice": {"type": "boolean", "description": "whether advise may be called (default: not)"},
+                "advice": {"type": "boolean", "description": "whether advise may be called (default: no)"},
             }
-            self.tools["new_game"] = Tool("Begin a frame, or practice alone.", fields, self._new)
-            advises = Tool("What an agent would play here.", {"n": _up_to(MOST_ADVICE, 3)}, self._advise)
+            self.tools["new_game"] = Tool("Start a frame, or practice alone.", fields, self._new)
+            advises = Tool("Say what an agent would play here.", {"n": _up_to(MOST_ADVICE, 3)}, self._advise)
             self.tools["advise"] = advises
 
     def answer(self, name: str, arguments: Fields) -> tuple[str, bytes | None, bool]:
-        """Words and a picture, and whether the call was refused; then the words say why, and nothing has changed."""
+        """Words, a picture, and whether the call was refused; if so, the words say why, and nothing has changed."""
         with self._one:
             self._calls += 1
             try:
@@ -115,13 +125,15 @@ class Desk:
             return words, jpeg
         shown = ("scores", "break", "balls_on", "nominations", "choices", "in_hand")
         said = [f"{name}: {state[name]}" for name in shown] + [f"on the table: {[*state['positions']]}"]
-        where = f"The origin is at column {view.x:.0f}, row {view.y:.0f}; {view.scale:.1f} pixels a metre."
+        where = (
+            f"The origin is at column {view.x:.0f}, row {view.y:.0f}; {view.scale:.1f} pixels are a metre."
+        )
         return "\n".join([words, *said, f"{where} {_AXES}"]), jpeg
 
     def _strokes(self, fields: Fields) -> tuple[str, None]:
         n, at = integer("n", fields.get("n", LISTED), 1, MOST_LISTED), self._lies()
         found = foresee_strokes(at, self._game.options)
-        head = f"The best {min(n, len(found))} of {len(found)} strokes, by closed forms. {MEANING}"
+        head = f"The best {min(n, len(found))} of {len(found)} strokes. {MEANING}"
         return "\n".join([head, *map(json.dumps, found[:n])]), None
 
     def _lies(self) -> Positions:
@@ -132,8 +144,8 @@ class Desk:
 
     def _play(self, fields: Fields) -> tuple[str, bytes | None]:
         if "number" in fields:
-            for name in set(fields) - {"number"}:
-                raise refuse(name, fields[name], "must be left out with number")
+            if len(fields) > 1:
+                raise refuse_what("number", "one argument of several", "must be given alone")
             fields = take_stroke(fields["number"], self._lies(), self._game.options)
         elif not {"choice", *STROKE} & set(fields):
             raise refuse_what("speed", "nothing", "must be given, with aim or aim_at")
@@ -152,6 +164,19 @@ class Desk:
         assert isinstance(self._game, FreeGame)
         self._lies()
         return self._game.advise(fields.get("n", 3)), None
+
+
+def draw_jpeg(table: Table, positions: Floats, on_table: Bools) -> tuple[bytes, View]:
+    """The JPEG of a table with balls (22, 2) [m], and where its points lie in the picture."""
+    one, view, out = scene(table, positions, on_table), View.of(table, SIZE), io.BytesIO()
+    pygame = pygame_()
+    surface = pygame.image.frombuffer(draw(one, view), SIZE, "RGB")
+    for ball, place in zip(one.ids.tolist(), view(one.positions).tolist(), strict=True):
+        if 0 < ball <= N_REDS:
+            number = typeset(str(ball), (255, 255, 255), 1.6 * one.ball_radius * view.scale, BOLD)
+            surface.blit(number, number.get_rect(center=[round(x) for x in place]))
+    pygame.image.save(surface.subsurface((0, 0, view.width, view.height - view.bar)), out, "table.jpg")
+    return out.getvalue(), view
 
 
 def _check_length(arguments: Fields) -> None:
@@ -187,5 +212,5 @@ def serve(desk: Desk) -> "Server[Any]":
             content.append(types.ImageContent(data=base64.b64encode(jpeg).decode(), mime_type="image/jpeg"))
         return types.CallToolResult(content=content, is_error=failed)
 
-    about = "Snooker by its real physics: look, then play. Units: metres, seconds, radians, from the middle of the table."
+    about = "Snooker with real physics. Look, then play. Metres, seconds, radians; the origin is the middle of the table."
     return Server("snooker_env", instructions=about, on_list_tools=list_tools, on_call_tool=call_tool)

@@ -1,4 +1,4 @@
-"""``python -m snooker_env.play``: a server on this machine's own address, and the browser on its page."""
+"""``python -m snooker_env.play``: a server on this machine's own address, and a browser that opens its page."""
 
 import argparse
 import os
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .server import PlayServer
     from .service import Service
 
-PORT = 8147  # unless another is named: always the same, since a browser keeps scores by the page's address
+PORT = 8147  # always the same by default, since a browser keeps scores by the page's address
 
 
 def _usual_file() -> Path:
@@ -28,36 +28,35 @@ def _usual_file() -> Path:
 
 
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
-    about = """Play snooker in the browser: against yourself or an agent, from any position, with an advisor.
-        Programs can play too, by the protocol in the documentation. The server listens on 127.0.0.1 only, unless
-        --host is given, and requires an address that it prints."""
+    about = """Play snooker in the browser, against an agent or yourself, from any position, with an advisor. Programs can
+        play too (docs: The protocol). The server listens on 127.0.0.1 only, unless --host is given; it prints the address
+        to open."""
     parser = argparse.ArgumentParser(prog="python -m snooker_env.play", description=about)
     add = parser.add_argument
     add("--port", type=int, help=f"port to listen on (default: {PORT} if it is free, else any)")
-    host = """play on a phone and with a friend in the same network: listen on all addresses of this machine, or on
-        ADDRESS, and print the addresses to pass on"""
+    host = """let a phone and a friend in the same network play: listen on all addresses of this machine, or on ADDRESS,
+        and print the addresses to pass on"""
     add("--host", nargs="?", const="", metavar="ADDRESS", help=host)
     add("--no-browser", action="store_true", help="only print the address")
-    agent = """an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or
-        MODULE:CLASS; the first one is your opponent (default: Walter, of five), and your adviser if it knows frames;
-        may be given more than once"""
+    agent = """an agent for the page's menu: a name of snooker_env.players(), a model's .zip, or MODULE:CLASS. The first
+        one is your opponent (default: Walter) and, if it knows frames, your adviser. May be given more than once"""
     add("--agent", action="append", default=[], metavar="NAME", help=agent)
     add_model_options(parser)
-    noise = "execution errors of the agent (default: a professional's, of the usual opponent its own)"
+    noise = "execution errors of the agent (default: a professional's; Walter has his own)"
     add("--noise", choices=list(LEVELS), help=noise)
-    person = "your own file, of your frames and strokes, which are sent nowhere (default: %(default)s)"
+    person = "file that keeps your frames and strokes; nothing is sent anywhere (default: %(default)s)"
     add("--person", type=Path, default=_usual_file(), metavar="FILE", help=person)
     add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
-    add("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
-    cue = "whether rails and balls are in its way (default: %(default)s)"
+    add("--layout", default="break_off", help="layout of the table (default: %(default)s)")
+    cue = "whether rails and balls are in the way of the cue (default: %(default)s)"
     add("--cue", choices=CUES, default="real", help=cue)
-    add("--flight", action="store_true", help="balls fly, and the cue can be raised to 70 degrees")
+    add("--flight", action="store_true", help="let balls fly, and the cue be raised to 70 degrees")
     add("--seed", type=int, help="seed of all random numbers (default: a new one each time)")
     return parser.parse_args(argv)
 
 
 def service_of(args: argparse.Namespace) -> "Service":
-    """The game for the command line's arguments; ValueError or OSError if something is invalid."""
+    """The game that the arguments ask for; ValueError or OSError if something is invalid."""
     import numpy as np
 
     from ..players.resolver import players_of
@@ -85,23 +84,18 @@ def service_of(args: argparse.Namespace) -> "Service":
 
 
 def warm_up(service: "Service") -> None:
-    """Compile what a stroke and a question need, so that nobody waits in the middle of a game."""
-    from ..advice import CueStroke
-    from . import questions
-    from .report import report
+    """Compile the kernels of strokes and questions, so that nobody waits in the middle of a game."""
+    from .routes import GET, POST, answer
 
-    with service.asking() as session:
-        if session.frame.phase == "stroke":
-            stroke = CueStroke(speed=2.0, aim=1.0)
-            questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
-            for name in {service.seats.advisers(session.practice)[0], service.seats.who[1]}:
-                service.seats.decide(name, session)
-    with service.reading():
-        report(service)
+    if service.session.frame.phase == "stroke":
+        answer(service, POST["destinations"], {"speed": 2.0, "aim": 1.0, "samples": 16})
+        for name in {service.seats.advisers(service.session.practice)[0], service.seats.who[1]}:
+            service.seats.decide(name, service.session.twin())
+    answer(service, GET["state"], {})
 
 
 def _server(service: "Service", port: int | None, host: str | None = None) -> "PlayServer":
-    """The server on a port; by default on ``PORT``, where a browser finds again what it has kept, unless it is taken."""
+    """The server on a port; by default ``PORT``, where a browser finds its settings again, or any if that is taken."""
     from .server import PlayServer
 
     if port is not None:
@@ -116,17 +110,16 @@ def _server(service: "Service", port: int | None, host: str | None = None) -> "P
 
 def _invite(server: "PlayServer") -> None:
     """Print the addresses for other devices, and the one for the host's own phone as a QR code."""
-    print("In the same network, unencrypted, so pass them on in one that you trust:\n")
+    print("Addresses for the same network. Nothing is encrypted, so use a network that you trust:\n")
     for one, words in zip(server.service.invites, ("you, on a phone", "a friend", "watchers"), strict=True):
-        print(*(f"    {words:16} {address}" for address in one.addresses), sep="\n")
+        print(*(f"    {words:16} {address}" for address in one["addresses"]), sep="\n")
     if sys.stdout.isatty():
-        rows = server.service.invites[0].drawn.splitlines()
+        rows = server.service.invites[0]["drawn"].splitlines()
         print("", *(f"\x1b[97;40m{row}\x1b[0m" for row in rows), sep="\n")
     print()
 
 
 def _read(path: Path) -> dict[str, Any]:
-    """The JSON object in a file."""
     read = read_json(path, "position")
     if not isinstance(read, dict):
         raise refuse_what("position", str(path), "must hold a JSON object")
@@ -152,9 +145,12 @@ def main(argv: list[str] | None = None) -> int:
         print(f"Snooker is played at\n\n    {server.address}\n")
         if args.host is not None:
             _invite(server)
-        print("Programs play at its api/ (docs: The protocol). Ctrl-C ends it and the game.", flush=True)
+        print(
+            "Programs play at its api/ (docs: The protocol). Ctrl-C stops the server and the game.",
+            flush=True,
+        )
         if not args.no_browser and not webbrowser.open(server.address):
-            print(f"No browser was found: open {server.address} in one.", flush=True)
+            print(f"No browser was found. Open {server.address} in one.", flush=True)
         server.serve_forever(poll_interval=0.2)
     except KeyboardInterrupt:
         print()

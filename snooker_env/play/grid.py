@@ -87,7 +87,6 @@ class Grid:
 
 
 def is_sound(tables: Frames) -> bool:
-    """Whether all balls may lie where they lie."""
     try:
         tables.rules.table.check(tables.positions[0], tables.rules.physics.R, on_table=tables.on_table[0])
     except ValueError:

@@ -59,7 +59,6 @@ class Digits:
         return value
 
     def one_of(self, values: Sequence[T], value: T | None = None) -> T:
-        """One of some values."""
         known = 0 if value is None or self.reads else values.index(value)
         return values[self.within(0, len(values) - 1, known)]
 
@@ -74,7 +73,7 @@ class Told(Grid):
         super().settle(tables, before)
         here = _sum(tables.positions[0], tables.on_table[0], tables.frame(0))
         if self._digits.within(0, CHECK - 1) != here or not is_sound(tables):
-            allowed = "must be as in the link: another processor computes otherwise, or the link was changed"
+            allowed = "must be as in the link: another processor differs, or the link was changed"
             raise refuse_what("what it leaves", "other places or scores here", allowed)
 
     def put(self, tables: Frames, ball: int) -> None:
@@ -125,14 +124,12 @@ def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
             try:
                 asked = _code_act(digits, session.frame, first, {})
                 if agreed and _setting(asked, first, session.frame) != _setting({}, first, session.frame):
-                    raise refuse(
-                        "noise", asked["noise"], "must stay as it was at the beginning, as the cue must"
-                    )
+                    raise refuse("noise", asked["noise"], "must stay as at the beginning, as must the cue")
                 _do(session, asked)
             except (ValueError, SimulationError) as error:
                 raise ValueError(f"link, stroke {len(session.strokes) + 1}: {error}") from None
         if digits.number:
-            raise refuse_what("link", "more behind its last act", "must end with it")
+            raise refuse_what("link", "more after its last act", "must end with it")
         session.noise, session.practice, session.cue = list(first["noise"]), first["practice"], first["cue"]
         session.grid = Grid()
 
@@ -143,9 +140,7 @@ def check_course(played: Sequence[Act], acts: Sequence[Act]) -> None:
         return  # another game
     same = played[0].state == acts[0].state and len(played) <= len(acts)
     if not same or any(one.asked != other.asked for one, other in zip(played[1:], acts[1:], strict=False)):
-        raise refuse_what(
-            "link", "an older or another course of this game", "must begin with what was played of it here"
-        )
+        raise refuse_what("link", "an older or different game", "must begin with what was played of it here")
 
 
 def _code_act(digits: Digits, frame: Frame, first: dict[str, Any], asked: dict[str, Any]) -> dict[str, Any]:
@@ -179,7 +174,6 @@ def _setting(asked: dict[str, Any], first: dict[str, Any], frame: Frame) -> tupl
 
 
 def _do(session: Session, asked: dict[str, Any]) -> None:
-    """Do what was asked for."""
     if "choice" in asked:
         session.choose(asked["choice"])
     elif "declare" in asked:
@@ -238,7 +232,7 @@ def _read_link(session: Session, link: object) -> tuple[dict[str, Any], Digits]:
         allowed = f"must be {__version__}, as here: both players need the same version of snooker_env"
         raise refuse("version", ".".join(map(str, whole[1:4])), allowed)
     if whole[:HEAD] != own:
-        raise refuse_what("physics", "other constants", "must be as here: were both begun with --flight?")
+        raise refuse_what("physics", "other constants", "must be as here: do both use --flight?")
     unpack = zlib.decompressobj(wbits=-15, zdict=_usual())
     try:
         first = strict_json(unpack.decompress(rest[:length], MOST_TABLE))

@@ -4,8 +4,7 @@ The file is read before each use and written whole, so two servers may share it.
 never written over."""
 
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from datetime import date
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -36,38 +35,27 @@ class Person:
             kept = strict_json(read_bytes(self.path, MOST_JSON)) if self.path.exists() else dict(EMPTY)
             _check(kept)
         except (ValueError, TypeError, KeyError, AttributeError) as error:
-            why = f"must be a person's file; move it away, or name another with --person ({error})"
+            why = f"must be a person's file ({error}); move this one away, or name another with --person"
             raise refuse("person", str(self.path), why) from None
         return kept
 
-    def change(self, how: Callable[[dict[str, Any]], object]) -> None:
-        """Change what the file holds, check it, and write it whole."""
+    def change(self, how: Callable[[dict[str, Any]], object] | None) -> None:
+        """Change what the file holds, check it, and write it whole; None removes the file."""
         kept = self.read()
-        how(kept)
-        _check(kept)
-        with self._written():
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            write_atomic(self.path, json.dumps(kept, allow_nan=False) + "\n")
-
-    def delete(self) -> None:
-        """Remove the file, unless it is not a person's."""
-        self.read()
-        with self._written():
-            self.path.unlink(missing_ok=True)
-
-    @contextmanager
-    def _written(self) -> Iterator[None]:
-        """ValueError for a file that cannot be written."""
+        if how is not None:
+            how(kept)
+            _check(kept)
         try:
-            yield
+            if how is None:
+                self.path.unlink(missing_ok=True)
+            else:
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+                write_atomic(self.path, json.dumps(kept, allow_nan=False) + "\n")
         except OSError as error:
-            raise refuse(
-                "person", str(self.path), f"must be a file that can be written ({error.strerror})"
-            ) from None
+            allowed = f"must be a file that can be written ({error.strerror})"
+            raise refuse("person", str(self.path), allowed) from None
 
     def keep(self, frame: dict[str, Any], strokes: list[dict[str, Any]]) -> None:
-        """Keep what ``tell_frame`` told."""
-
         def add(kept: dict[str, Any]) -> None:
             kept["frames"] = [*kept["frames"], frame]
             kept["strokes"] = [*kept["strokes"], *strokes][-MOST_STROKES:]
@@ -86,7 +74,7 @@ def tell_frame(session: Session, seat: int, opponent: str, *, same: bool) -> Kep
     fair frames against a level; ``same``: whether nobody else sat there before its end."""
     sides, level = (seat, 1 - seat), BY_NAME.get(opponent)
     played = [(session.acts[k].player, session.acts[k].asked) for k in session.strokes]
-    usual = (session.game, session.layout, session.cue) == ("snooker", "break_off", "real")
+    usual = (session.game, session.options.layout, session.cue) == ("snooker", "break_off", "real")
     usual = usual and all(one["cue"] == "real" and not one["practice"] for _, one in played)
     own = level is not None and all(
         one["noise"] == (RATED_WITH if player == seat else level.noise) for player, one in played

@@ -16,10 +16,11 @@ from ..replays.referee_words import ERRORS, errors_words, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .levels import LEVELS
-from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import LINKED, PERSON, Service
-from .session import Act, Session
+from .session import Act
 
+MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
+MOST_SUGGESTIONS = 10
 STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
 
 
@@ -44,13 +45,13 @@ def scene(service: Service) -> dict[str, Any]:
         "cues": list(CUES),
         "games": list(RULES),
         "me": service.me,
-        "invites": [one._asdict() for one in service.invites] if service.me == PERSON else [],
+        "invites": service.invites if service.me == PERSON else [],
     }
 
 
 _DECIDED = {
     "play": "played on",
-    "play_again": "asked for another stroke from there",
+    "play_again": "asked the opponent to play again",
     "replace": "had the balls put back",
     "anywhere": "took the cue ball in hand",
 }
@@ -98,7 +99,6 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
 
 
 def report(service: Service) -> dict[str, Any]:
-    """The current state of the game."""
     session, seats, labels = service.session, service.seats, service.labels
     frame, act = session.frame, session.acts[session.at - 1]
     before = session.acts[session.at - 2] if session.at > 1 else None
@@ -110,6 +110,8 @@ def report(service: Service) -> dict[str, Any]:
     of_session += ["breaks", "hints", "undone"]
     state |= turn | {name: getattr(session, name) for name in of_session}
     state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
+    by_link, players = host and LINKED in seats.who, [session.acts[k].player for k in session.strokes]
+    visit = max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
     state |= {
         "players": seats.seen_by(service.me),
         "labels": list(labels),
@@ -119,20 +121,17 @@ def report(service: Service) -> dict[str, Any]:
         "choice_wins": service.choice_chances(session),
         "paused": host and service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
-        "undo": host and session.at > 1 and LINKED not in seats.who,
+        "undo": host and session.at > 1 and not by_link,
         "redo": host and session.at < len(session.acts),
-        "by_link": {"seat": seats.who.index(PERSON), "visit": _last_visit(session)}
-        if host and LINKED in seats.who
-        else None,
+        "by_link": {"seat": seats.who.index(PERSON), "visit": visit} if by_link else None,
     }
     if service.agent_to_play():
-        waits = (
-            "waits: press Continue." if state["paused"] else "waits." if service.paused else "is thinking."
-        )
+        waits = "is waiting: press Continue." if host else "is waiting."
+        waits = waits if service.paused else "is thinking."
         state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
     if host and service.friend_to_play:
         state["words"] = "It is your friend's turn: send the link."
-    elif host and LINKED in seats.who and act.what == "new":
+    elif by_link and act.what == "new":
         state["last"] = "New frame. Play first, then send your friend the link."
     fair = act.played is not None and not (act.played.fouls or act.played.points)
     if fair and state["snookered"]:
@@ -143,12 +142,6 @@ def report(service: Service) -> dict[str, Any]:
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
     said += [state["luck"]] * bool(state["luck"])
     return state | {"text": say_table(state, lines, said)}
-
-
-def _last_visit(session: Session) -> int:
-    """How many strokes were played before the last visit."""
-    players = [session.acts[k].player for k in session.strokes]
-    return max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
 
 
 def _say_chance(state: dict[str, Any]) -> list[str]:

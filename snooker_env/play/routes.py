@@ -5,27 +5,33 @@ A handler takes the checked fields of a request and returns JSON types; a ValueE
 import re
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple
+from math import atan2
+from typing import Any, NamedTuple, cast
+
+import numpy as np
 
 from .._lib.check import choice, integer, number, refuse, truth
-from ..advice import CueStroke, coach
+from .._lib.types import CueKind
+from ..advice import CueStroke, Suggestion, advise, coach, destinations
 from ..advice.review import SAMPLES, read_frame
-from ..game.balls import CUE
+from ..game.balls import CUE, NAMES
 from ..game.fouls import AUTO
-from ..game.frame import MOST_BREAK
+from ..game.frame import CHOICES
+from ..geometry import POCKETS
+from ..physics.engine import EventKind
 from ..planning.position import Position
 from ..players.requests import STROKE, read_colour, read_place, read_stroke
+from ..render.scene import trace_paths
 from ..replays import Replay
+from ..replays.encode import pack
+from ..simulation.shot import Shot
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
-from . import questions
 from .link import check_course, open_link, write_link
-from .person import Person
-from .report import report, scene, stroke_report, table_after
-from .reviewing import Reviewing
-from .service import LINKED, Service, StaleError
-from .session import Session
+from .report import MOST_SAMPLES, MOST_SUGGESTIONS, report, scene, stroke_report, table_after
+from .service import LINKED, Reviewing, Service, StaleError
+from .session import Session, read_levels
 
 Handler = Callable[[Service, dict[str, Any]], Any]
 
@@ -52,10 +58,9 @@ def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def take_stroke(session: Session, fields: dict[str, Any]) -> CueStroke:
-    """The stroke in a request; the cue ball is placed first."""
     if "place" in fields:
         session.place(*read_place("place", fields["place"]))
-    return read_stroke(fields, session.as_visit(), {"cue": session.cue})
+    return read_stroke(fields, session.as_visit(), session.options)
 
 
 def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -94,7 +99,7 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
         free = truth("free_ball", fields.get("free_ball", False))
         position = position_of(fields.get("position"))
         with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
-            session.set_up(position, scores=(one, other), striker=striker, free_ball=free, check=check)
+            session.set_up(position, scores=(one, other), striker=striker, free_ball=free)
     except ValueError as error:
         if not check:
             raise
@@ -102,18 +107,12 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     return {"sound": True, "error": None} if check else None
 
 
-def position_of(fields: object) -> Position:
-    """A ``Position`` from JSON types; ValueError, with the name of the ball or field, if it is invalid."""
-    names = tuple(Position.__dataclass_fields__)
-    if not isinstance(fields, dict):
-        form = '{"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}'
-        raise refuse("position", fields, f"must be an object: {form}")
-    for name in fields:
-        choice("field of position", name, [n for n in names if n not in ("table", "over")])
-    points: dict[str, Any] = {"points": integer("points", fields.get("points", 0), 0, MOST_BREAK)}
-    if not isinstance(fields.get("reds", []), list):
-        raise refuse("reds", fields["reds"], "must be a list of places [x, y]")
-    return Position(**fields | points)
+def position_of(fields: Any) -> Position:
+    """The ``Position`` of JSON types; ValueError names the ball or the field that is invalid."""
+    position = Position.from_dict(fields)
+    if position.over:
+        raise refuse("over", True, "must be false: there is no stroke to play")
+    return position
 
 
 def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
@@ -126,24 +125,14 @@ def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bo
 
 
 def _new(service: Service, fields: dict[str, Any]) -> None:
-    kinds = {
-        "layout": str,
-        "seed": int,
-        "breaker": int,
-        "game": str,
-        "best_of": int,
-        "next": bool,
-        "by_link": bool,
-    }
-    for name, kind in kinds.items():
-        if name in fields and type(fields[name]) is not kind:
-            raise refuse(name, fields[name], f"must be of type {kind.__name__}")
-    by_link = fields.pop("by_link", False)
-    if by_link and not (fields.get("best_of", 1) == 1 and "next" not in fields):
+    by_link, follows = (truth(name, fields.pop(name, False)) for name in ("by_link", "next"))
+    if not isinstance(fields.get("layout", ""), str):
+        raise refuse("layout", fields["layout"], "must be the name of a layout")
+    if by_link and (follows or fields.get("best_of", 1) != 1):
         raise refuse("by_link", True, "must be left out in a match: a link holds one frame")
     with service.acting(anew=True) as session:
         noise = list(session.noise)
-        if fields.pop("next", False):
+        if follows:
             for name in set(fields) - {"seed"}:
                 raise refuse(name, fields[name], "must be left out with next: the match goes on as it is")
             session.next_frame(**fields)
@@ -157,16 +146,9 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
-    noise, practice, cue = fields.get("noise"), fields.get("practice"), fields.get("cue")
-    if noise is not None:
-        if not isinstance(noise, list) or len(noise) != 2:
-            raise refuse("noise", noise, "must be two names")
-        for k, name in enumerate(noise):
-            choice(f"noise[{k}]", name, LEVELS)
-    if practice is not None:
-        truth("practice", practice)
-    if cue is not None:
-        choice("cue", cue, CUES)
+    noise = read_levels("noise", fields["noise"]) if "noise" in fields else None
+    practice = truth("practice", fields["practice"]) if "practice" in fields else None
+    cue = choice("cue", fields["cue"], CUES) if "cue" in fields else None
     with service.acting(any_turn=True, anew="players" in fields) as session:
         if "players" in fields:
             seats, own = service.seats, service.seats.errors_of_host(session)
@@ -179,7 +161,7 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
-        session.cue = session.cue if cue is None else cue
+        session.cue = cast(CueKind, cue) or session.cue
 
 
 def _concede(service: Service, fields: dict[str, Any]) -> None:
@@ -187,14 +169,9 @@ def _concede(service: Service, fields: dict[str, Any]) -> None:
         session.concede()
 
 
-def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _pass_on(service: Service, fields: dict[str, Any], form: Callable[[Session], Any]) -> Any:
     with service.reading() as session:
-        return session.save()
-
-
-def _link(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    with service.reading() as session:
-        return {"link": write_link(session)}
+        return form(session)
 
 
 def _load(service: Service, fields: dict[str, Any]) -> None:
@@ -220,29 +197,74 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    n = integer("n", fields.get("n", 5), 1, questions.MOST_SUGGESTIONS)
+    n, seats = integer("n", fields.get("n", 5), 1, MOST_SUGGESTIONS), service.seats
     with service.asking(_revision(fields)) as session:
-        first = service.seats.advisers(session.practice)[0]
-        agent = choice("agent", fields.get("agent", first), service.seats.players)
-        errors = _errors(fields, 200, service.seats.level(session))
-        foul = session.frame.phase == "choice"
+        agent = choice("agent", fields.get("agent", seats.advisers(session.practice)[0]), seats.players)
+        errors = _errors(fields, 200, seats.level(session))
         session.noise[:] = [errors["noise"]] * 2  # the question's own: nothing is played
-        decided = questions.decision(session, service, agent) if foul else {"choice": None, "choices": []}
-        if foul:
+        answer: dict[str, Any] = {"choice": None, "choices": []}
+        if session.frame.phase == "choice":
+            answer["choice"] = CHOICES[int(seats.decide(agent, session).decision[0])]
+            wins, choices = service.choice_chances(session, errors["noise"]), session.frame.choices
+            answer["choices"] = [{"choice": x, "win": win} for x, win in zip(choices, wins, strict=True)]
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
-        answer = decided | questions.suggestions(session, service.seats, agent=agent, n=n, **errors)
+        at = session.as_visit() if session.practice else session.position  # alone at the table nobody wins
+        advice = advise(at, agent=seats.players[agent], n=n, options=session.options, **errors)
+        answer |= {"agent": agent, "order": advice.order, "noise": advice.noise}
+        answer["suggestions"] = [_draw_suggestion(session, one) for one in advice]
     with service.reading() as now:
         seat = session.frame.striker
         shown = now.begun == session.begun and _revision(fields) in (None, service.revision)
-        if shown and not now.practice and service.seats.who[seat] == service.me:
+        if shown and not now.practice and seats.who[seat] == service.me:
             now.hints[seat] += 1
     return answer
+
+
+def _draw_suggestion(session: Session, one: Suggestion) -> dict[str, Any]:
+    """A suggestion in words, data and paths."""
+    names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
+    names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
+    return one.to_dict() | names | _draw(session, one.stroke)
+
+
+def _play_exactly(session: Session, stroke: CueStroke) -> Shot:
+    """The stroke without execution errors, on a copy of the table."""
+    twin = session.twin()
+    twin.noise = ["none", "none"]
+    if stroke.place is not None:
+        twin.place(*stroke.place)
+    played = twin.play(stroke).played
+    assert played is not None
+    return played.shot
+
+
+def _hits(shot: Shot) -> Any:
+    """The events in which the cue ball met a ball."""
+    return shot.events[(shot.events["kind"] == EventKind.BALL_BALL) & (shot.events["i"] == CUE)]
+
+
+def _draw(session: Session, stroke: CueStroke) -> dict[str, Any]:
+    return _paths(_play_exactly(session, stroke))
+
+
+def _paths(shot: Shot) -> dict[str, Any]:
+    """Paths of a shot's balls [m], rounded to 0.1 mm; the ball struck first, the pots and the duration."""
+    hits, lines = _hits(shot), trace_paths(shot, range(len(shot.positions)), step=0.04)
+    return {
+        "paths": {str(ball): np.round(points, 4).tolist() for ball, (points, _) in lines.items()},
+        "first": NAMES[hits["j"][0]] if len(hits) else None,
+        "pots": [[NAMES[ball], POCKETS[shot.potted[ball]]] for ball in np.flatnonzero(shot.potted >= 0)],
+        "duration": shot.duration,
+    }
 
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
         errors = _errors(fields, 500, session.noise[session.frame.striker])
-        return questions.scatter(session, take_stroke(session, fields), **errors)
+        stroke = take_stroke(session, fields)
+        stops = destinations(session.as_visit(), stroke, options=session.options, **errors)
+        places = {name: pack(getattr(stops, name), "f4") for name in ("cue", "ball")}
+        return _draw(session, stroke) | vars(stops) | places
 
 
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -250,41 +272,38 @@ def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         twin = session.twin()
     stroke = take_stroke(twin, fields)
     room = twin.room(stroke).to_dict()
-    return room | questions.leaving(twin, stroke) if twin.frame.phase == "stroke" else room
+    if twin.frame.phase != "stroke":
+        return room
+    shot, first, heads = _play_exactly(twin, stroke), None, None
+    for at, ball in _hits(shot)[["time", "j"]][:1].tolist():
+        first, heads = NAMES[ball], atan2(*shot.at(at)[1][ball, 1::-1].tolist())
+    return room | {"first": first, "heads": heads}
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
-    """The revision that a request is about; None for the current one."""
     return integer("revision", fields["revision"], 0, MOST) if "revision" in fields else None
 
 
 def _errors(fields: dict[str, Any], samples: int, noise: str) -> dict[str, Any]:
     """Noise, samples and seed of a question; ``noise``, ``samples``: unless they are given."""
     noise = choice("noise", fields.get("noise", noise), LEVELS)
-    samples = integer("samples", fields.get("samples", samples), 1, questions.MOST_SAMPLES)
+    samples = integer("samples", fields.get("samples", samples), 1, MOST_SAMPLES)
     return {"noise": noise, "samples": samples, "seed": integer("seed", fields.get("seed", 0), 0, MOST)}
-
-
-def _own(service: Service) -> Person:
-    """The person's file."""
-    if service.person is None:
-        raise refuse("person", None, "must be named: this server keeps no person's file")
-    return service.person
 
 
 def _person(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     """What the file holds, and where it lies; first a name is given, or the file deleted."""
     with service.reading():
-        person = _own(service)
+        person = service.own_file()
         if "name" in fields:
             person.change(lambda kept: kept.update(name=fields["name"]))
         if truth("delete", fields.get("delete", False)):
-            person.delete()
+            person.change(None)
         return person.read() | {"path": str(person.path)}
 
 
 def _coach(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    strokes = _own(service).strokes()
+    strokes = service.own_file().strokes()
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: play a frame against one of the five first")
     with service.asking():
@@ -314,23 +333,15 @@ def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
             advisers = service.seats.advisers(practice=False)
             agent = service.seats.players[choice("agent", fields.get("agent", advisers[0]), advisers)]
             people = [seat for seat in (0, 1) if not service.seats.is_agent(seat)] or (0, 1)
-            errors, frame = (
-                _errors(fields, SAMPLES, service.seats.level(session)),
-                _replay(service, {}, Replay.to_dict),
-            )
-            service.reviewing = Reviewing(session, read_frame(frame), people, agent=agent, **errors)
-    return _reviewing(service).report()
-
-
-def _reviewing(service: Service) -> Reviewing:
-    if service.reviewing is None or service.reviewing.begun != service.session.begun:
-        raise refuse("review", None, "must be begun first: this game has not been reviewed")
-    return service.reviewing
+            frame = read_frame(_replay(service, {}, Replay.to_dict))
+            errors = _errors(fields, SAMPLES, service.seats.level(session))
+            service.reviewing = Reviewing(session, frame, people, agent=agent, **errors)
+    return service.own_review().report()
 
 
 def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     """The review so far, or of a stroke its table, and both strokes drawn."""
-    reviewing = _reviewing(service)
+    reviewing = service.own_review()
     if "stroke" not in fields:
         return reviewing.report()
     k, one, chance = reviewing.act_of(fields.get("stroke"))
@@ -339,15 +350,14 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking() as session:
         session.cue = act.played.cue_kind
         session.go_to(reviewing.acts, k)
-        played, best = questions.paths(act.played.shot), questions.draw(session, one.best.stroke)
+        played, best = _paths(act.played.shot), _draw(session, one.best.stroke)
         best["paths"] = {k: best["paths"][k] for k in map(str, (CUE, one.best.ball)) if k in best["paths"]}
         return {"played": played, "best": best} | {"table": table_after(before, service.labels, chance)}
 
 
 def _again(service: Service, fields: dict[str, Any]) -> None:
-    """Put the game back to before a stroke that was reviewed."""
     with service.acting(pause=True, any_turn=True) as session:
-        reviewing = _reviewing(service)
+        reviewing = service.own_review()
         session.go_to(reviewing.acts, reviewing.act_of(fields.get("stroke"))[0])
         session.undone += 1
 
@@ -376,8 +386,9 @@ POST: dict[str, Route] = {
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede, friend=True),
     "sit": Route(lambda service, fields: service.sit_down(), friend=True),
-    "link": Route(_link),  # it holds the random stream: the host's alone
-    "save": Route(_save),
+    # both hold the random stream: the host's alone
+    "link": Route(partial(_pass_on, form=lambda session: {"link": write_link(session)})),
+    "save": Route(partial(_pass_on, form=Session.save)),
     "load": Route(_load, ("saved", "link", "seat")),
     "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
     "reviewed": Route(_reviewed, ("stroke",)),

@@ -3,10 +3,11 @@
 Every request is checked before anything is done: the token in its path, in constant time, and what its holder may do;
 ``Host``, and the host of a target that has one, so that no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so
 that no other page can send requests; method, path, length, type and form of the body. Connections are bounded in number
-and time, and wrong tokens are slowed down. Every error is answered by one JSON object."""
+and time. Every error is answered by one JSON object."""
 
 import errno
 import hmac
+import io
 import json
 import re
 import secrets
@@ -18,16 +19,16 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from ipaddress import IPv4Address
 from pathlib import Path
 from socketserver import TCPServer
-from time import monotonic, sleep
+from time import monotonic
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
 from .._lib.check import refuse
 from .._lib.files import strict_json
+from .._lib.install import missing
 from ..players.requests import read_object
 from ..replays.web import table_js
 from ..simulation import SimulationError
-from .invites import addresses_here, invite
 from .routes import GET, POST, answer, parts_of
 from .service import FRIEND, PERSON, WATCHER, BusyError, Service
 
@@ -40,10 +41,8 @@ MOST_BODY = 131_072  # largest body of a request [bytes]; a replay has about 200
 IDLE = 20.0  # how long a connection waits for the next byte, and for a whole request [s]
 MOST_AT_ONCE = 64
 """Largest number of connections; a browser keeps six. One that waits gives way to a further one."""
-MOST_EACH = 20  # of one client, where others than this machine are served
-FREE, DELAY, FORGET = 10, 0.5, 60.0
-"""So many wrong tokens of a client are answered at once, further ones after DELAY [s], until it shows none for FORGET [s]."""
-MOST_KNOWN = 1024  # clients with wrong tokens that are remembered
+ROUTES = ("192.0.2.1", "10.255.255.254", "172.31.255.254", "192.168.255.254")
+"""Where routes are looked up to find this machine's own addresses; nothing is sent there."""
 LOCAL = ("127.0.0.1", "localhost", "[::1]")
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
 _HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"
@@ -72,8 +71,6 @@ class RefusedError(Exception):
 
 
 class PlayHandler(BaseHTTPRequestHandler):
-    """One connection."""
-
     server: "PlayServer"
     who: str  # whose token the request has shown
     protocol_version = default_request_version = "HTTP/1.1"
@@ -119,8 +116,9 @@ class PlayHandler(BaseHTTPRequestHandler):
                 self._file(name)
                 return
             route = (GET if self.command == "GET" else POST)[name[4:]]
-            game = self.server.service.asked_by(self.who)
-            reply = answer(game, route, query if self.command == "GET" else self._body())
+            fields = query if self.command == "GET" else self._body()
+            with self.server.service.asked_by(self.who) as game:
+                reply = answer(game, route, fields)
             if isinstance(reply, str):
                 more = {"Content-Disposition": 'attachment; filename="replay.html"'}
                 self._send(200, reply.encode(), "text/html", more)
@@ -157,21 +155,18 @@ class PlayHandler(BaseHTTPRequestHandler):
         if head.get("Sec-Fetch-Site", "none").lower() not in ("none", "same-origin"):
             raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
         token, _, name = parts.path.removeprefix("/").partition("/")
-        # the printed address ends with "/", and clients often append "/api/state"
-        name = re.sub("^/+(?=api/)", "", name)
         self.who = self.server.whose(token if parts.path.startswith("/") else "")
         if not self.who:
-            sleep(self.server.delay(self.client_address[0]))
             raise self._last(403, "the address must hold this server's token: open the one that it printed")
         self.server.waiting.pop(self.connection, None)
         if self.command not in ("GET", "POST"):
             raise self._last(405, "the method must be GET or POST", Allow="GET, POST")
-        methods = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
-        if name not in methods[self.command]:
-            other = "GET" if self.command == "POST" else "POST"
-            if name in methods[other]:
-                raise self._last(405, f"the method must be {other}", Allow=other)
-            raise self._last(404, "there is nothing of that name")
+        known = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
+        if name not in known[self.command]:
+            other = next((method for method, names in known.items() if name in names), None)
+            if other is None:
+                raise self._last(404, "there is nothing of that name")
+            raise self._last(405, f"the method must be {other}", Allow=other)
         friendly = self.who == FRIEND and self.command == "POST" and POST[name[4:]].friend
         if self.command == "POST" and self.who != PERSON and not friendly:
             raise self._last(403, "the host alone may do this")
@@ -245,11 +240,10 @@ class PlayHandler(BaseHTTPRequestHandler):
 
     def _send(self, status: int, body: bytes, kind: str, more: dict[str, str] | None = None) -> None:
         self.send_response(status)
-        about = {"Content-Type": kind, "Content-Length": str(len(body))}
-        own = (
-            {"Cross-Origin-Opener-Policy": "same-origin"} if self._is_local() else {}
-        )  # others' addresses lack TLS
-        for name, value in (HEADERS | own | (more or {}) | about).items():
+        about = {"Content-Type": kind, "Content-Length": str(len(body)), **(more or {})}
+        if self._is_local():  # others' addresses lack TLS
+            about["Cross-Origin-Opener-Policy"] = "same-origin"
+        for name, value in (HEADERS | about).items():
             self.send_header(name, value)
         if self.close_connection:
             self.send_header("Connection", "close")
@@ -275,11 +269,7 @@ class PlayServer(ThreadingHTTPServer):
         doors = [PERSON] if host is None else [PERSON, FRIEND, WATCHER]
         self.service, self.tokens = service, {who: secrets.token_urlsafe(24) for who in doors}
         self.token: str = self.tokens[PERSON]
-        self._most = MOST_AT_ONCE if host is None else MOST_EACH
         self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
-        self._clients: dict[socket.socket, str] = {}  # of each connection
-        self._wrong: dict[str, tuple[int, float]] = {}  # wrong tokens of a client, and when the last one came
-        self._lock = threading.Lock()
         self.waiting: dict[socket.socket, tuple[bool, float]] = {}
         """The connections without a whole request that shows a token: whether one did so before, and since when."""
         everywhere = self.server_name == "0.0.0.0"
@@ -288,7 +278,7 @@ class PlayServer(ThreadingHTTPServer):
         """Address of the host's page; the protocol is at its ``api/``."""
         if host is not None:
             found = (addresses_here() if everywhere else []) or [here]
-            service.invites = [invite(who, [self._address(who, at) for at in found]) for who in doors]
+            service.invites = [_invite(who, [self._address(who, at) for at in found]) for who in doors]
 
     def _address(self, who: str, at: str) -> str:
         return f"http://{at}:{self.server_port}/{self.tokens[who]}/"
@@ -303,17 +293,6 @@ class PlayServer(ThreadingHTTPServer):
         same = {who: hmac.compare_digest(token.encode(), own.encode()) for who, own in self.tokens.items()}
         return next((who for who, is_same in same.items() if is_same), "")
 
-    def delay(self, client: str) -> float:
-        """How long a client waits that has shown one more wrong token [s]."""
-        now = monotonic()
-        with self._lock:
-            count, last = self._wrong.pop(client, (0, now))
-            count = 1 if now - last > FORGET else count + 1
-            self._wrong[client] = count, now
-            if len(self._wrong) > MOST_KNOWN:
-                del self._wrong[next(iter(self._wrong))]
-        return DELAY if count > FREE else 0.0
-
     def service_actions(self) -> None:
         """Close the connections that have sent no whole request for too long, slowly or not at all."""
         for one, (_, since) in self.waiting.copy().items():
@@ -322,14 +301,13 @@ class PlayServer(ThreadingHTTPServer):
 
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection in its own thread, unless there are too many that do not wait."""
-        theirs = list(self._clients.copy().values()).count(client_address[0])
-        if theirs >= self._most or not (self._free.acquire(blocking=False) or self._make_room()):
+        if not (self._free.acquire(blocking=False) or self._make_room()):
             with suppress(OSError):
                 request.settimeout(1.0)
                 request.sendall(FULL)
             self.shutdown_request(request)
             return
-        self.waiting[request], self._clients[request] = (False, monotonic()), client_address[0]
+        self.waiting[request] = False, monotonic()
         super().process_request(request, client_address)
 
     def _make_room(self) -> bool:
@@ -345,13 +323,36 @@ class PlayServer(ThreadingHTTPServer):
             super().process_request_thread(request, client_address)
         finally:
             self.waiting.pop(request, None)
-            self._clients.pop(request, None)
             self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Report errors, except for connections that were cut."""
         if not isinstance(sys.exc_info()[1], OSError):
             super().handle_error(request, client_address)
+
+
+def _invite(who: str, addresses: list[str]) -> dict[str, Any]:
+    """What brings another device to the table: ``who`` it then is, the ``addresses``, and the QR code of the first one, as the
+    source of an image (``qr``) and for a terminal, white on black (``drawn``; without segno how to install it)."""
+    try:
+        import segno
+    except ImportError:
+        drawn = str(missing("The QR code needs segno", "play"))
+        return {"who": who, "addresses": addresses, "qr": "", "drawn": drawn}
+    code, text = segno.make_qr(addresses[0]), io.StringIO()
+    code.terminal(text, border=2, compact=True)
+    qr = code.svg_data_uri(border=3, light="#fff", omitsize=True)
+    return {"who": who, "addresses": addresses, "qr": qr, "drawn": text.getvalue()}
+
+
+def addresses_here() -> list[str]:
+    """This machine's IPv4 addresses in its networks, that of the default route first."""
+    found = []
+    for far in ROUTES:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one, suppress(OSError):
+            one.connect((far, 9))  # of a datagram's socket this only looks up the route
+            found.append(one.getsockname()[0])
+    return [name for name in dict.fromkeys(found) if not name.startswith("127.")]
 
 
 def _cut(connection: socket.socket) -> None:

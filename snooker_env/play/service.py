@@ -6,6 +6,7 @@ has seen. An agent's stroke is dropped if the game has changed in the meantime."
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import partial
 from time import monotonic
 from typing import Any, cast
@@ -15,7 +16,7 @@ import numpy as np
 from .._lib.check import choice, refuse, refuse_what
 from .._lib.types import NoiseName
 from ..advice.ask import AGENT
-from ..advice.review import common_noise
+from ..advice.review import FrameRecord, Review, Reviewed, common_noise, go_through
 from ..game.fouls import AUTO
 from ..game.frame import CHOICES
 from ..game.frame_columns import STROKES
@@ -26,15 +27,14 @@ from ..replays.chances import ChanceJudge, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS
-from .invites import Invite
 from .levels import BY_NAME
 from .person import Person, tell_frame
-from .reviewing import Reviewing
 from .session import DECLINED, Act, Session
 
 PERSON = "person"  # who sits at the page of the host
 FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
 LINKED = "friend_by_link"  # who plays elsewhere, from the link of the game
+_ASKING: ContextVar[str] = ContextVar("who asks", default=PERSON)
 OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")  # agents that can always be chosen
 
 
@@ -57,7 +57,6 @@ class Seats:
 
     @property
     def names(self) -> list[str]:
-        """The players that may sit down: persons and the agents."""
         return [*self.persons, *self.players]
 
     def advisers(self, practice: bool) -> list[str]:
@@ -76,7 +75,6 @@ class Seats:
         return cast(NoiseName, next(name for name, one in LEVELS.items() if one == found))
 
     def sit(self, who: list[str]) -> None:
-        """Assign both seats; ValueError for an unknown name."""
         if not isinstance(who, list) or len(who) != 2:
             raise refuse("players", who, "must be two names")
         self.who = [choice(f"players[{k}]", name, self.names) for k, name in enumerate(who)]
@@ -90,7 +88,6 @@ class Seats:
         return session.noise[self.who.index(PERSON)] if PERSON in self.who else "amateur"
 
     def is_agent(self, seat: int) -> bool:
-        """Whether an agent has this seat."""
         return self.who[seat] not in (PERSON, FRIEND, LINKED)
 
     def share(self, seat: int, noise: list[NoiseName]) -> None:
@@ -112,7 +109,6 @@ class Seats:
         return [persons.get(who, who) for who in self.who]
 
     def label(self, seat: int, me: str = PERSON) -> str:
-        """The player's name on the page of ``me``."""
         seen = self.seen_by(me)
         if self.is_agent(seat):
             name = seen[seat].replace("_", " ")  # as the page lists it
@@ -130,6 +126,45 @@ class Seats:
         return decided
 
 
+class Reviewing:
+    """A review of the acts of a game, which is made while it is ``running``."""
+
+    def __init__(self, session: Session, frame: FrameRecord, players: Sequence[int], **how: Any):
+        self.begun: int = session.begun
+        self.acts: list[Act] = session.acts[: session.at]
+        self._strokes: list[int] = session.strokes
+        self.found: tuple[int, int, Review | None] = 0, 1, None  # done, of how many, what is known
+        self.trouble: str = ""
+        self.running: bool = True
+        ended = self.acts[-1].what in ("concede", "claim")
+        end = self.acts[-2 if ended else -1].standing
+        steps = go_through(frame, players, winner=session.frame.winner, end=end, **how)
+        threading.Thread(target=self._run, args=(steps,), name="snooker review", daemon=True).start()
+
+    def report(self) -> dict[str, Any]:
+        done, total, found = self.found
+        told = {"running": self.running, "done": done, "total": total, "trouble": self.trouble}
+        return told if found is None else told | found.to_dict()
+
+    def act_of(self, number: object) -> tuple[int, Reviewed, float]:
+        """Of a stroke: the index of its act, what is known, and the first player's chance before; ValueError for no such."""
+        found = self.found[2]
+        for one in found.strokes if found else ():
+            if found and one.number == number:
+                return self._strokes[one.number - 1], one, found.win_chance[one.number - 1]
+        raise refuse("stroke", number, "must be the number of a stroke that was reviewed")
+
+    def _run(self, steps):
+        try:
+            for found in steps:
+                if not self.running:
+                    return
+                self.found = found
+        except Exception as error:  # a custom agent may raise anything: the page says it
+            self.trouble = f"{type(error).__name__}: {error}"
+        self.running = False
+
+
 LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 
 
@@ -144,24 +179,19 @@ class StaleError(RuntimeError):
 class Service:
     """One game, its seats, and the thread in which agents think."""
 
-    me: str = PERSON  # who asks: see ``asked_by``
-    paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
-    trouble: str  # why the last agent did not play, or ""
-
-    unkept: str  # why the frame that is over is not in the person's file, or ""
-
     def __init__(self, session: Session, seats: Seats, person: Person | None = None):
         self.session: Session = session
         self.seats: Seats = seats
         self.person: Person | None = person
         self._over, self._sat = 0, set[tuple[str, ...]]()  # the last game that ended; who sat in this one
         self._unwritten: Callable[[], None] | None = None  # keeps a frame that could not be kept yet
-        self.unkept = ""
+        self.unkept: str = ""  # why the frame that is over is not in the person's file
         self._judge: tuple[Any, Any] = None, None  # options, and who judges with them
         self.reviewing: Reviewing | None = None
         self.revision: int = 0
-        self.paused, self.trouble = False, ""
-        self.invites: list[Invite] = []  # what the host may pass on, if others can come to the table
+        self.paused: bool = False  # whether an agent waits for ``go_on``
+        self.trouble: str = ""  # why the last agent did not play
+        self.invites: list[dict[str, Any]] = []  # what the host may pass on, if others can come to the table
         self.vacant: bool = True  # whether a friend may sit down without having been chosen
         self._changed = threading.Condition(threading.RLock())
         self._asking = threading.BoundedSemaphore(2)
@@ -170,18 +200,25 @@ class Service:
         self._thread.start()
 
     def close(self) -> None:
-        """Stop the agents."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()
             if self.reviewing:
                 self.reviewing.running = False
 
-    def asked_by(self, me: str) -> "Service":
-        """The same game for requests of the host (``PERSON``), of the ``FRIEND`` or of a ``WATCHER``."""
-        other = object.__new__(_Asked)
-        other.__dict__, other.me = self.__dict__, me
-        return other
+    @property
+    def me(self) -> str:
+        """Who asks: see ``asked_by``."""
+        return _ASKING.get()
+
+    @contextmanager
+    def asked_by(self, me: str) -> Iterator["Service"]:
+        """In this context the ``PERSON`` (the host), the ``FRIEND`` or a ``WATCHER`` asks."""
+        before = _ASKING.set(me)
+        try:
+            yield self
+        finally:
+            _ASKING.reset(before)
 
     @property
     def labels(self) -> tuple[str, str]:
@@ -205,11 +242,11 @@ class Service:
         """ValueError unless whoever asks is to play."""
         striker = self.session.frame.striker
         if self.agent_to_play():
-            raise refuse("turn", self.labels[striker], "must be a person's: an agent is to play")
+            raise refuse("turn", self.labels[striker], "must be a person's: it is an agent's turn")
         if self.friend_to_play:
             raise refuse("turn", "Friend", "must be yours: send the link of the game")
         if self.seats.who[striker] != self.me and self.session.frame.phase != "over":
-            raise refuse("turn", self.labels[striker], "must be yours: the other player is to play")
+            raise refuse("turn", self.labels[striker], "must be yours: it is the other player's turn")
 
     @contextmanager
     def reading(self, revision: int | None = None) -> Iterator[Session]:
@@ -229,7 +266,7 @@ class Service:
             if not (any_turn or anew):
                 self.check_turn()
             elif not anew and LINKED in self.seats.who:
-                raise refuse("game", "by link", "must stay as it is played: begin another game first")
+                raise refuse("game", "by link", "must not be changed: begin another game first")
             with session.as_a_whole():
                 yield session
             self.paused, self.trouble = pause, ""
@@ -250,9 +287,7 @@ class Service:
             self._asking.release()
 
     def judge(self, noise: NoiseName | None = None) -> ChanceJudge | None:
-        """Who says how likely each seat wins, with these errors, by default those of ``Seats.level``.
-
-        None in practice, where nobody wins."""
+        """Estimates chances to win with these errors, by default those of ``Seats.level``; None in practice."""
         if self.session.practice:
             return None
         options = self.session.options_with(noise or self.seats.level(self.session))
@@ -271,6 +306,16 @@ class Service:
         chances = self.win_chances([session.twin().choose(what) for what in session.frame.choices], noise)
         return [one if one is None or session.frame.striker == 0 else 1.0 - one for one in chances]
 
+    def own_file(self) -> Person:
+        if self.person is None:
+            raise refuse("person", None, "must be named: this server keeps no person's file")
+        return self.person
+
+    def own_review(self) -> Reviewing:
+        if self.reviewing is None or self.reviewing.begun != self.session.begun:
+            raise refuse("review", None, "must be begun first: this game has not been reviewed")
+        return self.reviewing
+
     def wait(self, revision: int, seconds: float) -> None:
         """Return when the revision has changed, or after that time."""
         until = monotonic() + min(seconds, LONGEST_WAIT)
@@ -279,7 +324,6 @@ class Service:
                 self._changed.wait(left)
 
     def go_on(self) -> None:
-        """Let the agent play whose turn it is."""
         with self._changed:
             if not self.paused:
                 return  # it is thinking already: another page was first
@@ -287,7 +331,6 @@ class Service:
             self._announce()
 
     def agent_to_play(self) -> bool:
-        """Whether it is an agent's turn."""
         frame = self.session.frame
         return frame.phase != "over" and self.seats.is_agent(frame.striker)
 
@@ -299,7 +342,6 @@ class Service:
 
     @property
     def thinking(self) -> bool:
-        """Whether an agent is thinking about its stroke, or about to."""
         return self.agent_to_play() and not self.paused
 
     def _keep(self) -> None:
@@ -342,7 +384,7 @@ class Service:
                 decided = self.seats.decide(who, twin)
             # a custom player may raise anything: it is reported, and the game waits
             except Exception as error:
-                trouble = f"{who} gave no stroke ({type(error).__name__}: {error})"
+                trouble = f"{who} failed to choose a stroke ({type(error).__name__}: {error})"
             with self._changed:
                 if self.revision != revision or self._closed:
                     continue
@@ -382,9 +424,3 @@ class Service:
             nominated == DECLINED and session.frame.free_ball
         )
         session.play(stroke, nominated=nominated if sensible else AUTO)
-
-
-class _Asked(Service):
-    """A service that shares all but ``me`` with another."""
-
-    __slots__ = ("me",)

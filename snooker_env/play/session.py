@@ -31,7 +31,6 @@ from ..tasks.frames import Frames, Seat
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES, Options
 from ..tasks.played import Played
-from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput, Tables
 from ..tasks.threads import Threads
@@ -65,7 +64,7 @@ class Act:
 class Session:
     """A frame to play, set up, undo, save and load; ``flight``: balls fly, and the cue can be raised to 70 degrees."""
 
-    noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
+    noise: list[NoiseName]  # execution errors of each seat
     practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
     best_of: int  # the length of the match in frames; 1: a single frame
     won: list[int]  # frames that each seat has won in the match before this one
@@ -75,6 +74,7 @@ class Session:
     at: int  # number of acts that count; the following ones were undone
     begun: int  # games begun or loaded so far
     grid: Grid  # on which all is played
+    options: Options  # of this frame, without execution errors
     tables: Frames  # of the one table
 
     def __init__(
@@ -83,11 +83,11 @@ class Session:
         box = Options(task="frame", max_strokes=None, **FRAMES)
         if flight:
             box = box.but(elevation=70, physics={"flight": True})
-        self._options = box.but(miss="clear_path", layout=layout, cue=cue)
+        self.options = box.but(miss="clear_path", layout=layout, cue=cue)
         self.noise, self.practice = ["none", "none"], False
         self.best_of, self.won, self.begun = 1, [0, 0], 0
         self.grid = Grid()
-        self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
+        self._generator = np.random.default_rng(0)
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
         self._with: dict[str, Options] = {}
@@ -95,25 +95,24 @@ class Session:
 
     @property
     def frame(self) -> Frame:
-        """The current frame."""
         return self.tables.frame(0)
 
     @property
     def cue(self) -> CueKind:
         """Whether rails and balls are in the way of the cue: "real" or "free"."""
-        return self._options.cue
+        return self.options.cue
 
     @cue.setter
     def cue(self, kind: CueKind) -> None:
         if kind != self.cue:
             state = self.state
-            self._play_by(self._options.but(cue=kind))
+            self._play_by(self.options.but(cue=kind))
             self._set(state)
 
     @property
     def game(self) -> RulesName:
         """The rules that are played: "snooker", "six_red" or "shoot_out"."""
-        return self._options.game
+        return self.options.game
 
     @property
     def frames(self) -> list[int]:
@@ -126,11 +125,6 @@ class Session:
         return max(self.frames) > self.best_of // 2
 
     @property
-    def layout(self) -> str:
-        """How the table was dealt."""
-        return self._options.layout
-
-    @property
     def breaks(self) -> list[list[int]]:
         """The breaks of each seat in this frame, the one that goes on last."""
         found: list[list[int]] = [[], []]
@@ -140,34 +134,25 @@ class Session:
                 own[len(own) - (one.break_before > 0) :] = [one.break_before + one.points]
         return found
 
-    @property
-    def miss(self) -> str:
-        """The rule for a foul and a miss."""
-        return self._options.miss
-
     def room(self, stroke: CueStroke) -> Room:
         """How the cue finds room for a stroke as the table lies; nothing is played."""
-        return room_for(stroke.numbers(), self.as_visit(), self._options.rules)
+        return room_for(stroke.numbers(), self.as_visit(), self.options.rules)
 
     @property
     def state(self) -> dict[str, Any]:
-        """The table as JSON types, with the fields ``STATE``."""
         state = self.tables.get_state(0)
         return {name: state[name] for name in STATE}
 
     @property
     def strokes(self) -> list[int]:
-        """Indices of the acts that are strokes, in order."""
         return [k for k, act in enumerate(self.acts[: self.at]) if act.played is not None]
 
     @property
     def luck(self) -> list[float]:
-        """The luck of each of the strokes, in its player's chance to win."""
         return [self.acts[k].luck for k in self.strokes]
 
     @property
     def position(self) -> Positions:
-        """The frame as its striker sees it."""
         return of_tables(self.tables)
 
     def as_visit(self) -> Positions:
@@ -179,7 +164,7 @@ class Session:
     def options_with(self, noise: NoiseName) -> Options:
         """The options of this frame for a player with these execution errors."""
         if noise not in self._with:
-            self._with[noise] = self._options.but(noise=noise)
+            self._with[noise] = self.options.but(noise=noise)
         return self._with[noise]
 
     @contextmanager
@@ -199,7 +184,7 @@ class Session:
         other = object.__new__(Session)
         other.__dict__.update(self.__dict__)
         other._buffers, other.noise, other.won = ShotBuffers(1, path=True), list(self.noise), list(self.won)
-        other.tables = Frames(self._options.rules, 1)
+        other.tables = Frames(self.options.rules, 1)
         other._set(self.state)
         other.acts, other.at = [self.acts[self.at - 1]], 1
         return other
@@ -224,18 +209,17 @@ class Session:
         if self.frame.phase != "over":
             raise refuse("next", True, "must be left out: the frame is not over")
         won = [0, 0] if self.match_over else self.frames
-        self._deal(self._options, seed, 1 - self.frame.breaker)
+        self._deal(self.options, seed, 1 - self.frame.breaker)
         self.won = won
 
     def _but(self, layout: str | None, game: str | None) -> Options:
         """The options with another layout and game; the Shoot Out has no miss rule."""
         rules = self.game if game is None else cast(RulesName, choice("game", game, RULES))
         miss = "off" if rule_set(rules).anywhere else "clear_path"
-        return self._options.but(layout=layout or self._options.layout, game=rules, miss=miss)
+        return self.options.but(layout=layout or self.options.layout, game=rules, miss=miss)
 
     def _play_by(self, options: Options) -> None:
-        """Take these options, on an empty table."""
-        self._options, self._with = options, {}
+        self.options, self._with = options, {}
         self.tables = Frames(options.rules, 1)
 
     def _deal(self, options: Options, seed: int, breaker: int) -> None:
@@ -244,7 +228,7 @@ class Session:
         self._play_by(options)
         self.tables.seed(0, np.random.default_rng(seed))
         self.tables.deal(np.zeros(1, np.int64), drawn=False)
-        self._write(replace(self.frame, striker=breaker, breaker=breaker), 0)
+        self._write(replace(self.frame, striker=breaker, breaker=breaker))
         self._begin("new")
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
@@ -263,7 +247,7 @@ class Session:
             raise refuse("nominate", NAMES[nominated], allowed)
         striker = frame.striker
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
-        actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
+        actions = Strokes(stroke.numbers()[None]).actions(self.options, self.position)
         self._played, room = None, self.room(stroke)
         meant = {**stroke.to_dict(), "place": before["positions"][CUE] if frame.in_hand else None}
         asked = {**meant, "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
@@ -302,33 +286,28 @@ class Session:
             return
         if frame.phase == "choice":
             frame = frame.choose("play_again")
-        self._write(replace(frame, striker=0), int(self.tables.game[0, STROKES]))
+        self._write(replace(frame, striker=0))
 
     def choose(self, what: str) -> Act:
         """Take the decision after a foul of the opponent: "play", "play_again", or after a miss "replace"."""
         frame = self.frame
         if frame.phase != "choice":
             raise refuse("choice", what, "must be left out: the other player has not just fouled")
-        self._write(frame.choose(cast(Choice, what)), int(self.tables.game[0, STROKES]))
+        after = frame.choose(cast(Choice, what))
         if what == "replace":
             kept = self.tables.layouts_before
             self.tables.positions[:], self.tables.on_table[:] = kept.positions, kept.on_table
-        return self._did(Act("choice", self.state, frame.striker, detail=what, asked={"choice": what}))
+        return self._decide("choice", after, what, {"choice": what})
 
     def concede(self) -> Act:
         """End the frame: the striker concedes."""
         if self.frame.phase == "over":
             raise refuse("phase", "over", "must not be over")
-        return self._end("concede", self.frame.concede(self.frame.striker))
+        return self._decide("concede", self.frame.concede(self.frame.striker), "", {"declare": "concede"})
 
     def claim(self) -> Act:
         """The striker, more than seven points ahead with the black alone on the table, claims the frame."""
-        return self._end("claim", self.frame.claim())
-
-    def _end(self, what: str, after: Frame) -> Act:
-        striker = self.frame.striker
-        self._write(after, int(self.tables.game[0, STROKES]))
-        return self._did(Act(what, self.state, striker, asked={"declare": what}))
+        return self._decide("claim", self.frame.claim(), "", {"declare": "claim"})
 
     def place(self, x: float, y: float) -> tuple[float, float]:
         """Put the cue ball in hand on the free place nearest to (x, y), of the D or of the table, and return it."""
@@ -342,29 +321,19 @@ class Session:
         px, py = places[CUE].tolist()
         return px, py
 
-    def set_up(
-        self,
-        position: Position,
-        *,
-        scores: tuple[int, int],
-        striker: int,
-        free_ball: bool,
-        check: bool = False,
-    ) -> None:
-        """Put the balls as in a position, or only ``check`` it. ValueError names the ball or the field."""
+    def set_up(self, position: Position, *, scores: tuple[int, int], striker: int, free_ball: bool) -> None:
+        """Put the balls as in a position. ValueError names the ball or the field."""
         positions, on_table, _ = position.arrays()
         mask = mask_of_present(on_table) & ~1
         for i in np.flatnonzero(~on_table):
             positions[i] = 0.0
         game: Any = {"scores": scores, "striker": striker, "breaker": striker, "free_ball": free_ball}
         game |= {"break_points": position.points, "in_hand": position.in_hand, "on_table": mask}
-        rules: Any = {"miss": self.miss, "rules": self.game}
+        rules: Any = {"miss": self.options.miss, "rules": self.game}
         frame = Frame(**game, **rules, ball_on=BallOn[str(position.on).upper()])
         state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
-        sound = self._check(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
-        if not check:
-            self.tables.set_state(0, sound)
-            self._did(Act("set_up", self.state))
+        self._set(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
+        self._did(Act("set_up", self.state))
 
     def undo(self) -> bool:
         """Undo the last act; returns whether there was one."""
@@ -381,7 +350,6 @@ class Session:
         self._go(at)
 
     def save(self) -> dict[str, Any]:
-        """The current game as JSON types."""
         game = {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
         return {"format": "snooker-game", "version": 1, **game}
 
@@ -394,10 +362,7 @@ class Session:
         if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
             what = f"version {saved.get('version')!r} with {sorted(saved)}"
             raise refuse_what("saved", what, f"must be version 1 with {list(fields)}")
-        noise = saved["noise"]
-        if not isinstance(noise, list) or len(noise) != 2:
-            raise refuse("saved.noise", noise, "must be two names")
-        levels: Any = [choice(f"saved.noise[{k}]", name, LEVELS) for k, name in enumerate(noise)]
+        noise = read_levels("saved.noise", saved["noise"])
         practice, cue = truth("saved.practice", saved["practice"]), choice("saved.cue", saved["cue"], CUES)
         state = saved["state"]
         if not isinstance(state, dict) or set(state) != set(STATE):
@@ -407,12 +372,17 @@ class Session:
             self._play_by(self._but(None, frame.get("rules", "snooker") if isinstance(frame, dict) else None))
             self._set(state)
             self.practice, self.cue = practice, cast(CueKind, cue)
-            self.noise, self.best_of, self.won = levels, 1, [0, 0]
+            self.noise, self.best_of, self.won = noise, 1, [0, 0]
             self._begin("load")
 
     def _begin(self, what: str) -> None:
         self.acts, self.at, self.begun = [Act(what, self.state)], 1, self.begun + 1
         self.hints, self.undone = [0, 0], 0
+
+    def _decide(self, what: str, after: Frame, detail: str, asked: dict[str, str]) -> Act:
+        striker = self.frame.striker
+        self._write(after)
+        return self._did(Act(what, self.state, striker, detail=detail, asked=asked))
 
     def _did(self, act: Act) -> Act:
         del self.acts[self.at :]
@@ -427,16 +397,21 @@ class Session:
         self.at = at
         return True
 
-    def _set(self, state):
-        self.tables.set_state(0, self._check(state))
-
-    def _check(self, state: dict[str, Any]) -> FrameState:
+    def _set(self, state: dict[str, Any]) -> None:
+        # no rewards are paid here, and no stroke draws from the generator
+        alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}
         try:
-            # no rewards are paid here
-            alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}
-            return self.tables.check_state(state | alone, self._generator, either=True)
+            self.tables.set_state(0, self.tables.check_state(state | alone, self._generator, either=True))
         except ValueError as error:
             raise ValueError(re.sub(r"state\.(frame\.)?", "", str(error))) from None
 
-    def _write(self, frame: Frame, strokes: int) -> None:
+    def _write(self, frame: Frame) -> None:
+        strokes = int(self.tables.game[0, STROKES])
         write_frame(frame, strokes, self.tables.game[0], self.tables.layouts_before, 0)
+
+
+def read_levels(field: str, names: object) -> list[NoiseName]:
+    """The execution errors of both seats, two names of ``LEVELS``; ValueError for anything else."""
+    if not isinstance(names, list) or len(names) != 2:
+        raise refuse(field, names, "must be two names")
+    return [cast(NoiseName, choice(f"{field}[{k}]", name, LEVELS)) for k, name in enumerate(names)]

@@ -1,4 +1,4 @@
-"""What is a replay? Strokes in their order, as a page for any browser, as data, and as a film."""
+"""What is a replay? Strokes in order, as a page for any browser, as data, and as a film."""
 
 import html
 import json
@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Protocol, TypeAlias, runtime_checkable
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -24,17 +24,17 @@ from .web import WEB, table_js
 
 FORMAT, VERSION = "snooker-replay", 2
 SUFFIXES = (".html", ".json", ".mp4", ".gif")
-_PARTS = ("noses", "jaws", "falls")  # of a table
+USUAL = ((), ("Player",), ("Player 1", "Player 2"))  # names for bare shots, a visit and a frame
 
 
 class Replay:
-    """A sequence of strokes, of ``snooker_env.replay``, shown as a page, in a notebook, or as a film.
+    """A sequence of strokes that is shown as a page, in a notebook, or as a film; ``snooker_env.replay`` makes one.
 
     Parameters
     ----------
     strokes : iterable of Shot or Played
-        The strokes in the order in which they were played; at least one, each with its path. ValueError if
-        they differ in ball radius, spin deceleration or table.
+        At least one stroke, in the order played, each with its path. ValueError if the strokes differ in ball radius, spin
+        deceleration or table.
     title : str, optional
         Title of the page.
     players : iterable of str, optional
@@ -42,18 +42,18 @@ class Replay:
     table : str, Table or None, optional
         The table of the strokes; default: that of the shots, or "match".
     judge : object with ``chance_to_win``, optional
-        Of a frame: who says how likely each player wins, as ``snooker_env.player("tactician").at(env)``, with
-        the errors of ``env``. ValueError with strokes that are of no frame. None (default): nobody says it.
+        Estimates each player's chance to win a frame, as ``snooker_env.player("tactician").at(env)`` does, with the errors
+        of ``env``. ValueError if the strokes are not of a frame. Default None: no chances are shown.
     luck : sequence of float, optional
-        Beside a judge: how much luck each stroke had, in [-1, 1], in its player's chance to win. Strokes alone do
-        not tell it: they hold what was struck, not what was meant. None (default): it is not known.
+        With a judge: the luck of each stroke, in [-1, 1], in its player's chance to win. It cannot be derived from the
+        strokes, which hold what was struck, not what was meant. Default None: not known.
 
     Attributes
     ----------
     strokes, title, players, table
-        As tuples of Shot or Played and of names, the latter empty for bare shots, str and ``Table``.
+        Tuple of Shot or Played, str, tuple of names (empty for bare shots) and ``Table``.
     win_chance : tuple of float or None
-        How likely the first player wins: before the first stroke, and after each. None without a judge.
+        The first player's chance to win, before the first stroke and after each. None without a judge.
     luck : tuple of float or None
         As given.
 
@@ -77,7 +77,7 @@ class Replay:
         luck: Sequence[float] | None = None,
     ):
         if not isinstance(strokes, Iterable):
-            raise refuse("strokes", strokes, "must be strokes, one after the other")
+            raise refuse("strokes", strokes, "must be strokes in the order played")
         self.strokes: tuple[Shot | Played, ...] = tuple(strokes)
         for k, stroke in enumerate(self.strokes):
             if not isinstance(stroke, Shot | Played):
@@ -86,17 +86,12 @@ class Replay:
         if not self.strokes:
             raise refuse("strokes", [], "must hold at least one stroke")
         self.title: str = check_text("title", title)
-        names = check_players(players)
         judged = next((stroke for stroke in self.strokes if isinstance(stroke, Played)), None)
-        frame = judged is not None and len(judged.scores) == 2
-        usual = ("Player 1", "Player 2") if frame else ("Player",) * (judged is not None)
-        if names and len(names) != len(usual):
-            allowed = "must be two names for a frame, one for a visit, none for bare shots"
-            raise refuse_what("players", f"{len(names)} names", allowed)
-        self.players: tuple[str, ...] = names or usual
-        constants = [(shot.physics.R, shot.physics.spin_decel) for shot in self.shots]
-        for k, these in enumerate(constants):
-            if these != constants[0]:
+        many = 0 if judged is None else len(judged.scores)
+        self.players: tuple[str, ...] = check_players(players, many) or USUAL[many]
+        first = self.shots[0].physics
+        for k, shot in enumerate(self.shots):
+            if (shot.physics.R, shot.physics.spin_decel) != (first.R, first.spin_decel):
                 allowed = "must have the R and the spin_decel of the first"
                 raise refuse_what(f"strokes[{k}]", "a shot with other physics", allowed)
         tables = [shot.table for shot in self.shots if shot.table is not None]
@@ -105,7 +100,9 @@ class Replay:
         else:
             self.table = tables[0] if tables else Table.preset("match")
             for k, other in enumerate(tables):
-                parts = ((getattr(one, name) for one in (other, self.table)) for name in _PARTS)
+                parts = (
+                    (getattr(one, name) for one in (other, self.table)) for name in ("noses", "jaws", "falls")
+                )
                 if other is not self.table and not all(np.array_equal(*pair) for pair in parts):
                     allowed = "must be on the table of the first, or pass table=..."
                     raise refuse_what(f"strokes[{k}]", "a shot on another table", allowed)
@@ -113,7 +110,6 @@ class Replay:
         if (asked := check_judge(judge)) is not None:
             self.win_chance = tuple(win_chances(asked, standings_of(self.strokes)))
         self.luck: tuple[float, ...] | None = check_luck(luck, len(self.strokes), asked is not None)
-        self._data: dict[str, Any] | None = None
 
     @property
     def shots(self) -> list[Shot]:
@@ -127,24 +123,23 @@ class Replay:
         return f"Replay({len(self)} strokes, {self.title!r})"
 
     def to_dict(self) -> dict[str, Any]:
-        """The replay as JSON types, see docs/play/replay.md; treat what is inside as read-only.
-
-        ValueError if a shot has no path, or more than 22 balls."""
-        if self._data is None:
-            strokes = [encode_stroke(stroke, self.players) for stroke in self.strokes]
-            physics, *others = (shot.physics for shot in self.shots)
-            # shots of several kinds of balls and cloth may be shown
-            same = all(one == physics for one in others)
-            self._data = {"format": FORMAT, "version": VERSION, "title": self.title}
-            self._data |= {"players": list(self.players), "scene": scene_data(self.table)}
-            self._data |= {
-                "table": table_data(self.table),
-                "physics": physics_data(physics) if same else None,
-            }
-            self._data |= {"R": physics.R, "spin_decel": physics.spin_decel, "strokes": strokes}
-            self._data |= {"win_chance": self.win_chance and list(self.win_chance)}
-            self._data |= {"luck": self.luck and list(self.luck)}
-        return dict(self._data)
+        """The replay as JSON types (docs/play/replay.md); ValueError if a shot has no path or more than 22 balls."""
+        physics, *others = (shot.physics for shot in self.shots)
+        same = all(one == physics for one in others)  # shots on several kinds of cloth may be shown
+        return {
+            "format": FORMAT,
+            "version": VERSION,
+            "title": self.title,
+            "players": list(self.players),
+            "scene": scene_data(self.table),
+            "table": table_data(self.table),
+            "physics": physics_data(physics) if same else None,
+            "R": physics.R,
+            "spin_decel": physics.spin_decel,
+            "strokes": [encode_stroke(stroke, self.players) for stroke in self.strokes],
+            "win_chance": self.win_chance and list(self.win_chance),
+            "luck": self.luck and list(self.luck),
+        }
 
     def html(self) -> str:
         """The replay as one HTML page that needs no other file and no network; errors as in ``to_dict``."""
@@ -154,7 +149,6 @@ class Replay:
         return re.sub(r"\{\{(title|module|data)\}\}", lambda place: parts[place[1]], page)
 
     def _repr_html_(self) -> str:
-        """In a notebook: the page in a frame."""
         return (
             f'<iframe srcdoc="{html.escape(self.html(), quote=True)}" '
             'sandbox="allow-scripts" title="snooker replay" '
@@ -164,10 +158,10 @@ class Replay:
     def frames(
         self, *, fps: float = 30.0, speed: float = 1.0, size: tuple[int, int] = (1920, 1080)
     ) -> Iterator[Bytes]:
-        """The pictures of the film, each uint8 (height, width, 3): treat them as read-only.
+        """The pictures of the film, each uint8 (height, width, 3), to be treated as read-only.
 
-        ``fps`` and ``speed`` (over that of the strokes) in (0, 1000], else ValueError; ``size``: width and
-        height [pixels]. Without pygame ImportError."""
+        ``fps`` and ``speed`` (a multiple of real time) lie in (0, 1000], else ValueError; ``size`` is width and height
+        [pixels]. ImportError without pygame."""
         from .film import film_strokes, frames
 
         return frames(film_strokes(self), fps, speed, size)
@@ -175,9 +169,9 @@ class Replay:
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
 
-        ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
-        ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF: 15, 640 x 360).
-        ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra."""
+        ``.html`` is the page, ``.json`` the data. ``.mp4`` and ``.gif`` are films and need the extra ``render``; ``film`` holds
+        ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF has 15 and 640 x 360 by default). ValueError for another suffix,
+        OSError if the file cannot be written, ImportError without the extra."""
         target = read_path("path", path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)
         if suffix in (".mp4", ".gif"):
@@ -206,22 +200,16 @@ def check_text(field: str, text: object) -> str:
     return text
 
 
-def check_players(players: object) -> tuple[str, ...]:
-    """Names of players as a tuple; a single name may be a str."""
+def check_players(players: object, many: int) -> tuple[str, ...]:
+    """No names, or as many as there are players; a single name may be a str."""
     if players is not None and not isinstance(players, Iterable):
         raise refuse("players", players, "must be None, or names")
     names = (players,) if isinstance(players, str) else tuple(players or ())
-    if len(names) > 2:
-        raise refuse("players", players, "must be at most two names")
+    if len(names) not in (0, many):
+        raise refuse(
+            "players", players, "must be two names for a frame, one for a visit, none for bare shots"
+        )
     return tuple(check_text("players", name) for name in names)
-
-
-@runtime_checkable
-class KeepsHistory(Protocol):
-    """An environment that may keep what was played, as ``SnookerEnv`` and matches do."""
-
-    history: list[Played]
-    keep_history: bool
 
 
 Source: TypeAlias = Replay | Shot | Played | Sequence[Shot | Played] | Position | Environment
@@ -242,15 +230,15 @@ def replay(
     Parameters
     ----------
     source : Shot, Played, sequence of Shot or Played, Position, Replay, or environment
-        * A ``Shot`` of ``sn.simulate``, or several in the order in which they were played.
-        * The strokes of an episode: ``env.history`` of ``SnookerEnv`` or of a match; or the environment
-          itself, wrapped or not, if it has a render mode or its ``keep_history`` was set to True.
-        * A ``Position`` is shown as it stands.
-        * A ``Replay`` is copied, with the other arguments applied.
+        * A ``Shot`` of ``sn.simulate``, or several in the order played.
+        * The strokes of an episode: ``env.history``; or the environment itself, wrapped or not, if it has a render mode or
+          its ``keep_history`` was set to True.
+        * A ``Position``, shown as it stands.
+        * A ``Replay``, copied with the other arguments applied.
     path : str or Path, optional
         A file that ends in ``.html``, ``.json``, ``.mp4`` or ``.gif``, see ``Replay.save``.
     title, players, table, judge
-        As in ``Replay``. A copied ``Replay`` keeps what a judge has said of it.
+        As in ``Replay``. A copied ``Replay`` keeps the chances of its judge.
 
     Returns
     -------
@@ -288,15 +276,15 @@ def _strokes(source: Source, table: TableLike) -> list[Shot | Played]:
         places, on_table, _ = source.arrays()
         nothing, table = np.zeros((len(places), 3)), Table.of("match" if table is None else table)
         return [simulate(places, nothing[:, :2], nothing, table, on_table=on_table)]
-    env = getattr(source, "unwrapped", source)
-    if not isinstance(env, KeepsHistory):
+    env: Any = getattr(source, "unwrapped", source)
+    if not (hasattr(env, "history") and hasattr(env, "keep_history")):
         allowed = "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay"
         allowed += ", or an environment that keeps its history"
         raise refuse_what("source", f"a {type(source).__name__}", allowed)
     if not env.keep_history:
-        words = "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in "
-        raise refuse_what("source", "an environment that keeps no history", f"{words}sn.RecordReplay")
+        words = "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in sn.RecordReplay"
+        raise refuse_what("source", "an environment that keeps no history", words)
     if not env.history:
         what = "an environment without a stroke since its reset"
         raise refuse_what("source", what, "must have played at least one")
-    return [*env.history]
+    return list(env.history)

@@ -118,7 +118,6 @@ def table_data(table: Table) -> str | dict[str, Any]:
 
 
 def table_from(data: str | Mapping[str, Any]) -> Table:
-    """The table that ``table_data`` has written."""
     if isinstance(data, str):
         return Table.preset(data)  # type: ignore[arg-type]
     columns = {"noses": 5, "jaws": 6, "falls": 3}

@@ -1,4 +1,4 @@
-"""How does a replay become a film? Picture by picture sent to the encoder: one at a time is in memory."""
+"""How does a replay become a film? Pictures go to the encoder one by one, so only one is in memory."""
 
 import subprocess
 from collections.abc import Callable, Iterable, Iterator
@@ -45,21 +45,19 @@ def film_stroke(
     table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = ""
 ) -> tuple[Film, Scene]:
     """A stroke as a film, and the table after it; ``during`` and ``after`` are the bars of ``bars``."""
-    shot, judged = (stroke.shot, True) if isinstance(stroke, Played) else (stroke, False)
+    shot = stroke.shot if isinstance(stroke, Played) else stroke
     film = Film(table, shot, bar=during, text=text)
-    last = film.at(shot.duration)
-    where, on_table = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
-    placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
+    last, where, on_table = film.at(shot.duration), stroke.positions, stroke.on_table
+    placed = not np.array_equal(where[0], shot.positions[0])
     over = {"paths": last.paths, "ghosts": last.ghosts, "turn": UNTURNED if placed else last.turn}
     still = scene(table, where, on_table, bar=after, text=text, **over)
     return film, replace(still, ball_radius=last.ball_radius)
 
 
 def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Size) -> Iterator[Bytes]:
-    """The pictures of what ``film_strokes`` gives."""
     from ..render.pygame_view import rgb_array
 
-    fps, speed = _rate("fps", fps), _rate("speed", speed)
+    fps, speed = (number(name, x, 0.0, 1000.0, open_low=True) for name, x in (("fps", fps), ("speed", speed)))
     for film, after in films:
         for picture in film.scenes(fps, speed):
             yield rgb_array(picture, size=size)
@@ -76,31 +74,26 @@ def write_film(
 ) -> None:
     """Write the pictures of ``pictures_of(fps=, speed=, size=)`` to an .mp4 or .gif file."""
     usual_size, usual_fps = USUAL[target.suffix.lower()]
-    size, fps = usual_size if size is None else size, usual_fps if fps is None else _rate("fps", fps)
+    size, fps = usual_size if size is None else size, usual_fps if fps is None else fps
     sides = size if isinstance(size, tuple | list) else ()
     if len(sides) != 2 or not all(isinstance(side, int) and side > 0 and side % 2 == 0 for side in sides):
         raise refuse("size", size, "must be (width, height), both even, as video encoders require")
-    width, height = sides
-    pictures = pictures_of(fps=fps, speed=speed, size=(width, height))
-    write_atomic(target, lambda path: _encode(pictures, path, fps, (width, height)))
-
-
-def _rate(field: str, value: float) -> float:
-    return number(field, value, 0.0, 1000.0, open_low=True)
+    pictures = pictures_of(fps=fps, speed=speed, size=size)
+    write_atomic(target, lambda path: _encode(pictures, path, fps, size))
 
 
 def _encode(pictures: Iterator[Bytes], path: Path, fps: float, size: tuple[int, int]) -> None:
+    first = next(pictures)  # ValueError for a wrong rate, before anything is written
+    pictures = chain([first], pictures)
     if path.suffix.lower() != ".gif":
         wanted = ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1", *HD]
         _pipe(pictures, size, fps, wanted, path)
         return
-    first = next(pictures)
     colours = path.with_name(f"{path.stem}.colours.png")
     try:
-        wanted = ["-vf", "palettegen=stats_mode=single"]
-        _pipe(iter([_swatches(first)]), (256, 256), 1.0, wanted, colours)
+        _pipe([_swatches(first)], (256, 256), 1.0, ["-vf", "palettegen=stats_mode=single"], colours)
         chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
-        _pipe(chain([first], pictures), size, fps, chosen, path)
+        _pipe(pictures, size, fps, chosen, path)
     finally:
         colours.unlink(missing_ok=True)
 

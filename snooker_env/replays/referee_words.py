@@ -2,9 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
-from .._lib.types import Bools
 from ..game.balls import N_REDS, NAMES, BallOn, mask_of_present, points_available
 from ..game.fouls import Foul
 from ..game.frame_columns import BALL_ON
@@ -56,7 +54,6 @@ def on_words(ball_on: BallOn) -> str:
 
 
 def foul_words(fouls: Foul) -> list[str]:
-    """The names of these fouls."""
     return [words for foul, words in FOUL_WORDS.items() if foul & fouls]
 
 
@@ -66,7 +63,6 @@ def errors_words(noise: object) -> str:
 
 
 def pots_of(shot: Shot) -> list[int]:
-    """The balls that were potted, in order of time."""
     return shot.events["i"][shot.events["kind"] == EventKind.POT].tolist()
 
 
@@ -103,12 +99,12 @@ def bars(
             potted = [] if not one.break_before else None
         here = one.shot.on_table.copy()
         here[pots_of(one.shot)] = True
-        game = Game(here, one.ball_on, one.free_ball)
-        before = _bar(game, names, scores, one.player, one.break_before, potted)
+        on = here, one.ball_on, one.free_ball
+        before = _bar(on, names, scores, one.player, one.break_before, potted)
         if one.points and potted is not None:
             potted = potted + pots_of(one.shot)
-        run, game = one.break_before + one.points, Game(one.on_table, one.next_on, one.next_free_ball)
-        after = _bar(game, names, one.scores, one.player, run, potted, sentence(one, names))
+        run, on = one.break_before + one.points, (one.on_table, one.next_on, one.next_free_ball)
+        after = _bar(on, names, one.scores, one.player, run, potted, sentence(one, names))
         made.append((before, after))
         run = run if one.points else 0
     if chances is None:
@@ -120,23 +116,15 @@ def bars(
 def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar | None = None) -> ScoreBar:
     """The bar for table k as it stands; ``last``: the bar after the stroke that led there, if known."""
     now, last = tables.standing(k), last or ScoreBar()
-    game = Game(tables.on_table[k], BallOn(tables.game[k, BALL_ON]), now["next_free_ball"])
+    on = tables.on_table[k], BallOn(tables.game[k, BALL_ON]), now["next_free_ball"]
     of_player = players, now["scores"], now["next_player"], now["break_points"]
-    return _bar(game, *of_player, last.potted if now["break_points"] else (), last.words)
+    return _bar(on, *of_player, last.potted if now["break_points"] else (), last.words)
 
 
-class Game(NamedTuple):
-    """What a player may strike."""
-
-    on_table: Bools
-    ball_on: BallOn
-    free_ball: bool
-
-
-def _bar(game, players, scores, striker, break_points, potted, words=""):
-    """A bar; without players none of their scores."""
-    on_table, ball_on, free_ball = game
+def _bar(on, players, scores, striker, break_points, potted, words=""):
+    """A bar; without players none of their scores. ``on``: the balls on the table, the ball on, and whether it is free."""
+    on_table, ball_on, free_ball = on
     who = (tuple(players), scores, striker) if players else ((), (), None)
     left = points_available(mask_of_present(on_table) & ~1, ball_on, free_ball) if ball_on >= 0 else 0
-    on, reds = "free ball" if free_ball else on_words(ball_on), int(on_table[1 : N_REDS + 1].sum())
-    return ScoreBar(*who, break_points, tuple(potted or ()), reds, left, on, words)
+    named, reds = "free ball" if free_ball else on_words(ball_on), int(on_table[1 : N_REDS + 1].sum())
+    return ScoreBar(*who, break_points, tuple(potted or ()), reds, left, named, words)

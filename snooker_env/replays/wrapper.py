@@ -1,4 +1,4 @@
-"""How are an environment's episodes written to files? ``RecordReplay`` writes a replay for each."""
+"""How are an environment's episodes written to files? ``RecordReplay`` writes a replay of each."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -13,20 +13,20 @@ from .document import SUFFIXES, Replay, check_players, read_path
 
 
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
-    """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay.
+    """Records the strokes of ``Snooker-v0`` and writes episodes as replays.
 
-    The files are ``FOLDER/PREFIX-episode-0.html``, and so on. An episode is written when it ends, or when the
-    next one or ``close()`` cuts it short; one without a stroke gives no file. No render mode is needed. An
-    existing file of that name is overwritten.
+    The files are ``FOLDER/PREFIX-episode-0.html`` and so on; existing ones are overwritten. An episode is written when it
+    ends, or when the next one or ``close()`` cuts it short; an episode without a stroke gives no file. No render mode is
+    needed.
 
     Parameters
     ----------
     env : gymnasium.Env
         ``Snooker-v0`` with one table, wrapped or not; else ValueError.
     folder : str or Path
-        Folder of the files; it is created if it does not exist.
+        Folder of the files, created if it does not exist.
     episode_trigger : callable, optional
-        ``episode_trigger(number) -> bool``: whether to write the episode with this number, from 0. None: all.
+        ``episode_trigger(number) -> bool``: whether to write the episode with this number, from 0. Default None: all.
     name_prefix : str
         Beginning of the files' names.
     suffix : {".html", ".json", ".mp4", ".gif"}
@@ -34,7 +34,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     players : iterable of str, optional
         Names of the players, see ``snooker_env.replay``.
     judge : object with ``chance_to_win``, optional
-        Of frames: who says how likely each player wins, see ``snooker_env.Replay``; ValueError for visits.
+        Estimates each player's chance to win a frame, see ``snooker_env.Replay``; ValueError for visits.
 
     Attributes
     ----------
@@ -83,9 +83,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
             words = "must be the beginning of a file's name, without folders"
             raise refuse("name_prefix", name_prefix, words)
         frame = inner.options.task != "visit"  # type: ignore[attr-defined]
-        self._wanted, self._players = episode_trigger, check_players(players)
-        if len(self._players) not in (0, 1 + frame):
-            raise refuse("players", players, f"must be {1 + frame} names" if frame else "must be one name")
+        self._wanted, self._players = episode_trigger, check_players(players, 1 + frame)
         self._judge = check_judge(judge)
         if judge is not None and not frame:
             raise refuse_what("judge", f"a {type(judge).__name__}", "must be None: nobody wins a visit")
@@ -95,14 +93,14 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """See ``SnookerEnv.reset``; writes what there is of the last episode first, OSError if it cannot."""
+        """As ``SnookerEnv.reset``; first writes what was played of the last episode, OSError if it cannot."""
         self._write()
         result = super().reset(seed=seed, options=options)
         self._number, self._written = self._number + 1, False
         return result
 
     def step(self, action: Action) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """See ``SnookerEnv.step``; an episode that ends is written, with OSError if it cannot be."""
+        """As ``SnookerEnv.step``; writes an episode that ends, OSError if it cannot."""
         result = super().step(action)
         if self._written:  # an inner wrapper has begun another episode
             self._number, self._written = self._number + 1, False
@@ -111,7 +109,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         return result
 
     def close(self) -> None:
-        """Write what there is of the episode, and close the environment."""
+        """Write what was played of the episode, and close the environment."""
         self._write()
         super().close()
 

@@ -2,7 +2,6 @@
 
 from functools import cache
 from math import asin, atan2, hypot
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +9,6 @@ from cases import Given
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke
-from snooker_env.advice.ask import _sort_by_win
 from snooker_env.play.session import Session
 
 TABLES = 30
@@ -76,7 +74,7 @@ def test_fouls_are_left_out_and_others_judged_where_all_are_fouls():
     assert advice.own and [one.stroke for one in advice] == [thin] and not foul(advice[0])
     advice = sn.advise(COVERED, agent=Given(BLUE_FIRST, AWAY), **QUICK)
     assert not advice.own and advice.agent == "given" and not any(map(foul, advice))
-    assert advice.order.startswith("given has no fair stroke here; these are not its own. ")
+    assert advice.order.startswith("given has no fair stroke here; these strokes are not its own. ")
     assert str(advice).startswith(advice.order)
     assert advice.to_dict()["own"] is False
 
@@ -103,22 +101,3 @@ def test_a_pot_that_hardly_ever_goes_is_never_suggested():
         instead = sn.advise(far, agent=Given(pot), **how)
         assert not instead.own and all(one.kind != "pot" or one.chance >= 0.05 for one in instead)
         assert [one.kind for one in sn.advise(far, agent=Given(pot, safe), **how)] == [kind]
-
-
-def test_of_strokes_that_win_alike_the_one_with_more_points_or_less_left_stands_first():
-    """Chances to win within half a percent, or a 20th of a small one, are as good; others stay in their order."""
-    words = "win points chance leaves kind"
-    rows = [
-        (0.9, 5.0, 0.5, 8.0, "pot"),
-        (0.897, 20.0, 0.9, 8.0, "pot"),
-        (0.899, 0.0, 1.0, 1.0, "safety"),
-        (0.8, 60.0, 1.0, 0.0, "pot"),
-    ]
-    strokes = [SimpleNamespace(**dict(zip(words.split(), row, strict=True)), figure=row[0]) for row in rows]
-    net = [one.points for one in _sort_by_win(strokes)]
-    assert net == [20.0, 5.0, 0.0, 60.0]  # worth 19.2, 1, -1 points; the last wins less often
-    small = [
-        SimpleNamespace(figure=win, kind="pot", points=10.0 * k, chance=1.0, leaves=0.0)
-        for k, win in enumerate((0.0125, 0.0085, 0.0083))
-    ]
-    assert [one.figure for one in _sort_by_win(small)] == [0.0125, 0.0083, 0.0085]

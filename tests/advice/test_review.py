@@ -173,7 +173,7 @@ def test_the_command_prints_the_costliest_and_one_error(game, tmp_path, capsys):
     (tmp_path / "no.json").write_text("{}")
     for name, word in (
         ("visit.json", "nobody wins a visit"),
-        ("no.json", "must be a replay"),
+        ("no.json", "must have the format"),
         ("gone", "gone"),
     ):
         assert main(["review", str(tmp_path / name)]) == 2

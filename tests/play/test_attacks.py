@@ -9,7 +9,6 @@ import time
 import pytest
 
 from snooker_env.play import server as module
-from snooker_env.play.invites import addresses_here, invite
 from snooker_env.play.levels import USUAL
 from snooker_env.play.routes import GET, POST
 from snooker_env.play.service import FRIEND, PERSON, WATCHER
@@ -161,16 +160,6 @@ def test_connections_that_are_answered_are_bounded(line):
             one.close()
 
 
-def test_one_client_cannot_take_all_places(hosted):
-    held = [connect(hosted) for _ in range(module.MOST_EACH)]
-    try:
-        assert b" 503 " in raw(hosted) and hosted("api/state")[0] == 200
-        assert not closed(held[0])
-    finally:
-        for one in held:
-            one.close()
-
-
 def test_who_sends_slowly_is_cut_off(line, monkeypatch):
     """Each byte comes in time, the request does not."""
     monkeypatch.setattr(module, "IDLE", 1.0)
@@ -190,28 +179,16 @@ def test_who_sends_slowly_is_cut_off(line, monkeypatch):
         assert time.monotonic() - start < 8
 
 
-def test_ten_thousand_wrong_tokens_come_slowly_and_do_no_harm(line, monkeypatch):
+def test_no_token_but_its_own_is_taken(line):
     server = line.server
-    assert not any(server.whose(secrets.token_urlsafe(24)) for _ in range(10_000))
+    assert not any(server.whose(secrets.token_urlsafe(24)) for _ in range(1_000))
     near = server.token[:-1] + ("x" if server.token[-1] != "x" else "y")
     assert server.whose(near) == server.whose("") == server.whose(server.token + "x") == ""
-    waits = [server.delay("192.0.2.9") for _ in range(10_000)]
-    assert sum(waits) == (10_000 - module.FREE) * module.DELAY and server.delay("192.0.2.8") == 0
-    for k in range(3000):
-        server.delay(str(k))
-    assert len(server._wrong) <= module.MOST_KNOWN
-    for _ in range(module.FREE):
-        server.delay("127.0.0.1")
-    start = time.monotonic()
-    refused(line("api/state", token=near), 403, "token")
-    assert time.monotonic() - start >= module.DELAY and line("api/state")[0] == 200
-    monkeypatch.setattr(module, "FORGET", 0.0)
-    assert server.delay("127.0.0.1") == 0
 
 
 def test_in_the_network_it_answers_to_its_address_alone(hosted):
     """A name that an attacker points to this machine (DNS rebinding) leads to nothing."""
-    here, port = addresses_here(), hosted.server.server_port
+    here, port = module.addresses_here(), hosted.server.server_port
     if not here:
         pytest.skip("this machine is in no network")
     target = f"/{hosted.server.token}/api/state"
@@ -308,8 +285,8 @@ def test_invitations_hold_their_tokens_and_say_what_is_missing(hosted, monkeypat
         )
         assert one["qr"].startswith("data:image/svg+xml") and "\u2588" in one["drawn"]
     monkeypatch.setitem(sys.modules, "segno", None)
-    without = invite(PERSON, ["http://x/"])
-    assert without.qr == "" and "[play]" in without.drawn
+    without = module._invite(PERSON, ["http://x/"])
+    assert without["qr"] == "" and "[play]" in without["drawn"]
 
 
 def test_nobody_outside_is_asked_for_names(monkeypatch):

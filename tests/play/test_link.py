@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from snooker_env.advice import CueStroke
-from snooker_env.game.balls import PINK
+from snooker_env.game.balls import BLACK, CUE, PINK
 from snooker_env.game.fouls import AUTO
 from snooker_env.planning import Position
 from snooker_env.play import link as module
@@ -217,6 +217,18 @@ def test_what_is_not_sound_is_refused_in_one_sentence_and_changes_nothing(monkey
     assert other.save() == before and other.acts == acts
 
 
+def test_balls_that_overlap_are_refused_although_the_check_is_theirs(monkeypatch):
+    monkeypatch.setattr(
+        module, "NEAR", 2**24
+    )  # else no place of a link is far enough from that of the stroke
+    session = standing(EASY)
+    places = session.play(CueStroke(speed=1.0, aim=-2.5)).state["positions"]
+    open_link(Session(), write_link(session))
+    places[CUE] = (steps_of(places[BLACK]) * STEP).tolist()
+    with pytest.raises(ValueError, match=r"^link, stroke 1: what it leaves = other places"):
+        open_link(Session(), write_link(session))
+
+
 def fail(self, *args, **kwargs):
     raise SimulationError("shot 0 has too many events")
 
@@ -244,7 +256,7 @@ def test_by_link_two_persons_play_each_its_own_seat(game):
     assert game("concede")["words"].startswith("Frame over: Friend won.")
     assert game("load", link=game("link")["link"], seat=None)["by_link"]["seat"] == 0
     with pytest.raises(
-        ValueError, match=r"^link = an older or another course of this game: must begin with what was played"
+        ValueError, match=r"^link = an older or different game: must begin with what was played"
     ):
         game("load", link=link, seat=0)  # an older one
     assert game("load", link=link)["players"] == ["person", "person"]  # to watch, take back and try
@@ -255,9 +267,7 @@ def test_by_link_two_persons_play_each_its_own_seat(game):
         changed.play(CueStroke(speed=0.5, aim=-2.5))
         if changed.frame.phase == "choice":
             changed.choose("play")
-    with pytest.raises(
-        ValueError, match=r"^link, stroke \d+: noise = .*must stay as it was at the beginning"
-    ):
+    with pytest.raises(ValueError, match=r"^link, stroke \d+: noise = .*must stay as at the beginning"):
         game("load", link=write_link(changed), seat=None)
     with pytest.raises(ValueError, match=r"^by_link = True: must be left out in a match"):
         game("new", by_link=True, best_of=3)

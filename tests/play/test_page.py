@@ -90,6 +90,14 @@ def test_after_a_foul_the_choices_are_shown(shown):
     open_to = shown("[...document.querySelectorAll('#choices button')].map(b => b.dataset.choice)")
     assert open_to == ["play", "play_again", "replace"]
     assert shown.page.is_visible("#choices") and not shown.page.is_visible("#play")
+    wins = shown("page.state.choice_wins")
+    buttons = (
+        "[...document.querySelectorAll('#choices button')].map(b => [b.lastChild.innerText, b.className])"
+    )
+    best = ["best" if win == max(wins) else "" for win in wins]
+    assert shown(buttons) == [[f"win {100 * win:.0f} %", kind] for win, kind in zip(wins, best, strict=True)]
+    asked = shown.line("api/advise", {"n": 1, "samples": 20})[1]["choices"]
+    assert [one["win"] for one in asked] == wins and len(set(wins)) == 3
     twice = "[1, 2].forEach(() => document.querySelector(argument).click())"
     shown(twice, "#choices button[data-choice=replace]")  # the second tap is none
     shown.until("page.state.phase === 'stroke' && page.settled === page.state.revision && !page.sending")
@@ -389,13 +397,13 @@ def test_the_page_says_and_draws_how_the_cue_finds_room_before_the_stroke(shown)
     before = shown("document.querySelector('#dial').toDataURL()")
     shown("page.aim.set({top: -0.4})")
     shown.until(f"{ROOM} && page.room.found.moved")
-    assert "tip moved up to" in shown.page.inner_text("#room")
+    assert "tip moved to" in shown.page.inner_text("#room")
     assert shown("page.aim.wish.top") == -0.4
     low, mid = shown("document.querySelector('#dial').toDataURL()"), shown("page.room.found.top")
     assert -0.4 < mid < 0 and low != before
     shown.page.click("#play")
     shown.played(1)
-    assert "Cue raised to 45 degrees over the rail, tip moved up" in shown.page.inner_text("#last")
+    assert "Cue raised to 45 degrees over the rail, tip moved" in shown.page.inner_text("#last")
 
 
 def test_the_cue_is_pulled_back_and_let_go(shown):
@@ -629,10 +637,10 @@ def test_a_link_that_cannot_be_made_or_opened_is_refused_in_one_sentence(shown):
     assert len(shown.page.evaluate(code, text[:40_000])) < 30_000
     instead = "use Save or Replay file instead."
     said = shown.page.evaluate(code, text)
-    assert re.fullmatch(r"A link can have 30 kB, this one has (3\d): " + instead, said)
+    assert re.fullmatch(r"A link can hold 30 kB, but this one needs (3\d) kB: " + instead, said)
     shown.page.click("#files summary")
     for link, words in (
-        ("#replay=" + "A" * 29_993, f"A link can have 30 kB, this one has 31: {instead}"),
+        ("#replay=" + "A" * 29_993, f"A link can hold 30 kB, but this one needs 31 kB: {instead}"),
         ("#constructor=AAAA", "This is not a link to a position, a stroke, a replay or a game."),
         ("#game=AAAA", "The link is damaged: was it copied whole?"),
     ):

@@ -54,12 +54,15 @@ def test_one_of_the_five_sits_down_with_a_name_and_errors_of_its_own(game):
 
 
 def test_a_hint_that_comes_after_the_stroke_is_not_counted(game, monkeypatch):
+    class Late(list):
+        order, noise = "", "none"
+
     def late(*args, **how):
         game("stroke", speed=3.0, aim=1.5)
-        return {}
+        return Late()
 
     revision = game.get("state")["revision"]
-    monkeypatch.setattr("snooker_env.play.questions.suggestions", late)
+    monkeypatch.setattr("snooker_env.play.routes.advise", late)
     game("advise", revision=revision)
     state = game.get("state")
     assert (state["strokes"], state["hints"]) == (1, [0, 0])
@@ -76,6 +79,8 @@ def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(gam
     assert game("undo")["undone"] == 1
     game("concede")
     assert len(game("person")["frames"]) == 1  # the same frame
+    game("new", seed=9)
+    game("concede")  # without a stroke
     game("new", seed=2)
     game("advise", n=1, samples=10)
     assert game.get("state")["hints"] == [1, 0]
@@ -85,7 +90,7 @@ def test_a_frame_is_kept_once_with_what_helped_and_the_strokes_for_the_coach(gam
     game("new", seed=4)
     game("position", position=EASY)
     game("concede")  # of a position that was set up nothing is kept
-    assert [one["rated"] for one in kept.read()["frames"]] == [True, False, False]
+    assert [one["rated"] for one in kept.read()["frames"]] == [True, False, False, False]
 
 
 def test_only_a_fair_frame_against_one_opponent_is_rated(game, kept):
@@ -226,7 +231,7 @@ def test_my_play_shows_the_file_with_a_rating_and_deletes_it(chromium, line, tmp
     known, found = shown("import('./play_person.js').then(({rate}) => argument.map(rate))", results)
     spread = 1.96 * 400 / log(10) / (1500 * 2 / 9) ** 0.5  # two wins for a loss are 400 lg 2 points
     assert known == pytest.approx([1620.4 - spread, 1620.4, 1620.4 + spread], abs=6)
-    assert f"Rating {found[1]}, with 95 % between {found[0]} and {found[2]}, from 5 rated frames" in text
+    assert f"Rating {found[1]} (95 % interval {found[0]} to {found[2]}), from 5 rated frames" in text
     assert "100 %, 3 of 3" in text  # 0.9 m and 0.9 m
     shown.page.click("#mine-coach")
     shown.until("document.getElementById('mine-coach-says').innerText.includes('pots: 3 of 3 made')")

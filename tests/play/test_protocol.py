@@ -193,7 +193,7 @@ position position=EASY | {"pink": [2.0, 0.0]} | pink =
 position position=EASY | {"reds": [[0.6, 1.4], [0.61, 1.4]]} | reds[1] =
 position position=EASY | {"on": "blue"} | on =
 position position=EASY | {"in_hand": True} | in_hand =
-position position=EASY | {"colour": [0, 0]} | field of position =
+position position=EASY | {"colour": [0, 0]} | key of position =
 position position=EASY | {"reds": "x"} | reds =
 position position=EASY | {"points": 1.5} | points =
 players cue="short" | cue = 'short'
@@ -286,7 +286,9 @@ def test_an_agent_that_fails_is_reported_and_the_game_waits(game):
     game("position", position=EASY)
     game("players", players=["broken", "person"])
     state = waited(game, lambda s: not s["thinking"])
-    assert state["trouble"].startswith("broken gave no stroke") and state["words"] == state["trouble"]
+    assert (
+        state["trouble"].startswith("broken failed to choose a stroke") and state["words"] == state["trouble"]
+    )
     assert state["strokes"] == 0
     game("players", players=["person", "person"])
     assert game.get("state")["trouble"] == ""
@@ -356,7 +358,7 @@ def test_hints_are_those_of_advise_one_for_each_stroke(game, layout, agent, pots
     asked = {"noise": "amateur", "samples": 40, "seed": 3}
     game.service.seats.players["mine"] = player("stroke_value")
     session, by = game.session, game.service.seats.players[agent]
-    options = {"cue": session.cue, "miss": session.miss}
+    options = {"cue": session.cue, "miss": session.options.miss}
     advised = advise(session.position, agent=by, n=5, options=options, **asked)
     ideas = [(one.ball, one.pocket) if one.kind == "pot" else one.words for one in advised]
     found = game("advise", agent=agent, n=5, **asked)

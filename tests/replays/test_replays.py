@@ -195,8 +195,7 @@ sn.replay([1]) | strokes[0] | int | must be a Shot
 sn.Replay(None) | strokes | None | must be strokes
 sn.replay([one, other]) | strokes[1] | another table | must be on the table of
 sn.replay([one, slower]) | strokes[1] | other physics | spin_decel
-sn.replay(one, players=["a", "b", "c"]) | players | 'c' | at most two
-sn.replay(one, players=["a", "b"]) | players | 2 names | one for a visit
+sn.replay(one, players=["a", "b"]) | players | 'a', 'b' | one for a visit
 sn.replay(one, players=3) | players | 3 | must be None, or names
 sn.replay(one, players=[None]) | players | None | must be a str
 sn.replay(one, title=?) | title | ? | must be a str | None; 3; chr(0xD800)
@@ -210,7 +209,7 @@ sn.replay(one).save(folder / "a.gif", fps=0) | fps | 0 | must be
 sn.replay(one).save(folder / "a.gif", speed=-1) | speed | -1 | must be
 sn.RecordReplay(env, None) | folder | None | must be a str or a Path
 sn.RecordReplay(env, folder, 3) | episode_trigger | 3 | must be None
-sn.RecordReplay(env, folder, players=["a", "b"]) | players | 'a', 'b' | one name
+sn.RecordReplay(env, folder, players=["a", "b"]) | players | 'a', 'b' | one for a visit
 sn.RecordReplay(env, folder, name_prefix="a/b") | name_prefix | a/b | without folders
 sn.RecordReplay(env, folder, suffix=".txt") | suffix | .txt | .html
 sn.RecordReplay(gymnasium.make("CartPole-v1"), folder) | env | CartPoleEnv | Snooker-v0

@@ -94,13 +94,13 @@ class Page {
     act("undo", () => ask("undo", {}));
     act("redo", () => ask("redo", {}));
     by("concede").onclick = async () => { if (await confirmed("Concede the frame?", "Concede")) this.try(() => ask("concede", {})); };
-    by("new").onclick = () => this.sure(`Leave this frame and begin a new game? ${this.state.by_link ? "This one stays under “Games by link”." : "This cannot be undone."}`, "New game", () => this.begin());
+    by("new").onclick = () => this.sure(`Discard this frame and begin a new game? ${this.state.by_link ? "This one stays under “Games by link”." : "This cannot be undone."}`, "New game", () => this.begin());
     by("again").onclick = () => this.again();
     by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { next: true, seed: seed() })));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
-    by("load").onclick = () => this.sure("Leave this frame and load a file?", "Load", () => by("file").click());
+    by("load").onclick = () => this.sure("Discard this frame and load a file?", "Load", () => by("file").click());
     by("file").onchange = () => this.try(() => this.load());
     by("labels").checked = kept.get("labels", false);
     by("labels").onchange = () => { kept.set("labels", by("labels").checked); this.redraw(); };
@@ -444,7 +444,7 @@ class Page {
       return await (position ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`));
     } catch (error) {
       if (error.message && !(error instanceof SyntaxError)) throw error;
-      throw new Error(`${file.name} is no saved game.${text[0] === "<" ? " A replay opens by itself in a browser." : ""}`);
+      throw new Error(`${file.name} is not a saved game.${text[0] === "<" ? " Open a replay directly in a browser." : ""}`);
     }
   }
 

@@ -7,9 +7,9 @@
 import { ask, by, isPerson, make } from "./play_parts.js";
 
 const FOR = {
-  person: ["Your own phone", "can do all, as here"],
+  person: ["Your own phone", "can do everything that this page can"],
   friend: ["A friend", "plays seat 2; if it is taken, choose “a friend, on their device” under New game"],
-  watcher: ["Watchers", "only look"],
+  watcher: ["Watchers", "see everything and change nothing"],
 };
 
 export class Door {

@@ -37,7 +37,7 @@ const DRILLS = {
   line_up: { name: "Line-up", about: "Reds on the middle line: one break", run: true, table: () => dealt("line_up") },
   tee: { name: "The T", about: "Ten reds in a T about the pink: one break", run: true, table: () => laid([0.12, 0.24, 0.36].flatMap(x => both(x, PINK)).concat([1, 2, 3, 4].map(k => [0, PINK + k * (BLACK - PINK) / 5]))) },
   cross: { name: "The X", about: "Nine reds in an X between pink and black: one break", run: true, table: () => laid([[0, 1.176], ...[0.09, 0.18].flatMap(d => [...both(d, 1.176 - d), ...both(d, 1.176 + d)])]) },
-  colours: { name: "Clearing the colours", about: "All six from their spots: one break, 27 clears", run: true, table: () => dealt("colours") },
+  colours: { name: "Clearing the colours", about: "All six from their spots: one break, 27 points clear the table", run: true, table: () => dealt("colours") },
   blue_black: { name: "Blue and black only", about: "Six reds, no other colour: one break", run: true, table: () => laid([...both(0.3, 0.35), ...both(0.45, 0.75), ...both(0.3, 1.15)], { blue: COLOURS.blue, black: COLOURS.black }) },
   long_pots: {
     name: "Long pots", about: "A red from baulk, ten times", made: "potted", score: potted, share: found => found.scored,
@@ -69,7 +69,7 @@ export class Drills {
       const best = key === "here" ? undefined : key === "day" ? this.first?.score : kept.get("best", {})[key];
       const said = best === undefined ? "" : key === "day" ? `. Yours today: ${best}` : `. Your best: ${best}`;
       const button = make("button", {}, name, make("small", { textContent: about + said }));
-      button.onclick = () => (this.now ? this.begin(key) : this.app.sure("Leave this frame for a drill?", name, () => this.begin(key)));
+      button.onclick = () => (this.now ? this.begin(key) : this.app.sure("Discard this frame and begin a drill?", name, () => this.begin(key)));
       return button;
     }));
   }

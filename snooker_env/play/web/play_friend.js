@@ -13,7 +13,7 @@ const FIXED = ["level", "practice", "cue", "who-0", "who-1", "noise-0", "noise-1
 export class Friend {
   constructor(app) {
     Object.assign(this, { app, link: "", words: "" });
-    by("friend-new").onclick = () => app.sure("Leave this frame and begin one with a friend by link?", "Begin", () => this.begin());
+    by("friend-new").onclick = () => app.sure("Discard this frame and begin one with a friend by link?", "Begin", () => this.begin());
     by("friend-copy").onclick = () => this.copy();
     by("friend-share").hidden = !navigator.share;
     by("friend-share").onclick = () => navigator.share({ text: this.text }).catch(() => {});
@@ -48,7 +48,7 @@ export class Friend {
       app.go("load", { link, seat });
     };
     if (app.state.by_link && link.startsWith(this.link.slice(0, NAME) || "#")) then();
-    else app.sure("Leave this frame for the game by link?", "Open", then);
+    else app.sure("Discard this frame and open the game by link?", "Open", then);
   }
 
   /** Keep the game as it stands, and offer its link in the friend's turn. */
@@ -65,7 +65,7 @@ export class Friend {
     by("friend-words").textContent = over ? "Send the link: it shows your friend the end." : `Send your friend the link: “${this.words}”`;
     const { games } = this, name = link.slice(0, NAME), now = `${over ? "over" : stroke}, ${over ? state.scores.join(" : ") : theirs ? "friend’s move" : "your move"}`;
     if (games[name]?.[1] > state.strokes) {
-      this.app.trouble(new Error(`This link is older than your game, which stands at stroke ${games[name][1] + 1}: open it under New game, Games by link.`));
+      this.app.trouble(new Error(`This link is older than your game, which is at stroke ${games[name][1] + 1}. Open that one under New game, Games by link.`));
       return;
     }
     delete games[name];

@@ -4,7 +4,7 @@
  * Frame as in `table.js`: metres, origin at the table's centre, +x to the yellow side, +y to the black end; directions anticlockwise from +x.
  */
 
-export const DOWN = "The server does not answer; is it still running?";
+export const DOWN = "The server does not answer. Is it still running?";
 
 export const by = id => document.getElementById(id);
 

@@ -83,7 +83,7 @@ export class Person {
       return `<path class="tick" d="M${x} 40V${y - 12}"/>${text(x, y, `${won ? "✓ " : ""}${name}${won + lost ? ` ${won}:${lost}` : ""}`, `text-anchor="middle"${won ? ' class="beaten"' : ""}`)}`;
     });
     const own = played ? `<path class="whisker" d="M${at(low)} 30H${at(high)}"/><circle cx="${at(value)}" cy="30" r="6"/>${text(at(value), 17, `you, ${value}`, 'text-anchor="middle" class="own"')}` : "";
-    const said = played ? `Rating ${value}, with 95 % between ${low} and ${high}, from ${played} rated frame${played > 1 ? "s" : ""}.` : "No rated frame yet.";
+    const said = played ? `Rating ${value} (95 % interval ${low} to ${high}), from ${played} rated frame${played > 1 ? "s" : ""}.` : "No rated frame yet.";
     return `<p>${said}${levels.some(({ won }) => won) ? " ✓: beaten." : ""}</p>${svg(92, said, `<path class="tick" d="M20 40H${W - 20}"/>${marks.join("")}${own}`)}`;
   }
 

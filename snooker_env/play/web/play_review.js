@@ -115,7 +115,7 @@ export class Review {
     const list = by("review-list"), { order } = this, held = list.contains(document.activeElement) && document.activeElement.dataset.stroke;
     const { concession } = this.found, gave = Math.abs(concession) >= LITTLE;
     const end = make("li", { className: "gave" }, make("b", { textContent: percent(-Math.abs(concession)) }), `${this.app.state.labels[Number(concession > 0)]} conceded`,
-      make("small", { textContent: `choice ${percent(Math.abs(concession))}: so likely was a win` }));
+      make("small", { textContent: `choice ${percent(Math.abs(concession))}: the chance to win that was given up` }));
     list.replaceChildren(...gave ? [end] : [], ...order.map((one, k) => {
       const cost = Math.max(0, one.choice) + Math.max(0, one.execution), parts = [["choice", one.choice], ["execution", one.execution]].filter(([, share]) => share >= LITTLE);
       const button = make("button", {}, make("b", { textContent: cost >= LITTLE ? percent(-cost) : "" }), `${one.number}. ${this.words(one.name)}`,
@@ -133,9 +133,9 @@ export class Review {
   say(trouble) {
     const said = by("review-said"), one = this.order.find(({ number }) => number === this.chosen), { running } = this.found ?? { running: true };
     said.className = trouble ? "trouble" : "";
-    const text = trouble || (one ? this.words(one.words) : running ? "Looking at the strokes …" : "Choose a stroke: the costliest come first.");
+    const text = trouble || (one ? this.words(one.words) : running ? "Reviewing the strokes …" : "Choose a stroke: the costliest come first.");
     const dot = name => make("i", { className: name });
-    said.replaceChildren(text[0].toUpperCase() + text.slice(1), ...one ? [make("small", {}, dot("played"), "as played", ...this.better ? [dot("best"), "the best"] : [], ...one.rough ? [" (a first look)"] : [])] : []);
+    said.replaceChildren(text[0].toUpperCase() + text.slice(1), ...one ? [make("small", {}, dot("played"), "as played", ...this.better ? [dot("best"), "the best"] : [], ...one.rough ? [" (first estimate)"] : [])] : []);
     for (const id of ["review-prev", "review-next"]) by(id).disabled = !this.order.length;
     by("review-again").disabled = !one || !this.shown;
   }

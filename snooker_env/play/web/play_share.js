@@ -21,7 +21,7 @@ function deflate(Stream) {
 const through = (bytes, stream) => new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer();
 
 function short(link) {
-  if (link.length > MOST) throw new Error(`A link can have ${MOST / 1000} kB, this one has ${Math.ceil(link.length / 1000)}: use Save or Replay file instead.`);
+  if (link.length > MOST) throw new Error(`A link can hold ${MOST / 1000} kB, but this one needs ${Math.ceil(link.length / 1000)} kB: use Save or Replay file instead.`);
   return link;
 }
 
@@ -66,7 +66,7 @@ export class Share {
       field.select();
       let where = "copied";
       try { await navigator.clipboard.writeText(link); field.blur(); } catch { where = "in the field Link"; }
-      by("last").textContent = `The link is ${where}: put it behind the page's address.`;
+      by("last").textContent = `The link is ${where}: add it to the end of the page's address.`;
     } catch (error) { this.app.trouble(error); }
   }
 
@@ -83,7 +83,7 @@ export class Share {
     try {
       const [kind, text] = await unpacked(link);
       if (kind === "friend") app.friend.open(text);
-      else if (kind !== "stroke") app.sure(`Leave this frame for the ${kind === "game" ? "position" : kind} of the link?`, "Open", () => app.go("load", kind === "game" ? `{"saved": ${text}}` : { link: text }));
+      else if (kind !== "stroke") app.sure(`Discard this frame and open the ${kind === "game" ? "position" : kind} from the link?`, "Open", () => app.go("load", kind === "game" ? `{"saved": ${text}}` : { link: text }));
       else {
         while (app.behind) await new Promise(done => setTimeout(done, 200));
         await app.film(JSON.parse(text));

@@ -8,8 +8,8 @@ const STEPS = [
   ["fine", "This strip aims finely: drag along it, or tap the arrows beside it. It says how full you strike the ball."],
   ["dial", "Here you choose where the tip strikes the white: high to follow, low to screw back, left or right for side."],
   ["table", "Take the cue behind the white ball, pull it back, and let go: the further, the harder. Push it back to cancel."],
-  ["play", "Or set the power with the slider and press Play. You may take every stroke back with Undo."],
-  ["advise", "Don't know what to play? Ask. Opponents of every strength are under New game, exercises under Drills. Good luck!"],
+  ["play", "Or set the power with the slider and press Play. Undo takes back any stroke."],
+  ["advise", "Don't know what to play? Press Hint. Opponents of every strength are under New game, exercises under Drills. Good luck!"],
 ];
 
 export class Tour {
