@@ -41,6 +41,7 @@ MOST_BODY = 131_072  # largest body of a request [bytes]; a replay has about 200
 IDLE = 20.0  # how long a connection waits for the next byte, and for a whole request [s]
 MOST_AT_ONCE = 64
 """Largest number of connections; a browser keeps six. One that waits gives way to a further one."""
+MOST_EACH = 20  # of one client, where others than this machine are served
 ROUTES = ("192.0.2.1", "10.255.255.254", "172.31.255.254", "192.168.255.254")
 """Where routes are looked up to find this machine's own addresses; nothing is sent there."""
 LOCAL = ("127.0.0.1", "localhost", "[::1]")
@@ -269,7 +270,9 @@ class PlayServer(ThreadingHTTPServer):
         doors = [PERSON] if host is None else [PERSON, FRIEND, WATCHER]
         self.service, self.tokens = service, {who: secrets.token_urlsafe(24) for who in doors}
         self.token: str = self.tokens[PERSON]
+        self._most = MOST_AT_ONCE if host is None else MOST_EACH
         self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
+        self._clients: dict[socket.socket, str] = {}  # the client of each connection
         self.waiting: dict[socket.socket, tuple[bool, float]] = {}
         """The connections without a whole request that shows a token: whether one did so before, and since when."""
         everywhere = self.server_name == "0.0.0.0"
@@ -301,13 +304,14 @@ class PlayServer(ThreadingHTTPServer):
 
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection in its own thread, unless there are too many that do not wait."""
-        if not (self._free.acquire(blocking=False) or self._make_room()):
+        theirs = list(self._clients.copy().values()).count(client_address[0])
+        if theirs >= self._most or not (self._free.acquire(blocking=False) or self._make_room()):
             with suppress(OSError):
                 request.settimeout(1.0)
                 request.sendall(FULL)
             self.shutdown_request(request)
             return
-        self.waiting[request] = False, monotonic()
+        self.waiting[request], self._clients[request] = (False, monotonic()), client_address[0]
         super().process_request(request, client_address)
 
     def _make_room(self) -> bool:
@@ -323,6 +327,7 @@ class PlayServer(ThreadingHTTPServer):
             super().process_request_thread(request, client_address)
         finally:
             self.waiting.pop(request, None)
+            self._clients.pop(request, None)
             self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:

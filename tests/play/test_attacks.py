@@ -160,6 +160,16 @@ def test_connections_that_are_answered_are_bounded(line):
             one.close()
 
 
+def test_one_client_cannot_take_all_places(hosted):
+    held = [connect(hosted) for _ in range(module.MOST_EACH)]
+    try:
+        assert b" 503 " in raw(hosted) and hosted("api/state")[0] == 200
+        assert not closed(held[0])
+    finally:
+        for one in held:
+            one.close()
+
+
 def test_who_sends_slowly_is_cut_off(line, monkeypatch):
     """Each byte comes in time, the request does not."""
     monkeypatch.setattr(module, "IDLE", 1.0)
