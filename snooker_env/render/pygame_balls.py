@@ -249,6 +249,47 @@ def _shadow(radius, alpha, soft, fx, fy):
     return surface_of(PALETTE["shadow"], alpha / 24 * (1 - t * t * (3 - 2 * t)))
 
 
+_CUE = (
+    (0.008, (60, 106, 156)),
+    (0.95, (217, 178, 124)),
+    (1.45, (32, 19, 13)),
+)  # how far from the tip each colour goes [m]
+
+
+def draw_cue(surface: "Surface", scene: Scene, view: View) -> None:
+    """Put a scene's cue on a surface: tip, shaft and butt, thicker towards its end, with a shadow."""
+    cue, radius = scene.cue, scene.ball_radius
+    if cue is None:
+        return
+    ahead = np.array([np.cos(cue.aim), np.sin(cue.aim)])
+    length = _CUE[-1][0] * np.cos(cue.elevation)
+    ends = view(cue.ball - (radius + cue.pull + np.array([[0.0], [length]])) * ahead)
+    low = np.floor(ends.min(axis=0) - 0.04 * view.scale).astype(int)
+    high = np.ceil(ends.max(axis=0) + 0.04 * view.scale).astype(int)
+    low, high = np.maximum(low, 0), np.minimum(high, surface.get_size())
+    if not (high > low).all():
+        return
+    along, across = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0])), (0, 0)
+    x, y = np.meshgrid(
+        np.arange(low[0], high[0]) + 0.5 - ends[0][0], np.arange(low[1], high[1]) + 0.5 - ends[0][1]
+    )
+    d = (x * along[0] + y * along[1]) / view.scale / np.cos(cue.elevation)
+    across = np.abs(x * along[1] - y * along[0])
+    far = np.maximum(
+        across - (0.0048 + 0.0065 * d) * view.scale, np.maximum(-d, d - _CUE[-1][0]) * view.scale
+    )
+    body, shadow = (
+        np.clip(0.5 - far, 0, 1),
+        0.35 * np.exp(-((np.maximum(far, 0) / (0.012 * view.scale)) ** 2)),
+    )
+    alpha = body + (1 - body) * shadow
+    colour = np.array([colour for _, colour in _CUE])[np.searchsorted([end for end, _ in _CUE[:-1]], d)]
+    surface.blit(
+        surface_of(colour * (body / np.maximum(alpha, 1e-9))[..., None], cue.alpha * alpha),
+        tuple(low.tolist()),
+    )
+
+
 def dot(ball: int, radius: float) -> "Surface":
     """A small ball for a score bar, its id and radius [pixels], as a surface with transparency."""
     image = _body(_colour(ball), round(radius, 2), 1.0, 2, 2).copy()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from .._lib.types import Bytes
 from ..game.balls import COLOUR_NAMES, YELLOW
 from .palette import PALE, PALETTE
-from .pygame_balls import BOLD, MEDIUM, dot, draw_balls, draw_lines, line_width, pygame_, typeset
+from .pygame_balls import BOLD, MEDIUM, dot, draw_balls, draw_cue, draw_lines, line_width, pygame_, typeset
 from .scene import Scene, ScoreBar
 from .table_picture import SIZE as SIZE
 from .table_picture import Size, table_picture
@@ -194,6 +194,7 @@ def draw(scene: Scene, view: View) -> Bytes:
     lines = [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()]
     draw_lines(surface, lines, line_width(view.scale))
     draw_balls(surface, scene, view)
+    draw_cue(surface, scene, view)
     surface.set_clip(None)
     if scene.bar is not None or scene.text:
         surface.blit(score_bar(scene.bar, scene.text, view.width, view.bar), (0, view.height - view.bar))

@@ -14,7 +14,7 @@ from ..physics.table import Table
 from .outline import RAIL, extent
 from .palette import COLOURS, PALE, PALETTE
 from .scene import find_contacts, trace_paths
-from .table_picture import View, table_picture
+from .table_picture import MARGIN, View, table_picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,10 +25,11 @@ else:  # a shot draws itself: its module stands above this one
 
 WIDTH = 8.3  # of a new figure [inches]
 PIXELS = (1660, 1000)  # of the table's picture
-RIM = RAIL + 0.02  # shown around the bed [m]
+RIM = RAIL + MARGIN  # shown around the bed [m]
 SLIDES = (255, 168, 36)  # colour of the stripes of a path on which the ball slides
 MOST_SPEEDS = 6  # written along the cue ball's path
 APART = 0.15  # least distance between two of them [m]
+NEAR = 0.12  # a cushion nearer than this [m] would be written on
 
 
 def draw_shot(shot: Shot, ax: "Axes | None" = None) -> "Axes":
@@ -119,6 +120,7 @@ def _write_speeds(ax: "Axes", shot: Shot) -> None:
     events = shot.events
     balls = (events["kind"] == EventKind.BALL_BALL) & ((events["i"] == CUE) | (events["j"] == CUE))
     rails = np.isin(events["kind"], (EventKind.CUSHION, EventKind.JAW)) & (events["i"] == CUE)
+    bed = extent(shot.table or Table.of(None))
     written: list[Floats] = []
     for time, kind, i, j in [
         (0.0, -1, CUE, CUE),
@@ -132,14 +134,18 @@ def _write_speeds(ax: "Axes", shot: Shot) -> None:
             words += f", cut {np.degrees(cut):.0f}°"
         if len(written) < MOST_SPEEDS and all(np.hypot(*(place - other)) > APART for other in written):
             written.append(place)
+            (above, _), (left, right) = np.abs(bed - place[:, None]).tolist()  # how far the cushions are
+            side = 1 if above < NEAR else -1  # below the ball, or above it
+            ha = "left" if left < 2 * NEAR else "right" if right < 2 * NEAR else "center"
             style: dict[str, Any] = {
-                "textcoords": "offset points",
-                "ha": "center",
+                "ha": ha,
+                "va": "bottom" if side < 0 else "top",
                 "weight": "bold",
                 "size": 9,
             }
             style |= {"color": _rgb(PALETTE["text"]), "zorder": 8.0, "path_effects": _edge(2.4)}
-            ax.annotate(words, tuple(_flip(place)), (0, 9), **style)
+            edge = place + np.array([side * shot.physics.R, 0.0])
+            ax.annotate(words, tuple(_flip(edge)), (0, -3 * side), textcoords="offset points", **style)
 
 
 def _flip(points: object) -> Floats:

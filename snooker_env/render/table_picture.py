@@ -17,7 +17,7 @@ from .palette import PALETTE
 Size: TypeAlias = tuple[int, int]
 SIZE = (1920, 1080)  # default width and height of a picture [pixels]
 
-_MARGIN = 0.012  # floor shown around the rails [m]
+MARGIN = 0.012  # floor shown around the rails [m]
 _BAR = 1 / 15  # part of the height for the score bar
 _LEAST, _MOST = 100, 8192
 
@@ -36,7 +36,7 @@ class View(NamedTuple):
     def of(cls, table: Table, size: Size = SIZE) -> "View":
         """As large as fits into ``size``, (width, height)."""
         low, high = extent(table).T
-        (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
+        (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + MARGIN), (low + high) / 2
         width, height = check_size(size)
         bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))
         scale = min((height - bar) / tall, width / wide)

@@ -73,7 +73,7 @@ class Window:
         """Show a film in real time; False if the user has closed the window."""
         fps, clock = number("fps", fps, 0.0, open_low=True), pygame_().time.Clock()
         step = number("speed", speed, 0.0, open_low=True) / fps
-        self._skip, time = False, 0.0
+        self._skip, time = False, film.begin
         while self.draw(film.at(time), "paused" if self.paused else f"playing {self.speed:g}x"):
             stands = self.paused and not self._steps and not self._skip
             if time >= film.duration and not stands:
