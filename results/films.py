@@ -71,7 +71,7 @@ FILMS = {
             "miss": "clear_path",
         },
         title="a frame: tactician against tactician",
-        quiet=0.7,
+        quiet=0.5,
     ),
     "break_off": _visit("planner_500", "break_off", 0),
     "random": _visit("planner_500", "random:6", 15),

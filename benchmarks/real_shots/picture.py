@@ -11,7 +11,7 @@ PUBLISHED = 0.223
 """Median rms error of the cue ball over all 182 shots, of tailuge's billiards, dist/fit [m]."""
 
 
-WORDS = ("better than 9 in 10", "the median", "worse than 9 in 10")
+WORDS = ("shot at 10 %", "shot at 50 %", "shot at 90 %")
 
 
 def chosen(shots):
@@ -27,7 +27,7 @@ def draw(figures, judges, strikes, out):
     foot = f"python -m benchmarks.real_shots FILE; {provenance.line(figures['machine'])}"
     note = (
         "Dots: measured, the cue ball blue; rings: where the balls begin. Lines: the engine, with one set of constants for all shots;\n"
-        "only the strike is fitted. Right: the cue ball's root mean square error over a whole shot, shots in order."
+        "only the strike is fitted. Right: the cue ball's root mean square error over a whole shot; left: shots at 10, 50 and 90 % of it."
     )
     title = "Real three-cushion shots, and the engine's"
     with picture_style.drawing() as plt:

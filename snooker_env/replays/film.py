@@ -97,7 +97,7 @@ def _encode(pictures: Iterator[Bytes], path: Path, fps: float, size: tuple[int, 
     first = next(pictures)
     colours = path.with_name(f"{path.stem}.colours.png")
     try:
-        wanted = ["-vf", "palettegen=stats_mode=single"]
+        wanted = ["-vf", "palettegen=stats_mode=single:max_colors=128"]
         _pipe(iter([_swatches(first)]), (256, 256), 1.0, wanted, colours)
         chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
         _pipe(chain([first], pictures), size, fps, chosen, path)
