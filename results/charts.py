@@ -65,10 +65,13 @@ def draw_stability(folder):
             if limit
         ),
     )
+    lost = len(fuzz["failures"])
     note = (
         "Each shot must keep the laws of mechanics within a small allowance for rounding. Shown: its worst violation as a share\n"
         "of its own allowance. 1 would be a failure; none occurred. Empty cells are below one millionth."
     )
+    if lost:
+        note += f"\n{lost} of the {fuzz['shots']:,} random shots could not be computed: they raised an error instead of a result."
     foot = (
         f"python -m benchmarks.stability --fuzz {fuzz['shots']}. Single impacts at the same extremes stay below"
         f" {style.number(10 ** np.ceil(np.log10(worst)))} of what is allowed."
