@@ -1,5 +1,5 @@
-"""How are balls, paths and words drawn with pygame-ce? As kept pictures: balls shaded, with reflections of the
-lamps and faint shadows; paths in pieces, so that one that grows changes only at its end."""
+"""How does pygame-ce draw balls, paths, the cue and words? Mostly from cached pictures: balls with reflections of the
+lamps and soft shadows; paths in pieces, so that a growing path changes only at its end."""
 
 import os
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ BOLD, MEDIUM = "Inter-Bold.otf", "Inter-Medium.otf"
 
 
 def pygame_() -> ModuleType:
-    """The module ``pygame``, or an ImportError with the command that installs it."""
+    """The module ``pygame``; an ImportError names the command that installs it."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
         import pygame
@@ -75,7 +75,7 @@ def draw_lines(surface: "Surface", lines: list[tuple[Floats, tuple[int, int, int
 
 
 def _pieces(points):
-    """The pieces of a line: points that follow each other evenly."""
+    """The pieces of a line, each as evenly spaced points."""
     steps = np.hypot(*np.diff(points, axis=0).T)
     run = np.concatenate([[0.0], np.cumsum(steps)])
     if not 0.0 < run[-1] < _LONGEST:
@@ -108,7 +108,7 @@ _SPOTS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 
 _ALL_DARK = 0.62
 _CUE_LENGTH, _CUE_PARTS = 1.45, (0.008, 0.95)  # where tip and shaft end, from the tip [m]
 _CUE_INKS = np.array([(60, 106, 156), (217, 178, 124), (32, 19, 13)])  # of tip, shaft and butt
-EYE = 2.0  # how far the eye is above the bed [m]: a ball that flies looks larger
+EYE = 2.0  # height of the eye above the bed [m]: a flying ball looks larger
 
 
 def draw_balls(surface: "Surface", scene: Scene, view: View) -> None:
@@ -178,18 +178,13 @@ def _rays(positions, over):
 
 
 def _reflections(positions, over, where, radius):
-    """Reflections: each lamp's where the normal is half-way between the lamp and the eye, straight above."""
-    ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
-    across, far = _rays(positions, ends.reshape(-1, 2))
-    up = LAMP_HEIGHT / far + 1
-    lean = across / far[..., None]
+    """Reflections of the lamps. Each lies where the normal is half-way between lamp and eye, which is straight above."""
+    across, far = _rays(positions, over)
+    lean, up = across / far[..., None], LAMP_HEIGHT / far + 1
     lean /= np.sqrt((lean**2).sum(axis=-1) + up**2)[..., None]
-    lean = lean.reshape(len(where), len(over), 3, 2)  # of each lamp its first end, middle and last end
-    centre = where[:, None] + radius * lean[:, :, 1, ::-1]
-    length = np.abs(lean[:, :, 2, 1] - lean[:, :, 0, 1]) * radius / 2
-    halves = [round(4 * max(half, 0.07 * radius)) for half in length.ravel().tolist()]
-    each = zip(centre.reshape(-1, 2), halves, strict=True)
-    return [_at(place, _lamp, half, round(radius, 1)) for place, half in each]
+    centre = (where[:, None] + radius * lean[..., ::-1]).reshape(-1, 2)
+    halves = np.rint(4 * radius * np.maximum(PANEL / (4 * far), 0.07)).astype(int).ravel().tolist()
+    return [_at(place, _lamp, half, round(radius, 1)) for place, half in zip(centre, halves, strict=True)]
 
 
 @lru_cache(maxsize=2048)
@@ -198,13 +193,13 @@ def _lamp(half, radius, fx, fy):
     along, across = half / 4, max(0.075 * radius, 0.4)
     x, y = _grid(int(np.ceil(along + 0.22 * radius)) + 1, fx, fy)
     d = np.hypot(np.maximum(np.abs(x) - along + across, 0), y)
-    small = min(1.0, 0.25 + radius / 12)  # fainter in a small ball, which it would hide
+    small = min(1.0, 0.25 + radius / 12)  # fainter on a small ball, or it would hide the ball
     bright, glow = 0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2))
     return surface_of(PALETTE["lamp"], small * np.maximum(bright, glow))
 
 
 def _shadows(positions, heights, over, where, radius):
-    """A soft shadow from each lamp, and one where the ball touches; ``heights`` in radii."""
+    """A soft shadow from each lamp, and one where the ball touches the cloth; ``heights`` in radii."""
     images = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3

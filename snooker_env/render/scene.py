@@ -1,4 +1,4 @@
-"""What is there to draw? A table, its lines, balls and overlays, in metres, without a drawing library."""
+"""The content of a picture: table, balls, lines and score bar, in metres, independent of any drawing library."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -49,9 +49,8 @@ def rotate(turn: Floats) -> Floats:
     x, y, z = turn.tolist()
     angle = (x * x + y * y + z * z) ** 0.5
     across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])  # of the axis: across @ v is its product with v
-    return (
-        UNTURNED + np.sinc(angle / np.pi) * across + np.sinc(angle / (2 * np.pi)) ** 2 / 2 * across @ across
-    )
+    once, twice = np.sinc(angle / np.pi), np.sinc(angle / (2 * np.pi)) ** 2 / 2
+    return UNTURNED + once * across + twice * across @ across
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ class ScoreBar:
     break_points: int | None = None  # of the visit so far
     potted: tuple[int, ...] = ()  # ids of the balls of this visit, in order
     reds_left: int | None = None
-    points_on: int | None = None  # what is still on the table
+    points_on: int | None = None  # that can still be scored
     ball_on: str = ""  # "red", "any colour", "free ball", ...
     words: str = ""  # what just happened, as the referee would say it
     win_chance: float | None = None  # how likely the first player wins the frame
@@ -108,7 +107,7 @@ def scene(
     text: str = "",
     bar: ScoreBar | None = None,
 ) -> Scene:
-    """One picture: n <= 22 balls, ids 0 to n-1, positions (n, 2) or with heights (n, 3), the rest as in ``Scene``, copied."""
+    """One picture of n <= 22 balls, ids 0 to n-1, at positions (n, 2), or (n, 3) with heights; the rest as in ``Scene``."""
     r, table = np.array(positions, np.float64), Table.of(table)
     heights = r[:, 2] if r.shape[1] == 3 else np.zeros(len(r))
     ids = np.arange(len(r)) if on_table is None else np.flatnonzero(np.array(on_table))
@@ -119,7 +118,7 @@ def scene(
 
 
 def trace_paths(shot: Shot, balls: Iterable[int], step: float = 0.02) -> dict[int, tuple[Floats, Floats]]:
-    """Paths {ball: (points (m, 2) [m], times (m,) [s])} of the balls that move; impacts are points of them."""
+    """Paths {ball: (points (m, 2) [m], times (m,) [s])} of the balls that move, with a point at every impact."""
     times = np.append(np.arange(0.0, shot.duration, step), shot.duration)
     impacts = shot.events["time"][shot.events["kind"] <= EventKind.POT]
     times = np.union1d(times, impacts[impacts < shot.duration])
@@ -134,7 +133,7 @@ def trace_paths(shot: Shot, balls: Iterable[int], step: float = 0.02) -> dict[in
 
 
 def find_contacts(shot: Shot, ball: int = CUE) -> tuple[Floats, Floats]:
-    """Places (m, 2) [m] and times (m,) [s] where a ball met others; none nearer than a radius to the last."""
+    """Places (m, 2) [m] and times (m,) [s] where a ball met others, each at least a radius from the last."""
     met = shot.events[shot.events["kind"] == EventKind.BALL_BALL]
     met = met[(met["i"] == ball) | (met["j"] == ball)]
     places, kept = shot.at(met["time"])[0][:, ball, :2].reshape(-1, 2), []
@@ -202,7 +201,7 @@ class Film:
         return Cue(ball, aim, elevation, pull, 1.0 if t < 0 else 1.0 - t / FOLLOW)
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
-        """One picture every speed / fps seconds of the shot's own time, and one of its end."""
+        """A picture every speed / fps seconds of the shot, and one of its end."""
         step = number("speed", speed, 0.0, open_low=True) / number("fps", fps, 0.0, open_low=True)
         first = round(self.begin / step)  # so that one picture is that of the stroke
         for t in np.append(np.arange(first, self.duration / step) * step, self.duration):

@@ -1,4 +1,4 @@
-"""How is a shot drawn with matplotlib? On the table's picture, in metres: a point (x, y) is at ``ax.plot(y, x)``."""
+"""How does matplotlib draw a shot? On the picture of the table, in metres: a point (x, y) is at ``ax.plot(y, x)``."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -84,7 +84,7 @@ def draw_table(table: Table, ax: "Axes | None" = None) -> "Axes":
 
 
 def draw_ball(ax: "Axes", ball: int, place: Vector, radius: float, alpha: float = 1.0) -> None:
-    """A ball at a place [m]; a faint one is where it was, or stops."""
+    """A ball at a place [m]; a faint ball shows a contact or where it stops."""
     from matplotlib.patches import Circle
 
     inks = {"fc": _rgb(COLOURS[ball], alpha), "ec": _rgb(0.5 * COLOURS[ball], alpha)}
@@ -105,7 +105,7 @@ def _slides(shot: Shot, ball: int, times: Floats) -> Any:
 
 
 def _write_speeds(ax: "Axes", shot: Shot) -> None:
-    """The cue ball's speed at the start and just before its impacts, and there the cut."""
+    """Write the cue ball's speed at the start and just before its impacts, and the cut at balls."""
     events = shot.events
     balls = (events["kind"] == EventKind.BALL_BALL) & ((events["i"] == CUE) | (events["j"] == CUE))
     rails = np.isin(events["kind"], (EventKind.CUSHION, EventKind.JAW)) & (events["i"] == CUE)

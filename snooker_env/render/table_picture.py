@@ -1,5 +1,5 @@
-"""How is a table drawn from above? Everything that does not move, as an array; needs only numpy. Each part is
-a signed distance [m] (negative inside); an edge covers a part of a pixel, smooth at every size."""
+"""How is a table drawn from above? Its fixed parts as an array, with numpy alone. Each part is a signed distance [m],
+negative inside. Edges cover parts of pixels, so they are smooth at every size."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -9,9 +9,8 @@ import numpy as np
 
 from .._lib.check import integer, refuse
 from .._lib.types import Bytes, Floats
-from ..geometry import BAULK_Y, D_RADIUS
 from ..physics.table import Table
-from .outline import BAULK_LINE, CUSHION, RAIL, SPOT_MARKS, Outline, extent, has_lines, outline
+from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, extent, has_lines, outline
 from .palette import PALETTE
 
 Size: TypeAlias = tuple[int, int]
@@ -73,7 +72,7 @@ def lamps(table: Table) -> Floats:
 
 @lru_cache(maxsize=8)
 def table_picture(table: Table, view: View) -> Bytes:
-    """The picture of a table without balls, read-only; the rows of the score bar show the floor."""
+    """The picture of a table without balls, read-only. The rows of the score bar show the floor."""
     canvas, parts = _Canvas(view, table), outline(table)
     canvas.image[:] = _INK["floor"]
     _bed(canvas, table)
@@ -103,9 +102,7 @@ class _Canvas:
 
     def around(self, points, margin):
         """The rows and columns within ``margin`` [m] of some points: the picture there, x, y."""
-        (x0, y0), (x1, y1) = np.min(points, axis=0) - margin, np.max(points, axis=0) + margin
-        each = (self.x, (x0, x1)), (self.y, (y0, y1))
-        rows, columns = (slice(*np.searchsorted(axis.ravel(), ends)) for axis, ends in each)
+        rows, columns = _near(self.x, self.y, np.min(points, axis=0), np.max(points, axis=0), margin)
         return self.image[rows, columns], self.x[rows], self.y[:, columns]
 
     def cover(self, distance):
@@ -160,11 +157,9 @@ def _bed(canvas, table):
 def _marks(canvas):
     """The baulk line, the D and the spots."""
     half = max(0.0017, 0.55 / canvas.view.scale)
-    image, x, y = canvas.around(BAULK_LINE, 2 * half)
-    _paint(image, _INK["line"], 0.88 * canvas.cover(np.abs(y - np.float32(BAULK_Y)) - half + 0 * x))
-    image, x, y = canvas.around([(-D_RADIUS, BAULK_Y - D_RADIUS), (D_RADIUS, BAULK_Y)], 2 * half)
-    arc = np.abs(np.hypot(x, y - BAULK_Y) - D_RADIUS) - half
-    _paint(image, _INK["line"], 0.88 * canvas.cover(np.maximum(arc, y - BAULK_Y)))
+    for points in (BAULK_LINE, D_ARC):
+        image, x, y = canvas.around(points, 2 * half)
+        _paint(image, _INK["line"], 0.88 * canvas.cover(to_line(x, y, points, 3 * half) - half))
     for spot in SPOT_MARKS:
         image, x, y = canvas.around([spot], 0.02)
         far = np.hypot(x - spot[0], y - spot[1]) - max(0.0048, 1.2 / canvas.view.scale)
@@ -217,9 +212,9 @@ def _cushion(canvas, polygon, nose):
 
 
 def _near(x, y, a, b, reach):
-    """The rows and columns within ``reach`` of the line from a to b."""
-    ends = ((axis, sorted((p, q))) for axis, p, q in ((x.ravel(), a[0], b[0]), (y.ravel(), a[1], b[1])))
-    return tuple(slice(*np.searchsorted(axis, (low - reach, high + reach))) for axis, (low, high) in ends)
+    """The rows and columns within ``reach`` of the rectangle with two corners a and b."""
+    each = zip((x.ravel(), y.ravel()), a, b, strict=True)
+    return tuple(slice(*np.searchsorted(axis, (min(p, q) - reach, max(p, q) + reach))) for axis, p, q in each)
 
 
 def to_line(x: Floats, y: Floats, points: Floats, reach: float) -> Floats:

@@ -1,4 +1,4 @@
-"""How is a table shown on the screen? In a window that shows what it waits for, and reads its ``KEYS``."""
+"""A window with a table. Its last line says what it waits for and which ``KEYS`` it reads."""
 
 import os
 import sys
@@ -22,7 +22,7 @@ _INVISIBLE = ("dummy", "offscreen")  # drivers of SDL
 
 
 def display_missing() -> bool:
-    """Whether nobody could see a window; ``SDL_VIDEODRIVER=dummy`` allows one without a screen (tests)."""
+    """Whether nobody could see a window. ``SDL_VIDEODRIVER=dummy`` allows one without a screen, for tests."""
     linux = not (sys.platform.startswith("win") or sys.platform == "darwin")
     return linux and not any(map(os.environ.get, ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY")))
 
@@ -41,7 +41,7 @@ def _no_display(why):
 
 
 class Window:
-    """A window with a table, opened by the first ``draw``; once closed by its user, shut until ``close``."""
+    """A window with a table. The first ``draw`` opens it. A window that its user closed stays shut until ``close``."""
 
     def __init__(self, *, size: Size | None = None):
         self._size = None if size is None else check_size(size)
@@ -56,7 +56,7 @@ class Window:
         return self._screen is not None
 
     def draw(self, scene: Scene, status: str = WAITING) -> bool:
-        """Show a scene and what the window waits for; False, nothing shown, if the user has closed it."""
+        """Show a scene and the status; False if the user has closed the window, which then shows nothing."""
         if self._screen is not None:
             self._listen()
         if self._shut:
