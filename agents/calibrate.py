@@ -242,7 +242,14 @@ def draw(tenths, frames, file):
         figure, axes = picture_style.page(plt, 5.4, "The chance to win, and who won", note, columns=1)
         axes.plot([0, 100], [0, 100], color=picture_style.GREY, linewidth=1)
         axes.errorbar(said, won, 2.0 * error, fmt="o-", color=picture_style.BLUE)
-        axes.annotate("said = won", (12, 12), (8, -8), textcoords="offset points", size=picture_style.SMALL)
+        axes.annotate(
+            "as often as it says",
+            (30, 30),
+            (-6, 4),
+            textcoords="offset points",
+            ha="right",
+            size=picture_style.SMALL,
+        )
         axes.set(
             xlabel="chance to win that the tactician says [%]",
             ylabel="won [%]",
