@@ -46,7 +46,7 @@ def film_stroke(
 ) -> tuple[Film, Scene]:
     """A stroke as a film, and the table after it; ``during`` and ``after`` are the bars of ``bars``."""
     shot, judged = (stroke.shot, True) if isinstance(stroke, Played) else (stroke, False)
-    film = Film(table, shot, strike=stroke.cue if judged else None, bar=during, text=text)
+    film = Film(table, shot, strike=stroke.cue if isinstance(stroke, Played) else None, bar=during, text=text)
     last = film.at(shot.duration)
     where, on_table = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
     placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
