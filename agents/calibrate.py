@@ -34,7 +34,7 @@ with needs("agents.calibrate"):
     from snooker_env.tasks import LEVELS
 
     from .learning.frame_self_play import FRAME, TABLES, frames
-    from .learning.frame_worth import by_stage, calibration
+    from .learning.frame_worth import by_stage, by_tenth, calibration
 
 FIRST_SEED = 900_000_000  # of frames that no training has played
 FIGURES = {
@@ -192,7 +192,8 @@ def play_frames(laws, many, budget):
 
 def chances_of(parts):
     """Of the rows of all parts: the chance to win of who plays each stroke and the share that won, (10, 2), of groups of
-    strokes sorted by the chance; the mean absolute difference; and the rows of ``by_stage``. None if no frame was won."""
+    strokes sorted by the chance; the mean absolute difference; the rows of ``by_stage``, and those of ``by_tenth``. None if
+    no frame was won."""
     layers, chance = learned_worth()
     names = "seen", "lead", "left", "last", "won", "decided", "frame"
     rows = {name: np.concatenate([part[name] for part in parts]) for name in names}
@@ -203,18 +204,40 @@ def chances_of(parts):
     worth = worth_of(None if layers is None else Layers(layers, "relu"), rows["seen"]).astype(np.float64)
     stand = rows["lead"], rows["left"], rows["last"]
     said = chance(stand[0], worth, *stand[1:], read_errors(rows["seen"]))
-    return *calibration(said, rows["won"]), by_stage(said, rows["won"], *stand, rows["frame"])
+    seen = by_stage(said, rows["won"], *stand, rows["frame"]), by_tenth(said, rows["won"], rows["frame"])
+    return *calibration(said, rows["won"]), *seen
 
 
-def draw(table, error, frames, file):
-    """The diagram of ``chances_of``."""
+def draw(tenths, frames, file):
+    """The diagram of ``by_tenth``."""
+    strokes, _, said, won, error = np.array(tenths).T
+    said, won, error = 100.0 * said, 100.0 * won, 100.0 * error
+    clear = said - won > 2.0 * error  # where it says more than comes true
+    words = "In no tenth does it say more than comes true, beyond two standard errors."
+    if clear.any():
+        low, high = 10 * int(said[clear].min() // 10), 10 * int(said[clear].max() // 10) + 10
+        words = f"Overconfident by {np.average((said - won)[clear], weights=strokes[clear]):.0f} points where it says {low} to {high} %."
+    note = (
+        f"Before each of {int(strokes.sum()):,} strokes in {frames} frames of two tacticians: how likely the player at the table wins.\n"
+        f"Points: strokes in steps of 10 %; bars: two standard errors. {words}"
+    )
     with picture_style.drawing() as plt:
-        figure, axes = picture_style.page(plt, 5.0, "The chance to win, and who won", columns=1)
+        figure, axes = picture_style.page(plt, 5.4, "The chance to win, and who won", note, columns=1)
         axes.plot([0, 100], [0, 100], color=picture_style.GREY, linewidth=1)
-        axes.plot(*(100.0 * table.T), "o-", color=picture_style.BLUE)
-        axes.set(xlabel="chance to win that the tactician sees before a stroke [%]", ylabel="won [%]")
-        axes.set_title(
-            f"{frames} frames, groups of equally many strokes: {100.0 * error:.1f} % apart on average"
+        axes.errorbar(said, won, 2.0 * error, fmt="o-", color=picture_style.BLUE)
+        axes.annotate(
+            "as often as it says",
+            (30, 30),
+            (-6, 4),
+            textcoords="offset points",
+            ha="right",
+            size=picture_style.SMALL,
+        )
+        axes.set(
+            xlabel="chance to win that the tactician says [%]",
+            ylabel="won [%]",
+            xlim=(-2, 102),
+            ylim=(-2, 104),
         )
         picture_style.save(figure, file)
 
@@ -258,8 +281,8 @@ def main(argv=None):
     title = f"{len(real)} frames of professionals, {args.frames} played of each scale"
     parts, chances = [_table(title, FIGURES, columns), _table("Tactics", TACTICS, tactics)], None
     if won := chances_of([rows for each in played for rows in each]):
-        table, error, stages = won
-        chances = {"groups": table.tolist(), "error": error, "stages": stages}
+        table, error, stages, tenths = won
+        chances = {"groups": table.tolist(), "error": error, "stages": stages, "tenths": tenths}
         rows = [
             [words, str(strokes), str(frames), f"{100.0 * a:.1f}", f"{100.0 * b:.1f} ± {100.0 * c:.1f}"]
             for words, strokes, frames, a, b, c in stages
@@ -267,7 +290,7 @@ def main(argv=None):
         said = f"The chance to win of who is ahead, before each stroke; groups of all strokes: {100.0 * error:.1f} % apart"
         parts.append(TextTable(said, ["", "strokes", "frames", "chance, %", "won, %"], rows, 1, 1))
         if args.picture:
-            draw(table, error, args.frames * len(args.scales), args.picture)
+            draw(tenths, args.frames * len(args.scales), args.picture)
     show(parts)
     if args.json:
         report = {"figures": columns, "tactics": tactics, "chances": chances, "frames": args.frames}

@@ -374,6 +374,8 @@ class Fuzzed:
     seconds: float = 0.0
     worst: dict = field(default_factory=dict)
     """Fidelity -> worst figure of each invariant, in the order of ``invariants.NAMES``."""
+    share: dict = field(default_factory=dict)
+    """The same of each figure over what its own shot allows; where nothing is allowed, 0, or infinity if it fails."""
     events: dict = field(default_factory=dict)
     """Scene -> most events of a shot."""
     drawn: Counter = field(default_factory=Counter)
@@ -434,9 +436,11 @@ def _take(out, number, drawn, found, threads):
         (number, int(k), Status(found.status[k]).name, float(found.n_events[k]), *labels)
         for k in np.flatnonzero(~ok)
     ]
-    for k, c in np.argwhere(
-        (found.worst > allowed(drawn.fidelity, drawn.constants, drawn.physics.flight)) & ok[:, None]
-    ):
+    limits = allowed(drawn.fidelity, drawn.constants, drawn.physics.flight)
+    none = np.where(worst > 0.0, np.inf, 0.0)
+    share = np.where(limits > 0.0, np.maximum(worst, 0.0) / np.maximum(limits, 1e-300), none)
+    out.share[drawn.fidelity] = np.maximum(out.share.get(drawn.fidelity, 0.0), share)
+    for k, c in np.argwhere((found.worst > limits) & ok[:, None]):
         out.failures.append((number, int(k), invariants.NAMES[c], float(found.worst[k, c]), *labels))
     if number % PUBLIC == 0 and ok.all():
         other = np.flatnonzero(~compare_public(drawn, found, threads))
@@ -468,14 +472,16 @@ def lines(found, seed):
 
 def figures_of(found, seed):
     """What was found, JSON-able."""
-    worst = {
-        fidelity: dict(zip(invariants.NAMES, x.tolist(), strict=True)) for fidelity, x in found.worst.items()
-    }
+    worst, share = (
+        {fidelity: dict(zip(invariants.NAMES, x.tolist(), strict=True)) for fidelity, x in of.items()}
+        for of in (found.worst, found.share)
+    )
     return {
         "shots": found.shots,
         "seconds": found.seconds,
         "seed": seed,
         "worst": worst,
+        "share": share,
         "events": found.events,
         "failures": found.failures,
     }

@@ -1,6 +1,6 @@
-"""The films on the pages of the tasks: one episode for each, as .mp4.
+"""The films on the pages of the tasks: one episode of each, as .mp4.
 
-An episode is played from the first of a few seeds that has what the film is to show; the same code gives the same film.
+A film shows the first of a few seeds whose episode has what the film illustrates. The same code makes the same film.
 """
 
 import subprocess
@@ -18,7 +18,7 @@ from snooker_env.replays import replay
 
 SIZE, FPS, SPEED = (720, 406), 20.0, 2.0
 MOST_STROKES = 8
-"""Strokes of an episode that a film shows: the files stay below 400 kB."""
+"""Strokes of an episode that a film shows, so that the files stay small."""
 SEED, TRIES = 1_000_000, 40
 """The first seed, that of judged tables, and how many are tried."""
 
@@ -34,11 +34,11 @@ class Film:
     options : mapping
         Of ``SnookerEnv``.
     at_least : int
-        What the episode must bring at least: points, or in a frame the agent's score when the film ends.
+        The least points of the episode, or in a frame the agent's least score when the film ends.
     title : str
         Shown in the first picture.
     quiet : float
-        Least share of strokes that score nothing: safeties.
+        The least share of strokes that score nothing, most of them safeties.
     """
 
     agent: str
@@ -71,7 +71,7 @@ FILMS = {
             "miss": "clear_path",
         },
         title="a frame: tactician against tactician",
-        quiet=0.7,
+        quiet=0.5,
     ),
     "break_off": _visit("planner_500", "break_off", 0),
     "random": _visit("planner_500", "random:6", 15),
@@ -97,8 +97,7 @@ def episode(film: Film, seed: int) -> Any:
 
 
 def found(film: Film) -> tuple[Any, int]:
-    """The episode of the first seed that has what the film is to show, and that seed. SystemExit if there is
-    none."""
+    """The episode of the first seed that has what the film shows, and that seed. SystemExit without one."""
     for seed in range(SEED, SEED + TRIES):
         env = episode(film, seed)
         if env is not None:
@@ -109,8 +108,8 @@ def found(film: Film) -> tuple[Any, int]:
 def write(
     made: Any, path: Path, *, size: tuple[int, int] = SIZE, fps: float = FPS, speed: float = SPEED
 ) -> None:
-    """Encode a ``Replay`` as an .mp4 that browsers play while it loads, smaller than ``Replay.save`` makes
-    it, which is faster."""
+    """Encode a ``Replay`` as an .mp4 that browsers play while it loads: smaller than that of ``Replay.save``, and slower to
+    make."""
     from imageio_ffmpeg import get_ffmpeg_exe
 
     given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]

@@ -3,7 +3,7 @@
 #
 #     bash results/make.sh PART        physics: charts of benchmarks and their figures, some minutes;
 #                                      with TRACKED=FILE the real shots of that file, too
-#                                      pictures: films, screenshots, README's break, some minutes
+#                                      pictures: charts of kept figures, diagrams, films, screenshots, README's break, some minutes
 #                                      agents: trains the models of results/weights, compares all players, hours
 #                                      weights: the models of FOLDER into results/weights, those into the package
 #                                      curves [OPTION ...]: what plain Stable-Baselines3 learns, with options of
@@ -28,13 +28,16 @@ physics() {
     for name in paper scene tradeoff; do
         module "benchmarks.$name" --json "results/physics/$name.json" --out results/pictures
     done
+    module benchmarks.stability --fuzz 200000 --json results/physics/stability.json
     # the tracked shots are not in the clone, see docs/validation/real_shots.md
     [[ -z ${TRACKED:-} ]] || module benchmarks.real_shots "$TRACKED" --json results/physics/real_shots.json
 }
 
 pictures() {
-    python results/make_pictures.py films && python results/make_pictures.py screens || exit
-    module snooker_env.watch --agent planner --at-least 100 --out results/pictures/break.gif --speed 6
+    for what in charts diagrams films screens; do
+        ${LIST:+echo} python results/make_pictures.py $what || exit
+    done
+    module snooker_env.watch --agent planner --at-least 130 --out results/pictures/break.gif --speed 6
 }
 
 models() { # name, then the options of train.py

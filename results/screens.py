@@ -1,5 +1,5 @@
 """The screenshots in the documentation: the page of ``snooker_env.play`` with advice, and the replay of a frame, each as a
-browser shows it.
+browser shows it. Needs Chromium.
 """
 
 import re
@@ -20,16 +20,18 @@ QUIET = (
     "--disable-background-networking",
     "--disable-component-update",
 )
+DESK, PHONE = {"width": 1280, "height": 880}, {"width": 390, "height": 844}
 
 
 def shoot(page, file):
     """A screenshot in this file."""
     page.screenshot(path=file, type="jpeg", quality=82)
-    print(file)
+    print(file, flush=True)
 
 
-def page_to_play(browser, out):
-    """The page to play: at a desk as it answers *Hint*, on a phone as a stroke is aimed."""
+def play(browser, out):
+    """The page to play: at a desk with the best suggestion taken over, on a phone as a stroke is aimed."""
+    person = Path(tempfile.mkdtemp()) / "person.json"
     command = [
         sys.executable,
         "-m",
@@ -40,23 +42,30 @@ def page_to_play(browser, out):
         "--seed",
         "6",
         "--person",
-        str(Path(tempfile.mkdtemp()) / "person.json"),
+        str(person),
     ]
     server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     try:
         address = next(found[0] for line in server.stdout if (found := re.search(r"http://\S+", line)))
-        page = browser.new_page(viewport={"width": 1280, "height": 720})
+        page = browser.new_page(viewport=DESK)
         page.goto(address)
         page.locator("#tour-skip").click()
         page.locator("#options summary").click()
-        page.locator("#noise-0").select_option("professional")
+        page.locator("#noise-0").select_option(
+            "professional"
+        )  # those of the chance to win, so that both agree
+        page.locator("#guide").select_option("spread")
         page.locator("#options summary").click()
         page.get_by_role("button", name="Hint").click()
-        page.locator("#advice button").first.wait_for(timeout=120_000)
-        page.locator("#advice button").first.hover()
+        best = page.locator("#advice button").first
+        best.wait_for(timeout=300_000)
+        best.click()
+        page.mouse.move(300, 850)
+        page.locator("#panel").evaluate("panel => panel.scrollTo(0, 0)")
+        page.locator("#odds", has_text="potted").wait_for(timeout=60_000)
         time.sleep(1.5)
         shoot(page, out / "page.jpg")
-        phone = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True)
+        phone = browser.new_page(viewport=PHONE, has_touch=True)
         phone.goto(address)
         phone.locator("#tour-skip").click()
         time.sleep(1.5)
@@ -71,8 +80,8 @@ def replay(browser, out):
         file = Path(folder) / "frame.html"
         command = [sys.executable, "-m", "snooker_env.watch", "--frame", "--seed", "3", "--out", str(file)]
         subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
-        for name, width, height in (("replay.jpg", 1280, 720), ("replay_phone.jpg", 390, 844)):
-            page = browser.new_page(viewport={"width": width, "height": height})
+        for name, size in (("replay.jpg", {"width": 1280, "height": 720}), ("replay_phone.jpg", PHONE)):
+            page = browser.new_page(viewport=size)
             page.goto(file.as_uri())
             page.keyboard.press("p")
             for _ in range(12):
@@ -82,8 +91,8 @@ def replay(browser, out):
 
 
 def make(folder):
-    """Take them all; needs Chromium."""
+    """Take them all."""
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(QUIET))
-        page_to_play(chromium, folder)
+        play(chromium, folder)
         replay(chromium, folder)

@@ -108,11 +108,19 @@ def by_stage(chance, won, now, left, last, frames):
     level), the share of these that won, and its standard error, over frames."""
     ahead = now >= 0
     said, made = np.where(ahead, chance, 1.0 - chance), np.where(ahead, won, ~won)
-    rows = []
-    for words, which in stages(now, left, last).items():
-        if which.any():
-            each, of = np.unique(frames[which], return_inverse=True)
-            off = np.bincount(of, made[which] - made[which].mean())
-            error = np.sqrt((off**2).sum()) / which.sum()
-            rows.append((words, int(which.sum()), len(each), said[which].mean(), made[which].mean(), error))
-    return rows
+    every = stages(now, left, last).items()
+    return [(words, *_compare(said, made, frames, which)) for words, which in every if which.any()]
+
+
+def by_tenth(chance, won, frames):
+    """The same of strokes whose chance lies in each tenth from 0 to 1, without words."""
+    tenth = np.minimum((10.0 * chance).astype(int), 9)
+    return [_compare(chance, won, frames, tenth == k) for k in np.unique(tenth).tolist()]
+
+
+def _compare(said, made, frames, which):
+    """Of the strokes ``which``: how many, in how many frames, mean chance, share won, its standard error over frames."""
+    each, of = np.unique(frames[which], return_inverse=True)
+    off = np.bincount(of, made[which] - made[which].mean())
+    error = np.sqrt((off**2).sum()) / which.sum()
+    return int(which.sum()), len(each), float(said[which].mean()), float(made[which].mean()), float(error)

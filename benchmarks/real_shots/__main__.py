@@ -28,8 +28,10 @@ from snooker_env.physics.parameters import PRESETS, Physics
 from .._common.command import Command, run, save_json
 from . import constants, tracks, verdict
 from .paths import Judge
+from .picture import draw
 from .strikes import fit
 
+FILE = "real_shots.png"
 USED, HELD_OUT = "used for the constants", "held out"
 
 
@@ -40,7 +42,7 @@ def part(number):
 
 def main(argv=None):
     """Command line."""
-    parser = Command("real_shots", __doc__, seed=0)
+    parser = Command("real_shots", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("file", type=Path, metavar="FILE", help="the tracked shots, JSON")
     parser.add_argument(
         "--physics", default="carom", choices=sorted(PRESETS), help="the constants of all shots [carom]"
@@ -76,10 +78,10 @@ def measure(options, shots):
     print(
         f"{len(shots)} shots of {options.file.name}, physics {'fitted anew' if options.fit else repr(options.physics)}"
     )
-    found = []
+    found, judges, strikes = [], [], []
     for shot in shots:
-        judge = Judge(shot, physics)
-        strike = fit(judge, options.seed)[0]
+        judges.append(judge := Judge(shot, physics))
+        strikes.append(strike := fit(judge, options.seed)[0])
         found.append({"part": part(shot.id)} | verdict.judge_shot(judge, strike))
     figures = {
         "machine": provenance.machine(),
@@ -89,6 +91,8 @@ def measure(options, shots):
         "medians": {name: verdict.medians(rows) for name, rows in parts(found).items()},
     }
     say(figures)
+    if options.pictures:
+        draw(figures, judges, strikes, options.folder / FILE)
     return figures
 
 

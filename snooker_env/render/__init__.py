@@ -1,4 +1,4 @@
-"""Pictures of a table. ``__all__`` is public: geometry and colours for drawing with another library."""
+"""Pictures of a table. Public (``__all__``): geometry and colours for drawing with another library."""
 
 from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, outline, scene_data
 from .palette import COLOURS, PALETTE

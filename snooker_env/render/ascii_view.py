@@ -1,6 +1,6 @@
 """How is a scene drawn in a terminal? From above in characters, baulk left and black right. A ball is a
 letter in the cell of its centre (N brown, K black), several reds are their number; the cue ball is never
-hidden, and a line below names the balls under another one."""
+hidden, and a line below the table names the balls that others cover."""
 
 from itertools import pairwise
 from textwrap import wrap
@@ -34,13 +34,11 @@ class _Grid:
         x, y = point
         if not (self.left <= x <= self.right and self.low <= y <= self.high):
             return None
-        row = int((x - self.left) / (self.right - self.left) * self.rows)
-        column = int((y - self.low) / (self.high - self.low) * self.columns)
-        return min(row, self.rows - 1), min(column, self.columns - 1)
+        row, column = (x - self.left) / (self.right - self.left), (y - self.low) / (self.high - self.low)
+        return min(int(row * self.rows), self.rows - 1), min(int(column * self.columns), self.columns - 1)
 
     def mark(self, point, character):
-        at = self.cell(point)
-        if at is not None:
+        if (at := self.cell(point)) is not None:
             self.cells[at] = character
 
     def line(self, points, character):
@@ -72,7 +70,7 @@ def ansi(scene: Scene, width: int = WIDTH) -> str:
 
 
 def _balls(grid, scene):
-    """Put the balls' letters on the grid; returns those that could not be shown, as "r under W"."""
+    """Put the balls' letters on the grid. Returns the balls that have no cell of their own, as "r under W"."""
     shared = {}
     for ball, point in zip(scene.ids.tolist(), scene.positions, strict=True):
         at = grid.cell(np.clip(point, (grid.left, grid.low), (grid.right, grid.high)))
@@ -81,12 +79,11 @@ def _balls(grid, scene):
     for at, balls in shared.items():
         top = min(balls, key=lambda ball: (ball != 0, -ball))  # the cue ball, else the most valuable
         under = "".join(LETTERS[ball] for ball in balls if ball != top)
-        letter = LETTERS[top]
-        if letter == "r" and under:
-            letter = str(len(balls)) if len(balls) < 10 else "*"
+        grid.cells[at] = LETTERS[top]
+        if LETTERS[top] == "r" and under:
+            grid.cells[at] = str(len(balls)) if len(balls) < 10 else "*"
         elif under:
-            hidden.append(f"{under} under {letter}")
-        grid.cells[at] = letter
+            hidden.append(f"{under} under {LETTERS[top]}")
     return hidden
 
 

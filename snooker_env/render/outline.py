@@ -1,4 +1,4 @@
-"""Which parts of a table never move, and where are they? Cushions, falls, holes and lines [m]."""
+"""Where are the fixed parts of a table? Cushions, falls, holes and lines [m]."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -34,7 +34,7 @@ for _constant in (BAULK_LINE, D_ARC):
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The parts of a table that never move, see ``outline``."""
+    """The fixed parts of a table, see ``outline``."""
 
     cushions: tuple[Floats, ...]
     noses: tuple[Floats, ...]
@@ -43,7 +43,7 @@ class Outline:
 
 
 def extent(table: Table) -> Floats:
-    """What a picture shows between the rails: a table's bounds, else snooker's bed, (2, 2) [m]."""
+    """The bed that a picture shows: a table's bounds or, where it has none, snooker's bed, (2, 2) [m]."""
     return np.where(np.isfinite(table.bounds), table.bounds, _SNOOKER)
 
 
@@ -54,7 +54,7 @@ def has_lines(table: Table) -> bool:
 
 @lru_cache(maxsize=16)
 def outline(table: Table) -> Outline:
-    """The parts of a table that never move, from its noses, jaws and falls.
+    """The fixed parts of a table, from its noses, jaws and falls.
 
     Parameters
     ----------
@@ -65,10 +65,10 @@ def outline(table: Table) -> Outline:
     -------
     Outline
         Four attributes [m], all empty for unbounded cloth. ``cushions``, arrays (m, 2): closed polygons of the nose,
-        the jaws at its ends and the cushion's back under the wood. ``noses``, arrays (m, 2): of each the line that
-        balls meet, jaw - nose - jaw. ``falls`` (k, 3): centre and radius of the slate circles over which balls
-        drop. ``throats`` (k, 5), the holes in the wood: the mouth's middle, the fall's centre, half the width. The
-        result is kept: do not change its arrays.
+        the jaws at its ends and the cushion's back under the wood. ``noses``, arrays (m, 2): the line that balls
+        meet at each cushion, jaw - nose - jaw. ``falls`` (k, 3): centre and radius of the slate's holes. ``throats``
+        (k, 5), the holes in the wood: the mouth's middle, the fall's centre, half the width. The result is cached:
+        do not change its arrays.
 
     Examples
     --------
@@ -98,7 +98,7 @@ def _point(axis, across, along):
 
 
 def _jaw(jaws, start):
-    """The jaw (m, 2) that begins at ``start`` on a nose, arc after arc; only ``start`` if there is none."""
+    """The jaw (m, 2) that begins at ``start`` on a nose, arc after arc; ``start`` alone without a jaw."""
     points, left = [start], list(jaws)
     while (step := _arc_from(points[-1], left)) is not None:
         k, arc = step
@@ -142,7 +142,7 @@ def _throat(fall, noses, mouths):
 
 
 def scene_data(table: TableLike) -> dict[str, Any]:
-    """A table, its lines, the balls and all colours as JSON types, for drawing with any library.
+    """A table, its lines, the balls and the colours as JSON types, for drawing with any library.
 
     Parameters
     ----------

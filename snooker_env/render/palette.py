@@ -1,4 +1,4 @@
-"""Which colours does everything have? Each ball is easy to see: 25 or more from the cloth in CIEDE2000."""
+"""Colours. Every ball differs from the cloth by at least 25 in CIEDE2000, so that it is easy to see."""
 
 import numpy as np
 
@@ -39,7 +39,7 @@ COLOURS: Bytes = np.array(
     dtype=np.uint8,
 )
 """Colours of the balls by id: uint8 (22, 3), red, green, blue; read-only."""
-PALE: Bytes = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)  # the same lighter, for paths
+PALE: Bytes = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)  # lighter, for paths
 LETTERS = "W" + "r" * 15 + "YGNBPK"  # by ball id: W the cue ball, r a red; N is brown and K black, B is blue
 
 for _constant in (COLOURS, PALE):

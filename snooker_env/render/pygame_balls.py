@@ -1,5 +1,5 @@
-"""How are balls, paths and words drawn with pygame-ce? As kept pictures: balls shaded, with reflections of the
-lamps and faint shadows; paths in pieces, so that one that grows changes only at its end."""
+"""How does pygame-ce draw balls, paths, the cue and words? Mostly from cached pictures: balls with reflections of the
+lamps and soft shadows; paths in pieces, so that a growing path changes only at its end."""
 
 import os
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from .._lib.types import Floats
 from ..game.balls import CUE
 from .palette import COLOURS, PALETTE
 from .scene import Scene
-from .table_picture import LAMP_HEIGHT, View, lamps
+from .table_picture import LAMP_HEIGHT, View, lamps, smooth, to_line
 
 if TYPE_CHECKING:
     from pygame import Surface
@@ -25,7 +25,7 @@ BOLD, MEDIUM = "Inter-Bold.otf", "Inter-Medium.otf"
 
 
 def pygame_() -> ModuleType:
-    """The module ``pygame``, or an ImportError with the command that installs it."""
+    """The module ``pygame``; an ImportError names the command that installs it."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
         import pygame
@@ -70,52 +70,35 @@ def draw_lines(surface: "Surface", lines: list[tuple[Floats, tuple[int, int, int
     for points, colour in lines:
         pieces = list(_pieces(points))
         edge = width + 2 * max(0.9, 0.45 * width)
-        surface.fblits([_piece(*piece, PALETTE["path_edge"], edge) for piece in pieces])
-        surface.fblits([_piece(*piece, colour, width) for piece in pieces])
+        for ink, wide in ((PALETTE["path_edge"], edge), (colour, width)):
+            surface.fblits([_piece(piece, ink, wide) for piece in pieces])
 
 
 def _pieces(points):
-    """The pieces of a line: their points, and the cuts (point, direction, or None) that neighbours share."""
+    """The pieces of a line, each as evenly spaced points."""
     steps = np.hypot(*np.diff(points, axis=0).T)
     run = np.concatenate([[0.0], np.cumsum(steps)])
-    moved = np.concatenate([[True], steps > 1e-9])
-    run, points = run[moved], points[moved]
-    if len(points) < 2 or not run[-1] < _LONGEST:
+    if not 0.0 < run[-1] < _LONGEST:
         return
     at = np.append(np.arange(0.0, run[-1], _STEP), run[-1])
     even = np.stack([np.interp(at, run, points[:, k]) for k in (0, 1)], axis=1)
-    cuts = range(_POINTS, len(even) - 1, _POINTS)
-    edges = [None, *((*even[k].tolist(), *(even[k + 1] - even[k - 1]).tolist()) for k in cuts), None]
-    for k, first in enumerate((0, *cuts)):
-        yield tuple(even[first : first + _POINTS + 1].ravel().tolist()), edges[k], edges[k + 1]
+    for first in range(0, len(even) - 1, _POINTS):
+        yield tuple(even[first : first + _POINTS + 1].ravel().tolist())
 
 
 @lru_cache(maxsize=4096)
-def _piece(numbers, start, end, colour, width):
+def _piece(numbers, colour, width):
     """One piece as a picture, and the place of its corner."""
     points = np.array(numbers).reshape(-1, 2)
     chord = points[-1] - points[0]
     off = np.abs((points - points[0]) @ np.array([-chord[1], chord[0]])) / max(np.hypot(*chord), 1e-9)
     if np.max(off) < 0.05:  # straight
         points = points[[0, -1]]
-    margin = width / 2 + 1
-    low = np.floor(points.min(axis=0) - margin).astype(int)
-    high = np.ceil(points.max(axis=0) + margin).astype(int)
-    x, y = np.meshgrid(np.arange(low[0], high[0]) + 0.5, np.arange(low[1], high[1]) + 0.5)
-    nearest, whose = np.full(x.shape, np.inf), np.zeros(x.shape, int)
-    for k, ((ax, ay), (bx, by)) in enumerate(zip(points[:-1].tolist(), points[1:].tolist(), strict=True)):
-        dx, dy = bx - ax, by - ay
-        part = np.clip(((x - ax) * dx + (y - ay) * dy) / max(dx * dx + dy * dy, 1e-12), 0, 1)
-        far = (x - ax - part * dx) ** 2 + (y - ay - part * dy) ** 2
-        whose[far < nearest] = k
-        np.minimum(nearest, far, out=nearest)
-    alpha = np.clip(width / 2 + 0.5 - np.sqrt(nearest), 0, 1)
-    for cut, segment, side in ((start, 0, -1), (end, len(points) - 2, 1)):
-        if cut is not None:
-            px, py, dx, dy = cut
-            beyond = side * ((x - px) * dx + (y - py) * dy)
-            alpha[(whose == segment) & (beyond >= 0 if side > 0 else beyond > 0)] = 0
-    return surface_of(colour, alpha), (int(low[0]), int(low[1]))
+    reach = width / 2 + 1
+    low, high = (np.floor(points.min(axis=0) - reach), np.ceil(points.max(axis=0) + reach))
+    columns, rows = (np.arange(a, b) + 0.5 for a, b in zip(low, high, strict=True))
+    far = to_line(rows[:, None], columns[None], points[:, ::-1], reach)
+    return surface_of(colour, np.clip(width / 2 + 0.5 - far, 0, 1)), (int(low[0]), int(low[1]))
 
 
 PANEL = 0.55  # length of a lamp [m]
@@ -123,7 +106,9 @@ _FADED = 0.42
 _SPOT = np.cos(np.radians(17.0))
 _SPOTS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=np.float64)
 _ALL_DARK = 0.62
-EYE = 2.0  # how far the eye is above the bed [m]: a ball that flies looks larger
+_CUE_LENGTH, _CUE_PARTS = 1.45, (0.008, 0.95)  # where tip and shaft end, from the tip [m]
+_CUE_INKS = np.array([(60, 106, 156), (217, 178, 124), (32, 19, 13)])  # of tip, shaft and butt
+EYE = 2.0  # height of the eye above the bed [m]: a flying ball looks larger
 
 
 def draw_balls(surface: "Surface", scene: Scene, view: View) -> None:
@@ -131,16 +116,15 @@ def draw_balls(surface: "Surface", scene: Scene, view: View) -> None:
     radius = scene.ball_radius * view.scale
     over = lamps(scene.table)
     images = []
-    faded = _colour(CUE), round(radius, 2), _FADED
+    faded = _colour(CUE), round(radius, 2), _FADED, None
     images += [_at(place, _body, *faded) for place in view(scene.ghosts)]
     where = view(scene.positions)
     images += _shadows(scene.positions, scene.heights / scene.ball_radius, over, where, radius)
     for k in np.argsort(scene.heights, kind="stable").tolist():
         ball, place, size = int(scene.ids[k]), where[k], radius * (1.0 + float(scene.heights[k]) / EYE)
-        if ball == CUE and scene.turn is not None:
-            images.append(_with_spots(place, size, scene.turn))
-        else:
-            images.append(_at(place, _body, _colour(ball), round(size, 2), 1.0))
+        turn = scene.turn if ball == CUE else None
+        make = _body if turn is None else _sphere
+        images.append(_at(place, make, _colour(ball), round(size, 2), 1.0, turn))
     images += _reflections(scene.positions, over, where, radius)
     surface.fblits(images)
 
@@ -170,28 +154,21 @@ def _shade(colour, nz):
     return lit * (1 - 0.35 * rim) + np.array(PALETTE["cloth"]) * 0.22 * rim + 26 * nz**6
 
 
-@lru_cache(maxsize=2048)
-def _body(colour, radius, strength, fx, fy):
-    """A ball without reflections."""
+def _sphere(colour, radius, strength, turn, fx, fy):
+    """A ball without reflections; with a rotation ``turn`` it has six red spots."""
     x, y = _grid(int(np.ceil(radius)) + 1, fx, fy)
     d = np.hypot(x, y)
-    shaded = _shade(colour, np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1)))
+    nz = np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1))
+    shaded = _shade(colour, nz)
+    if turn is not None:
+        towards = turn @ _SPOTS.T  # (3, 6) in the table frame: x down, y to the right, z to the eye
+        seen = np.max(np.stack([y / radius, x / radius, nz], axis=-1) @ towards, axis=-1)
+        spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
+        shaded = shaded * (1 - spot) + _shade(COLOURS[1], nz) * spot
     return surface_of(shaded, strength * np.clip(radius + 0.5 - d, 0, 1))
 
 
-def _with_spots(place, radius, turn):
-    """The cue ball with six red spots, after the rotation ``turn``."""
-    column, row = float(place[0]), float(place[1])
-    left, top = int(np.floor(column)), int(np.floor(row))
-    x, y = _grid(int(np.ceil(radius)) + 1, 4 * (column - left), 4 * (row - top))
-    d = np.hypot(x, y)
-    nz = np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1))
-    towards = turn @ _SPOTS.T  # (3, 6) in the table frame: x down, y to the right, z to the eye
-    seen = np.max(np.stack([y / radius, x / radius, nz], axis=-1) @ towards, axis=-1)
-    spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
-    shaded = _shade(COLOURS[CUE], nz) * (1 - spot) + _shade(COLOURS[1], nz) * spot
-    made = surface_of(shaded, np.clip(radius + 0.5 - d, 0, 1))
-    return made, (left - made.get_width() // 2, top - made.get_height() // 2)
+_body = lru_cache(maxsize=2048)(_sphere)
 
 
 def _rays(positions, over):
@@ -201,18 +178,13 @@ def _rays(positions, over):
 
 
 def _reflections(positions, over, where, radius):
-    """Reflections: each lamp's where the normal is half-way between the lamp and the eye, straight above."""
-    ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
-    across, far = _rays(positions, ends.reshape(-1, 2))
-    up = LAMP_HEIGHT / far + 1
-    lean = across / far[..., None]
+    """Reflections of the lamps. Each lies where the normal is half-way between lamp and eye, which is straight above."""
+    across, far = _rays(positions, over)
+    lean, up = across / far[..., None], LAMP_HEIGHT / far + 1
     lean /= np.sqrt((lean**2).sum(axis=-1) + up**2)[..., None]
-    lean = lean.reshape(len(where), len(over), 3, 2)  # of each lamp its first end, middle and last end
-    centre = where[:, None] + radius * lean[:, :, 1, ::-1]
-    length = np.abs(lean[:, :, 2, 1] - lean[:, :, 0, 1]) * radius / 2
-    halves = [round(4 * max(half, 0.07 * radius)) for half in length.ravel().tolist()]
-    each = zip(centre.reshape(-1, 2), halves, strict=True)
-    return [_at(place, _lamp, half, round(radius, 1)) for place, half in each]
+    centre = (where[:, None] + radius * lean[..., ::-1]).reshape(-1, 2)
+    halves = np.rint(4 * radius * np.maximum(PANEL / (4 * far), 0.07)).astype(int).ravel().tolist()
+    return [_at(place, _lamp, half, round(radius, 1)) for place, half in zip(centre, halves, strict=True)]
 
 
 @lru_cache(maxsize=2048)
@@ -221,13 +193,13 @@ def _lamp(half, radius, fx, fy):
     along, across = half / 4, max(0.075 * radius, 0.4)
     x, y = _grid(int(np.ceil(along + 0.22 * radius)) + 1, fx, fy)
     d = np.hypot(np.maximum(np.abs(x) - along + across, 0), y)
-    small = min(1.0, 0.25 + radius / 12)  # fainter in a small ball, which it would hide
+    small = min(1.0, 0.25 + radius / 12)  # fainter on a small ball, or it would hide the ball
     bright, glow = 0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2))
     return surface_of(PALETTE["lamp"], small * np.maximum(bright, glow))
 
 
 def _shadows(positions, heights, over, where, radius):
-    """A soft shadow from each lamp, and one where the ball touches; ``heights`` in radii."""
+    """A soft shadow from each lamp, and one where the ball touches the cloth; ``heights`` in radii."""
     images = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3
@@ -246,14 +218,34 @@ def _shadows(positions, heights, over, where, radius):
 def _shadow(radius, alpha, soft, fx, fy):
     x, y = _grid(int(np.ceil(radius * (1 + soft))) + 1, fx, fy)
     t = np.clip((np.hypot(x, y) / radius - (1 - soft)) / (2 * soft), 0, 1)
-    return surface_of(PALETTE["shadow"], alpha / 24 * (1 - t * t * (3 - 2 * t)))
+    return surface_of(PALETTE["shadow"], alpha / 24 * (1 - smooth(t)))
+
+
+def draw_cue(surface: "Surface", scene: Scene, view: View) -> None:
+    """Put a scene's cue on a surface: tip, shaft and butt, thicker towards its end, with a shadow."""
+    if (cue := scene.cue) is None:
+        return
+    back, flat, scale = -np.array([np.cos(cue.aim), np.sin(cue.aim)]), np.cos(cue.elevation), view.scale
+    ends = view(cue.ball + (scene.ball_radius + cue.pull + np.array([[0.0], [_CUE_LENGTH * flat]])) * back)
+    low, high = (
+        np.clip(end, 0, surface.get_size()) for end in (ends.min(axis=0) - 20, ends.max(axis=0) + 20)
+    )
+    columns, rows = (np.arange(int(a), int(b)) + 0.5 for a, b in zip(low, high, strict=True))
+    x, y = np.meshgrid((columns - ends[0, 0]) / scale, (rows - ends[0, 1]) / scale)  # from the tip [m]
+    along, across = (x * back[1] + y * back[0]) / flat, np.abs(x * back[0] - y * back[1])
+    beyond = np.maximum(-along, along - _CUE_LENGTH)
+    far = np.maximum(np.maximum(across - 0.0048 - 0.0065 * along, beyond), -1.0)
+    body, shadow = np.clip(0.5 - far * scale, 0, 1), 0.35 * np.exp(-((np.maximum(far, 0) / 0.012) ** 2))
+    alpha = body + (1 - body) * shadow
+    colour = _CUE_INKS[np.searchsorted(_CUE_PARTS, along)] * (body / np.maximum(alpha, 1e-9))[..., None]
+    surface.blit(surface_of(colour, cue.alpha * alpha), (int(low[0]), int(low[1])))
 
 
 def dot(ball: int, radius: float) -> "Surface":
     """A small ball for a score bar, its id and radius [pixels], as a surface with transparency."""
-    image = _body(_colour(ball), round(radius, 2), 1.0, 2, 2).copy()
+    image = _body(_colour(ball), round(radius, 2), 1.0, None, 2, 2).copy()
     if COLOURS[ball].max() < 90:  # dark on a dark bar
-        ring = _body(PALETTE["text_quiet"], round(radius + 0.8, 2), 0.8, 2, 2).copy()
+        ring = _body(PALETTE["text_quiet"], round(radius + 0.8, 2), 0.8, None, 2, 2).copy()
         ring.blit(image, ((ring.get_width() - image.get_width()) // 2,) * 2)
         image = ring
     lamp = _lamp(max(1, round(0.8 * radius)), round(radius, 1), 2, 2)

@@ -1,5 +1,5 @@
-"""How is a scene drawn as a picture? With pygame-ce, without a display: the table's kept picture, what lies on
-it, and the score bar as on television."""
+"""How does pygame-ce draw a scene, without a display? The cached picture of the table, the balls and lines on it, and
+a score bar as on television."""
 
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from .._lib.types import Bytes
 from ..game.balls import COLOUR_NAMES, YELLOW
 from .palette import PALE, PALETTE
-from .pygame_balls import BOLD, MEDIUM, dot, draw_balls, draw_lines, line_width, pygame_, typeset
+from .pygame_balls import BOLD, MEDIUM, dot, draw_balls, draw_cue, draw_lines, line_width, pygame_, typeset
 from .scene import Scene, ScoreBar
 from .table_picture import SIZE as SIZE
 from .table_picture import Size, table_picture
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pygame import Surface
 
 _ROWS = 72  # lengths in this file are those of a bar 72 pixels high, as in a picture of 1080
-_SMALLEST = 36  # A lower bar is one line of text [pixels]
+_SMALLEST = 36  # a lower bar is one line of text [pixels]
 _EDGE = 28
 _GAP = 30
 _STRIP = 7  # height of the shares of the chance to win, at the upper edge
@@ -25,7 +25,7 @@ _STRIP = 7  # height of the shares of the chance to win, at the upper edge
 
 @lru_cache(maxsize=64)
 def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> "Surface":
-    """The bar (if None, the text) as a surface of this size [pixels], which is kept: do not draw on it."""
+    """The bar, or without one the text, as a surface of this size [pixels]. It is cached: do not draw on it."""
     pygame = pygame_()
     page = _Page(pygame.Surface((width, height), 0, 24), height / _ROWS)
     page.surface.fill(PALETTE["bar"])
@@ -45,7 +45,7 @@ def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> "Surf
 
 
 def in_words(bar: ScoreBar) -> str:
-    """The whole bar as one line of text: the parts that are there, separated by " · "."""
+    """The bar as one line of text: its parts, separated by " · "."""
     names = ", ".join(f"{name} {score}" for name, score in zip(bar.players, bar.scores, strict=True))
     parts = [
         names,
@@ -69,25 +69,16 @@ class _Page:
         left, right = round(x * u), round((x + width) * u)
         self.surface.fill(PALETTE[ink], (left, round(y * u), right - left, max(1, round(height * u))))
 
-    def text(self, text, size, place, *, ink="text", file=MEDIUM, anchor="midleft", room=None):
-        """Write a line with its middle at the height of a place (x, y); one that is too long ends in "…". Returns its width."""
-        line = self._fitting(text, size, ink, file, room)
-        u = self.unit
-        self.surface.blit(line, line.get_rect(**{anchor: tuple(round(part * u) for part in place)}))
+    def text(self, text, size, place=None, *, ink="text", file=MEDIUM, anchor="midleft", room=None):
+        """Write a line with its middle at the height of a place (x, y), if any; one that is too long ends in "…". Its width."""
+        u, keep = self.unit, len(text)
+        line = typeset(text, PALETTE[ink], 0.82 * size * u, file)
+        while room is not None and keep > 1 and line.get_width() > room * u:
+            keep = min(keep - 1, int(keep * room * u / line.get_width()) + 1)
+            line = typeset(text[:keep].rstrip() + "…", PALETTE[ink], 0.82 * size * u, file)
+        if place is not None:
+            self.surface.blit(line, line.get_rect(**{anchor: tuple(round(part * u) for part in place)}))
         return line.get_width() / u
-
-    def width(self, text, size, file=MEDIUM, room=None):
-        return self._fitting(text, size, "text", file, room).get_width() / self.unit
-
-    def _fitting(self, text, size, ink, file, room):
-        line = typeset(text, PALETTE[ink], 0.82 * size * self.unit, file)
-        if room is None or line.get_width() <= room * self.unit:
-            return line
-        keep = len(text)
-        while keep > 1 and line.get_width() > room * self.unit:
-            keep = min(keep - 1, int(keep * room * self.unit / line.get_width()) + 1)
-            line = typeset(text[:keep].rstrip() + "…", PALETTE[ink], 0.82 * size * self.unit, file)
-        return line
 
     def ball(self, ball, x, y, radius):
         image, u = dot(ball, radius * self.unit), self.unit
@@ -117,7 +108,7 @@ def _players(page, bar, width):
     middle, half = width / 2, 46
     if len(bar.players) == 1:
         name, score = bar.players[0], str(bar.scores[0])
-        taken = page.width(name, 36, room=300)
+        taken = page.text(name, 36, room=300)
         start = middle - (taken + 30 + 2 * half) / 2
         page.text(name, 36, (start, 37), room=300)
         _score(page, score, start + taken + 30 + half, half, True)
@@ -165,19 +156,17 @@ def _right(page, bar, width):
 def _balls_on(ball_on):
     """The balls drawn for the ball on."""
     words = ball_on.lower().split()
-    if "colour" in words:
-        return tuple(range(YELLOW, YELLOW + 6))
     if "red" in words or "reds" in words:
         return (1,)
-    return tuple(YELLOW + k for k, name in enumerate(COLOUR_NAMES) if name in words)
+    return tuple(YELLOW + k for k, name in enumerate(COLOUR_NAMES) if name in words or "colour" in words)
 
 
 def _column(page, label, value, end, balls=(), size=36, widest=""):
     """A value under its label, with room for ``widest`` so that nothing moves. Returns the next end."""
     step = 22 if len(balls) < 3 else 13
     taken = (step * (len(balls) - 1) + 30) if balls else 0
-    wide = max(page.width(text, size, BOLD, room=220) for text in (value, widest))
-    across = max(page.width(label, 17, BOLD), taken + wide)
+    wide = max(page.text(text, size, file=BOLD, room=220) for text in (value, widest))
+    across = max(page.text(label, 17, file=BOLD), taken + wide)
     start = end - across
     page.text(label, 17, (start, 17), ink="text_quiet", file=BOLD)
     for k, ball in enumerate(balls):
@@ -194,6 +183,7 @@ def draw(scene: Scene, view: View) -> Bytes:
     lines = [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()]
     draw_lines(surface, lines, line_width(view.scale))
     draw_balls(surface, scene, view)
+    draw_cue(surface, scene, view)
     surface.set_clip(None)
     if scene.bar is not None or scene.text:
         surface.blit(score_bar(scene.bar, scene.text, view.width, view.bar), (0, view.height - view.bar))

@@ -1,8 +1,8 @@
-"""What is there to draw? A table, its lines, balls and overlays, in metres, without a drawing library."""
+"""The content of a picture: table, balls, lines and score bar, in metres, independent of any drawing library."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 else:  # a shot draws itself: its module stands above this one
     Shot = Any
 
+LEAD = 0.6  # how long a cue is shown before the stroke [s]
+FOLLOW = 0.35  # and after it, fading
 TURN_STEP = 1 / 240  # time between stored rotations [s]: at 100 rad/s a quarter of a right angle
 UNTURNED = np.eye(3)
 
@@ -47,9 +49,8 @@ def rotate(turn: Floats) -> Floats:
     x, y, z = turn.tolist()
     angle = (x * x + y * y + z * z) ** 0.5
     across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])  # of the axis: across @ v is its product with v
-    return (
-        UNTURNED + np.sinc(angle / np.pi) * across + np.sinc(angle / (2 * np.pi)) ** 2 / 2 * across @ across
-    )
+    once, twice = np.sinc(angle / np.pi), np.sinc(angle / (2 * np.pi)) ** 2 / 2
+    return UNTURNED + once * across + twice * across @ across
 
 
 @dataclass(frozen=True)
@@ -62,10 +63,20 @@ class ScoreBar:
     break_points: int | None = None  # of the visit so far
     potted: tuple[int, ...] = ()  # ids of the balls of this visit, in order
     reds_left: int | None = None
-    points_on: int | None = None  # what is still on the table
+    points_on: int | None = None  # that can still be scored
     ball_on: str = ""  # "red", "any colour", "free ball", ...
     words: str = ""  # what just happened, as the referee would say it
     win_chance: float | None = None  # how likely the first player wins the frame
+
+
+class Cue(NamedTuple):
+    """A cue as a picture shows it."""
+
+    ball: Floats  # (2,) the middle of the ball that it strikes [m]
+    aim: float  # direction of the stroke [rad]
+    elevation: float  # of its butt [rad]
+    pull: float  # from the ball's edge back to the tip [m]; negative after the stroke
+    alpha: float  # 1 opaque, 0 invisible
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +93,7 @@ class Scene:
     turn: Floats | None  # of the cue ball since the start (3, 3); with one it has spots
     text: str  # one line of status, shown without a bar
     bar: ScoreBar | None
+    cue: Cue | None = None
 
 
 def scene(
@@ -95,7 +107,7 @@ def scene(
     text: str = "",
     bar: ScoreBar | None = None,
 ) -> Scene:
-    """One picture: n <= 22 balls, ids 0 to n-1, positions (n, 2) or with heights (n, 3), the rest as in ``Scene``, copied."""
+    """One picture of n <= 22 balls, ids 0 to n-1, at positions (n, 2), or (n, 3) with heights; the rest as in ``Scene``."""
     r, table = np.array(positions, np.float64), Table.of(table)
     heights = r[:, 2] if r.shape[1] == 3 else np.zeros(len(r))
     ids = np.arange(len(r)) if on_table is None else np.flatnonzero(np.array(on_table))
@@ -106,7 +118,7 @@ def scene(
 
 
 def trace_paths(shot: Shot, balls: Iterable[int], step: float = 0.02) -> dict[int, tuple[Floats, Floats]]:
-    """Paths {ball: (points (m, 2) [m], times (m,) [s])} of the balls that move; impacts are points of them."""
+    """Paths {ball: (points (m, 2) [m], times (m,) [s])} of the balls that move, with a point at every impact."""
     times = np.append(np.arange(0.0, shot.duration, step), shot.duration)
     impacts = shot.events["time"][shot.events["kind"] <= EventKind.POT]
     times = np.union1d(times, impacts[impacts < shot.duration])
@@ -121,7 +133,7 @@ def trace_paths(shot: Shot, balls: Iterable[int], step: float = 0.02) -> dict[in
 
 
 def find_contacts(shot: Shot, ball: int = CUE) -> tuple[Floats, Floats]:
-    """Places (m, 2) [m] and times (m,) [s] where a ball met others; none nearer than a radius to the last."""
+    """Places (m, 2) [m] and times (m,) [s] where a ball met others, each at least a radius from the last."""
     met = shot.events[shot.events["kind"] == EventKind.BALL_BALL]
     met = met[(met["i"] == ball) | (met["j"] == ball)]
     places, kept = shot.at(met["time"])[0][:, ball, :2].reshape(-1, 2), []
@@ -132,11 +144,22 @@ def find_contacts(shot: Shot, ball: int = CUE) -> tuple[Floats, Floats]:
 
 
 class Film:
-    """The pictures of a ``Shot`` at any time: the cue ball with spots and ghosts, its path and those of potted balls."""
+    """The pictures of a ``Shot`` at any time: the cue ball with spots and ghosts, its path and those of potted balls.
 
-    def __init__(self, table: TableLike, shot: Shot, *, bar: ScoreBar | None = None, text: str = ""):
+    With ``strike`` ("speed", "aim", "elevation") a cue is drawn, and the film begins ``LEAD`` before the shot."""
+
+    def __init__(
+        self,
+        table: TableLike,
+        shot: Shot,
+        *,
+        strike: Mapping[str, float] | None = None,
+        bar: ScoreBar | None = None,
+        text: str = "",
+    ):
         self.duration: float = shot.duration
-        self._table, self._shot = Table.of(table), shot
+        self.begin: float = -LEAD if strike else 0.0
+        self._table, self._shot, self._strike = Table.of(table), shot, strike
         self._bar, self._text = bar, text
         drops = shot.events[np.isin(shot.events["kind"], (EventKind.POT, EventKind.OFF))]
         potted = shot.events["i"][shot.events["kind"] == EventKind.POT]
@@ -147,6 +170,7 @@ class Film:
 
     def at(self, t: float) -> Scene:
         """The picture at a time [s] from the start of the shot."""
+        cue, t = self._cue(t), max(t, 0.0)
         r = self._shot.at(t)[0]
         paths = {}
         for ball, (points, times) in self._paths.items():
@@ -164,10 +188,21 @@ class Film:
             "text": self._text,
         }
         made = scene(self._table, r, self._gone_at > t, paths=paths, **over)
-        return replace(made, ball_radius=self._shot.physics.R)
+        return replace(made, ball_radius=self._shot.physics.R, cue=cue)
+
+    def _cue(self, t):
+        """The cue at a time: drawn back, then forward to the ball and through it; None after ``FOLLOW``."""
+        if self._strike is None or t >= FOLLOW:
+            return None
+        speed, aim, elevation = (self._strike[name] for name in ("speed", "aim", "elevation"))
+        back = 0.02 + (0.06 + 0.02 * min(5.0, speed)) * np.sin(np.pi * (max(-t, 0.0) / LEAD) ** 0.6)
+        pull = min(back, -t) if t < 0 else -min(0.16, 0.4 * t * speed)
+        ball = self._shot.at(0.0)[0][CUE, :2]
+        return Cue(ball, aim, elevation, pull, 1.0 if t < 0 else 1.0 - t / FOLLOW)
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
-        """One picture every speed / fps seconds of the shot's own time, and one of its end."""
+        """A picture every speed / fps seconds of the shot, and one of its end."""
         step = number("speed", speed, 0.0, open_low=True) / number("fps", fps, 0.0, open_low=True)
-        for t in np.append(np.arange(0.0, self.duration, step), self.duration):
+        first = round(self.begin / step)  # so that one picture is that of the stroke
+        for t in np.append(np.arange(first, self.duration / step) * step, self.duration):
             yield self.at(float(t))

@@ -1,4 +1,4 @@
-"""How is a shot drawn with matplotlib? On the table's picture, in metres: a point (x, y) is at ``ax.plot(y, x)``."""
+"""How does matplotlib draw a shot? On the picture of the table, in metres: a point (x, y) is at ``ax.plot(y, x)``."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ from ..physics.table import Table
 from .outline import RAIL, extent
 from .palette import COLOURS, PALE, PALETTE
 from .scene import find_contacts, trace_paths
-from .table_picture import View, table_picture
+from .table_picture import MARGIN, View, table_picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,10 +25,12 @@ else:  # a shot draws itself: its module stands above this one
 
 WIDTH = 8.3  # of a new figure [inches]
 PIXELS = (1660, 1000)  # of the table's picture
-RIM = RAIL + 0.02  # shown around the bed [m]
+RIM = RAIL + MARGIN  # shown around the bed [m]
 SLIDES = (255, 168, 36)  # colour of the stripes of a path on which the ball slides
 MOST_SPEEDS = 6  # written along the cue ball's path
 APART = 0.15  # least distance between two of them [m]
+_CALLED = ["time", "kind", "i", "j"]
+NEAR = 0.12  # a cushion nearer than this [m] would be written on
 
 
 def draw_shot(shot: Shot, ax: "Axes | None" = None) -> "Axes":
@@ -46,10 +48,8 @@ def draw_shot(shot: Shot, ax: "Axes | None" = None) -> "Axes":
         slides = np.append(_slides(shot, ball, (times[1:] + times[:-1]) / 2), False)
         for part in np.split(np.arange(len(times)), np.flatnonzero(np.diff(slides)) + 1):
             if slides[part[0]]:
-                stripe = points[part[0] : part[-1] + 2]
-                ax.plot(
-                    *_flip(stripe).T, color=_rgb(SLIDES), lw=2.2, ls=(0, (2, 2)), zorder=5.1, gid="slides"
-                )
+                stripe = _flip(points[part[0] : part[-1] + 2]).T
+                ax.plot(*stripe, color=_rgb(SLIDES), lw=2.2, ls=(0, (2, 2)), zorder=5.1, gid="slides")
         stops = [shot.positions[ball]] if shot.on_table[ball] else []
         for place in (*find_contacts(shot, ball)[0], *stops):
             draw_ball(ax, ball, place, R, 0.5)
@@ -84,28 +84,18 @@ def draw_table(table: Table, ax: "Axes | None" = None) -> "Axes":
 
 
 def draw_ball(ax: "Axes", ball: int, place: Vector, radius: float, alpha: float = 1.0) -> None:
-    """A ball at a place [m]; a faint one is where it was, or stops."""
+    """A ball at a place [m]; a faint ball shows a contact or where it stops."""
     from matplotlib.patches import Circle
 
+    inks = {"fc": _rgb(COLOURS[ball], alpha), "ec": _rgb(0.5 * COLOURS[ball], alpha)}
     y, x = _flip(place)
-    style: dict[str, Any] = {
-        "fc": _rgb(COLOURS[ball], alpha),
-        "ec": _rgb(0.5 * COLOURS[ball], alpha),
-        "lw": 0.6,
-    }
-    ax.add_patch(Circle((y, x), radius, zorder=6.0 + (alpha == 1.0), gid=f"ball-{ball}", **style))
+    ax.add_patch(Circle((y, x), radius, zorder=6.0 + (alpha == 1.0), gid=f"ball-{ball}", lw=0.6, **inks))
 
 
 def draw_path(ax: "Axes", points: Floats, colour: Vector, width: float = 2.2) -> None:
     """A line (m, 2) [m] with a dark outline."""
-    ax.plot(
-        *_flip(points).T,
-        color=_rgb(colour),
-        lw=width,
-        zorder=5.0,
-        path_effects=_edge(1.6 + width),
-        gid="path",
-    )
+    edge = _edge(1.6 + width)
+    ax.plot(*_flip(points).T, color=_rgb(colour), lw=width, zorder=5.0, path_effects=edge, gid="path")
 
 
 def _slides(shot: Shot, ball: int, times: Floats) -> Any:
@@ -115,15 +105,15 @@ def _slides(shot: Shot, ball: int, times: Floats) -> Any:
 
 
 def _write_speeds(ax: "Axes", shot: Shot) -> None:
-    """The cue ball's speed at the start and just before its impacts, and there the cut."""
+    """Write the cue ball's speed at the start and just before its impacts, and the cut at balls."""
     events = shot.events
     balls = (events["kind"] == EventKind.BALL_BALL) & ((events["i"] == CUE) | (events["j"] == CUE))
     rails = np.isin(events["kind"], (EventKind.CUSHION, EventKind.JAW)) & (events["i"] == CUE)
+    bed = extent(shot.table or Table.of(None))
+    style: dict[str, Any] = {"textcoords": "offset points", "weight": "bold", "size": 9, "zorder": 8.0}
+    style |= {"color": _rgb(PALETTE["text"]), "path_effects": _edge(2.4)}
     written: list[Floats] = []
-    for time, kind, i, j in [
-        (0.0, -1, CUE, CUE),
-        *events[["time", "kind", "i", "j"]][balls | rails].tolist(),
-    ]:
+    for time, kind, i, j in [(0.0, -1, CUE, CUE), *events[_CALLED][balls | rails].tolist()]:
         r, v = shot.at(time)[0][:, :2], shot.at(max(0.0, np.nextafter(time, -1.0)))[1][CUE, :2]
         place, words = r[CUE], f"{np.hypot(*v):.2f} m/s"
         if kind == EventKind.BALL_BALL:
@@ -132,14 +122,11 @@ def _write_speeds(ax: "Axes", shot: Shot) -> None:
             words += f", cut {np.degrees(cut):.0f}°"
         if len(written) < MOST_SPEEDS and all(np.hypot(*(place - other)) > APART for other in written):
             written.append(place)
-            style: dict[str, Any] = {
-                "textcoords": "offset points",
-                "ha": "center",
-                "weight": "bold",
-                "size": 9,
-            }
-            style |= {"color": _rgb(PALETTE["text"]), "zorder": 8.0, "path_effects": _edge(2.4)}
-            ax.annotate(words, tuple(_flip(place)), (0, 9), **style)
+            (above, _), (left, right) = np.abs(bed - place[:, None]).tolist()  # how far the cushions are
+            side, va = (1, "top") if above < NEAR else (-1, "bottom")  # below the ball, or above it
+            ha = "left" if left < 2 * NEAR else "right" if right < 2 * NEAR else "center"
+            at = tuple(_flip(place + np.array([side * shot.physics.R, 0.0])))
+            ax.annotate(words, at, (0, -3 * side), ha=ha, va=va, **style)
 
 
 def _flip(points: object) -> Floats:

@@ -1,5 +1,5 @@
-"""How is a table drawn from above? Everything that does not move, as an array; needs only numpy. Each part is
-a signed distance [m] (negative inside); an edge covers a part of a pixel, smooth at every size."""
+"""How is a table drawn from above? Its fixed parts as an array, with numpy alone. Each part is a signed distance [m],
+negative inside. Edges cover parts of pixels, so they are smooth at every size."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -9,15 +9,14 @@ import numpy as np
 
 from .._lib.check import integer, refuse
 from .._lib.types import Bytes, Floats
-from ..geometry import BAULK_Y, D_RADIUS
 from ..physics.table import Table
-from .outline import BAULK_LINE, CUSHION, RAIL, SPOT_MARKS, Outline, extent, has_lines, outline
+from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, extent, has_lines, outline
 from .palette import PALETTE
 
 Size: TypeAlias = tuple[int, int]
 SIZE = (1920, 1080)  # default width and height of a picture [pixels]
 
-_MARGIN = 0.012  # floor shown around the rails [m]
+MARGIN = 0.012  # floor shown around the rails [m]
 _BAR = 1 / 15  # part of the height for the score bar
 _LEAST, _MOST = 100, 8192
 
@@ -36,7 +35,7 @@ class View(NamedTuple):
     def of(cls, table: Table, size: Size = SIZE) -> "View":
         """As large as fits into ``size``, (width, height)."""
         low, high = extent(table).T
-        (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
+        (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + MARGIN), (low + high) / 2
         width, height = check_size(size)
         bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))
         scale = min((height - bar) / tall, width / wide)
@@ -73,7 +72,7 @@ def lamps(table: Table) -> Floats:
 
 @lru_cache(maxsize=8)
 def table_picture(table: Table, view: View) -> Bytes:
-    """The picture of a table without balls, read-only; the rows of the score bar show the floor."""
+    """The picture of a table without balls, read-only. The rows of the score bar show the floor."""
     canvas, parts = _Canvas(view, table), outline(table)
     canvas.image[:] = _INK["floor"]
     _bed(canvas, table)
@@ -103,9 +102,7 @@ class _Canvas:
 
     def around(self, points, margin):
         """The rows and columns within ``margin`` [m] of some points: the picture there, x, y."""
-        (x0, y0), (x1, y1) = np.min(points, axis=0) - margin, np.max(points, axis=0) + margin
-        each = (self.x, (x0, x1)), (self.y, (y0, y1))
-        rows, columns = (slice(*np.searchsorted(axis.ravel(), ends)) for axis, ends in each)
+        rows, columns = _near(self.x, self.y, np.min(points, axis=0), np.max(points, axis=0), margin)
         return self.image[rows, columns], self.x[rows], self.y[:, columns]
 
     def cover(self, distance):
@@ -124,7 +121,7 @@ class _Canvas:
         across, along = int(rows / fine) + 2, int(columns / run) + 3
         noise = self.random.standard_normal((across, along)).astype(np.float32)
         at, part = np.divmod(np.arange(columns) / run, 1.0)
-        at, part = at.astype(int), (part * part * (3 - 2 * part)).astype(np.float32)
+        at, part = at.astype(int), smooth(part).astype(np.float32)
         return (noise[:, at] * (1 - part) + noise[:, at + 1] * part)[(np.arange(rows) / fine).astype(int)]
 
 
@@ -134,7 +131,7 @@ def _paint(image, colour, alpha):
     image += alpha * (colour - image)
 
 
-def _smooth(t):
+def smooth(t: Floats) -> Floats:
     """A smooth step from 0 at t = 0 to 1 at t = 1."""
     t = np.clip(t, 0.0, 1.0)
     return t * t * (3 - 2 * t)
@@ -160,11 +157,9 @@ def _bed(canvas, table):
 def _marks(canvas):
     """The baulk line, the D and the spots."""
     half = max(0.0017, 0.55 / canvas.view.scale)
-    image, x, y = canvas.around(BAULK_LINE, 2 * half)
-    _paint(image, _INK["line"], 0.88 * canvas.cover(np.abs(y - np.float32(BAULK_Y)) - half + 0 * x))
-    image, x, y = canvas.around([(-D_RADIUS, BAULK_Y - D_RADIUS), (D_RADIUS, BAULK_Y)], 2 * half)
-    arc = np.abs(np.hypot(x, y - BAULK_Y) - D_RADIUS) - half
-    _paint(image, _INK["line"], 0.88 * canvas.cover(np.maximum(arc, y - BAULK_Y)))
+    for points in (BAULK_LINE, D_ARC):
+        image, x, y = canvas.around(points, 2 * half)
+        _paint(image, _INK["line"], 0.88 * canvas.cover(to_line(x, y, points, 3 * half) - half))
     for spot in SPOT_MARKS:
         image, x, y = canvas.around([spot], 0.02)
         far = np.hypot(x - spot[0], y - spot[1]) - max(0.0048, 1.2 / canvas.view.scale)
@@ -176,29 +171,33 @@ def _pockets(canvas, parts: Outline):
     for (cx, cy, radius), throat in zip(parts.falls.tolist(), parts.throats.tolist(), strict=True):
         image, x, y = canvas.around([(cx, cy), throat[:2]], max(radius, throat[4]) + 0.03)
         fall = np.hypot(x - cx, y - cy) - radius
-        _paint(image, 0.55 * _INK["cloth_edge"], 0.85 * _smooth(1 - fall / 0.011))
-        deep = _smooth(-fall / 0.014)[..., None]
+        _paint(image, 0.55 * _INK["cloth_edge"], 0.85 * smooth(1 - fall / 0.011))
+        deep = smooth(-fall / 0.014)[..., None]
         _paint(image, 0.30 * _INK["cloth_edge"] * (1 - deep) + _INK["hole"] * deep, canvas.cover(fall))
         back = _capsule(x, y, throat)
-        depth = _smooth(-back / 0.022)[..., None]
+        depth = smooth(-back / 0.022)[..., None]
         inside = 0.55 * _INK["leather"] * (1 - depth) + _INK["hole"] * depth
-        behind = _smooth((canvas.box(x, y, CUSHION) + 0.014) / 0.022)
+        behind = smooth((canvas.box(x, y, CUSHION) + 0.014) / 0.022)
         _paint(image, inside, canvas.cover(back) * behind)
 
 
 def _capsule(x, y, throat):
     """Distance to a throat: a thick line with a round end, from its mouth to its fall."""
     x0, y0, x1, y1, half = throat
-    dx, dy = x1 - x0, y1 - y0
-    part = np.clip(((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy), 0, 1)
-    return np.hypot(x - x0 - part * dx, y - y0 - part * dy) - half
+    return _to_segment(x - x0, y - y0, x1 - x0, y1 - y0) ** 0.5 - half
+
+
+def _to_segment(px, py, dx, dy):
+    """Squared distance to the segment from 0 to (dx, dy)."""
+    part = np.clip((px * dx + py * dy) / max(dx * dx + dy * dy, 1e-12), 0, 1)
+    return (px - part * dx) ** 2 + (py - part * dy) ** 2
 
 
 def _cushion(canvas, polygon, nose):
     """One cushion and its shadow on the bed: bright along the nose, darker towards the wood."""
     reach = 0.055
     image, x, y = canvas.around(nose, reach + 0.05)
-    to_nose = _to_line(x, y, nose, reach + 0.03)
+    to_nose = to_line(x, y, nose, reach + 0.03)
     inside = _inside(x, y, polygon)
     outer = np.where(inside, -to_nose, to_nose)  # the nose is the only visible edge of a cushion
     within = canvas.cover(canvas.box(x, y, CUSHION + 0.02))  # a nose may go on beyond the frame
@@ -213,20 +212,18 @@ def _cushion(canvas, polygon, nose):
 
 
 def _near(x, y, a, b, reach):
-    """The rows and columns within ``reach`` of the line from a to b."""
-    ends = ((axis, sorted((p, q))) for axis, p, q in ((x.ravel(), a[0], b[0]), (y.ravel(), a[1], b[1])))
-    return tuple(slice(*np.searchsorted(axis, (low - reach, high + reach))) for axis, (low, high) in ends)
+    """The rows and columns within ``reach`` of the rectangle with two corners a and b."""
+    each = zip((x.ravel(), y.ravel()), a, b, strict=True)
+    return tuple(slice(*np.searchsorted(axis, (min(p, q) - reach, max(p, q) + reach))) for axis, p, q in each)
 
 
-def _to_line(x, y, points, reach):
-    """Distance to a polyline, where it is less than ``reach``."""
+def to_line(x: Floats, y: Floats, points: Floats, reach: float) -> Floats:
+    """Distance of pixels, rows ``x`` (h, 1) and columns ``y`` (1, w), to a polyline, where it is less than ``reach``."""
     squared = np.full((len(x), y.shape[1]), reach**2, np.float32)
     for a, b in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
         rows, columns = _near(x, y, a, b, reach)
-        px, py, dx, dy = x[rows] - a[0], y[:, columns] - a[1], b[0] - a[0], b[1] - a[1]
-        part = np.clip((px * dx + py * dy) / max(dx * dx + dy * dy, 1e-12), 0, 1)
-        here = squared[rows, columns]
-        np.minimum(here, (px - part * dx) ** 2 + (py - part * dy) ** 2, out=here)
+        far = _to_segment(x[rows] - a[0], y[:, columns] - a[1], b[0] - a[0], b[1] - a[1])
+        np.minimum(squared[rows, columns], far, out=squared[rows, columns])
     return np.sqrt(squared)
 
 
@@ -255,9 +252,9 @@ def _wood(canvas, table, parts):
     )
     ends = np.abs(y - canvas.middle[1]) - canvas.half[1] > np.abs(x - canvas.middle[0]) - canvas.half[0]
     deep = -edge  # from the outer edge [m]
-    shade = 0.40 + 0.64 * _smooth(deep / 0.012) + 0.34 * np.exp(-(((deep - 0.020) / 0.009) ** 2))
-    shade -= 0.06 * _smooth((deep - 0.03) / 0.05)
-    shade += 0.24 * np.exp(-(((inner - 0.012) / 0.003) ** 2)) - 0.45 * _smooth(1 - inner / 0.007)
+    shade = 0.40 + 0.64 * smooth(deep / 0.012) + 0.34 * np.exp(-(((deep - 0.020) / 0.009) ** 2))
+    shade -= 0.06 * smooth((deep - 0.03) / 0.05)
+    shade += 0.24 * np.exp(-(((inner - 0.012) / 0.003) ** 2)) - 0.45 * smooth(1 - inner / 0.007)
     lamps_y = lamps(table)[:, 1].tolist()
     gloss = sum(np.exp(-(((y - lamp) / 0.34) ** 2)) for lamp in lamps_y)
     shade *= 1 + 0.055 * np.where(ends, across.T, along) + 0.07 * (gloss - 0.5)
@@ -288,7 +285,7 @@ def _leather(canvas, image, x, y, throat):
     hole = _capsule(x, y, throat)
     cut = (x - x1) * ux + (y - y1) * uy - end
     t = hole / _RIM
-    shade = 0.45 + 0.85 * np.sqrt(np.clip(1 - (2 * t - 1) ** 2, 0, 1)) - 0.35 * _smooth(1 + cut / 0.004)
+    shade = 0.45 + 0.85 * np.sqrt(np.clip(1 - (2 * t - 1) ** 2, 0, 1)) - 0.35 * smooth(1 + cut / 0.004)
     ridge = 0.6 * np.exp(-(((t - 0.42) / 0.16) ** 2))[..., None]
     skin = _INK["leather"] * shade[..., None] + (_INK["leather_edge"] - _INK["leather"]) * ridge
     frame = canvas.cover(canvas.box(x, y, RAIL, _ROUND) + 0.004) * canvas.cover(cut)

@@ -1,4 +1,4 @@
-"""How is a table shown on the screen? In a window that shows what it waits for, and reads its ``KEYS``."""
+"""A window with a table. Its last line says what it waits for and which ``KEYS`` it reads."""
 
 import os
 import sys
@@ -22,7 +22,7 @@ _INVISIBLE = ("dummy", "offscreen")  # drivers of SDL
 
 
 def display_missing() -> bool:
-    """Whether nobody could see a window; ``SDL_VIDEODRIVER=dummy`` allows one without a screen (tests)."""
+    """Whether nobody could see a window. ``SDL_VIDEODRIVER=dummy`` allows one without a screen, for tests."""
     linux = not (sys.platform.startswith("win") or sys.platform == "darwin")
     return linux and not any(map(os.environ.get, ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY")))
 
@@ -35,14 +35,13 @@ def require_display() -> None:
 
 def _no_display(why):
     return RuntimeError(
-        f'a window (render_mode="human") needs a display, and there is none ({why}): '
-        'use render_mode="rgb_array" for pictures or "ansi" '
-        "for text, or set SDL_VIDEODRIVER=dummy for a window that nobody sees"
+        f'a window (render_mode="human") needs a display, and there is none ({why}): use render_mode="rgb_array" for'
+        ' pictures or "ansi" for text, or set SDL_VIDEODRIVER=dummy for a window that nobody sees'
     )
 
 
 class Window:
-    """A window with a table, opened by the first ``draw``; once closed by its user, shut until ``close``."""
+    """A window with a table. The first ``draw`` opens it. A window that its user closed stays shut until ``close``."""
 
     def __init__(self, *, size: Size | None = None):
         self._size = None if size is None else check_size(size)
@@ -50,7 +49,6 @@ class Window:
         self.speed: float = 1.0  # as the user has chosen; in multiples of that of ``play``
         self.paused: bool = False
         self._shut, self._steps, self._skip, self._hint = False, 0, False, 0
-        self.status: str = ""  # the status in the window's last line
 
     @property
     def is_open(self) -> bool:
@@ -58,22 +56,21 @@ class Window:
         return self._screen is not None
 
     def draw(self, scene: Scene, status: str = WAITING) -> bool:
-        """Show a scene and what the window waits for; False, nothing shown, if the user has closed it."""
+        """Show a scene and the status; False if the user has closed the window, which then shows nothing."""
         if self._screen is not None:
             self._listen()
         if self._shut:
             return False
         if self._screen is None:
-            self._open(scene)
-        self.status = status
-        self._show(scene)
+            self._open()
+        self._show(scene, status)
         return True
 
     def play(self, film: Film, fps: float = 30.0, *, speed: float = 1.0) -> bool:
         """Show a film in real time; False if the user has closed the window."""
         fps, clock = number("fps", fps, 0.0, open_low=True), pygame_().time.Clock()
         step = number("speed", speed, 0.0, open_low=True) / fps
-        self._skip, time = False, 0.0
+        self._skip, time = False, film.begin
         while self.draw(film.at(time), "paused" if self.paused else f"playing {self.speed:g}x"):
             stands = self.paused and not self._steps and not self._skip
             if time >= film.duration and not stands:
@@ -94,60 +91,52 @@ class Window:
             self._screen = None
             pygame_().display.quit()
 
-    def _open(self, scene):
+    def _open(self):
         pygame = pygame_()
         require_display()
         try:
             pygame.display.init()
-        except pygame.error as error:
-            raise _no_display(str(error)) from None
-        driver = pygame.display.get_driver()
-        if not os.environ.get("SDL_VIDEODRIVER") and driver in _INVISIBLE:
-            pygame.display.quit()
-            raise _no_display(f"SDL found only its driver {driver!r}")
-        pygame.display.set_caption("snooker")
-        width, height = self._size or SIZE
-        if self._size is None:
-            desk_width, desk_height = pygame.display.get_desktop_sizes()[0]
-            part = min(1.0, 0.92 * desk_width / SIZE[0], 0.88 * desk_height / SIZE[1])
-            width, height = round(part * width), round(part * height)
-        try:
+            driver = pygame.display.get_driver()
+            if driver in _INVISIBLE and not os.environ.get("SDL_VIDEODRIVER"):
+                raise pygame.error(f"SDL found only its driver {driver!r}")
+            pygame.display.set_caption("snooker")
+            width, height = self._size or SIZE
+            if self._size is None:
+                desk_width, desk_height = pygame.display.get_desktop_sizes()[0]
+                part = min(1.0, 0.92 * desk_width / SIZE[0], 0.88 * desk_height / SIZE[1])
+                width, height = round(part * width), round(part * height)
             self._hint = max(14, round(_HINT * height))
             self._screen = pygame.display.set_mode((width, height + self._hint), pygame.RESIZABLE)
         except pygame.error as error:
             pygame.display.quit()
-            raise _no_display(str(error)) from None
+            raise _no_display(error) from None
 
     def _listen(self):
         pygame = pygame_()
         for event in pygame.event.get():
-            if event.type == pygame.QUIT or (event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE):
+            key = event.key if event.type == pygame.KEYDOWN else None
+            if event.type == pygame.QUIT or key == pygame.K_ESCAPE:
                 self.close()
                 self._shut = True
                 return
-            if event.type == pygame.KEYDOWN:
-                self._press(pygame, event.key)
+            if key == pygame.K_SPACE:
+                self.paused, self._steps = not self.paused, 0
+            elif key == pygame.K_RIGHT and self.paused:
+                self._steps += 1
+            elif key in (pygame.K_RETURN, pygame.K_KP_ENTER):
+                self._skip = True
+            elif key in (pygame.K_UP, pygame.K_DOWN):
+                k = SPEEDS.index(self.speed) + (1 if key == pygame.K_UP else -1)
+                self.speed = SPEEDS[min(max(k, 0), len(SPEEDS) - 1)]
 
-    def _press(self, pygame, key):
-        if key == pygame.K_SPACE:
-            self.paused, self._steps = not self.paused, 0
-        elif key == pygame.K_RIGHT and self.paused:
-            self._steps += 1
-        elif key in (pygame.K_RETURN, pygame.K_KP_ENTER):
-            self._skip = True
-        elif key in (pygame.K_UP, pygame.K_DOWN):
-            k = SPEEDS.index(self.speed) + (1 if key == pygame.K_UP else -1)
-            self.speed = SPEEDS[min(max(k, 0), len(SPEEDS) - 1)]
-
-    def _show(self, scene):
-        pygame = pygame_()
+    def _show(self, scene, status):
+        pygame, hint = pygame_(), self._hint
         screen = self._screen = pygame.display.get_surface()  # a new one after the window was resized
         width, height = screen.get_size()
-        hint = self._hint
         pixels = draw(scene, View.of(scene.table, size=(max(width, 100), max(height - hint, 100))))
         screen.fill(PALETTE["floor"])
         screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))
-        words = typeset(self.status, PALETTE["text"], 0.62 * hint, BOLD)
+        words = typeset(status, PALETTE["text"], 0.62 * hint, BOLD)
         screen.blit(words, words.get_rect(midleft=(hint, height - hint / 2)))
         keys = typeset(KEYS, PALETTE["text_quiet"], 0.58 * hint, MEDIUM)
         if words.get_width() + keys.get_width() < width - 4 * hint:

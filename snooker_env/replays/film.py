@@ -28,7 +28,7 @@ PAUSE = 0.8  # how long the table is shown after each stroke [s of the film]
 HD = ["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p", "-colorspace", "bt709"]
 HD += ["-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
 """Options that turn colours into those of BT.709 in its limited range, and declare it."""
-USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 15.0)}
+USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 12.0)}
 """Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
 
@@ -45,8 +45,8 @@ def film_stroke(
     table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = ""
 ) -> tuple[Film, Scene]:
     """A stroke as a film, and the table after it; ``during`` and ``after`` are the bars of ``bars``."""
-    shot = stroke.shot if isinstance(stroke, Played) else stroke
-    film = Film(table, shot, bar=during, text=text)
+    shot, cue = (stroke.shot, stroke.cue) if isinstance(stroke, Played) else (stroke, None)
+    film = Film(table, shot, strike=cue, bar=during, text=text)
     last, where, on_table = film.at(shot.duration), stroke.positions, stroke.on_table
     placed = not np.array_equal(where[0], shot.positions[0])
     over = {"paths": last.paths, "ghosts": last.ghosts, "turn": UNTURNED if placed else last.turn}
@@ -91,7 +91,8 @@ def _encode(pictures: Iterator[Bytes], path: Path, fps: float, size: tuple[int, 
         return
     colours = path.with_name(f"{path.stem}.colours.png")
     try:
-        _pipe([_swatches(first)], (256, 256), 1.0, ["-vf", "palettegen=stats_mode=single"], colours)
+        wanted = ["-vf", "palettegen=stats_mode=single:max_colors=128"]
+        _pipe([_swatches(first)], (256, 256), 1.0, wanted, colours)
         chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
         _pipe(pictures, size, fps, chosen, path)
     finally:

@@ -8,6 +8,7 @@ import pytest
 import snooker_env as sn
 from benchmarks.real_shots import __main__ as command
 from benchmarks.real_shots import verdict
+from tests.pictures import saved_figures, unreadable
 
 PHYSICS = sn.Physics.preset("carom", tables=False)
 STRIKES = ((2.2, 0.9, 0.25, 0.2, 0.03), (1.6, 2.4, -0.2, 0.1, 0.05))
@@ -49,7 +50,9 @@ def file(tmp_path, data):
 
 
 def test_the_command_finds_the_strikes(file, tmp_path, capsys):
-    command.main([str(file), "--json", str(tmp_path / "figures.json")])
+    with saved_figures() as drawn:
+        command.main([str(file), "--json", str(tmp_path / "figures.json"), "--out", str(tmp_path)])
+    assert [unreadable(figure) for figure in drawn] == [[]]
     figures = json.loads((tmp_path / "figures.json").read_text())
     for shot, (speed, aim, side, top, _) in zip(figures["shots"], STRIKES, strict=True):
         assert shot["cue_rms"] < 0.004

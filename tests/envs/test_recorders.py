@@ -10,6 +10,7 @@ from gymnasium.wrappers.vector import RecordVideo as VectorRecordVideo
 
 import snooker_env as sn
 from snooker_env.envs.pictures import PictureSource
+from snooker_env.render.scene import LEAD
 from tests.envs.one_by_one import native
 from tests.tables import begun
 
@@ -20,8 +21,8 @@ ALL = {"episode_trigger": lambda k: True, "disable_logger": True}
 
 
 def pictures_of(seconds):
-    """How many pictures a shot has: one every 1/30 s, its end, and half a second of the table after it."""
-    return len(np.arange(0.0, seconds, 1 / 30)) + 1 + 15
+    """How many pictures a shot has: the cue's, one every 1/30 s, its end, and half a second of the table after it."""
+    return round(30 * LEAD) + len(np.arange(0.0, seconds, 1 / 30)) + 1 + 15
 
 
 def made(**options):
@@ -52,7 +53,7 @@ def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
         info = env.step(67)[4]
         expected += pictures_of(info["seconds"]) + 1  # and the table after it, colours respotted
         assert len(env.recorded_frames) == expected
-    moving = env.recorded_frames[1:30]
+    moving = env.recorded_frames[20:49]
     assert all(not np.array_equal(a, b) for a, b in pairwise(moving))  # the cue ball runs
     assert all(frame.shape == (100, 160, 3) for frame in env.recorded_frames)
     env.close()

@@ -6,7 +6,8 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.render.scene import Film, Turning, find_contacts, scene
+from snooker_env.render.pygame_view import View, rgb_array
+from snooker_env.render.scene import LEAD, Film, Turning, find_contacts, scene
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +28,25 @@ def test_film_of_a_shot(pot):
         assert not s.paths or np.array_equal(s.paths[CUE][-1], s.positions[0])
     assert np.array_equal(film[-1].positions[0], pot.positions[0])
     assert film[0].paths == {} and film[-1].paths.keys() == {CUE, 1}
+
+
+def test_a_cue_comes_to_the_ball_goes_through_it_and_fades(pot):
+    strike = {"speed": 1.2, "aim": 0.0, "elevation": 0.1}
+    film = Film("match", pot, strike=strike)
+    shown = list(film.scenes(50, 2.0))
+    lead = round(LEAD / 0.04)
+    assert len(shown) == int(np.ceil(pot.duration * 25)) + 1 + lead
+    assert all(np.array_equal(s.positions, shown[lead].positions) for s in shown[:lead])
+    pulls = [s.cue.pull for s in shown[: lead + 1]]
+    assert max(pulls[1:-2]) > 0.08 > pulls[-2] and pulls[-1] == 0.0
+    after = [s.cue for s in shown if s.cue][lead:]
+    assert [cue.alpha for cue in after] == sorted((cue.alpha for cue in after), reverse=True)
+    assert after[-1].pull < 0.0 and shown[lead + len(after)].cue is None
+    assert all(s.cue is None for s in Film("match", pot).scenes(10))
+    view = View.of(sn.Table.preset("match"), (960, 540))
+    column, row = np.rint(view(np.array([0.2 - 0.6, 0.0]))).astype(int)  # on the shaft
+    red, green, _ = rgb_array(film.at(0.0), size=(960, 540))[row, column]
+    assert red > green > rgb_array(film.at(1.0), size=(960, 540))[row, column][0]
 
 
 def test_the_film_of_a_shot_shows_the_balls_of_the_shot():

@@ -13,6 +13,7 @@ import snooker_env as sn
 from snooker_env.advice import CueStroke
 from snooker_env.game.fouls import Foul
 from snooker_env.play.session import Session
+from snooker_env.render.scene import LEAD
 from snooker_env.render.table_picture import View
 from snooker_env.replays.referee_words import FOUL_WORDS, bars, foul_words
 from tests.refusals import refuse_each, refused
@@ -327,13 +328,14 @@ def replay():
 
 def test_the_pictures_show_the_motion_and_then_the_table(replay):
     pictures = list(replay.frames(**SMALL))
-    moving = [len(np.arange(0.0, shot.duration, 0.1)) + 1 for shot in replay.shots]
+    moving = [len(np.arange(0.0, shot.duration, 0.1)) + 1 + round(LEAD / 0.1) for shot in replay.shots]
     assert len(pictures) == sum(moving) + 2 * 8  # 0.8 s after each stroke
     assert all(picture.shape == (180, 320, 3) and picture.dtype == np.uint8 for picture in pictures)
     assert np.array_equal(pictures[moving[0]], pictures[moving[0] + 7])
-    assert not np.array_equal(pictures[3], pictures[4])
+    assert not np.array_equal(pictures[9], pictures[10])
     fast = list(replay.frames(**SMALL, speed=4.0))
-    assert len(fast) == sum(len(np.arange(0.0, shot.duration, 0.4)) + 1 for shot in replay.shots) + 2 * 8
+    moving = [len(np.arange(0.0, shot.duration, 0.4)) + 1 + round(LEAD / 0.4) for shot in replay.shots]
+    assert len(fast) == sum(moving) + 2 * 8
 
 
 @pytest.mark.parametrize("suffix", [".gif", ".mp4"])

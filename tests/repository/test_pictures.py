@@ -41,6 +41,13 @@ def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch
     assert {file.name for file in tmp_path.glob("*.png")} <= kept
 
 
+def test_charts_of_figures_that_results_keeps_can_be_read(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "results"))
+    with saved_figures() as figures:
+        importlib.import_module("charts").make(tmp_path)
+    read(figures, least=3)
+
+
 def test_labels_beside_points_avoid_each_other(tmp_path):
     with picture_style.drawing() as plt:
         made, axes = picture_style.page(plt, 4.0, "Points", columns=1)

@@ -77,7 +77,7 @@ def test_the_chance_to_win_is_compared_with_who_won(monkeypatch, tmp_path):
     won, decided = np.arange(n) % 4 != 1, np.arange(n) < 200
     rows = {"seen": seen, "lead": lead, "left": np.full(n, 100.0), "won": won, "decided": decided}
     rows |= {"last": np.zeros(n, np.bool_), "frame": np.arange(n) // 4}
-    table, error, stages = calibrate.chances_of([rows])
+    table, error, stages, tenths = calibrate.chances_of([rows])
     high = 1.0 / (1.0 + np.exp(-1.0))
     assert table[:5] == pytest.approx(np.array([[1.0 - high, 0.5]] * 5))
     assert table[5:] == pytest.approx(np.array([[high, 1.0]] * 5))
@@ -87,6 +87,11 @@ def test_the_chance_to_win_is_compared_with_who_won(monkeypatch, tmp_path):
     assert said == pytest.approx(high) and share == 0.75
     assert calibrate.chances_of([rows | {"decided": np.zeros(n, bool)}]) is None
     with saved_figures() as figures:
-        calibrate.draw(table, error, 40, tmp_path / "c.png")
+        calibrate.draw(tenths, 40, tmp_path / "c.png")
     assert len(figures) == 1 and unreadable(figures[0]) == []
-    assert figures[0].axes[0].get_lines()[1].get_xydata() == pytest.approx(100.0 * table)
+    assert [row[:4] for row in tenths] == [
+        (100, 50, pytest.approx(1.0 - high), 0.5),
+        (100, 50, pytest.approx(high), 1.0),
+    ]
+    drawn = figures[0].axes[0].get_lines()[1].get_xydata()
+    assert drawn == pytest.approx(100.0 * np.array([row[2:4] for row in tenths]))
