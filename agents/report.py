@@ -217,10 +217,11 @@ def _columns(against, most):
 
 
 LEGEND = (
-    "[low, high]: 95 % bootstrap interval over training seeds and visits; for what was never or always seen, the exact one-sided bound. "
-    "adjusted: points less luck (docs/benchmark.md). IQM: mean of the middle half. times X: points over those of X on the same tables, "
-    "paired. next pot: pots that left a ball and that another pot followed. easy left: of these, those that left a pot whose line may err "
-    "by 4 mrad. high after red: potted reds that a potted pink or black followed. ms: a decision's time, all tables played at once."
+    "[low, high]: 95 % bootstrap interval over training seeds and visits, or the exact one-sided bound if an event occurred never or "
+    "always. adjusted: points less luck (docs/benchmark.md). IQM: mean of the middle half. times X: ratio to the points of X on the same "
+    "tables, paired. next pot: share of pots that another pot followed, among those that left a ball. easy left: share of the same pots "
+    "that left a pot with a tolerance of at least 4 mrad. high after red: share of potted reds followed by a potted pink or black. ms: "
+    "time per decision, all tables played together."
 )
 
 

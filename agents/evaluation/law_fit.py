@@ -1,5 +1,5 @@
-"""Which law of execution errors do frames and long pots show? Frames are played under laws spread over ``RANGES``; a
-quadratic surface is fitted to each of their figures, and the likelihood of what was counted and said is read off it."""
+"""Which law of execution errors fits frames and long pots? Frames are simulated under laws spread over ``RANGES``, and a
+quadratic surface is fitted to each figure. These surfaces give the likelihood of the recorded and reported figures."""
 
 from dataclasses import replace
 from math import log
@@ -19,30 +19,30 @@ RANGES = {
     "speed_rel": (0.008, 0.03),
     "growth": (0.5, 2.5),
 }
-"""Of the direction's standard deviation at 1.5 m/s [deg], and of fields of ``Noise``; laws are spread in the logarithm."""
+"""Ranges of the direction's standard deviation at 1.5 m/s [deg] and of fields of ``Noise``; laws are spread in the logarithm."""
 FITTED = ("visits", "frames_50", "frames_100", "winner")
-"""Figures of frames that a law of errors decides: strokes and fouls are tactics, a mean break is points over visits."""
+"""Figures of frames that depend on the law of errors: strokes and fouls depend on tactics; a mean break is points over visits."""
 LONG_POTS, STROKES = (57.5, 7.5), 1000
-"""Long pots that professionals are said to make, 50 to 65 % [%], and how often each of ours is tried."""
+"""Share of long pots that professionals reportedly make, 50 to 65 % [%], and how many times each of ours is tried."""
 LONG = (
     ((-0.0133, -1.0442), (0.5731, 0.8155), 2.5),
     ((-0.3624, -0.8306), (0.3002, 0.9501), 2.5),
     ((-0.1185, -1.6913), (0.5430, 0.6157), 3.0),
 )
-"""The long pots of ``benchmarks.execution``: cue ball and red [m], cue speed [m/s]; the pocket is the top right one."""
+"""The long pots of ``benchmarks.execution`` into the top right pocket: cue ball and red [m], cue speed [m/s]."""
 GRID, DRAWN, LEAST_LAWS = 9, 20_000, 12
-"""Values of a parameter in its profile, laws drawn to find the likeliest of the others, and fewest that are played."""
+"""Number of values in a parameter's profile, of laws drawn to find the likeliest, and the minimum number simulated."""
 
 
 def law_of(core, growth, **fields):
-    """A professional's errors with this direction at 1.5 m/s [deg], this growth, and ``fields`` of ``Noise``."""
+    """A professional's errors with this direction at 1.5 m/s [deg], this growth, and these ``fields`` of ``Noise``."""
     base = replace(LEVELS["professional"], growth=growth)
     times = core / base.direction_deg()
     return replace(base, aim_deg=base.aim_deg * times, offset_mm=base.offset_mm * times, **fields)
 
 
 def spread_laws(n, seed):
-    """n laws, each parameter evenly spread over its range: the parameters' logarithms (n, 5), and each law as a dict."""
+    """Spread n laws evenly over the ranges: the parameters' logarithms (n, 5), and each law as a dict."""
     rng, (low, high) = np.random.default_rng(seed), np.log(np.array(list(RANGES.values())).T)
     places = rng.permuted(np.tile(np.arange(n)[:, None], len(RANGES)), axis=0) + rng.random((n, len(RANGES)))
     logs = low + (high - low) * places / n
@@ -50,7 +50,7 @@ def spread_laws(n, seed):
 
 
 def long_pots(noise, seed):
-    """The share of long pots made [%]; one that the cue ball follows counts, too."""
+    """The share of long pots made [%]; a pot that the cue ball follows counts as well."""
     made, planner = [], Planner({"noise": noise})
     for cue, red, speed in LONG:
         at = Positions.of(Position(cue=cue, reds=[red], on="red"))
@@ -63,7 +63,7 @@ def long_pots(noise, seed):
 
 
 class Surface:
-    """A quadratic in the logarithms of the parameters, fitted to figures (n,)."""
+    """Fit a quadratic in the logarithms of the parameters to figures (n,)."""
 
     def __init__(self, logs, values):
         self._middle = logs.mean(axis=0)
@@ -82,7 +82,7 @@ class Surface:
 
 
 def misfit(surfaces, said, logs):
-    """-2 log likelihood (n,) of what was said, mean and standard error of each figure, at n laws."""
+    """-2 log likelihood (n,) at n laws of the reported mean and standard error of each figure."""
     total = np.zeros(len(logs))
     for name, surface in surfaces.items():
         mean, error = said[name]
@@ -91,8 +91,8 @@ def misfit(surfaces, said, logs):
 
 
 def profile(logs, figures, said, seed):
-    """The likeliest law of those spread like ``logs``, its misfit, and the profile of each parameter: its values and how
-    much larger the least misfit is with each of them. ``figures``: of each law, by name."""
+    """Find the likeliest law among those spread like ``logs``, its misfit, and the profile of each parameter: its values, and
+    how much the smallest misfit grows with each value. ``figures`` holds those of each law, by name."""
     surfaces = {name: Surface(logs, np.array(figures[name])) for name in said}
     drawn, laws = spread_laws(DRAWN, seed)
     misfits, rows = misfit(surfaces, said, drawn), {}
@@ -110,9 +110,9 @@ def profile(logs, figures, said, seed):
 
 
 def tables_of(best, least, rows):
-    """What ``profile`` found, as tables."""
+    """The result of ``profile``, as tables."""
     words = ", ".join(f"{name} {value:.3g}" for name, value in best.items())
-    title = f"The likeliest law: {words}; -2 log likelihood {least:.1f}, and how much more with each value of a parameter"
+    title = f"The likeliest law: {words}; -2 log likelihood {least:.1f}, and the increase with each value of a parameter"
     lines = []
     for name, (values, more) in rows.items():
         lines.append([name, *(f"{value:.3g}" for value in values)])
