@@ -103,7 +103,7 @@ def title(content: dict[str, Any]) -> str:
 
 
 def parts(content: dict[str, Any]) -> Iterator[TextTable | str]:
-    """Tables no wider than a terminal and sentences, in order."""
+    """Yield tables no wider than a terminal, and sentences, in order."""
     for table in tables_of(content):
         yield from table.narrow()
     yield LEGEND
