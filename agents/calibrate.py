@@ -230,9 +230,7 @@ def draw(table, error, frames, file):
         axes.plot([0, 100], [0, 100], color=picture_style.GREY, linewidth=1)
         axes.plot(*(100.0 * table.T), "o-", color=picture_style.BLUE)
         axes.set(xlabel="tactician's chance to win before a stroke [%]", ylabel="won [%]")
-        axes.set_title(
-            f"{frames} frames, equal groups of strokes: {100.0 * error:.1f} % apart on average"
-        )
+        axes.set_title(f"{frames} frames, equal groups of strokes: {100.0 * error:.1f} % apart on average")
         picture_style.save(figure, file)
 
 
@@ -279,7 +277,9 @@ def main(argv=None):
     p.add_argument("--laws", type=int, metavar="N", help="fit the law of errors, trying N laws")
     p.add_argument("--frames", type=int, default=400, help="frames per scale or law [400]")
     p.add_argument("--budget", type=int, default=120, help="average simulated shots per decision [120]")
-    p.add_argument("--picture", type=Path, metavar="FILE", help="draw the chances to win and the winners here")
+    p.add_argument(
+        "--picture", type=Path, metavar="FILE", help="draw the chances to win and the winners here"
+    )
     p.add_argument("--json", type=Path, metavar="FILE", help="write every figure here")
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:

@@ -92,10 +92,10 @@ def digest_of(data):
 
 def add_ray(p):
     """Add ``--ray`` to a parser."""
-    where = (
-        "local (all cores here), auto (RAY_ADDRESS, or this machine's cluster) or HOST:PORT of a head"
+    where = "local (all cores here), auto (RAY_ADDRESS, or this machine's cluster) or HOST:PORT of a head"
+    p.add_argument(
+        "--ray", metavar="ADDRESS", help=f"play on a Ray cluster: {where}; results do not depend on it"
     )
-    p.add_argument("--ray", metavar="ADDRESS", help=f"play on a Ray cluster: {where}; results do not depend on it")
 
 
 def checked_ray(address):

@@ -45,7 +45,9 @@ SEEDS, VISITS, MOST_SEED = (0, 1, 2, 3, 4), 300, 999
 def parser():
     p = parser_of("python -m agents.curves", __doc__)
     add = p.add_argument
-    add("--rows", nargs="+", default=list(ROWS), metavar="ROW", help=f"rows to train: {', '.join(ROWS)} [all]")
+    add(
+        "--rows", nargs="+", default=list(ROWS), metavar="ROW", help=f"rows to train: {', '.join(ROWS)} [all]"
+    )
     add("--seeds", nargs="+", type=int, default=list(SEEDS), help="training seeds [0 1 2 3 4]")
     what = "shots after which the agent is evaluated [50000 200000 1000000; one-stroke tasks 100000]"
     add("--shots", nargs="+", type=int, help=what)
@@ -60,7 +62,12 @@ def parser():
     )
     add("--markdown", type=Path, metavar="FILE", help="write the tables here")
     add("--picture", type=Path, metavar="FILE", help="draw the curves of visits here")
-    add("--page", type=Path, metavar="FILE", help="fill the marked part of this page with the picture and points of visits")
+    add(
+        "--page",
+        type=Path,
+        metavar="FILE",
+        help="fill the marked part of this page with the picture and points of visits",
+    )
     return p
 
 
@@ -82,7 +89,9 @@ def check(args) -> dict[str, Any]:
     content = read_curves(args.out, args.visits)
     for name in {one["row"] for one in content["points"]}.intersection(args.rows):
         if (code := content["rows"][name]["code"]) != ROWS[name].code():
-            raise refuse("rows", name, f"must train what {args.out} holds for it, {code}: or give another --out")
+            raise refuse(
+                "rows", name, f"must train what {args.out} holds for it, {code}: or give another --out"
+            )
     if args.page is not None:
         if not args.page.is_file():
             raise refuse("page", str(args.page), "must be an existing page")

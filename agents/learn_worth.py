@@ -206,7 +206,9 @@ def main(argv=None):
         print(f"round {k}: " + "  ".join(f"{name} {value:.4g}" for name, value in figures.items()))
     beats = args.judged == 0 or judge_weights(rounds, args)
     if args.export and not beats:
-        print(f"not exported, because the weights clearly lose; they are in {args.out / WORTH}", file=sys.stderr)
+        print(
+            f"not exported, because the weights clearly lose; they are in {args.out / WORTH}", file=sys.stderr
+        )
         return 1
     if args.export:
         write_atomic(FOLDER / WORTH, rounds.pack_weights())

@@ -120,7 +120,7 @@ def parse_tournament(args):
         entrant.player(0).at(Options(task="frame", **FRAMES, **meeting))  # checks that they can meet
     checked_ray(args.ray)
     if args.ray and args.threads is not None:
-        raise refuse("threads", args.threads, "must be omitted with --ray, where a part has one core")
+        raise refuse("threads", args.threads, "must be left out with --ray, where a part has one core")
     if args.threads is not None:
         integer("threads", args.threads, 1, 1024)
     if args.out and args.out.exists() and not args.resume:

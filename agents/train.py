@@ -36,7 +36,9 @@ def open_run(given, out, resume, ending):
         for name, value in given.items():
             if value != getattr(was, name) and name not in FREE_ON_RESUME:
                 differs = f"{value!r} but the run in {out} has {getattr(was, name)!r}"
-                raise ValueError(f"--{name.replace('_', '-')} is {differs}: give that value or omit the option")
+                raise ValueError(
+                    f"--{name.replace('_', '-')} is {differs}: give that value or leave the option out"
+                )
         settings = replace(was, **given)
     kind = StrokeTraining if settings.agent == AGENT else AgentTraining
     training = kind(settings, out, resume)

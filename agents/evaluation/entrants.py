@@ -118,7 +118,7 @@ def entrants_of(texts, args, field):
             raise refuse(field, entrant.label, f"must differ for each {field}: give LABEL=PATH")
         entrant.trained()  # this reads its models
     if options and not any(entrant.foreign for entrant in entrants):
-        unfit = "must be omitted: it is for models not made by train.py"
+        unfit = "must be left out: it is for models not made by train.py"
         raise refuse("options", " ".join(args.options), unfit)
     return entrants
 
@@ -145,7 +145,9 @@ def _model(path, trust, options):
     ours = read_model(file, "agent")
     if ours is not None:
         return ours
-    told = _read_record(SavedModel.of(file, "agent"), dict(options))  # check this before anything in the file runs
+    told = _read_record(
+        SavedModel.of(file, "agent"), dict(options)
+    )  # check this before anything in the file runs
     return Foreign(saved_player(file, dict(options), trust, "agent").seen, path, told)
 
 

@@ -41,7 +41,11 @@ FIELDS = {
     "machine.load": (NUMBER, True, "load average of the minute before the first frame"),
     "machine.load_at_end": (NUMBER, True, "load average of the minute before the last frame ended"),
     "command": (str, False, "command that made this file"),
-    "commit": (str, True, "commit of the checkout, with -dirty if files were changed; null outside a checkout"),
+    "commit": (
+        str,
+        True,
+        "commit of the checkout, with -dirty if files were changed; null outside a checkout",
+    ),
     "date": (str, False, "date in UTC: 2026-11-22T19:00:00Z"),
     "columns": (list, False, "names of the columns of rows"),
     "rows": (list, False, "one list of whole numbers for each frame, see below"),
@@ -190,5 +194,7 @@ def read_incomplete(path, protocol, game, sources):
     now = {"protocol": protocol, "game": game, "players": sources}
     for name, was in (content | {"players": players}).items():
         if name in now and was != now[name]:
-            raise refuse("out", str(path), f"must be a file with the same {name} to continue, but it has {was}")
+            raise refuse(
+                "out", str(path), f"must be a file with the same {name} to continue, but it has {was}"
+            )
     return content

@@ -68,7 +68,7 @@ evaluate --agent search_1 | player = 'search_1': must end in a number of simulat
 evaluate --agent random --json tests | json = 'tests': must be a file
 evaluate --agent random --markdown /proc/none/r.md | markdown = '/proc/none/r.md': must be a file
 evaluate --agent random --resamples 5 | resamples = 5: must be an integer in
-evaluate --agent random --options aim=target | 'aim=target': must be omitted: it is for models not made by train.py
+evaluate --agent random --options aim=target | 'aim=target': must be left out: it is for models not made by train.py
 evaluate --agent random --options noise=club | options = 'noise=club': must be KEY=VALUE, KEY once each of action
 evaluate --agent random --options aim=target aim=target | must be KEY=VALUE, KEY once each of action
 evaluate --agent random --options aim=up | aim = 'up': must be one of 'pot', 'absolute', 'target'
@@ -85,7 +85,7 @@ tournament ghost_ball random --miss always | miss = 'always': must be one of
 tournament ghost_ball random --rules pool | game = 'pool': must be one of
 tournament ghost_ball random --max-strokes 0 | max_strokes = 0: must be an integer
 tournament ghost_ball random --threads 0 | threads = 0: must be an integer
-tournament ghost_ball random --options aim=target | options = 'aim=target': must be omitted
+tournament ghost_ball random --options aim=target | options = 'aim=target': must be left out
 tournament ghost_ball random --resume | resume = True: must be given together with --out
 tournament ghost_ball random --out pyproject.toml | out = 'pyproject.toml': must be a new file
 tournament ghost_ball random --out pyproject.toml --resume | pyproject.toml': must be JSON

@@ -111,7 +111,10 @@ def test_a_player_of_ones_own_is_compared(tmp_path):
 def test_a_path_with_a_colon_is_a_path(models, tmp_path):
     (tmp_path / "10:00").symlink_to(models)
     assert len(evaluate.Entrant.of(f"x={tmp_path}/10:00/m-?").runs) == 2
-    for path, why in ((r"C:\runs\m-0\model.zip", "must be an existing model file"), ("a/b:c", "or existing models")):
+    for path, why in (
+        (r"C:\runs\m-0\model.zip", "must be an existing model file"),
+        ("a/b:c", "or existing models"),
+    ):
         with pytest.raises(ValueError, match=why):
             evaluate.Entrant.of(f"x={path}")
     with pytest.raises(ValueError, match="or existing models"):
