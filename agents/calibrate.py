@@ -313,7 +313,7 @@ def main(argv=None):
             [words, str(strokes), str(frames), f"{100.0 * a:.1f}", f"{100.0 * b:.1f} ± {100.0 * c:.1f}"]
             for words, strokes, frames, a, b, c in stages
         ]
-        said = f"The leader's chance to win before each stroke; over all groups of strokes, chance and result differ by {100.0 * error:.1f} %"
+        said = f"Chance to win of the leader before each stroke; over groups of strokes it differs from the result by {100.0 * error:.1f} %"
         parts.append(TextTable(said, ["", "strokes", "frames", "chance, %", "won, %"], rows, 1, 1))
         if args.picture:
             draw(table, error, args.frames * len(args.scales), args.picture)

@@ -90,9 +90,7 @@ def command(name):
             any_terminal()
             before, threading.excepthook = threading.excepthook, _of_thread
             try:
-                from snooker_env._lib.command import (
-                    exit_code,
-                )  # imported here, because its packages may be missing
+                from snooker_env._lib.command import exit_code  # here: its packages may be missing
 
                 return exit_code(name, lambda: main(argv), what_is_missing)
             except ImportError as error:

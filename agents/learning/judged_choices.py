@@ -39,7 +39,7 @@ class JudgedChoices:
         self.losses, self.shots = deque(maxlen=100), 0
 
     def round(self, at, value, remaining):
-        """Try choices in ``Positions``, judge the resulting positions by ``value``, and learn. ``remaining``: share of the training left."""
+        """Try choices in ``Positions``, judge the resulting positions by ``value``, and learn. ``remaining``: share of training left."""
         seen, masks = with_pots(at.observations()), action_masks(at, cue=self._cue)
         with torch.no_grad():
             scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()

@@ -38,7 +38,7 @@ train --set gamma=2 | gamma = 2: must be a finite number in [0, 1]
 train --set gamma=0 gamma=0.5 | must give gamma only once
 train --set n_epochs=abc | n_epochs = 'abc': must be an integer
 train --set batch_size=0 | batch_size = 0
-train --set learning_rate=lin_abc | learning_rate = 'lin_abc': must be a number in [0, 1], or lin_X
+train --set learning_rate=lin_abc | learning_rate = 'lin_abc': must be a number X in [0, 1], or lin_X
 train --set policy=Foo | 'policy=Foo'
 train --set n_envs=0 | (n_timesteps, n_envs, imitation have options of their own)
 train --set env_kwargs=3 | env_kwargs = 3: must be a dict
