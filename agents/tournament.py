@@ -106,7 +106,7 @@ def parse_tournament(args):
             "frames", args.frames, "must be even: each seed is played twice, and each player breaks off once"
         )
     if args.match % 2 == 0:
-        raise refuse("match", args.match, "must be odd: the best of so many frames")
+        raise refuse("match", args.match, "must be odd, for a best of N frames")
     game = {
         "noise": noise_option(args.noise),
         "physics": args.physics,

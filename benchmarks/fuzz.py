@@ -505,7 +505,7 @@ def replay(seed, number, index):
 def main():
     """Command line."""
     parser = Command("fuzz", __doc__, seed=0)
-    parser.add_argument("--shots", type=at_least(1), default=1_000_000, help="so many [1000000]")
+    parser.add_argument("--shots", type=at_least(1), default=1_000_000, help="number of shots [1000000]")
     parser.add_argument("--threads", type=at_least(1), default=2, help="[2]")
     parser.add_argument(
         "--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="replay one shot"

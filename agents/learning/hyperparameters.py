@@ -160,7 +160,7 @@ def changes_of(changes, keys):
     for change in changes:
         key, equals, value = change.partition("=")
         if not equals or key not in free:
-            others = f" ({', '.join(BY_OPTION)} have options of their own)"
+            others = f" ({', '.join(BY_OPTION)} have their own options)"
             raise refuse("set", change, f"must be KEY=VALUE with KEY one of {', '.join(free)}{others}")
         if key in changed:
             raise refuse("set", change, f"must give {key} only once")

@@ -74,7 +74,7 @@ def measure(options, shots):
             + ", ".join(f"{k} {getattr(physics, k):.4g}" for k in constants.SEARCHED)
         )
     print(
-        f"{len(shots)} shots of {options.file.name}, physics {'fitted anew' if options.fit else repr(options.physics)}"
+        f"{len(shots)} shots of {options.file.name}, physics {'newly fitted' if options.fit else repr(options.physics)}"
     )
     found = []
     for shot in shots:

@@ -146,7 +146,7 @@ def fit_real_shots(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=p
                     tried.append(fit(judge, seed + rounds, runs=1)[0])
                 strikes[k] = min(tried, key=lambda s, j=judge: float(costs(j, s[None])[0]))
             best, damping = loss([rms(j, s) for j, s in zip(judges, strikes, strict=True)]), min(damping, 1.0)
-            say(f"strikes anew: {100 * best:.3f}")
+            say(f"new strikes: {100 * best:.3f}")
     return physics, strikes
 
 

@@ -40,7 +40,7 @@ train --set n_epochs=abc | n_epochs = 'abc': must be an integer
 train --set batch_size=0 | batch_size = 0
 train --set learning_rate=lin_abc | learning_rate = 'lin_abc': must be a number X in [0, 1], or lin_X
 train --set policy=Foo | 'policy=Foo'
-train --set n_envs=0 | (n_timesteps, n_envs, imitation have options of their own)
+train --set n_envs=0 | (n_timesteps, n_envs, imitation have their own options)
 train --set env_kwargs=3 | env_kwargs = 3: must be a dict
 train --set "env_kwargs={'fun':1}" | env_kwargs = 'fun': must be one of 'action'
 train --set "env_kwargs={'aim':'target'}" | action = 'box': must be 'strokes'
@@ -53,7 +53,7 @@ train --agent stroke_value --seed 81 | seed = 81
 evaluate --agent nobody | agent = 'nobody': must be random,
 evaluate --agent tests/bombs.py | tests/bombs.py': must be a model saved by Stable-Baselines3
 evaluate --agent x=nowhere-* | agent = 'nowhere-*': must be
-evaluate --agent random random | agent = 'random': must be another
+evaluate --agent random random | agent = 'random': must differ for each agent
 evaluate --agent random --against me | against = 'me': must be one of random, ghost_ball
 evaluate --agent random --layouts moon=3 | layout = 'moon': must be one of
 evaluate --agent random --layouts colours=x | layouts = 'colours=x': must be LAYOUT or
@@ -75,7 +75,7 @@ evaluate --agent random --options aim=up | aim = 'up': must be one of 'pot', 'ab
 evaluate --agent random --ray host: | ray = 'host:': must be local, auto, or HOST:PORT
 tournament ghost_ball | players = 'ghost_ball': must be two or more
 tournament ghost_ball nobody | agent = 'nobody': must be random,
-tournament ghost_ball ghost_ball | player = 'ghost_ball': must be another
+tournament ghost_ball ghost_ball | player = 'ghost_ball': must differ for each player
 tournament ghost_ball x=ghost_ball,random | player = 'x=ghost_ball,random': must be one player
 tournament ghost_ball tests.agents.user_players:Mute | player = a Mute: must be a player: at(rules) and play
 tournament ghost_ball tests.agents.user_players:Loud | key of the options of player Loud = 'noise'

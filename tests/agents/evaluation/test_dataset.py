@@ -48,7 +48,7 @@ def test_no_table_of_the_judging_is_among_them():
     assert dataset.seeds_of(1)[0] == dataset.seeds_of(0)[-1] + 1
     most = (HELD_OUT_SEED - dataset.FIRST_SEED) // 6
     assert dataset.seeds_of(most - 1)[-1] < HELD_OUT_SEED
-    with pytest.raises(ValueError, match=r"^strokes = more: must be at most those of 799,998 episodes"):
+    with pytest.raises(ValueError, match=r"^strokes = more: must be at most the strokes of 799,998 episodes"):
         dataset.seeds_of(most)
 
 
