@@ -103,7 +103,9 @@ def test_no_flipped_bit_of_a_checkpoint_or_of_settings_is_used(whole, tmp_path):
         with pytest.raises(ValueError, match=rf"^resume = '{tmp_path / CHECKPOINT}': must be a complete"):
             read_checkpoint(tmp_path)
     for _ in flipped(tmp_path / SETTINGS):
-        with pytest.raises(ValueError, match=rf"^out = '{tmp_path / SETTINGS}': must be complete and written"):
+        with pytest.raises(
+            ValueError, match=rf"^out = '{tmp_path / SETTINGS}': must be complete and written"
+        ):
             kept_settings(tmp_path, Settings)
     assert read_checkpoint(tmp_path)["parts"] and kept_settings(tmp_path, Settings).steps == 128
 
