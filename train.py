@@ -1,20 +1,20 @@
-"""How is an agent trained to play Snooker-v0? Train one, evaluate it on held-out tables beside simple
-players, and report the result.
+"""How is an agent trained to play Snooker-v0? Train one, compare it with simple players on held-out tables, and report the
+result.
 
-    python train.py                          three minutes on two cores: MaskablePPO on the menu of strokes, from nothing
-    python train.py --steps 8192             a first try, in half a minute
+    python train.py                          MaskablePPO on the menu of strokes, from scratch: three minutes on two cores
+    python train.py --steps 8192             a first try: half a minute
     python train.py --agent ppo_value --steps 1507328 --imitate 153600   policy and value of the planner: 17 minutes
-    python train.py --agent stroke_value     a player that simulates no shot, in 15 minutes
+    python train.py --agent stroke_value     a player that simulates no shots: 15 minutes
     python train.py --agent ppo_target --seed 1 --out runs/mine
-    python train.py --resume --out runs/mine     continue after Ctrl-C, a kill or a power cut, with the same bits
+    python train.py --resume --out runs/mine     continue, bit for bit, after Ctrl-C, a kill or a power cut
 
-Files of a run folder: ``model.zip``, the trained model (of ``stroke_value``: ``strokes.npz``), ``results.json``, every figure,
-``curve.png``, how it learned beside other players, ``tb/``, all curves (``tensorboard --logdir runs``), and what --resume
-needs: ``settings.json``, ``checkpoint.pkl`` (of ``stroke_value``: the rounds).
+A run folder holds ``model.zip``, the trained model (for ``stroke_value``, ``strokes.npz``); ``results.json``, every figure;
+``curve.png``, the learning curve compared with other players; ``tb/``, all curves (``tensorboard --logdir runs``); and, for
+--resume, ``settings.json`` and ``checkpoint.pkl`` (for ``stroke_value``, the rounds).
 A checkpoint is a pickle, and loading a pickle runs code: --resume only your own runs.
 
-Where to read on: ``agents/hyperparams/``, the settings of each agent; ``agents/learning/loop.py``, the loop;
-``agents/learning/``, what learns; ``agents/train.py``, how a run begins and ends.
+Read on in ``agents/hyperparams/`` (settings of each agent), ``agents/learning/loop.py`` (the loop), ``agents/learning/``
+(the learners) and ``agents/train.py`` (start and end of a run).
 """
 
 import sys

@@ -1,1 +1,1 @@
-"""Which agents come with the repository? Players, training and evaluation; not in the installed package."""
+"""Which agents come with the repository? Players, training and evaluation. The installed package does not include them."""

@@ -1,11 +1,10 @@
-"""How well does a stranger's agent do on the tasks of the benchmark, for a budget of training shots?
+"""How well does a standard agent do on the tasks of the benchmark within a budget of training shots?
 
     python -m agents.baseline SnookerBreak-v0 --form strokes --shots 50000 [--seeds 5] [--out runs/baseline]
 
-writes ``TASK.FORM.SHOTS.SEED.zip`` for each training seed; those that are there are left as they are. FORM "pot" is plain PPO
-on the default action, "strokes" is MaskablePPO on the menu, both with the settings of ``agents.curves``, the same for all
-tasks: nothing is tuned. Frames are trained against ghost_ball, whose strokes count as shots; of ``planner`` every decision
-would count as 118.
+writes ``TASK.FORM.SHOTS.SEED.zip`` for each training seed and keeps existing files. FORM "pot" is plain PPO on the default
+action; "strokes" is MaskablePPO on the menu. Both use the settings of ``agents.curves`` for all tasks, without tuning. In frames
+the opponent is ghost_ball, whose strokes count as shots; each decision of ``planner`` would count as 118.
 """
 
 import argparse
@@ -24,7 +23,7 @@ FORMS = {"pot": ROWS["pot_ppo"], "strokes": ROWS["strokes_maskable"]}
 
 
 def train(task: str, row: Row, shots: int, seed: int) -> BaseAlgorithm:
-    """The agent of a training seed after at most so many shots; its tables begin below those of the judging."""
+    """Train the agent of a seed for at most this number of shots; its table seeds lie below those of the evaluation."""
     options = TASKS[task].options(
         **({"action": "strokes", "observation": "strokes"} if row.form == "strokes" else {})
     )
@@ -32,24 +31,24 @@ def train(task: str, row: Row, shots: int, seed: int) -> BaseAlgorithm:
         options = options.but(opponent="ghost_ball")
     tables = SnookerVecEnv(row.tables or 1, options=options, seed=10_000 * seed)
     agent, before, rollouts = row.new_agent(tables, seed), count_shots(), 0
-    while (count_shots() - before) * (rollouts + 1) <= shots * rollouts:  # room for one more
+    while (count_shots() - before) * (rollouts + 1) <= shots * rollouts:  # room for another rollout
         agent.learn(1, reset_num_timesteps=False)  # one rollout
         rollouts += 1
-    assert count_shots() - before <= shots, "a rollout took more shots than those before it"
+    assert count_shots() - before <= shots, "a rollout took more shots than the previous ones"
     tables.close()
     return agent
 
 
 def main(argv: Sequence[str] | None = None):
-    """Train what is missing."""
+    """Train the missing agents."""
     parser = argparse.ArgumentParser("python -m agents.baseline", description=str(__doc__).splitlines()[0])
     parser.add_argument("task", choices=TASKS, help="id of the task")
     parser.add_argument("--form", choices=FORMS, default="strokes", help="form of the action [strokes]")
-    parser.add_argument("--shots", type=int, default=50_000, help="budget of training [50000]")
+    parser.add_argument("--shots", type=int, default=50_000, help="training budget in shots [50000]")
     parser.add_argument("--seeds", type=int, default=5, help="training seeds [5]")
     parser.add_argument("--out", type=Path, default=Path("runs/baseline"), help="folder [runs/baseline]")
     args = parser.parse_args(argv)
-    if not 1 <= args.seeds <= 99:  # the tables of the hundredth would be those of the judging
+    if not 1 <= args.seeds <= 99:  # seed 100 would reach the tables of the evaluation
         parser.error(f"seeds = {args.seeds}: must be in [1, 99]")
     torch.set_num_threads(1)
     args.out.mkdir(parents=True, exist_ok=True)

@@ -1,14 +1,14 @@
 """How large are a professional's errors, judged by whole frames? Two copies of the ``tactician`` play frames under
-errors of several sizes, and the frames are compared with those of professionals.
+errors of several sizes, and the command compares these frames with those of professionals.
 
     python -m agents.calibrate FILE [--scales 0.9 1.0 1.1] [--frames 400] [--picture FILE] [--json FILE]
 
-FILE: frames of professionals, a line for each: VISITS/VISITS/MINUTES:SECONDS. VISITS are the points of a player's
-scoring visits, and F4 for 4 points from the other's foul. Before the frames of a match a line M A B may say how many
-seconds both players take for a stroke, 0 where it is not known; lines with # are comments. A scale is a factor of the
-errors of ``noise="professional"`` (``agents._lib.noise_option``). A visit scores if it pots a ball; its points are its
-break. Frames that are lost are conceded, as in matches. Standard errors are over frames. The chance to win that the
-``tactician`` sees before each stroke is compared with who won.
+FILE holds one line per frame of professionals: VISITS/VISITS/MINUTES:SECONDS. VISITS lists the points of a player's
+scoring visits, with F4 for 4 points from the opponent's foul. A line M A B before the frames of a match gives the seconds
+per stroke of both players, 0 if unknown; lines with # are comments. A scale multiplies the errors of
+``noise="professional"`` (``agents._lib.noise_option``). A visit (one turn at the table) scores if it pots a ball; its points
+are its break. Players concede lost frames, as in matches. Standard errors are over frames. The command also compares the
+chance to win that the ``tactician`` sees before each stroke with the actual winners.
 """
 
 import re
@@ -36,7 +36,7 @@ with needs("agents.calibrate"):
     from .learning.frame_self_play import FRAME, TABLES, frames
     from .learning.frame_worth import by_stage, by_tenth, calibration
 
-FIRST_SEED = 900_000_000  # of frames that no training has played
+FIRST_SEED = 900_000_000  # frames that no training plays
 FIGURES = {
     "visits": "scoring visits a frame",
     "strokes": "strokes a frame",
@@ -52,7 +52,7 @@ FIGURES = {
 
 
 def frames_of(text):
-    """The frames of a file: a dict for each, "breaks" (of both players), "fouls", "points" (2,), "strokes"."""
+    """Read the frames of a file: one dict each, with "breaks" (of both players), "fouls", "points" (2,), "strokes"."""
     frames, shot = [], 0.0
     for line in text.splitlines():
         if not line or line.startswith("#"):
@@ -77,12 +77,12 @@ def frames_of(text):
         strokes = (60 * minutes + seconds) / shot if shot else np.nan
         frames.append({"breaks": breaks, "fouls": fouls, "points": points, "strokes": strokes})
     if len(frames) < 2 or not any(one["breaks"] for one in frames):
-        raise refuse("file", f"{len(frames)} frames", "must hold two frames and a scoring visit at least")
+        raise refuse("file", f"{len(frames)} frames", "must hold at least two frames and one scoring visit")
     return frames
 
 
 def group_frames(rows):
-    """The same of frames played, of the rows of ``frame_self_play.frames``."""
+    """The same for simulated frames, from the rows of ``frame_self_play.frames``."""
     frames = []
     for k in np.unique(rows["frame"]).tolist():
         which = np.flatnonzero(rows["frame"] == k)
@@ -100,15 +100,15 @@ def group_frames(rows):
 
 
 TACTICS = {
-    "easy": "visits ended by a stroke: the other has a pot with a chance over 0.9, %",
-    "easy_no_pot": "the same where no direct pot was on, %",
-    "break_off": "points that the other makes next after a break-off",
-    "escapes": "fouls of snookered strikers, %",
+    "easy": "visits ended by a stroke that leaves the opponent a pot with a chance over 0.9, %",
+    "easy_no_pot": "the same if no direct pot was possible, %",
+    "break_off": "points of the opponent's visit after a break-off",
+    "escapes": "fouls by snookered strikers, %",
 }
 
 
 def tactics_of(parts):
-    """Mean, standard error and number of each of ``TACTICS``, of the rows of all parts of a scale."""
+    """Mean, standard error and number for each of ``TACTICS``, from the rows of all parts of a scale."""
     found = {name: [] for name in TACTICS}
     for rows in parts:
         after, likely, hidden = rows["next"], rows["seen"][:, LIKELY], rows["seen"][:, HIDDEN] > 0.5
@@ -129,7 +129,7 @@ def tactics_of(parts):
 
 
 def _next_visit(rows, k):
-    """Points of the visit that begins after stroke k, if it is the other player's."""
+    """Points of the visit that begins after stroke k, if it is the opponent's."""
     at, points, other = rows["next"][k], 0.0, 1 - rows["striker"][k]
     while at >= 0 and rows["striker"][at] == other and rows["swing"][at] > 0:
         points += rows["swing"][at]
@@ -138,7 +138,7 @@ def _next_visit(rows, k):
 
 
 def figures_of(frames):
-    """Mean and standard error of each of ``FIGURES``."""
+    """Mean and standard error for each of ``FIGURES``."""
     breaks = [np.array(one["breaks"]) for one in frames]
     many = np.array([len(one) for one in breaks], float)
     best = np.array([one.max(initial=0) for one in breaks])
@@ -172,7 +172,7 @@ def figures_of(frames):
 
 
 def play_frames(laws, many, budget):
-    """What two copies of the ``tactician`` play under each ``Noise``: a list of the rows of its parts for each."""
+    """Let two copies of the ``tactician`` play under each ``Noise``. Returns one list of rows per noise, one entry per part."""
     layers, chance = learned_worth()
     options = FRAME | {"says": ["decision", "concede"]}
     shared = {"options": options, "layers": layers, "chance": chance}
@@ -191,9 +191,9 @@ def play_frames(laws, many, budget):
 
 
 def chances_of(parts):
-    """Of the rows of all parts: the chance to win of who plays each stroke and the share that won, (10, 2), of groups of
-    strokes sorted by the chance; the mean absolute difference; the rows of ``by_stage``, and those of ``by_tenth``. None if
-    no frame was won."""
+    """Compare the striker's chance to win with the results, over the rows of all parts. Returns chance and share won, (10, 2), of
+    groups of strokes sorted by chance; the mean absolute difference; the rows of ``by_stage``, and those of ``by_tenth``.
+    None if no frame was won."""
     layers, chance = learned_worth()
     names = "seen", "lead", "left", "last", "won", "decided", "frame"
     rows = {name: np.concatenate([part[name] for part in parts]) for name in names}
@@ -209,7 +209,7 @@ def chances_of(parts):
 
 
 def draw(tenths, frames, file):
-    """The diagram of ``by_tenth``."""
+    """Draw the result of ``by_tenth``."""
     strokes, _, said, won, error = np.array(tenths).T
     said, won, error = 100.0 * said, 100.0 * won, 100.0 * error
     clear = said - won > 2.0 * error  # where it says more than comes true
@@ -243,7 +243,7 @@ def draw(tenths, frames, file):
 
 
 def _table(title, words, columns):
-    """Figures as a table: a row for each of ``words``, a column for each of ``columns``."""
+    """Write figures as a table: one row for each of ``words``, one column for each of ``columns``."""
     cell = lambda one: f"{one[0]:.2f} ± {one[1]:.2f}" if one else "-"  # noqa: E731
     rows = [[text, *(cell(one[name]) for one in columns.values())] for name, text in words.items()]
     return TextTable(title, ["", *columns], rows, 1, 1)
@@ -255,9 +255,11 @@ def main(argv=None):
     p = parser_of("python -m agents.calibrate", __doc__)
     p.add_argument("file", type=Path, help="frames of professionals")
     p.add_argument("--scales", type=float, nargs="+", default=[0.9, 1.0, 1.1], help="[0.9 1.0 1.1]")
-    p.add_argument("--frames", type=int, default=400, help="frames of each scale [400]")
-    p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
-    p.add_argument("--picture", type=Path, metavar="FILE", help="draw the chance to win and who won here")
+    p.add_argument("--frames", type=int, default=400, help="frames per scale [400]")
+    p.add_argument("--budget", type=int, default=120, help="average simulated shots per decision [120]")
+    p.add_argument(
+        "--picture", type=Path, metavar="FILE", help="draw the chances to win and the winners here"
+    )
     p.add_argument("--json", type=Path, metavar="FILE", help="write every figure here")
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
@@ -278,7 +280,7 @@ def main(argv=None):
     for name, parts in zip(names, played, strict=True):
         columns[name] = figures_of([one for rows in parts for one in group_frames(rows)])
     tactics = dict(zip(names, map(tactics_of, played), strict=True))
-    title = f"{len(real)} frames of professionals, {args.frames} played of each scale"
+    title = f"{len(real)} frames of professionals, {args.frames} simulated frames per scale"
     parts, chances = [_table(title, FIGURES, columns), _table("Tactics", TACTICS, tactics)], None
     if won := chances_of([rows for each in played for rows in each]):
         table, error, stages, tenths = won
@@ -287,7 +289,7 @@ def main(argv=None):
             [words, str(strokes), str(frames), f"{100.0 * a:.1f}", f"{100.0 * b:.1f} ± {100.0 * c:.1f}"]
             for words, strokes, frames, a, b, c in stages
         ]
-        said = f"The chance to win of who is ahead, before each stroke; groups of all strokes: {100.0 * error:.1f} % apart"
+        said = f"Chance to win of the leader before each stroke; over groups of strokes it differs from the result by {100.0 * error:.1f} %"
         parts.append(TextTable(said, ["", "strokes", "frames", "chance, %", "won, %"], rows, 1, 1))
         if args.picture:
             draw(tenths, args.frames * len(args.scales), args.picture)

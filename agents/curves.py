@@ -1,17 +1,17 @@
 """What does plain Stable-Baselines3 learn, and after how many shots? Learning curves for each form of action.
 
-    python -m agents.curves                                   every row, five seeds: days of a core
+    python -m agents.curves                                   every row, five seeds: days on one core
     python -m agents.curves --rows pot_ppo strokes_ppo --seeds 0 --shots 50000
     python -m agents.curves --markdown curves.md --picture curves.png
 
-A row is what a stranger writes: an algorithm, a policy, tables and a few settings (agents/evaluation/curve_rows.py has
-them all). Training seed by training seed it learns, and after 0 and each number of shots its deterministic policy plays
-held-out tables. Each point is appended to --out at once, with what it cost. The same command goes on after a kill:
-points that are there are left as they are, and a seed that lacks some learns from the beginning. Several processes may
-write one file, each with other --rows or --seeds. Beside the curves stand players that learn nothing: random, ghost_ball
-and the action of zeros.
+A row is an algorithm, a policy, tables and a few settings, as a new user would write them (all are in
+agents/evaluation/curve_rows.py). Each training seed learns separately. After 0 and each number of shots, its deterministic
+policy plays held-out tables, which no training uses. Each point is appended to --out at once, with its cost. Repeat the
+command to continue after a kill: existing points are kept, and a seed with missing points learns from the beginning. Several
+processes may write one file if their --rows or --seeds differ. For comparison, the file includes players that do not learn:
+random, ghost_ball and the action of zeros.
 
---markdown, --picture and --page show what the file holds, and are written after each seed.
+--markdown, --picture and --page show the contents of the file and are written after each seed.
 """
 
 import shlex
@@ -39,18 +39,20 @@ with needs("agents.curves"):
     from .evaluation.curve_rows import GAME, PLACES, ROWS, play_nothing
 
 SEEDS, VISITS, MOST_SEED = (0, 1, 2, 3, 4), 300, 999
-"""Training seeds, held-out tables of a point, and the largest seed: the tables of the next would reach those of the judging."""
+"""Training seeds, held-out tables per point, and the largest seed: the next one would reach the tables of the evaluation."""
 
 
 def parser():
     p = parser_of("python -m agents.curves", __doc__)
     add = p.add_argument
-    add("--rows", nargs="+", default=list(ROWS), metavar="ROW", help=f"some of {', '.join(ROWS)} [all]")
+    add(
+        "--rows", nargs="+", default=list(ROWS), metavar="ROW", help=f"rows to train: {', '.join(ROWS)} [all]"
+    )
     add("--seeds", nargs="+", type=int, default=list(SEEDS), help="training seeds [0 1 2 3 4]")
-    what = "shots after which it is judged [50000 200000 1000000; tasks of one stroke 100000]"
+    what = "shots after which the agent is evaluated [50000 200000 1000000; one-stroke tasks 100000]"
     add("--shots", nargs="+", type=int, help=what)
-    add("--visits", type=int, default=VISITS, help=f"held-out tables of each point [{VISITS}]")
-    add("--threads", type=int, help="of the tables; results do not depend on it [one for each processor]")
+    add("--visits", type=int, default=VISITS, help=f"held-out tables per point [{VISITS}]")
+    add("--threads", type=int, help="threads of the tables; results do not depend on it [one per processor]")
     add(
         "--out",
         type=Path,
@@ -60,12 +62,17 @@ def parser():
     )
     add("--markdown", type=Path, metavar="FILE", help="write the tables here")
     add("--picture", type=Path, metavar="FILE", help="draw the curves of visits here")
-    add("--page", type=Path, metavar="FILE", help="write picture and points of visits between its marks")
+    add(
+        "--page",
+        type=Path,
+        metavar="FILE",
+        help="fill the marked part of this page with the picture and points of visits",
+    )
     return p
 
 
 def check(args) -> dict[str, Any]:
-    """The content of the file; every wrong option is refused here, by ValueError."""
+    """Read the file and check all options. An invalid option raises ValueError."""
     for row in args.rows:
         choice("rows", row, tuple(ROWS))
     for seed in args.seeds:
@@ -82,22 +89,24 @@ def check(args) -> dict[str, Any]:
     content = read_curves(args.out, args.visits)
     for name in {one["row"] for one in content["points"]}.intersection(args.rows):
         if (code := content["rows"][name]["code"]) != ROWS[name].code():
-            raise refuse("rows", name, f"must train what {args.out} has of it, {code}: or give another --out")
+            raise refuse(
+                "rows", name, f"must train what {args.out} holds for it, {code}: or give another --out"
+            )
     if args.page is not None:
         if not args.page.is_file():
-            raise refuse("page", str(args.page), "must be a page that is there")
+            raise refuse("page", str(args.page), "must be an existing page")
         fill(args.page.read_text(encoding="utf-8"), content, args.page)
     return content
 
 
 def measure(values: np.ndarray) -> dict[str, float | int]:
-    """Mean and standard error of what episodes brought."""
+    """Mean and standard error of the returns of episodes."""
     error = float(values.std(ddof=1) / np.sqrt(len(values)))
     return {"points": float(values.mean()), "error": error, "visits": len(values)}
 
 
 def levels(place: str, args) -> dict[str, dict[str, float | int]]:
-    """What players that learn nothing make."""
+    """Measure the players that do not learn."""
     made = {"zero action": measure(play_nothing(place, args.visits, args.threads))}
     if place == "visit":
         seeds = tables_of("held_out", args.visits)
@@ -108,8 +117,8 @@ def levels(place: str, args) -> dict[str, dict[str, float | int]]:
 
 
 def learn(name: str, seed: int, wanted: list[int], known: set[int], args):
-    """Train one seed of a row, and yield each of the ``wanted`` points that is not ``known``. Each number of shots is a
-    further ``learn``: DQN explores in the first."""
+    """Train one seed of a row and yield each of the ``wanted`` points that is not ``known``. Each number of shots is a
+    further ``learn``; DQN explores only in the first."""
     row, seconds, processor = ROWS[name], 0.0, 0.0
     agent, tables = row.agent(seed, args.threads)
     with Progress(f"{name}, seed {seed}", wanted[-1], "shots") as progress:
@@ -131,7 +140,7 @@ def learn(name: str, seed: int, wanted: list[int], known: set[int], args):
 
 
 def show(args) -> None:
-    """Write what was asked for from the file."""
+    """Write the requested outputs from the file."""
     content = read_curves(args.out, args.visits)
     if args.markdown:
         write_atomic(args.markdown, markdown(content))
@@ -143,7 +152,7 @@ def show(args) -> None:
 
 @command("agents.curves")
 def main(argv=None):
-    """Train what is missing, and show all. Exit code 0; 130 if it was interrupted: each point is kept at once."""
+    """Train the missing points and show all. Exit code 0, or 130 if interrupted; each point is kept at once."""
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_args(argv)
@@ -151,7 +160,7 @@ def main(argv=None):
         content = check(args)
     except ValueError as error:
         p.error(str(error))
-    torch.set_num_threads(1)  # networks this small are slower on more
+    torch.set_num_threads(1)  # such small networks are slower on more threads
     snooker_env.warmup()
     made = {
         "command": shlex.join(["python", "-m", "agents.curves", *argv]),

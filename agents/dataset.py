@@ -1,11 +1,11 @@
-"""How does a player's play become a data set? Its episodes in Minari's format, with a data card.
+"""How is a player's play saved as a data set? As episodes in Minari's format, with a data card.
 
     python -m agents.dataset --out runs/data --player stroke_value --strokes 20000
 
-plays the training tables of a task of the benchmark, ``TABLES`` at once, and writes OUT/snooker/NAME-v0, which
-``minari.load_dataset`` reads with MINARI_DATASETS_PATH=OUT. Each part of the tables is kept whole in OUT/parts, so the
-same command goes on after an interruption, and with more --strokes, to the data set of an uninterrupted run. No
-table of the judging is among them.
+plays the training tables of a benchmark task, ``TABLES`` at once, and writes OUT/snooker/NAME-v0, which
+``minari.load_dataset`` reads with MINARI_DATASETS_PATH=OUT. Each complete part of the tables is kept in OUT/parts. To continue
+after an interruption or add strokes, repeat the command, with a larger --strokes if you like; the data set equals that of an
+uninterrupted run. It contains no table of the evaluation.
 """
 
 import shutil
@@ -34,29 +34,29 @@ with needs("agents.dataset"):
 
 
 TABLES = 256
-"""Tables of a part, each of which plays one episode."""
+"""Tables per part; each plays one episode."""
 FIRST_SEED = 200_000
-"""The seed of the first table; the last one is before ``HELD_OUT_SEED``, where those of the judging begin."""
+"""The seed of the first table. All seeds lie below ``HELD_OUT_SEED``, where those of the evaluation begin."""
 FORMS = ("strokes", "choices")
 INFOS = ("points", "foul")
-"""What is kept of the environment's info after each stroke."""
+"""Entries of the environment's info that are kept after each stroke."""
 COLUMNS = ("observations", "masks", "actions", "rewards", "terminations", "truncations", *INFOS)
 
 
 def free_options(task, form) -> dict[str, Any]:
-    """The free options of the environment in which a data set is played."""
+    """Options of the environment that plays a data set."""
     if form == "choices":
         if task.frame:
-            raise refuse("form", form, 'must be "strokes" in frames: choices make no decision after a foul')
+            raise refuse("form", form, 'must be "strokes" in frames: choices cannot decide after a foul')
         return {"action": "discrete", "observation": "masked"}
     return {"observation": "flat"} | (FRAMES if task.frame else VISITS)
 
 
 def nearest_choices(strokes, at, masks, planner):
-    """The available choices nearest to strokes in n positions: int64 (n,); ``masks`` bool (n, 540), ``planner`` of choices.
+    """Find the available choices nearest to strokes in n positions: int64 (n,); ``masks`` bool (n, 540), ``planner`` of choices.
 
-    Speed (its logarithm), side and top are rounded to the nearest there is, then the pot is the one whose aim for
-    such a stroke is nearest."""
+    Speed (its logarithm), side and top are rounded to the nearest available values. The pot is then the one whose aim for
+    this stroke is nearest."""
     values, n = strokes.values, len(at)
     logs = np.abs(np.log(values[:, :1]) - np.log(SPEEDS)).argmin(axis=1)
     side = np.abs(values[:, 1:2] - np.array(SIDES)).argmin(axis=1)
@@ -67,13 +67,13 @@ def nearest_choices(strokes, at, masks, planner):
     aims = planner.strokes_of(at, rows, choices[rows, pots])[0][:, 3]
     off = np.full((n, POTS), np.inf)
     off[rows, pots] = np.abs((aims - values[rows, 3] + np.pi) % (2.0 * np.pi) - np.pi)
-    first = masks.argmax(axis=1)  # where the cue has no room for any of them
+    first = masks.argmax(axis=1)  # if the cue has no room for any of them
     return np.where(there.any(axis=1), choices[np.arange(n), off.argmin(axis=1)], first)
 
 
 def play_table_episodes(task, name, form, seeds, threads=None):
-    """One episode on each of the tables with these seeds: arrays ``COLUMNS`` of all strokes, episode after episode,
-    ``last`` observations (and ``last_masks``) of each, and ``lengths`` (n,)."""
+    """Play one episode on each of the tables with these seeds. Returns arrays ``COLUMNS`` of all strokes, episode after episode,
+    the ``last`` observations (and ``last_masks``) of each episode, and ``lengths`` (n,)."""
     n, reads = len(seeds), task.options(**free_options(task, "strokes"))
     envs = sn.SnookerVectorEnv(n, task.options(**free_options(task, form)), threads=threads)
     player, choices = sn.player(name).at(reads), form == "choices"
@@ -117,27 +117,27 @@ def play_table_episodes(task, name, form, seeds, threads=None):
 
 
 def episodes_of(part, seeds, first):
-    """The episodes of a part, as Minari's ``EpisodeBuffer``; ``first``: the number of the first."""
+    """Yield the episodes of a part as Minari's ``EpisodeBuffer``; ``first`` numbers the first one."""
     from minari.data_collector import EpisodeBuffer
 
     ends = np.cumsum(part["lengths"])
     for k, (end, length) in enumerate(zip(ends.tolist(), part["lengths"].tolist(), strict=True)):
         one = {column: part[column][end - length : end] for column in COLUMNS}
-        # Any: the type of its observations says nothing of arrays
+        # Any: its type does not admit arrays as observations
         shown: Any = np.concatenate([one["observations"], part["last"][k : k + 1]])
         if part["masks"].shape[1]:
             shown = {
                 "observations": shown,
                 "action_mask": np.concatenate([one["masks"], part["last_masks"][k : k + 1]]),
             }
-        # an info belongs to each observation, that of the reset included
+        # each observation has an info, including that of the reset
         infos = {name: np.concatenate([np.zeros(1, one[name].dtype), one[name]]) for name in INFOS}
         ended = {name: one[name] for name in ("actions", "rewards", "terminations", "truncations")}
         yield EpisodeBuffer(id=first + k, seed=seeds[k], observations=shown, infos=infos, **ended)
 
 
 def write_dataset(folder, name, task, player, form, parts):
-    """Write the parts as the data set ``name``, whole or not at all: its figures."""
+    """Write the parts as the data set ``name``, completely or not at all. Returns its figures."""
     import minari
     from minari.dataset.minari_storage import MinariStorage
 
@@ -146,7 +146,7 @@ def write_dataset(folder, name, task, player, form, parts):
     shutil.rmtree(made, ignore_errors=True)
     (made / "data").mkdir(parents=True)
     storage = MinariStorage.new(made / "data", env_spec=spec)
-    about = f"{player} plays {task.id} ({task.title}): whole episodes, one step a stroke"
+    about = f"{player} plays {task.id} ({task.title}): whole episodes, one step per stroke"
     more = {"dataset_id": name, "minari_version": minari.__version__, "algorithm_name": player}
     storage.update_metadata(more | {"description": about, "requirements": [f"snooker-env=={sn.__version__}"]})
     returns = []
@@ -168,8 +168,8 @@ def write_dataset(folder, name, task, player, form, parts):
 
 
 def differing(folder, many):
-    """Numbers of the episodes, among ``many`` evenly spread ones, that the recovered environment does not play again bit
-    for bit, from their seeds by their actions; and how many were played."""
+    """Replay ``many`` evenly spread episodes in the recovered environment from their seeds and actions. Returns the numbers of
+    the episodes that differ in any bit, and how many were played."""
     import minari
 
     data = minari.MinariDataset(folder / "data")
@@ -185,7 +185,7 @@ def differing(folder, many):
             try:
                 seen, *ended, info = env.step(action)
             except (gymnasium.error.ResetNeeded, ValueError):
-                break  # it has ended, or the action cannot be played: too few rows
+                break  # too few rows: the episode has ended, or the action cannot be played
             observations.append(seen)
             rest.append(ended)
             for name in INFOS:
@@ -201,7 +201,7 @@ def differing(folder, many):
 
 
 def card(name, task, player, form, figures):
-    """The page beside a data set: what it holds, and how it was made. docs/agents/datasets.md says what the fields mean."""
+    """Write the card of a data set: its contents and origin. docs/agents/datasets.md explains the fields."""
     origin = provenance()
     return f"""# {name}
 
@@ -215,28 +215,28 @@ commit {origin["commit"]}, {origin["machine"]}.
 
 
 def seeds_of(part):
-    """The seeds of the tables of a part; ValueError where those of the judging begin."""
+    """The table seeds of a part. ValueError if they would reach those of the evaluation."""
     if FIRST_SEED + (part + 1) * TABLES > HELD_OUT_SEED:
         most = (HELD_OUT_SEED - FIRST_SEED) // TABLES * TABLES
         raise refuse_what(
-            "strokes", "more", f"must be at most those of {most:,} episodes: the seeds end there"
+            "strokes", "more", f"must be at most the strokes of {most:,} episodes, where the seeds end"
         )
     return list(range(FIRST_SEED + part * TABLES, FIRST_SEED + (part + 1) * TABLES))
 
 
 @command("agents.dataset")
 def main(argv=None):
-    """Play what is missing, write the data set and its card."""
+    """Play the missing episodes and write the data set and its card."""
     parser = parser_of("python -m agents.dataset", __doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of data sets: MINARI_DATASETS_PATH")
+    parser.add_argument("--out", type=Path, required=True, help="folder of data sets (MINARI_DATASETS_PATH)")
     help_ = f"tables and rules: {', '.join(TASKS)} [SnookerBreak-v0]"
     parser.add_argument("--task", default="SnookerBreak-v0", metavar="TASK", help=help_)
     parser.add_argument("--player", default="stroke_value", help="name of a player [stroke_value]")
-    parser.add_argument("--strokes", type=int, default=20_000, help="at least so many [20000]")
-    help_ = "actions: whole strokes, or the nearest of 540 choices, with masks [strokes]"
+    parser.add_argument("--strokes", type=int, default=20_000, help="minimum number of strokes [20000]")
+    help_ = "record actions as whole strokes, or as the nearest of 540 choices with masks [strokes]"
     parser.add_argument("--form", default="strokes", metavar="{strokes,choices}", help=help_)
-    parser.add_argument("--threads", type=int, help="threads that play the tables [one for each core]")
-    help_ = "then play so many of its episodes again, from their seeds by their actions: the same bits?"
+    parser.add_argument("--threads", type=int, help="threads that play the tables [one per core]")
+    help_ = "then replay this many episodes from their seeds and actions, and compare all bits"
     parser.add_argument("--check", type=int, default=0, metavar="N", help=help_)
     args = parser.parse_args(argv)
     try:
@@ -255,7 +255,7 @@ def main(argv=None):
         parser.error(str(error))
     kind = "" if form == "strokes" else f"-{form}"
     name = f"snooker/{task.id.removeprefix('Snooker').removesuffix('-v0').lower()}-{args.player}{kind}-v0"
-    out = args.out.absolute()  # Minari joins a relative one to itself
+    out = args.out.absolute()  # Minari would append a relative path to itself
     kept = out / "parts" / name.replace("/", "-")
     began, parts, strokes, new = time.perf_counter(), [], 0, 0
     with Progress(f"{args.player} plays {task.id}", args.strokes, "strokes") as progress:
@@ -289,9 +289,9 @@ def main(argv=None):
     )
     if args.check:
         wrong, many = differing(folder, args.check)
-        print(f"{many - len(wrong)} of {many} episodes are played again bit for bit")
+        print(f"{many - len(wrong)} of {many} replayed episodes are equal bit for bit")
         if wrong:
-            print(f"not played again alike: episodes {', '.join(map(str, wrong))}", file=sys.stderr)
+            print(f"replays differ in episodes {', '.join(map(str, wrong))}", file=sys.stderr)
             return 1
     return 0
 

@@ -1,4 +1,4 @@
-"""How well do agents play, and is it positional play? A research tool: held-out tables, all noise levels,
+"""How well do agents play, and do they play position? A research tool with held-out tables, all noise levels and
 several training seeds.
 
     python -m agents.evaluate --agent ghost_ball runs/ppo_value-0
@@ -7,19 +7,19 @@ several training seeds.
     python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/ref-*" --fidelity fast reference
     python -m agents.evaluate --agent search_2000 --visits 50 --noise professional
 
-Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that
-are never used in training, no two of them equal or mirrored; --layouts names others. Every agent plays under
-every value of --noise, --fidelity, --physics and --cue, so agents that were trained under A and B make a table
-of A against B. (The aim of a discrete choice is solved with the physics that is played.) Results for the
-leaderboard are made by ``python -m snooker_env.benchmark`` instead.
+All agents play the same tables with the same execution errors, stroke by stroke: 2,000 opened tables (with spread
+reds) that no training uses, no two equal or mirrored. --layouts selects other tables. Every agent plays under every
+value of --noise, --fidelity, --physics and --cue, so agents trained under A and B give a table of A against B. (The
+aim of a discrete choice is solved with the physics of the test.) For the leaderboard, use
+``python -m snooker_env.benchmark`` instead.
 
 An agent is a ``NAME`` (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH,PATH,... with
-one PATH for each training seed (a PATH may be a pattern), or MODULE:CLASS for a player of your own, whose
-module is imported. Models of train.py and results/weights are read as plain data. Any other model of
-Stable-Baselines3 or sb3-contrib that was trained on a visit with the environment's own observation holds
-pickled Python code, which runs when it is loaded: it needs --trust and, if its actions are not the default
-ones, --options, for example aim=target. Intervals are 95 % bootstrap intervals over training seeds and visits
-(snooker_env/benchmark/statistics.py); the ratios are paired: same tables above and below.
+one PATH per training seed (a PATH may be a pattern), or MODULE:CLASS for your own player, whose module is imported.
+Models of train.py and results/weights are read as plain data. Any other model of Stable-Baselines3 or sb3-contrib,
+trained on a visit (one turn at the table) with the environment's own observation, holds pickled Python code that runs
+when it is loaded. It needs --trust and, unless its actions are the default ones, --options, for example aim=target.
+Intervals are 95 % bootstrap intervals over training seeds and visits (snooker_env/benchmark/statistics.py). Ratios
+are paired: numerator and denominator use the same tables.
 """
 
 import shlex
@@ -66,20 +66,20 @@ with needs("agents.evaluate"):
     from .report import markdown, parts, verdict
 
 LAYOUT, VISITS, OTHERS = "held_out", 2000, 500
-"""The layout of an evaluation and its visits, and the visits on others that are asked for."""
+"""Default layout and its visits, and the visits on other requested layouts."""
 NOISES = ("none", "professional", "amateur", "club")
 REFERENCE = "ghost_ball"
 
 
 def parts_of_agent(agent, condition, seeds):
-    """The parts of an agent under a condition, a list for each of its runs."""
+    """The parts of an agent under a condition: one list per run."""
     return [parts_of(pack(agent, k), k, condition, seeds) for k in range(len(agent.runs))]
 
 
 def play_agent(agent, condition, seeds, resamples, results=None):
-    """``EntrantMetrics`` by every run of the agent on the tables with these seeds.
+    """Compute ``EntrantMetrics`` from every run of the agent on the tables with these seeds.
 
-    ``results``: those of its parts, the next of an iterator; by default they are played here.
+    ``results`` yields the results of its parts next; by default they are played here.
     """
     each = parts_of_agent(agent, condition, seeds)
     if results is None:
@@ -91,13 +91,13 @@ def play_agent(agent, condition, seeds, resamples, results=None):
 
 
 def _conditions(report, seeds):
-    """Every layout under every noise, fidelity and physics."""
+    """Every combination of layout, noise, fidelity and physics."""
     for layout, *at in product(seeds, *(report["protocol"][axis] for axis in AXES)):
         yield {"layout": layout, **dict(zip(AXES, at, strict=True))}
 
 
 def all_parts(report, agents, seeds):
-    """The parts of all that the report's protocol says, in the order in which ``evaluate`` takes them."""
+    """All parts of the report's protocol, in the order in which ``evaluate`` takes them."""
     return [
         part
         for condition in _conditions(report, seeds)
@@ -114,11 +114,11 @@ def parser():
     what += f"or MODULE:CLASS; NAME: {', '.join(snooker_env.players())}"
     add("--agent", nargs="+", required=True, metavar="AGENT", help=what)
     add_model_options(p)
-    what = f"agents to compare the others with [{REFERENCE}]"
+    what = f"agents to compare with [{REFERENCE}]"
     add("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=what)
-    what = f"LAYOUT or LAYOUT=VISITS [{LAYOUT}={VISITS}; others {OTHERS} visits]"
+    what = f"LAYOUT or LAYOUT=VISITS [{LAYOUT}={VISITS}; other layouts {OTHERS} visits]"
     add("--layouts", nargs="+", default=[LAYOUT], metavar="LAYOUT", help=what)
-    add("--visits", type=int, help="so many on every layout, for a quick trial or a slow player")
+    add("--visits", type=int, help="visits on every layout, for a quick trial or a slow player")
     add("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
     what = "fast, standard, reference or euler:N [standard]"
     add("--fidelity", nargs="+", default=["standard"], help=what)
@@ -129,7 +129,7 @@ def parser():
         nargs="+",
         default=["real"],
         choices=("free", "real"),
-        help="whether rails and balls are in its way [real]",
+        help="whether rails and balls obstruct the cue [real]",
     )
     add_ray(p)
     add("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
@@ -139,7 +139,7 @@ def parser():
 
 
 def parse_evaluation(args):
-    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError."""
+    """Read (agents, references, {layout: seeds of its tables}) from the command line. Raises ValueError."""
     agents = entrants_of(args.agent, args, "agent")
     labels = [agent.label for agent in agents]
     for label in args.against:
@@ -168,7 +168,7 @@ def parse_evaluation(args):
 
 
 def evaluate(report, agents, seeds, results):
-    """Add the figures of all that the report's protocol says to it, a whole condition at a time, from the ``results`` of
+    """Add all figures of the report's protocol to the report, one whole condition at a time, from the ``results`` of
     ``all_parts``."""
     p = report["protocol"]
     for condition in _conditions(report, seeds):
@@ -187,7 +187,7 @@ def evaluate(report, agents, seeds, results):
 
 @command("agents.evaluate")
 def main(argv=None):
-    """Check, play, report. Exit code 0; 130 if it was interrupted: what was complete is kept."""
+    """Check, play, report. Exit code 0, or 130 if interrupted; complete conditions are kept."""
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_args(argv)
@@ -196,7 +196,7 @@ def main(argv=None):
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
-    for agent in agents:  # compiled before the clock runs
+    for agent in agents:  # compile before timing
         play_visits(agent.player(0), 2)
     protocol = {"layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED}
     protocol |= {"against": references} | {axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}
@@ -223,10 +223,10 @@ def main(argv=None):
         why, code = str(error), 1
     if code:
         complete, conditions = len(report["results"]) // len(agents), list(_conditions(report, seeds))
-        kept = f"what was played is kept in {KEPT}, the same command goes on" if args.ray else ""
+        kept = f"finished parts are kept in {KEPT}; repeat the command to continue" if args.ray else ""
         kept = kept or ("the others are lost" if complete else "nothing is kept")
-        many = f"{complete} of {len(conditions)} parts (layouts under one noise)"
-        report["incomplete"] = f"{why} when {many} were complete: {kept}"
+        many = f"{complete} of {len(conditions)} parts (one layout and noise level each)"
+        report["incomplete"] = f"{why} after {many}: {kept}"
         print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
     if report["results"]:
         write(report, args)
@@ -236,10 +236,10 @@ def main(argv=None):
 
 
 def write(report, args):
-    """Write what was asked for and print the tables; files that cannot be written are named at the end."""
+    """Write the requested files and print the tables; files that cannot be written are named at the end."""
     files, failed = {name: getattr(args, name) for name in ("json", "markdown")}, []
     if "incomplete" in report:
-        # beside a file that is there already, for that may be whole
+        # not over an existing file, which may be complete
         beside = lambda file: file.with_name(f"{file.stem}.incomplete{file.suffix}")  # noqa: E731
         files = {name: beside(file) if file and file.exists() else file for name, file in files.items()}
     writers = {
@@ -253,7 +253,7 @@ def write(report, args):
         except OSError as error:
             failed.append(f"{file} cannot be written: {error.strerror or error}")
             files[name] = None
-    show(parts(report))  # last: whoever reads it may leave, as head does
+    show(parts(report))  # last, because the reader of a pipe may stop early, like head
     for name, file in files.items():
         if file:
             print(f"{name}: {file}")

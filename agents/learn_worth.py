@@ -1,17 +1,16 @@
-"""Learn what positions of frames are worth, by self-play: the worth of the ``tactician``.
+"""How does the ``tactician`` learn what positions of frames are worth? By self-play.
 
     python -m agents.learn_worth --out runs/worth [--rounds 2] [--chance | --against PLAYER] [--ray local]
 
-Each round plays frames under errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's, with what the package and
-the rounds before have learned, half of them against oneself, the others against a league: past selves and the planner of visits.
-Each position, and what its best strokes may leave, is judged by search (``frame_self_play``). A network is then fitted to
-the last rounds, and the chance to win to their frames between equals. In a tenth of the positions a teacher with eight
-times the budget is asked, whose stroke is taken where it is clearly better. After each round OUT holds its data and its
-weights: the same command goes on from there. The last round's weights are written to OUT/worth.npz and play the package's
-``tactician`` and a population; with --export they are written into the package if none of these does better against them
-than an equal would. With --against all frames are played against one player, of whom nothing is learned: the best response.
-With --chance the network stays that of the package: all frames are between equals, no position is
-judged, and the chance to win alone is fitted.
+Each round plays frames with errors from ``SCALES[0]`` to ``SCALES[1]`` times a professional's. It uses what the package and the
+earlier rounds have learned. Half of the frames are against itself, the others against a league: past selves and the planner.
+A search judges each position and the positions that its best strokes may leave (``frame_self_play``). A network is then fitted
+to the last rounds, and the chance to win to their frames between equals. In a tenth of the positions, a teacher searches with
+eight times the budget; its stroke is used if it is clearly better. After each round, OUT holds its data and weights: repeat the
+command to continue from there. The last round's weights are written to OUT/worth.npz and play against the package's
+``tactician`` and a population. With --export they are written into the package unless one of these players clearly beats them.
+With --against all frames are against one player, from whom nothing is learned: the result is the best response. With --chance
+the network of the package is kept: all frames are between equals, no position is judged, and only the chance to win is fitted.
 """
 
 import sys
@@ -41,19 +40,19 @@ with needs("agents.learn_worth"):
     from .learning.rounds import Rounds, arrays_of, shares_of_parts
 
 SCALES = 0.6, 4.5
-"""Errors of the frames played, times those of a professional, evenly spread in the logarithm."""
+"""Errors of the frames relative to a professional's, evenly spread in the logarithm."""
 EXPLORE = 0.08
-"""Share of strokes that are not the best ones found, so that positions after worse ones are seen, too."""
+"""Share of strokes that are not the best found, so that the data include positions after worse strokes."""
 KEEP, PASSES = 4, 15
-"""Rounds whose positions a network is fitted to, and passes over them."""
+"""Number of rounds that a network is fitted to, and of passes over them."""
 VISITORS = ("planner",)
-"""Players of the league that are no past selves."""
+"""Players of the league besides past selves."""
 POPULATION = ("tactician", "planner", "stroke_value")
-"""Whom new weights must not lose to: the incumbent, and others."""
+"""Players to whom new weights must not lose: the incumbent and others."""
 JUDGED = 950_000_000
-"""The first table on which weights are judged: no training and no calibration plays it."""
+"""The first table of the evaluation: no training and no calibration plays it."""
 HELD = 8
-"""One frame in so many is kept from the fit, to say how good it is."""
+"""One frame in this many is held out from the fit, to measure its error."""
 LEARNED_FROM = [
     "seen",
     "hand",
@@ -68,11 +67,11 @@ LEARNED_FROM = [
     "decided",
     "equals",
 ]
-"""Of the rows of ``frame_self_play.frames``, with their targets."""
+"""The rows of ``frame_self_play.frames``, with their targets."""
 
 
 class WorthRounds(Rounds):
-    """The frames, played at ``where``; ``chance_alone``: the network stays that of the package."""
+    """The frames, played at ``where``. ``chance_alone``: keep the package's network."""
 
     what, unit, now = "frames of self-play", "frames", "these frames"
 
@@ -116,7 +115,7 @@ class WorthRounds(Rounds):
 
     def fit(self):
         given = self.layers if self._chance_alone else None
-        known = self.chance if self._against else None  # no frame between equals tells it
+        known = self.chance if self._against else None  # no frame between equals reveals it
         layers, chance, figures = fit_worth(
             self.rounds[-KEEP:], self._seed + len(self.rounds) - 1, given, known
         )
@@ -132,7 +131,7 @@ class WorthRounds(Rounds):
 
 
 def fit_worth(rounds, seed, layers=None, chance=None):
-    """Layers and chance, if they are None, fitted to the rows of some rounds, and figures of the frames kept from the fit."""
+    """Fit layers and chance, unless given, to the rows of some rounds. Returns them and figures of the held-out frames."""
     both = {name: np.concatenate([one[name] for one in rounds]) for name in rounds[0]}
     used = ~both["held"]
     in_hand = used & (both["seen"] != both["hand"]).any(axis=1)
@@ -140,13 +139,13 @@ def fit_worth(rounds, seed, layers=None, chance=None):
     wanted = np.concatenate([both["target"][used], both["target"][in_hand]])
     layers = fit_network(seen, wanted, seed, PASSES) if layers is None else layers
     said = worth_of(Layers(layers, "relu"), both["seen"].astype(np.float32))
-    # a frame that was stopped was won by nobody; nor is it known what follows positions beside the frames, or what an
+    # a stopped frame has no winner; nor is it known what follows positions outside the frames, or what an
     # equal would have made of it
     ended, held = both["decided"] & (both["equals"] | (chance is not None)), both["held"]
     for some, what in ((used & ended, "fitted"), (held & ended, "kept from the fit")):
         if not some.any():
             raise refuse(
-                "frames", len(np.unique(both["unit"])), f"must be more: of those {what} none has ended"
+                "frames", len(np.unique(both["unit"])), f"must be more: none of those {what} has ended"
             )
     known = both["lead"], said.astype(np.float64), both["left"], both["last"], read_errors(both["seen"])
     chance = chance or fitted_chance(*(part[used & ended] for part in (*known, both["won"])))
@@ -165,23 +164,23 @@ def fit_worth(rounds, seed, layers=None, chance=None):
 
 @command("agents.learn_worth")
 def main(argv=None):
-    """Play, fit, write. Exit code 0, 1 if weights were too weak to be exported, or 128 + the signal that stopped it."""
+    """Play, fit, write. Exit code 0, 1 if the weights were too weak to export, or 128 + the signal that stopped it."""
     p = parser_of("python -m agents.learn_worth", __doc__)
     p.add_argument("--out", type=Path, required=True, help="folder of rounds and weights")
     p.add_argument("--rounds", type=int, default=2, help="[2]")
-    p.add_argument("--frames", type=int, default=384, help=f"frames of a round, a multiple of {TABLES} [384]")
-    p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
+    p.add_argument("--frames", type=int, default=384, help=f"frames per round, a multiple of {TABLES} [384]")
+    p.add_argument("--budget", type=int, default=120, help="average simulated shots per decision [120]")
     p.add_argument("--seed", type=int, default=0, help="[0]")
-    p.add_argument("--export", action="store_true", help="write the weights into the package, too")
-    p.add_argument("--chance", action="store_true", help="fit the chance to win alone")
-    p.add_argument("--against", metavar="PLAYER", help="learn against this player alone")
+    p.add_argument("--export", action="store_true", help="also write the weights into the package")
+    p.add_argument("--chance", action="store_true", help="fit only the chance to win")
+    p.add_argument("--against", metavar="PLAYER", help="learn only against this player")
     p.add_argument("--judged", type=int, default=200, help="frames against each player at the end [200]")
     add_ray(p)
     args = p.parse_args(sys.argv[1:] if argv is None else argv)
     try:
         integer("rounds", args.rounds, 1, 90)
         integer("frames", args.frames, TABLES, 100_000)
-        integer("seed", args.seed, 0, 80)  # more would meet the tables of agents.calibrate
+        integer("seed", args.seed, 0, 80)  # more would reach the tables of agents.calibrate
         integer("budget", args.budget, FrameJudge.least, 10**6)
         integer("judged", args.judged, 0, 10**6)
         if args.against is not None:
@@ -197,7 +196,7 @@ def main(argv=None):
             asked = args.frames, args.budget, args.seed, args.chance, args.against
             rounds = WorthRounds(args.out, args.rounds, asked, where)
             rounds.restore()
-            again = "the same command goes on with the rounds in its folder"
+            again = "repeat the command to continue with the rounds in its folder"
             if (number := Loop("agents.learn_worth", [rounds], lambda: None, again).run()) is not None:
                 return 128 + number
     except ValueError as error:
@@ -207,7 +206,9 @@ def main(argv=None):
         print(f"round {k}: " + "  ".join(f"{name} {value:.4g}" for name, value in figures.items()))
     beats = args.judged == 0 or judge_weights(rounds, args)
     if args.export and not beats:
-        print(f"not exported: the weights lose clearly; they are in {args.out / WORTH}", file=sys.stderr)
+        print(
+            f"not exported, because the weights clearly lose; they are in {args.out / WORTH}", file=sys.stderr
+        )
         return 1
     if args.export:
         write_atomic(FOLDER / WORTH, rounds.pack_weights())
@@ -215,7 +216,7 @@ def main(argv=None):
 
 
 def judge_weights(rounds, args):
-    """Print how often the weights win against each of ``POPULATION`` or ``--against``; whether they lose to none clearly."""
+    """Print how often the weights win against each of ``POPULATION``, or ``--against``. Returns whether they clearly lose to none."""
     mine, fine = Tactician(args.budget, (rounds.layers, rounds.chance)), True
     for k, name in enumerate([args.against] if args.against else POPULATION):
         other = f"{name}_{args.budget}" if name in ("tactician", "planner") else name

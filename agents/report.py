@@ -1,9 +1,9 @@
-"""How is an evaluation reported? Tables and sentences for a terminal and as Markdown, all from its figures.
+"""How is an evaluation reported? As tables and sentences for a terminal or in Markdown, all from its figures.
 
     python -m agents.report results/agents/*.json
 
-writes ``results/agents/*.md`` again from what agents.evaluate, agents.tournament and agents.curves keep as JSON, without playing;
---show prints the tables instead.
+rewrites ``results/agents/*.md`` from the JSON of agents.evaluate, agents.tournament and agents.curves, without playing. --show
+prints the tables instead.
 """
 
 import re
@@ -25,14 +25,14 @@ with needs("agents.report"):
     from .evaluation.metrics import AXES, USUAL, add_bound, main_condition
 
 SEEDS = 5
-"""Fewer training seeds than that are pointed out."""
+"""The report points out fewer training seeds than this."""
 SAME = 0.1
-"""Times that differ by less than this share are called equal."""
+"""Times that differ by less than this share count as equal."""
 _pm = partial(format_figure, form="{:.2f}")
 
 
 def _trials(row, below):
-    """How often a run could have done it: the entry ``below`` of ``benchmark.counts``; None: not kept."""
+    """How many times a run could have done it: the entry ``below`` of ``benchmark.counts``; None if not kept."""
     f, visits = row["figures"], row["visits"]
     known = {"visits": visits, "strokes": row["strokes"] / row["runs"]}
     if f["pots_a_visit"]["value"] is not None and f["clearances"]["value"] is not None:
@@ -42,16 +42,16 @@ def _trials(row, below):
 
 _MEANS = "points_a_visit", "adjusted_a_visit", "pots_a_visit", "colour_value"
 SHARES = {name: below for name, (_, below) in FIGURES.items() if name not in _MEANS}
-"""Figures that are shares, and of what. A visit ends with its first foul: those a visit are a share, too."""
+"""Figures that are shares, with their denominators. A visit ends with its first foul, so fouls a visit are a share."""
 
 
 def _share(row, name, form="{:.1f}", scale=100.0):
-    """A share with its interval; where it was never so, or always, with the exact bound of that."""
+    """A share with its interval; if it is 0 or 1, with the exact bound."""
     return format_figure(add_bound(row["figures"][name], _trials(row, SHARES[name])), scale, form)
 
 
 def _between(values, form="{:,.0f}"):
-    """One number, or the least and the most of several."""
+    """One number, or the smallest and largest of several."""
     known = [v for v in values if v is not None]
     if not known:
         return ""
@@ -64,27 +64,27 @@ def _pick(report, **condition):
 
 
 def _other(report):
-    """The module that shows it, if no evaluation made it."""
+    """The module that shows this report, unless it is an evaluation."""
     if tournament_report.is_tournament(report):
         return tournament_report
     return curve_report if is_curves(report) else None
 
 
 def verdict(report):
-    """The points of each agent in the main condition, as one sentence; none if that was not played."""
+    """Yield one sentence with the points of each agent in the main condition, or nothing if it was not played."""
     at = main_condition(report)
     made = [f"{row['agent']} {_pm(row['figures']['points_a_visit'])}" for row in _pick(report, **at)]
     return [f"Points a visit on {at['layout']}, noise {at['noise']}: {', '.join(made)}."] if made else []
 
 
 def _list(words):
-    """Words as a sentence lists them."""
+    """Join words into a list for a sentence."""
     *others, last = map(str, words)
     return f"{', '.join(others)} and {last}" if others else last
 
 
 def title(report):
-    """What is compared: an axis of training and of play, or agents and where they play; or who met, or what learned."""
+    """The heading: the axis of training and play compared, or the agents and their tables; or the tournament or curves."""
     if other := _other(report):
         return other.title(report)
     p, layouts = report["protocol"], _list(report["protocol"]["layouts"])
@@ -98,7 +98,7 @@ def title(report):
 
 
 def agents_table(report):
-    """How each agent was trained and how long, and a sentence on those that were not."""
+    """A table of how and how long each agent was trained, and a sentence on those that were not."""
     rows, known = [], {"Pre-trained, by the noise played": [], "Not trained": []}
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
@@ -116,22 +116,22 @@ def agents_table(report):
 
 
 def _seeds(runs):
-    """Training seeds of these runs: a model given twice is one."""
+    """Number of training seeds of these runs; a model given twice counts once."""
     return len({run["seed"] for run in runs})
 
 
 _SECONDS = "seconds", "seconds of training", SAME
 COSTS = (("imitated", "positions imitated", 0.0), ("shots", "shots", 0.0), _SECONDS)
-"""What a training costs: its key, its name, and by what share it may differ to be called equal."""
+"""Costs of a training: key, name, and the relative difference that counts as equal."""
 
 
 def fairness(report):
-    """Sentences: were the trained agents given the same, and are the tables new to them?"""
+    """Yield sentences: did the trained agents get equal resources, and are the tables new to them?"""
     trained, sentences = [agent for agent in report["agents"] if "recipe" in agent["runs"][0]], []
     for agent in trained:
         label, n = agent["label"], _seeds(agent["runs"])
         if n == 1:
-            sentences.append(f"{label} has 1 training seed: its intervals say nothing about other seeds.")
+            sentences.append(f"{label} has 1 training seed: its intervals do not cover other seeds.")
         elif n < SEEDS:
             sentences.append(f"{label} has {n} training seeds, fewer than {SEEDS}.")
         known = {run["layout"] for run in agent["runs"]} & {*report["protocol"]["layouts"], USUAL["layout"]}
@@ -151,7 +151,7 @@ def fairness(report):
 
 
 def cross(report):
-    """Points a visit of every agent under every value of an axis that has more than one."""
+    """Points a visit of every agent under every value of each axis with several values."""
     p, tables = report["protocol"], []
     at = main_condition(report)
     for layout in p["layouts"]:
@@ -172,7 +172,7 @@ def cross(report):
 
 
 def conditions(report):
-    """A table for each layout and condition: what was scored, and how the cue ball was placed."""
+    """One table per layout and condition: points, and how the cue ball was placed."""
     p, tables = report["protocol"], []
     keys = ["noise", "agent"] if len(p["noise"]) > 1 else ["agent"]
     under = "" if len(p["noise"]) > 1 else f"noise {p['noise'][0]}, "
@@ -187,7 +187,7 @@ def conditions(report):
 
 
 def _columns(against, most):
-    """The columns of a condition's table: heading -> cell of a result; no breaks above ``most`` points."""
+    """The columns of a condition's table: heading -> cell of a result. Omits breaks above ``most`` points."""
 
     def figure(name):
         return lambda r: _pm(r["figures"][name])
@@ -217,15 +217,16 @@ def _columns(against, most):
 
 
 LEGEND = (
-    "[low, high]: 95 % bootstrap interval over training seeds and visits; for what was never or always seen, the exact one-sided bound. "
-    "adjusted: points less luck (docs/benchmark.md). IQM: mean of the middle half. times X: points over those of X on the same tables, "
-    "paired. next pot: pots that left a ball and that another pot followed. easy left: of these, those that left a pot whose line may err "
-    "by 4 mrad. high after red: potted reds that a potted pink or black followed. ms: a decision's time, all tables played at once."
+    "[low, high]: 95 % bootstrap interval over training seeds and visits, or the exact one-sided bound if an event occurred never or "
+    "always. adjusted: points less luck (docs/benchmark.md). IQM: mean of the middle half. times X: ratio to the points of X on the same "
+    "tables, paired. next pot: share of pots that another pot followed, among those that left a ball. easy left: share of the same pots "
+    "that left a pot with a tolerance of at least 4 mrad. high after red: share of potted reds followed by a potted pink or black. ms: "
+    "time per decision, all tables played together."
 )
 
 
 def parts(report, width=WIDTH):
-    """Everything in order: ``TextTable`` (none wider than ``width``) or str."""
+    """Yield the whole report in order: ``TextTable`` (none wider than ``width``) or str."""
     if other := _other(report):
         yield from other.parts(report)
         return
@@ -238,19 +239,19 @@ def parts(report, width=WIDTH):
 
 
 def markdown(report):
-    """The same as a Markdown page."""
+    """The whole report as a Markdown page."""
     if other := _other(report):
         return other.markdown(report)
-    version = report.get("version", "of an unknown version")
+    version = report.get("version", "of unknown version")
     where = f"commit {report['commit']} on {report['machine']}, Python {report['python']}"
     made = f"snooker_env {version}, at {where}"
     return page(title(report), report["command"], made, parts(report, 160))
 
 
 def read(file):
-    """The report in a JSON file. Raises ValueError."""
+    """Read the report in a JSON file. Raises ValueError."""
     wanted = (
-        "must be what agents.evaluate writes with --json, or agents.tournament or agents.curves with --out"
+        "must be a file written by agents.evaluate --json, agents.tournament --out or agents.curves --out"
     )
     report = read_json("file", file, wanted)
     try:
@@ -263,11 +264,11 @@ def read(file):
 
 @command("agents.report")
 def main(argv=None):
-    """Make the Markdown again from kept figures, or print them. Exit code 0."""
+    """Rewrite the Markdown from kept figures, or print it. Exit code 0."""
     p = parser_of("python -m agents.report", __doc__)
-    what = "what agents.evaluate wrote with --json, or agents.tournament or agents.curves with --out"
+    what = "file written by agents.evaluate --json, agents.tournament --out or agents.curves --out"
     p.add_argument("files", nargs="+", type=Path, metavar="FILE.json", help=what)
-    p.add_argument("--show", action="store_true", help="print the tables, write nothing")
+    p.add_argument("--show", action="store_true", help="print the tables and write nothing")
     args = p.parse_args(argv)
     try:
         reports = {file: read(file) for file in args.files}

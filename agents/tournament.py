@@ -1,14 +1,14 @@
-"""Who is the better player of whole frames? A round robin: every player against every other, each seed twice,
-both colours of the break.
+"""Who plays whole frames better? A round robin: every player meets every other and each seed is played twice, so that
+both players break off.
 
     python -m agents.tournament random ghost_ball ppo_value --frames 200
     python -m agents.tournament "mine=runs/0" search_2000 --out ladder.json --resume
     python -m agents.tournament planner search --match 7 --frames 40 --noise amateur
     python -m agents.tournament --check ladder.json
 
-A player is a NAME (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS
-for a player of your own, whose module is imported. --trust and --options are those of
-``python -m agents.evaluate``. What is played and what the figures mean: docs/agents/tournament.md.
+A player is a NAME (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS for
+your own player, whose module is imported. --trust and --options work as in ``python -m agents.evaluate``.
+docs/agents/tournament.md explains the frames and figures.
 """
 
 import shlex
@@ -43,52 +43,52 @@ with needs("agents.tournament"):
     from .evaluation.travel import pack
 
 ANCHOR = "ghost_ball"
-"""The anchor if it plays; else the first player is."""
+"""The anchor if it plays; otherwise the first player."""
 SPENT = ("decisions", "seconds", "shots")
-"""What each player's decisions took."""
+"""The cost of each player's decisions."""
 SAVED = 60.0
-"""Seconds between two files while it plays."""
+"""Seconds between writes of the file."""
 
 
 def parser():
     p = parser_of("python -m agents.tournament", __doc__)
     what = f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {', '.join(snooker_env.players())}"
     p.add_argument("players", nargs="*", metavar="PLAYER", help=what)
-    what = "frames of each pair, or matches with --match; even [100]"
+    what = "frames per pair, or matches with --match; even [100]"
     p.add_argument("--frames", type=int, default=100, metavar="N", help=what)
-    what = "play matches, each the best of so many frames; odd [1]"
+    what = "play matches of best of N frames; odd [1]"
     p.add_argument("--match", type=int, default=1, metavar="BEST_OF", help=what)
     p.add_argument("--noise", default="professional", help="errors: LEVEL or LEVEL*SCALE [professional]")
     what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
     p.add_argument("--physics", default="paper", help=what)
     p.add_argument("--miss", default="off", help="rule for a foul and a miss [off]")
-    p.add_argument("--cue", default="real", help="the option cue of frames: free or real [real]")
-    p.add_argument("--rules", default="snooker", help="the option game of frames: which rules [snooker]")
-    what = "strokes after which a frame is stopped, half a win for each [1000]"
+    p.add_argument("--cue", default="real", help="option cue of frames: free or real [real]")
+    p.add_argument("--rules", default="snooker", help="option game of frames: the rules [snooker]")
+    what = "strokes after which a frame ends as a draw [1000]"
     p.add_argument("--max-strokes", type=int, default=1000, help=what)
-    p.add_argument("--seed", type=int, default=0, help="seed of the first match of each pair [0]")
+    p.add_argument("--seed", type=int, default=0, help="seed of each pair's first match [0]")
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     add_model_options(p)
-    p.add_argument("--threads", type=int, help="threads that play the tables [one for each core]")
+    p.add_argument("--threads", type=int, help="threads that play the tables [one per core]")
     add_ray(p)
     p.add_argument("--out", type=Path, metavar="FILE", help="write every frame and figure here, as JSON")
     p.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here")
-    what = "go on with an incomplete --out; leave a complete one as it is"
+    what = "continue an incomplete --out; keep a complete one"
     p.add_argument("--resume", action="store_true", help=what)
-    what = "verify files of tournaments instead; exit code 1 if one is wrong"
+    what = "only verify tournament files; exit code 1 if one is invalid"
     p.add_argument("--check", nargs="+", type=Path, metavar="FILE", help=what)
     return p
 
 
 def parse_tournament(args):
-    """(entrants, protocol, game) of the command line. Raises ValueError before anything is played."""
+    """Read (entrants, protocol, game) from the command line. Raises ValueError before anything is played."""
     if len(args.players) < 2:
         raise refuse("players", " ".join(args.players), "must be two or more")
     entrants = entrants_of(args.players, args, "player")
     labels = [entrant.label for entrant in entrants]
     for entrant, text in zip(entrants, args.players, strict=True):
         if len(entrant.runs) > 1:
-            single = "must be one player or model: give each training seed a label of its own"
+            single = "must be one player or model: give each training seed its own label"
             raise refuse("player", text, single)
     protocol = {
         "first_seed": integer("seed", args.seed, 0, 2**53),
@@ -103,10 +103,10 @@ def parse_tournament(args):
     }
     if args.frames % 2:
         raise refuse(
-            "frames", args.frames, "must be even: each seed is played twice, opened once by each player"
+            "frames", args.frames, "must be even: each seed is played twice, and each player breaks off once"
         )
     if args.match % 2 == 0:
-        raise refuse("match", args.match, "must be odd: the best of so many frames")
+        raise refuse("match", args.match, "must be odd, for a best of N frames")
     game = {
         "noise": noise_option(args.noise),
         "physics": args.physics,
@@ -117,14 +117,14 @@ def parse_tournament(args):
     game |= {} if args.cue == "free" else {"cue": args.cue}
     for entrant in entrants:
         meeting: dict[str, Any] = {**game, "physics": physics_option(args.physics)}
-        entrant.player(0).at(Options(task="frame", **FRAMES, **meeting))  # makes sure that they can meet
+        entrant.player(0).at(Options(task="frame", **FRAMES, **meeting))  # checks that they can meet
     checked_ray(args.ray)
     if args.ray and args.threads is not None:
-        raise refuse("threads", args.threads, "must be left out with --ray: a part has one core there")
+        raise refuse("threads", args.threads, "must be left out with --ray, where a part has one core")
     if args.threads is not None:
         integer("threads", args.threads, 1, 1024)
     if args.out and args.out.exists() and not args.resume:
-        raise refuse("out", str(args.out), "must be a new file; --resume goes on with an incomplete one")
+        raise refuse("out", str(args.out), "must be a new file; --resume continues an incomplete one")
     if args.resume and not args.out:
         raise refuse("resume", True, "must be given together with --out")
     for name in ("out", "markdown"):
@@ -133,7 +133,7 @@ def parse_tournament(args):
 
 
 class Tournament:
-    """The round robin as far as it was played; ``before``: content of an incomplete file to go on with."""
+    """The round robin so far; ``before`` holds the content of an incomplete file to continue."""
 
     def __init__(self, entrants, protocol, game, command, before=None):
         self.entrants, self.protocol, self.game, self.command = entrants, protocol, game, command
@@ -145,7 +145,7 @@ class Tournament:
 
     @property
     def parts(self):
-        """What is played in one go, in order: a pair and some of its seeds."""
+        """The parts in order: a pair and some of its seeds each."""
         p, parts = self.protocol, []
         for pair in schedule(self.labels):
             seeds = seeds_of(p)
@@ -163,7 +163,7 @@ class Tournament:
         return len({tuple(row[:4]) for row in self.rows})
 
     def play(self, where, threads, tick, saved):
-        """Play all parts that are not in the rows yet.
+        """Play all parts that are missing in the rows.
 
         ``tick`` is called with the number of matches that have ended, ``saved`` after each part.
         """
@@ -182,13 +182,13 @@ class Tournament:
             saved()
 
     def _here(self, parts, shared, threads, tick):
-        """In this process each match is counted as it ends."""
+        """Count each match as it ends, if played in this process."""
         for k, part in enumerate(parts):
             counted = lambda n, before=self.ended: tick(before + n)  # noqa: E731
             yield k, play(shared, part, threads, counted)
 
     def result(self, incomplete=None):
-        """The content of the file; ``incomplete``: why frames are missing."""
+        """The content of the file; ``incomplete`` says why frames are missing."""
         players = [
             {"label": entrant.label, "source": entrant.runs[0], "training": entrant.trained()[0]} | spent
             for entrant, spent in zip(self.entrants, self.spent, strict=True)
@@ -199,7 +199,7 @@ class Tournament:
 
 @command("agents.tournament")
 def main(argv=None):
-    """Check, play, report. Exit code 0; 1: a wrong file; 2: wrong arguments; 130: interrupted, kept."""
+    """Check, play, report. Exit code 0; 1: an invalid file; 2: invalid arguments; 130: interrupted, with frames kept."""
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_intermixed_args(argv)
@@ -232,7 +232,7 @@ def main(argv=None):
 
 
 def _play(tournament, args):
-    """Play and say how far it is: why it is incomplete, or None, and the exit code."""
+    """Play with a progress display. Returns why the tournament is incomplete, or None, and the exit code."""
     last = [time.monotonic()]
 
     def save_file():
@@ -252,7 +252,7 @@ def _play(tournament, args):
         why = f"{'interrupted' if stopped else error} after {number:,} of {total:,} {units}"
         return f"{why}: {'these are kept' if number else 'nothing is kept'}", INTERRUPTED if stopped else 1
     except BaseException as error:
-        # of a player's own code: its traceback is for its author, what was played is kept
+        # an error in a player's own code: its author needs the traceback; finished frames are kept
         if args.out and tournament.rows:
             write_result(args.out, tournament.result(f"{type(error).__name__}: {error}"))
         raise
@@ -269,7 +269,7 @@ def _print_tables(content, file):
 
 
 def _read(file):
-    """The content of a file and what is wrong with it."""
+    """Read a file and find its faults."""
     try:
         content = read_result(file)
         return content, faults(content)

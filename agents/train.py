@@ -1,4 +1,4 @@
-"""How does ``train.py`` train? It opens the run, plays its rounds, judges what was learned, and writes the results."""
+"""How does ``train.py`` train? It opens the run, plays its rounds, evaluates the agent and writes the results."""
 
 import json
 import os
@@ -7,8 +7,8 @@ import sys
 from contextlib import ExitStack
 from dataclasses import asdict, replace
 
-import matplotlib  # noqa: F401 - imported here so that a missing package is reported before anything starts
-import tensorboard  # noqa: F401 - as well
+import matplotlib  # noqa: F401 - imported here so that a missing package is reported first
+import tensorboard  # noqa: F401 - for the same reason
 import torch
 
 import snooker_env
@@ -27,8 +27,8 @@ from .learning.settings import FREE_ON_RESUME, Settings, parse
 
 
 def open_run(given, out, resume, ending):
-    """The training in the folder, new or resumed; ``ending`` releases what it holds. Every wrong input is refused here,
-    before the work, by ValueError."""
+    """Open the training in the folder, new or resumed. ``ending`` releases its resources. Any invalid input raises ValueError
+    here, before the work starts."""
     settings = Settings(**given)
     if resume:
         ending.enter_context(claim(out, resume))
@@ -36,19 +36,21 @@ def open_run(given, out, resume, ending):
         for name, value in given.items():
             if value != getattr(was, name) and name not in FREE_ON_RESUME:
                 differs = f"{value!r} but the run in {out} has {getattr(was, name)!r}"
-                raise ValueError(f"--{name.replace('_', '-')} is {differs}: give the same or leave it out")
+                raise ValueError(
+                    f"--{name.replace('_', '-')} is {differs}: give that value or leave the option out"
+                )
         settings = replace(was, **given)
     kind = StrokeTraining if settings.agent == AGENT else AgentTraining
     training = kind(settings, out, resume)
     ending.callback(training.close)
     if not resume:
-        ending.enter_context(claim(out, resume))  # last, so that a wrong option leaves no folder behind
+        ending.enter_context(claim(out, resume))  # last, so that an invalid option leaves no folder behind
     keep_settings(out, training.settings)
     return training
 
 
 def judge_agent(training, loop):
-    """Play held-out visits and write the model; what was learned, figures, results, and the player to watch."""
+    """Play held-out visits and write the model. Return the conclusion, figures, results, the player to watch and its noise."""
     model, expert, settings = training.model, training.expert, training.settings
     parts = [
         {"part": part.what, "unit": part.unit, "amount": part.done, "seconds": part.seconds}
@@ -86,7 +88,7 @@ def judge_agent(training, loop):
 
 
 def judge_strokes(training, loop):
-    """The same of ``stroke_value``."""
+    """Like ``judge_agent``, for ``stroke_value``."""
     best, noise = f"{AGENT}@{training.write()}", "professional"
     players = {"trained": best, "ghost_ball": "ghost_ball", "random": "random"}
     players = {name: snooker_env.player(one) for name, one in players.items()}
@@ -95,28 +97,28 @@ def judge_strokes(training, loop):
     results = {
         "steps": sum(part.trial_shots for part in training.parts),
         "simulated_shots": sum(part.simulated for part in training.parts),
-        "without": "those of the planner and the tactician that it learned from",
+        "without": "those of its teachers, the planner and the tactician",
         "curve": {part.name: part.curve for part in training.parts},
     }
     return learned, figures, results, best, noise
 
 
 def report(training, learned, figures, results, best, noise):
-    """Write and print what a run has brought, and how its best player is seen under these errors."""
+    """Write and print the results of a run, and the command that shows its best player with these errors."""
     out, settings = training.out, training.settings
     results = {"command": settings.command, "settings": asdict(settings)} | results
     results |= {"learned": learned, "evaluation": figures, "versions": software()}
     results |= {"git_commit": commit(), "processors": os.cpu_count()}
     write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
     show(figures)
-    # half of the longest break: other visits than those of the evaluation are played to find it
+    # half of the longest break, because the command searches other visits than the evaluation's
     points = figures["planner" if "search" in figures else "trained"]["longest_break"] // 2
     words = ["--agent", best, "--noise", str(noise), "--at-least", str(points)]
     watch = shlex.join([python(), "-m", "snooker_env.watch", *words])
     shots = results["simulated_shots"]
     known = "not known" if shots is None else f"{shots:,}"
     without = f", without {results['without']}" if "without" in results else ""
-    print(f"{learned}\nAll simulated shots of the training{without}: {known}.")
+    print(f"{learned}\nShots simulated in training{without}: {known}.")
     print(f"Figures: {out / 'results.json'}\nWatch a break:  {watch}")
     if (out / "tb").is_dir():
         print(f"Curves: tensorboard --logdir {out / 'tb'}")
@@ -126,9 +128,9 @@ def report(training, learned, figures, results, best, noise):
 def main(argv=None):
     """Train, evaluate, save. Exit code 0, or 128 + the signal that stopped it."""
     parser, given, rest = parse(argv)
-    # more threads do not speed up a network this small, and the tables use the processors
+    # more threads do not speed up such a small network, and the tables use the processors
     torch.set_num_threads(1)
-    # these checks cost a twentieth of the time
+    # these checks take a twentieth of the time
     torch.distributions.Distribution.set_default_validate_args(False)
     with ExitStack() as ending:
         try:

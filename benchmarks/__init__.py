@@ -1,9 +1,9 @@
-"""Commands that measure snooker_env, a file or a folder each: ``python -m benchmarks.NAME --help``.
-``_common`` holds what they share."""
+"""Which commands measure snooker_env? Each is a file or folder: ``python -m benchmarks.NAME --help``. ``_common`` holds
+shared code."""
 
 import sys
 
-if sys.argv[0] == "-m":  # Python is about to load a command: what fails in that is said in one line as well
+if sys.argv[0] == "-m":  # Python is about to load a command; this reports its errors in one line as well
     from agents._lib.lifecycle import in_one_line
 
     sys.excepthook = in_one_line

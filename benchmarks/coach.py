@@ -1,15 +1,15 @@
-"""Does the coach find a player's errors? Simulated players with known errors, 100 strokes each.
+"""Does the coach find a player's errors? This measures it on simulated players with known errors, 100 strokes each.
 
     python -m benchmarks.coach [--players 200] [--strokes 100] [--pool 100] [--levels club ...]
     [--seed 0] [--json FILE] [--out FOLDER]
 
-The strokes are pots that ``search_30`` means in visits from opened tables; each player plays such strokes with errors of
-its own. The errors, and how they grow with the speed, are then estimated from what is known: the stroke meant and
-played; the pot meant and the stroke played; the stroke meant, and whether the pot went in. "drill" is the straight long
-blue from the one of six distances at which the player makes nearest to 85 %. Printed: means of the estimates over the
-truth (of a growth, which may be 0, the growth itself), the root mean square of the estimates' errors, half of the
-median width of the 95 % intervals, the share of players whose estimate is within 15 %, and how often the interval holds
-the truth, with 95 % intervals of both shares (Wilson). Tolerances of pots are simulated once for the pool.
+``search_30`` chooses the pots in visits (single turns at the table) from opened tables; each player plays them with its
+own errors. The coach then estimates the errors and their growth with speed from different knowledge: intended and played
+stroke; intended pot and played stroke; intended stroke, and whether the pot was made. "drill" is the straight long blue from
+the distance, out of six, at which the player's success is closest to 85 %. Printed are the means of estimate / truth (for a
+growth, which may be 0, the growth itself), the root mean square error, half of the median width of the 95 % intervals, the
+share of players whose estimate is within 15 %, and the share of intervals that hold the truth, with 95 % intervals of both
+shares (Wilson). Tolerances of pots are simulated once for the pool.
 """
 
 from dataclasses import asdict, replace
@@ -29,13 +29,13 @@ from snooker_env.tasks.noise import LEVELS, POT_SPEED, Noise
 from ._common.command import Command, at_least, run, save_json
 
 MEANS, COPIES = "search_30", 50
-"""Who means the strokes; how often the tolerance of each pot of the drill is found, with other errors each time."""
+"""The player that chooses the strokes; repetitions of each drill pot's tolerance, each with different errors."""
 BASE = LEVELS[coaching.BASE]
 WHERE = {"cue": "free", "physics": "paper", "table": "match"}
 
 
 def errors_like(times, speed_rel, aim_share=0.5, growth=BASE.growth):
-    """Errors of direction ``times`` a professional's at 1.5 m/s, of which the aim has a share of the variance."""
+    """Errors of direction ``times`` a professional's at 1.5 m/s, with this share of the variance from the aim."""
     whole = BASE.direction_deg() * times / hypot(1.0, growth * POT_SPEED)
     squirt = Noise(offset_mm=1.0).direction_deg(speed=0.0)
     aim, tip = whole * aim_share**0.5, whole * (1.0 - aim_share) ** 0.5 / squirt
@@ -55,7 +55,7 @@ PLAYERS = {
 
 
 def pool_of(n, seed):
-    """n pots as they are meant: positions, ``CueStroke``s, balls and pockets."""
+    """n intended pots: positions, ``CueStroke``s, balls and pockets."""
     env = sn.SnookerVectorEnv(64, noise="professional", **VISITS)
     exact, noisy = Planner(env.options, noise="none"), Planner(env.options)
     player, pool, deal = sn.player(MEANS).at(env), [], 0
@@ -69,7 +69,7 @@ def pool_of(n, seed):
             for k in every.tolist():
                 ball = int(stops.first[k])
                 if ball > 0 and stops.potted[k, ball] >= 0 and not stops.penalty[k]:
-                    # a position numbers its reds anew
+                    # a position renumbers its reds
                     ours = ball if ball > 15 else int(at.on_table[k, 1 : ball + 1].sum())
                     pool.append((at[k], strokes[k], ours, int(stops.potted[k, ball])))
             keys = np.random.default_rng((seed, deal, len(pool))).integers(0, 2**63, len(at))
@@ -83,14 +83,14 @@ def pool_of(n, seed):
 
 
 def intend(row):
-    """A row of five numbers as a ``CueStroke``."""
+    """Convert a row of five numbers to a ``CueStroke``."""
     speed, side, top, aim, elevation = row.tolist()
     shrink = max(1.0, hypot(side, top) / 0.5)
     return CueStroke(speed=speed, side=side / shrink, top=top / shrink, aim=aim, elevation=elevation)
 
 
 def drill():
-    """The straight long blue of the notebook: blue on its spot, the cue ball so far behind it, to the top right pocket."""
+    """The straight long blue of the notebook: blue on its spot, cue ball ``distance`` behind it, to the top right pocket."""
     pocket = np.array((0.874, 1.769))
     to = pocket / hypot(*pocket)
     made = []
@@ -102,7 +102,7 @@ def drill():
 
 
 def play(pool, rows, noise, rng):
-    """Strokes of the pool as played with errors: the strokes as executed, (n, 5), and whether the pots were made."""
+    """Play strokes of the pool with errors. Returns the executed strokes, (n, 5), and whether the pots were made."""
     planner = Planner({"noise": noise})
     at = Positions.of([pool[k].position for k in rows])
     strokes = np.stack([pool[k].intended.numbers() for k in rows])
@@ -114,8 +114,8 @@ def play(pool, rows, noise, rng):
 
 
 def execute(strokes, z, noise):
-    """The law of ``tasks.noise`` for strokes (n, 5) with a free cue: speed, side, top, aim of the cue, elevation; the tip
-    where the simulator has it, on the disc without a miscue."""
+    """The law of ``tasks.noise`` for strokes (n, 5) with a free cue: speed, side, top, aim of the cue, elevation. The tip
+    stays, as in the simulator, on the disc without a miscue."""
     speed, side, top, aim, elevation = strokes.T
     more, tip = np.hypot(1.0, noise.growth * speed), noise.offset_mm * 1e-3 / sn.Physics().R
     squirt = [np.arctan2(*sn.strike(1.0, 0.0, s)[0][1::-1]) for s in side]
@@ -132,7 +132,7 @@ def execute(strokes, z, noise):
 
 
 def tell(one, *, cue=None, made=None, intended=True):
-    """A stroke of the pool with what is known of it after it was played."""
+    """A stroke of the pool with the knowledge about it after play."""
     names = ("speed", "side", "top", "aim", "elevation")
     return Recorded(
         position=one.position,
@@ -145,7 +145,7 @@ def tell(one, *, cue=None, made=None, intended=True):
 
 
 def told_by_pots(chances, paces, made):
-    """Estimate, interval and truth's speed of pots made or missed."""
+    """Estimate, interval and the truth's speed, from pots made or missed."""
     at = coaching.choose_speed(paces)
     log_l = coaching.weigh_outcomes(coaching.CalledPots([], chances, made, paces), at)
     weights = coaching.normalise(log_l + np.log(coaching.PRIOR)[:, None]).sum(axis=0)
@@ -153,7 +153,7 @@ def told_by_pots(chances, paces, made):
 
 
 def level(name, noise, pool, chances, blues, args):
-    """What is found of players with one level's errors: {kind: (players, 4)}, estimate, interval and truth of each."""
+    """Estimates for players with one level's errors: {kind: (players, 4)}, with estimate, interval and truth of each."""
     rng = np.random.default_rng((args.seed, *name.encode()))
     kinds = ("meant, played", "pot, played", "pot made or not", "drill")
     out = {f"direction: {kind}": [] for kind in kinds} | {
@@ -189,7 +189,7 @@ def level(name, noise, pool, chances, blues, args):
 
 
 def summary(rows):
-    """The figures of one kind of knowledge for one level: estimates over the truth; of growth, which may be 0, as they are."""
+    """The figures of one kind of knowledge at one level: estimate / truth, or the estimate itself for growth, which may be 0."""
     value, low, high, truth = np.array(rows).T
     held, over = (low <= truth) & (truth <= high), truth if truth.all() else np.ones(len(truth))
     near = np.abs(value - truth) < 0.15 * over
@@ -206,10 +206,10 @@ def main():
     """Measure and print."""
     parser = Command("coach", __doc__, seed=0)
     add = parser.add_argument
-    add("--players", type=at_least(2), default=200, help="players of each level [200]")
-    add("--strokes", type=at_least(5), default=100, help="strokes of each player [100]")
+    add("--players", type=at_least(2), default=200, help="players per level [200]")
+    add("--strokes", type=at_least(5), default=100, help="strokes per player [100]")
     add("--pool", type=at_least(5), default=100, help="different strokes [100]")
-    add("--levels", nargs="+", choices=PLAYERS, default=tuple(PLAYERS), help="whose errors [all]")
+    add("--levels", nargs="+", choices=PLAYERS, default=tuple(PLAYERS), help="levels of errors [all]")
     args = parser.options()
     pool, practice = pool_of(args.pool, args.seed), practice_of(coaching.BASE, WHERE)
     mark = [tell(one, made=True) for one in pool]

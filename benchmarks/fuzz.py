@@ -1,15 +1,14 @@
-"""Does any shot break? Random shots on every table, checked against every invariant of
+"""Does any shot break an invariant? This plays random shots on every table and checks every invariant of
 ``_common/invariants.py``.
 
-Every kind of scene, fidelity and physics; the preset tables, rectangles with pockets of any size, and
+They cover every kind of scene, fidelity and physics, on the preset tables, rectangles with pockets of any size, and
 unbounded cloth.
 
     python -m benchmarks.fuzz [--shots 1000000] [--seed 0] [--threads 2]
     python -m benchmarks.fuzz --replay SEED BATCH INDEX
 
-``python -m benchmarks.stability`` does the same after its extremes. A batch is made of nothing but its seed
-and its number, so that a failure, named by seed, batch and index, can be played again. Exit code 1 if an
-invariant fails.
+``python -m benchmarks.stability`` also runs this after its extremes. A batch depends only on its seed and number, so
+that you can replay a failure by seed, batch and index. Exit code 1 if an invariant fails.
 """
 
 import dataclasses
@@ -37,15 +36,15 @@ D = 2 * R
 BATCH = 200
 PUBLIC = 20
 MOST_EVENTS = 1_000_000
-"""Six in a million of these shots need more than the 100,000 that ``simulate`` allows by itself: balls that
-their spin holds against others and a cushion, where they bounce without end until it is gone."""
+"""Maximum number of events. Six in a million of these shots need more than the default 100,000 of ``simulate``: spin
+holds balls against others and a cushion, where they bounce until the spin is gone."""
 GAPS = np.array([0.0, 0.0, 1e-15, 1e-12, 1e-9, 1e-6])
 SCENES = ("scattered", "rack", "cluster", "frozen", "melee", "held")
 TABLES = (None, "match", "match", "tight", "uk8", "pool9", "carom", "rectangle", "rectangle")
 SNOOKER = (None, "match", "match", "match", "tight")
 """Tables with room for a rack."""
 FLIGHT = 0.5
-"""The share of batches in which balls fly."""
+"""Share of batches in which balls fly."""
 FIDELITIES = ("fast", "standard", "standard", "reference", "euler:100", "euler:400", "euler:1000")
 CONSTANTS = ("paper", "match", "random", "extreme")
 
@@ -66,7 +65,7 @@ class Batch:
     """(b, n, 2): heights of the balls above the bed, and their rates."""
 
     def states(self):
-        """Positions and velocities as ``simulate_batch`` takes them, (b, n, 3) where balls fly."""
+        """Positions and velocities for ``simulate_batch``, (b, n, 3) if balls fly."""
         if not self.physics.flight:
             return self.positions, self.velocities
         up = self.aloft[..., :1], self.aloft[..., 1:]
@@ -74,12 +73,12 @@ class Batch:
 
 
 def _mouth(table):
-    """How far past the noses a ball may be drawn [m]: nowhere on a table without pockets."""
+    """Maximum distance of a drawn ball beyond the noses [m]; 0 on a table without pockets."""
     return MOUTH if len(table.falls) else 0.0
 
 
 def legal(p, table, R=R):
-    """Which centres (..., 2) are on the table, in no cushion or jaw and over no pocket?"""
+    """Whether centres (..., 2) are on the table, outside cushions, jaws and pockets."""
     if not len(table.noses):
         return np.ones(p.shape[:-1], bool)
     x, y = p[..., 0], p[..., 1]
@@ -92,16 +91,16 @@ def legal(p, table, R=R):
     for cx, cy, radius, ux, uy, cos_half in table.jaws:
         far = np.hypot(x - cx, y - cy)
         off = (x - cx) * ux + (y - cy) * uy < cos_half * far
-        off |= far < radius - R  # so deep behind a facing lies another part of the table
+        off |= far < radius - R  # this deep behind a facing there is another part of the table
         good &= (far >= (radius + R) * (1 - 1e-15)) | off
     return good
 
 
 def put(p, placed, todo, draw, anywhere, table, R):
-    """Give ball ``placed`` of every table in ``todo`` a place from ``draw(todo)`` that is legal and clear of
-    the balls before it.
+    """Place ball ``placed`` of every table in ``todo`` with ``draw(todo)``, legally and clear of the balls placed
+    before.
 
-    Where that finds no room, ``anywhere(todo)`` takes its place."""
+    If there is no room, ``anywhere(todo)`` replaces ``draw(todo)``."""
     for attempt in range(1000):
         place = draw(todo) if attempt < 100 else anywhere(todo)
         far = np.hypot(*(p[todo, :placed] - place[:, None]).transpose(2, 0, 1)).min(1, initial=9.0)
@@ -114,7 +113,7 @@ def put(p, placed, todo, draw, anywhere, table, R):
 
 
 def rectangle(rng):
-    """A rectangular table for balls of any size, with pockets drawn until they fit."""
+    """Draw a rectangular table for balls of any size, with pockets that fit."""
     R, kinds = rng.uniform(0.015, 0.04), (6, 4, 0)
     pockets: Literal[6, 4, 0] = kinds[rng.integers(3)]
 
@@ -146,8 +145,8 @@ def _anywhere(rng, table):
 
 
 def _at_cushion(rng, table, R, seams=0.0):
-    """Touching a nose, an arc or a facing, with a gap of ``GAPS``; a share ``seams`` of them 1 nm to 1 cm
-    from its end."""
+    """Draw places that touch a nose, an arc or a facing, with a gap of ``GAPS``; a share ``seams`` of them 1 nm to
+    1 cm from its end."""
 
     def draw(todo):
         b = len(todo)
@@ -171,8 +170,8 @@ def _at_cushion(rng, table, R, seams=0.0):
 
 
 def _at_ball(rng, p, placed, lattice, R):
-    """Touching one of the balls before it, with a gap of ``GAPS``; half of them in the lattice, so that loops
-    close."""
+    """Draw places that touch one of the earlier balls, with a gap of ``GAPS``; half of them in the lattice, so that
+    loops close."""
 
     def draw(todo):
         turn = rng.uniform(-np.pi, np.pi, len(todo))
@@ -188,7 +187,7 @@ def _at_ball(rng, p, placed, lattice, R):
 
 
 def layouts(rng, scene, n, table, b=BATCH, R=R):
-    """b layouts of n balls: (b, n, 2)."""
+    """Draw b layouts of n balls: (b, n, 2)."""
     p, every = np.full((b, n, 2), 99.0), np.arange(b)
     if scene == "rack":
         p[:] = SPOTS
@@ -216,7 +215,7 @@ def layouts(rng, scene, n, table, b=BATCH, R=R):
 
 
 def motions(rng, scene, p, R):
-    """Velocities (b, n, 2) and spins (b, n, 3): a struck ball; in a melee all of them with any spin; held
+    """Draw velocities (b, n, 2) and spins (b, n, 3): one struck ball; in a melee, all balls with any spin; held
     balls slow, with any spin."""
     b, n = p.shape[:2]
     v, w = np.zeros((b, n, 2)), np.zeros((b, n, 3))
@@ -252,7 +251,7 @@ def motions(rng, scene, p, R):
 
 
 def physics_of(rng, name, R):
-    """The constants of a batch, with balls of radius R."""
+    """Draw the constants of a batch, with balls of radius R."""
     if name in ("paper", "match"):
         return sn.Physics.preset(name, R=R)
     if name == "random":
@@ -287,7 +286,7 @@ def physics_of(rng, name, R):
 
 
 def batch(seed, number):
-    """Batch ``number`` of the fuzz with this seed."""
+    """Draw batch ``number`` of the fuzz with this seed."""
     rng = np.random.default_rng([seed, number])
     scene, fidelity = str(rng.choice(SCENES)), str(rng.choice(FIDELITIES))
     name = str(rng.choice(CONSTANTS, p=[0.3, 0.3, 0.3, 0.1]))
@@ -297,7 +296,7 @@ def batch(seed, number):
     kind = kinds[int(rng.integers(len(kinds)))]
     table = rectangle(rng) if kind == "rectangle" else Table.of(kind)
     physics = physics_of(rng, name, table.ball.get("R", R))
-    # near e = 1 its last step gains energy without end, see the table of the scheme
+    # near e = 1 its last step can gain energy without bound, see the table of the scheme
     if fidelity.startswith("euler"):
         physics = dataclasses.replace(physics, e_b=min(physics.e_b, 0.95), e_c=min(physics.e_c, 0.98))
     n = (
@@ -310,14 +309,14 @@ def batch(seed, number):
     v, w = motions(rng, scene, p, physics.R)
     aloft = np.zeros((*p.shape[:2], 2))
     if apart.random() < FLIGHT:
-        # where more resists rolling, a ball may come to rest on others, which is not modelled
+        # with more rolling resistance, a ball may rest on others, which is not modelled
         physics = dataclasses.replace(
             physics, flight=True, e_t=apart.uniform(0, 0.9), mu_r=min(physics.mu_r, 0.015)
         )
         struck = aloft if scene in ("melee", "held") else aloft[:, :1]
         chance = apart.random(struck.shape[:2])
         struck[..., 1] = np.where(chance < 0.6, 10 ** apart.uniform(-2, 1, chance.shape), 0.0)
-        if scene == "scattered":  # one that falls
+        if scene == "scattered":  # a falling ball
             struck[..., 0] = np.where(chance > 0.8, apart.uniform(0, 0.3, chance.shape), 0.0)
     return Batch(scene, name, fidelity, physics, table, p, v, w, aloft)
 
@@ -325,10 +324,10 @@ def batch(seed, number):
 def allowed(fidelity, constants="match", flight=False):
     """The bound of each invariant, in the order of ``invariants.NAMES``.
 
-    Euler's steps are not located: its energy may err by 5/N. "fast" takes steps in cushions to 1e-4: a ball
-    may still close at 1e-2 of its speed. At the ends of the ranges an impact may lose nothing at all (no
-    friction, restitution 1); what "standard" errs by then shows. Where balls fly, one that gravity presses against
-    others may sink in as far as a layout may overlap.
+    Euler's steps are not located, so its energy may err by 5/N. "fast" takes steps in cushions to 1e-4, so a ball
+    may still approach at 1e-2 of its speed. At the ends of the ranges an impact may lose no energy (no friction,
+    restitution 1), which reveals the error of "standard". If balls fly, gravity may press one into others as far as
+    a layout may overlap.
     """
     code, n = contact.parse_fidelity(fidelity)
     gain = (
@@ -368,7 +367,7 @@ def play(one):
 
 @dataclass
 class Fuzzed:
-    """What a fuzz found."""
+    """The findings of a fuzz."""
 
     shots: int = 0
     seconds: float = 0.0
@@ -385,7 +384,7 @@ class Fuzzed:
 
 
 def compare_public(one, found, threads):
-    """Does ``simulate_batch`` give the same bits? It also checks every layout."""
+    """Whether ``simulate_batch`` gives the same bits. It also checks every layout."""
     places, velocities = one.states()
     batch = sn.simulate_batch(
         places,
@@ -406,7 +405,7 @@ def compare_public(one, found, threads):
 
 
 def fuzz(shots, seed, threads):
-    """Shots in batches of ``BATCH``, every ``PUBLIC``-th batch through ``simulate_batch`` as well."""
+    """Play shots in batches of ``BATCH``, every ``PUBLIC``-th batch through ``simulate_batch`` as well."""
     out, started, count = Fuzzed(), time.perf_counter(), -(-shots // BATCH)
 
     def one(number):
@@ -444,11 +443,11 @@ def _take(out, number, drawn, found, threads):
         out.failures.append((number, int(k), invariants.NAMES[c], float(found.worst[k, c]), *labels))
     if number % PUBLIC == 0 and ok.all():
         other = np.flatnonzero(~compare_public(drawn, found, threads))
-        out.failures += [(number, int(k), "simulate_batch gives other bits", 1.0, *labels) for k in other]
+        out.failures += [(number, int(k), "simulate_batch gives different bits", 1.0, *labels) for k in other]
 
 
 def lines(found, seed):
-    """The fuzz's table, and its failures by kind with one to replay."""
+    """The fuzz's table, and its failures by kind, each with a shot to replay."""
     most = ", ".join(f"{scene} {n:,}" for scene, n in found.events.items())
     text = [f"fuzz: {found.shots:,} shots in {found.seconds:.0f} s, seed {seed}; most events: {most}"]
     names = invariants.NAMES
@@ -471,7 +470,7 @@ def lines(found, seed):
 
 
 def figures_of(found, seed):
-    """What was found, JSON-able."""
+    """The findings as JSON data."""
     worst, share = (
         {fidelity: dict(zip(invariants.NAMES, x.tolist(), strict=True)) for fidelity, x in of.items()}
         for of in (found.worst, found.share)
@@ -488,7 +487,7 @@ def figures_of(found, seed):
 
 
 def replay(seed, number, index):
-    """Play one shot of the fuzz again and print what it breaks; True if nothing."""
+    """Replay one shot of the fuzz and print the invariants that it breaks. True if none."""
     drawn = batch(seed, number)
     found = play(drawn)
     print(
@@ -512,10 +511,10 @@ def replay(seed, number, index):
 def main():
     """Command line."""
     parser = Command("fuzz", __doc__, seed=0)
-    parser.add_argument("--shots", type=at_least(1), default=1_000_000, help="so many [1000000]")
+    parser.add_argument("--shots", type=at_least(1), default=1_000_000, help="number of shots [1000000]")
     parser.add_argument("--threads", type=at_least(1), default=2, help="[2]")
     parser.add_argument(
-        "--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot again"
+        "--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="replay one shot"
     )
     options = parser.options()
     if options.replay:

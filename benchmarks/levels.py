@@ -1,10 +1,10 @@
-"""How strong are the five opponents of the page? Each against the next, with its own errors.
+"""How strong are the five opponents of the page? Each plays the next, with its own errors.
 
     python -m benchmarks.levels [--frames 100] [--budget 100] [--seed 0] [--json FILE] [--out FOLDER]
 
-Frames of snooker from the break with a real cue; half are opened by each. ``--budget`` cuts the simulated shots of a
-stroke down to so many. The first has an Elo of 1000, each further one that of the one before and 400 log10 of wins over
-losses, one drawn frame added. Intervals of the wins are Wilson's, 95 %.
+They play frames of snooker from the break-off with a real cue; each opens half of the frames. ``--budget`` limits the
+simulated shots of a stroke. The first opponent has an Elo of 1000. Each further Elo is the previous one plus 400 log10 of
+wins over losses, with one drawn frame added. Intervals of the wins are Wilson's, 95 %.
 """
 
 from itertools import pairwise
@@ -25,13 +25,13 @@ AT_ONCE, LONGEST = 50, 2000
 
 
 def player_of(level, budget):
-    """The agent that plays as this level, with at most so many simulated shots for a stroke."""
+    """The agent of this level, with at most ``budget`` simulated shots per stroke."""
     kind, _, shots = level.agent.rpartition("_")
     return sn.player(f"{kind}_{min(int(shots), budget)}" if shots.isdigit() else level.agent)
 
 
 def count_wins(one, other, frames, budget, seed):
-    """How many of so many frames the first of two levels wins."""
+    """Number of frames that the first of two levels wins."""
     game = sn.Options(task="frame", cue="real", miss="clear_path", **FRAMES)
     rules = [game.but(noise=level.noise) for level in (one, other)]
     agent, opponent = (player_of(each, budget).at(own) for each, own in zip((one, other), rules, strict=True))
@@ -54,7 +54,7 @@ def count_wins(one, other, frames, budget, seed):
             actions = ask_player(agent, tables, going, draws)
             _, _, ended, stopped, info = tables.step(actions.astype(np.float32))
             winners = np.where(going, info["winner"], winners)
-            if (done := ended | stopped).any():  # a frame that nobody looks at goes on there
+            if (done := ended | stopped).any():  # a frame without spectators continues there
                 tables.reset(options={"reset_mask": done})
         won += int((winners == 0).sum())
         tables.close()
@@ -64,8 +64,8 @@ def count_wins(one, other, frames, budget, seed):
 def main():
     parser = Command("levels", __doc__, seed=0)
     for name, least, what in (
-        ("frames", 2, "frames of each pair"),
-        ("budget", 30, "most shots for a stroke"),
+        ("frames", 2, "frames per pair"),
+        ("budget", 30, "maximum simulated shots per stroke"),
     ):
         parser.add_argument(f"--{name}", type=at_least(least), default=100, metavar="N", help=f"{what} [100]")
     args = parser.options()

@@ -1,11 +1,11 @@
-"""How long does a person wait at the page, and how long is a link? What docs/play says of both.
+"""How long does a person wait at the page, and how long is a link? This measures the figures in docs/play.
 
     python -m benchmarks.page [--frames 20] [--seed 100] [--json FILE] [--out FOLDER]
 
-Frames of tactician_100 against itself, with a professional's, an amateur's and a club player's errors in turn: the letters of
-their links and the time to open one, the time of five suggestions in some of their positions, and of a review of both sides, with
-what sampling makes of its figures.
-With playwright and Chromium also the time from a click on *Play* to the first motion of twelve strokes.
+tactician_100 plays frames against itself with a professional's, an amateur's and a club player's errors in turn. Printed are the
+length of the links and the time to open one, the time for five suggestions in some positions, and the time and sampling error
+of a review of both sides. With playwright and Chromium, the command also prints the time from a click on *Play* to the first
+motion of twelve strokes.
 """
 
 import shutil
@@ -27,11 +27,11 @@ from ._common.command import Command, at_least, run, save_json
 LEVELS = "professional", "amateur", "club"
 AGENT = "tactician_100"
 ASKED, STROKES = 4, 12
-"""Positions of a frame in which advice is asked for, in every fourth frame; and strokes that are clicked."""
+"""Positions with advice in every fourth frame; and number of clicked strokes."""
 
 
 def play_frame(service, seed, level):
-    """A frame of two agents, to its end; then two persons sit there."""
+    """Play a frame of two agents to its end; then seat two persons."""
     both = {"noise": [level, level], "practice": False}
     answer(service, POST["players"], {"players": [AGENT, AGENT], **both})
     answer(service, POST["new"], {"layout": "break_off", "seed": seed})
@@ -42,14 +42,14 @@ def play_frame(service, seed, level):
 
 
 def measure(what, *given):
-    """Seconds of a call."""
+    """Duration of a call in seconds."""
     began = time.perf_counter()
     what(*given)
     return time.perf_counter() - began
 
 
 def review(service, seed):
-    """Seconds until every stroke was looked at once, and until the end; and the strokes."""
+    """Seconds until the review has seen every stroke once, and until its end; and the strokes."""
     began, first = time.perf_counter(), None
     found = answer(service, POST["review"], {"seed": seed})
     while found["running"]:
@@ -62,7 +62,7 @@ def review(service, seed):
 
 
 def click(service):
-    """Milliseconds from a click to the first motion, stroke by stroke; none without a browser."""
+    """Milliseconds from a click to the first motion for each stroke; none without a browser."""
     try:
         from playwright.sync_api import sync_playwright
     except ImportError:
@@ -133,15 +133,17 @@ def main():
         f"A link of 60 strokes: {middle(each['letters']):.0f} letters [{each['letters'][0]:.0f}, {each['letters'][-1]:.0f}]"
     )
     print(
-        f"It is opened in {middle(each['seconds']):.2f} s [{each['seconds'][0]:.2f}, {each['seconds'][-1]:.2f}]"
+        f"It opens in {middle(each['seconds']):.2f} s [{each['seconds'][0]:.2f}, {each['seconds'][-1]:.2f}]"
     )
     print(
         f"Five suggestions: {middle(asked):.2f} s [{min(asked):.2f}, {max(asked):.2f}], {len(asked)} positions"
     )
-    print(f"A review of {links[-1]['strokes']} strokes: the first look {first:.1f} s, all {whole:.1f} s")
+    print(f"A review of {links[-1]['strokes']} strokes: first look {first:.1f} s, complete {whole:.1f} s")
     print(f"Its errors, 95 % of strokes: choice {100 * errors[0]:.1f} %, luck {100 * errors[1]:.1f} %")
     if waits:
-        print(f"From a click to motion: {middle(waits):.0f} ms, {max(waits):.0f} at most of {len(waits)}")
+        print(
+            f"From a click to motion: {middle(waits):.0f} ms, at most {max(waits):.0f}, over {len(waits)} strokes"
+        )
     save_json(args.json, {"links": links, "advice": asked, "review": [first, whole, *errors], "click": waits})
     return 0
 

@@ -1,15 +1,15 @@
-"""What does each fidelity cost and how large is its error? Impacts, then whole pots; a picture; which
-fidelity for which use.
+"""What does each fidelity cost, and how large is its error? Measures impacts, then whole pots; draws a picture and
+recommends a fidelity for each use.
 
     python -m benchmarks.tradeoff [--impacts 2000] [--shots 1000] [--repeats 3] [--physics paper] [--seed 0]
     [--json FILE]
         [--out FOLDER]
 
-Truth is ``reference``. Impacts: errors of direction and speed, the worse of the two balls, just after the
-impact and once both roll (the direction a player sees; where a ball is all but stopped by its own spin, its
-direction means little). Shots: how far from the truth the cue ball and the object ball stop, if they stay on
-the table, and how often the pot's outcome changes. The scale is what a professional's errors do: the same
-intended stroke, played twice by the truth with the execution errors of ``tasks.noise``.
+``reference`` is the truth. Impacts: errors of direction and speed of the worse of the two balls, just after the
+impact and once both balls roll (the direction that a player sees; it means little for a ball that its spin almost
+stops). Shots: distance from the truth of the final places of cue ball and object ball, if they stay on the table,
+and how often the pot's outcome changes. The scale is the effect of a professional's errors: the same intended
+stroke, played twice by the truth with the execution errors of ``tasks.noise``.
 """
 
 import numpy as np
@@ -32,27 +32,27 @@ SETS = {"two-ball pots": shot_sets.two_ball, "full tables": shot_sets.full_table
 CONTACTS = ((1, 1), (2, 2), (3, 5), (6, 999))
 ERRORS = "a professional's errors"
 SHARE = 0.1
-"""A fidelity is good enough for play if it moves balls and changes pots at most this share of what a
-professional's errors do."""
+"""A fidelity is good enough for play if its effect on balls and pots is at most this share of the effect of a
+professional's errors."""
 STORED = 1e-3
-"""... and for results that are kept and compared if it changes at most this share of pots."""
+"""It is good enough for results that are kept and compared if, in addition, it changes at most this share of pots."""
 FILE = "tradeoff.png"
 
 
 def spread(values):
-    """Median, 99 % and largest."""
+    """Median, 99 % quantile and maximum."""
     return np.quantile(values, [0.5, 0.99, 1.0]).tolist() if len(values) else [float("nan")] * 3
 
 
 def impact_errors(found, truth):
-    """Of each impact the worse ball's error, just after it and once both roll: direction [deg], speed [m/s];
-    the object ball's alone."""
+    """For each impact, the worse ball's error just after it and once both balls roll: direction [deg], speed [m/s];
+    and that of the object ball alone."""
     errors, object_angle = [], np.zeros(0)
     for rolling in (False, True):
         angle, speed = np.zeros(len(truth)), np.zeros(len(truth))
         for ball in (0, 6):
             a, b = ((x[:, ball : ball + 2], x[:, ball + 3 : ball + 5]) for x in (found, truth))
-            # once the slip is over: v - (2/7) u with u = v + R (-w_y, w_x)
+            # after the slip: v - (2/7) u with u = v + R (-w_y, w_x)
             a, b = (
                 (5 * v + 2 * np.column_stack([w[:, 1], -w[:, 0]])) / 7 if rolling else v for v, w in (a, b)
             )
@@ -82,8 +82,8 @@ def play_impacts(n, physics, seed):
 
 
 def compare(end, truth, ball):
-    """Shots that end in ``end`` against ``truth``: shifts of cue ball and object ball [mm], nan if off the
-    table; has the pot changed?"""
+    """Compare shots that end in ``end`` with ``truth``: shifts of cue ball and object ball [mm], nan if off the
+    table, and whether the pot's outcome changed."""
     rows = np.arange(len(ball))
     shifts = []
     for b in (0 * ball, ball):
@@ -93,7 +93,7 @@ def compare(end, truth, ball):
 
 
 def play_shots(make, n, repeats, physics, seed):
-    """Figures of every fidelity, and of the errors, on one set of shots."""
+    """Figures of every fidelity, and of the execution errors, on one set of shots."""
     physics = sn.Physics.preset(physics)
     shots = make(n, physics, seed)
     v, w = shots.struck(seed=seed + 1)
@@ -126,13 +126,13 @@ def play_shots(make, n, repeats, physics, seed):
 
 
 def find_dominated(rows, name, error):
-    """The fidelities that are both faster and nearer the truth than ``name``."""
+    """The fidelities that are both faster and more accurate than ``name``."""
     others = [f for f in rows if f not in (name, ERRORS, "reference")]
     return [f for f in others if rows[f]["us"] < rows[name]["us"] and error(rows[f]) < error(rows[name])]
 
 
 def recommendation(impact_rows, sets):
-    """Sentences; every choice in them is made from the figures."""
+    """Recommend fidelities in sentences; every choice follows from the figures."""
 
     def cheapest(good):
         fit = [f for f in SHOTS if all(good(s["rows"][f], s["rows"][ERRORS]) for s in sets.values())]
@@ -144,14 +144,14 @@ def recommendation(impact_rows, sets):
             row, errors = s["rows"][fidelity], s["rows"][ERRORS]
             parts.append(
                 f"{name}: {row['us']:.1f} us a shot, {100 * row['changed']:.2g} % of pots change (a professional's errors:"
-                f" {100 * errors['changed']:.2g} %), the cue ball stops {row['cue_mm'][0]:.2g} mm off in the middle case"
+                f" {100 * errors['changed']:.2g} %), the cue ball's median error is {row['cue_mm'][0]:.2g} mm"
                 f" ({errors['cue_mm'][0]:.3g} mm)"
             )
         return "; ".join(parts)
 
     def shares(row, errors):
         pots = row["changed"] / errors["changed"] if errors["changed"] else float(row["changed"] > 0)
-        return {"pots changed": pots, "the cue ball's middle shift": row["cue_mm"][0] / errors["cue_mm"][0]}
+        return {"pots changed": pots, "the cue ball's median error": row["cue_mm"][0] / errors["cue_mm"][0]}
 
     def for_play(row, errors):
         return max(shares(row, errors).values()) <= SHARE
@@ -161,19 +161,19 @@ def recommendation(impact_rows, sets):
         cheapest(for_play),
         cheapest(lambda row, errors: for_play(row, errors) and row["changed"] <= STORED),
     )
-    rule = f"Learning, search, play: at most {SHARE:.0%} of what a professional's errors do, in pots changed and in the cue ball's place."
+    rule = f"Learning, search, play: at most {SHARE:.0%} of the effect of a professional's errors, in pots changed and cue ball's place."
     says.append(
-        f"{rule} The cheapest that keeps to it: {play}. {figures(play)}."
+        f"{rule} Cheapest fidelity that meets this: {play}. {figures(play)}."
         if play
-        else f"{rule} None of these keeps to it."
+        else f"{rule} No fidelity meets this."
     )
-    rule = f"Results that are kept and compared: besides, at most {STORED:.1%} of pots changed."
+    rule = f"Results that are kept and compared: in addition, at most {STORED:.1%} of pots changed."
     says.append(
-        f"{rule} None of these keeps to it."
+        f"{rule} No fidelity meets this."
         if kept is None
-        else f"{rule} The same: {kept}."
+        else f"{rule} Again: {kept}."
         if kept == play
-        else f"{rule} The cheapest that keeps to it: {kept}. {figures(kept)}."
+        else f"{rule} Cheapest fidelity that meets this: {kept}. {figures(kept)}."
     )
     saved = [1 - s["rows"]["fast"]["us"] / s["rows"]["standard"]["us"] for s in sets.values()]
     over = [
@@ -182,16 +182,16 @@ def recommendation(impact_rows, sets):
         for what, share in shares(s["rows"]["fast"], s["rows"][ERRORS]).items()
         if share > SHARE
     ]
-    fit = f"breaks the rule for play ({'; '.join(over)})" if over else "keeps to the rule for play"
+    fit = f"breaks the rule for play ({'; '.join(over)})" if over else "meets the rule for play"
     says.append(
-        f"fast {fit} and saves {min(saved):.0%} to {max(saved):.0%} of the time of standard. {figures('fast')}. In one impact it turns"
-        f" the worse ball by at most {impact_rows['fast']['angle_deg'][2]:.2g} deg, the object ball's final path by at most"
-        f" {impact_rows['fast']['object_rolling_angle_deg'][2]:.2g} deg."
+        f"fast {fit} and saves {min(saved):.0%} to {max(saved):.0%} of the time of standard. {figures('fast')}. In one impact, it errs"
+        f" by at most {impact_rows['fast']['angle_deg'][2]:.2g} deg for the worse ball and by at most"
+        f" {impact_rows['fast']['object_rolling_angle_deg'][2]:.2g} deg for the object ball's final path."
     )
     ratio = [s["rows"]["reference"]["us"] / s["rows"]["standard"]["us"] for s in sets.values()]
     says.append(
-        f"reference is the truth here, at {min(ratio):.1f} to {max(ratio):.1f} times the time of standard: for checks of the others, and"
-        f" where a shot with many contacts must be the same to the millimetre (standard on full tables: 99 % within"
+        f"reference is the truth here and takes {min(ratio):.1f} to {max(ratio):.1f} times as long as standard. Use it to check the others,"
+        f" and if a shot with many contacts must be exact to the millimetre (standard on full tables: 99 % within"
         f" {sets['full tables']['rows']['standard']['cue_mm'][1]:.2g} mm)."
     )
     euler = [f for f in IMPACTS if f.startswith("euler")]
@@ -200,11 +200,11 @@ def recommendation(impact_rows, sets):
     steps = np.array([float(f[6:]) for f in euler])
     order = -np.polyfit(np.log(steps), np.log([impact_rows[f]["angle_deg"][0] for f in euler]), 1)[0]
     says.append(
-        f"euler:N, the paper's scheme, comes nearer the truth as N^-{order:.2f} (median angle): an independent check of reference. "
+        f"euler:N, the paper's scheme, approaches the truth as N^-{order:.2f} (median angle), an independent check of reference. "
         + (
-            "It is for reproducing the paper: every N here has a fidelity that is both faster and nearer (99 % of angles)"
+            "Use it to reproduce the paper: for every N here, another fidelity is both faster and more accurate (99 % of angles)"
             if not free
-            else f"Of these N, {', '.join(free)} are not beaten by a fidelity both faster and nearer (99 % of angles), the others are"
+            else f"Of these N, only {', '.join(free)} are not beaten by a fidelity both faster and more accurate (99 % of angles)"
         )
         + f"; euler:10000 errs by {impact_rows['euler:10000']['angle_deg'][1]:.1g} deg and takes"
         f" {impact_rows['euler:10000']['us'] / impact_rows['standard']['us']:.0f} times as long as standard, which errs by"
@@ -214,7 +214,7 @@ def recommendation(impact_rows, sets):
 
 
 def draw(figures, out):
-    """Time against error: impacts (angle, speed), then where the cue ball stops in each set of shots."""
+    """Draw time against error: impacts (angle, speed), then the cue ball's final place in each set of shots."""
     impact_rows = figures["impacts"]
     panels = [
         (
@@ -238,7 +238,7 @@ def draw(figures, out):
     with picture_style.drawing() as plt:
         note = (
             "Error against reference, of each fidelity and of the paper's scheme with N steps (euler:N): median, 99 % and worst.\n"
-            "Below and left is better. The bar across: what a professional's execution errors do to the same shots, median to 99 %."
+            "Lower left is better. Horizontal bar: effect of a professional's errors on the same shots, median to 99 %."
         )
         foot = f"python -m benchmarks.tradeoff, physics {figures['physics']!r}; {provenance.line(figures['machine'])}"
         fig, axes = picture_style.page(
@@ -257,7 +257,7 @@ def draw(figures, out):
 
 
 def _panel(ax, rows, key, title, error, cost):
-    """Time against one error, a fidelity a column of marks; the labels that it needs."""
+    """Draw time against one error, one column of marks per fidelity. Returns the labels to place."""
     labels = []
     for fidelity, row in rows.items():
         middle, high, worst = row[key]
@@ -286,7 +286,7 @@ def _panel(ax, rows, key, title, error, cost):
         if own or fidelity in ("euler:10", "euler:100", "euler:1000", "euler:10000"):
             text = fidelity if own else f"{int(fidelity[6:]):,}"
             style = {"color": colour, "weight": "bold" if own else "normal"}
-            # below the mark, the line of reference would strike it through
+            # below the mark, because the line of reference would cross it
             if 1 < rows["reference"]["us"] / row["us"] < 1.8:
                 ax.annotate(
                     text,
@@ -329,9 +329,11 @@ def main():
     parser.add_argument("--impacts", type=at_least(2), default=2000, help="impacts in the set")
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots in each set")
     parser.add_argument(
-        "--repeats", type=at_least(1), default=3, help="timed runs of every shot; the best counts"
+        "--repeats", type=at_least(1), default=3, help="timed runs of every shot, of which the best counts"
     )
-    parser.add_argument("--physics", default="paper", help="of impacts and shots: paper or match [paper]")
+    parser.add_argument(
+        "--physics", default="paper", help="physics of impacts and shots: paper or match [paper]"
+    )
     options = parser.options()
     if options.figures is None:
         options.figures = measure(options)
@@ -341,7 +343,7 @@ def main():
 
 
 def measure(options):
-    """Measure and print everything; the figures."""
+    """Measure and print everything. Returns the figures."""
     print(provenance.line())
     impact_rows = play_impacts(options.impacts, options.physics, options.seed)
     print(

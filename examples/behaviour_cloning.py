@@ -1,11 +1,11 @@
-"""How is a policy learned from a data set alone? Behaviour cloning of a player's choices, in one file.
+"""How is a policy learned from a data set alone? By behaviour cloning of a player's choices, in one file.
 
     python -m agents.dataset --out runs/data --player stroke_value --form choices --strokes 20000
     python -m examples.behaviour_cloning --data runs/data/snooker/break-stroke_value-choices-v0/data --out runs/cloned.npz
     python -m agents.evaluate --agent runs/cloned.npz
 
-A network of two layers is fitted to which of the available choices was played, by the cross-entropy. One episode in
-ten is kept from the fit; training stops at the pass that predicts those best.
+A two-layer network is fitted to the recorded choices among those available, by cross-entropy. One episode in ten is
+held out from the fit; the pass that predicts these episodes best is kept.
 """
 
 import argparse
@@ -21,11 +21,11 @@ from torch import nn
 from snooker_env.benchmark import play_visits
 
 WIDTH, BATCH, PASSES, RATE, DECAY, DROPPED = 256, 512, 40, 1e-3, 1e-2, 0.2
-HELD = 10  # one episode in so many is kept from the fit
+HELD = 10  # one episode in this many is held out from the fit
 
 
 class Cloned:
-    """The best available choice by a network, as a player (docs/agents/players.md)."""
+    """A player that takes the best available choice by a network (docs/agents/players.md)."""
 
     options = {"action": "discrete", "observation": "flat"}  # noqa: RUF012
 
@@ -40,7 +40,7 @@ class Cloned:
 
 
 def strokes_of(data):
-    """Observations, masks and choices of all strokes of a data set, and the episode of each."""
+    """Read observations, masks and choices of all strokes in a data set, and the episode of each."""
     parts = []
     for episode in data.iterate_episodes():
         n, seen = len(episode), episode.observations
@@ -51,7 +51,7 @@ def strokes_of(data):
 
 
 def fitted(observations, masks, choices, episodes, seed=0):
-    """The network, and the share of the kept strokes whose choice it plays."""
+    """Fit the network. Returns it and the share of held-out strokes that it predicts."""
     torch.manual_seed(seed)
     rng, held = np.random.default_rng(seed), episodes % HELD == 0
     x, m, y = torch.as_tensor(observations), torch.as_tensor(masks), torch.as_tensor(choices)
@@ -76,9 +76,7 @@ def fitted(observations, masks, choices, episodes, seed=0):
             off = nn.functional.cross_entropy(scores(kept), y[kept]).item()
         if off < best[0]:
             best = off, copy.deepcopy(network.state_dict())
-        print(
-            f"pass {k + 1} of {PASSES}: loss {off:.3f} on the strokes that are kept from the fit", flush=True
-        )
+        print(f"pass {k + 1} of {PASSES}: loss {off:.3f} on held-out strokes", flush=True)
     network.load_state_dict(best[1])
     with torch.no_grad():
         same = (scores(kept).argmax(dim=1) == y[kept]).float().mean().item()
@@ -98,22 +96,22 @@ def save(file, network, data, strokes, seed):
 
 
 def main(words=None):
-    """Fit, compare with the expert on held-out tables, and save; the share of the expert's points."""
+    """Fit, compare with the expert on held-out tables, and save. Returns the share of the expert's points."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--data", required=True, help="folder `data` of a data set of choices")
-    parser.add_argument("--out", help="where the policy is written")
-    parser.add_argument("--visits", type=int, default=500, help="held-out tables of the comparison [500]")
+    parser.add_argument("--out", help="file for the policy")
+    parser.add_argument("--visits", type=int, default=500, help="held-out tables in the comparison [500]")
     parser.add_argument("--seed", type=int, default=0)
     args = parser.parse_args(words)
     if not Path(args.data, "main_data.hdf5").is_file():
-        parser.error(f"data = {args.data!r}: must be the folder `data` of a data set of Minari")
+        parser.error(f"data = {args.data!r}: must be the folder `data` of a Minari data set")
     torch.set_num_threads(1)
     data = minari.MinariDataset(args.data)
     observations, masks, choices, episodes = strokes_of(data)
     network, same = fitted(observations, masks, choices, episodes, args.seed)
-    print(f"{len(choices):,} strokes; of those kept from the fit {100 * same:.0f} % are predicted")
+    print(f"{len(choices):,} strokes; {100 * same:.0f} % of the held-out strokes are predicted")
     points = {}
     expert = data.storage.metadata["algorithm_name"]
     for name, player in (("cloned", Cloned(network)), (expert, expert), ("random", "random")):

@@ -1,5 +1,5 @@
-"""How do I fit the physics to my own measurements? A CSV file of throws, rebounds or roll-outs in; constants
-with intervals out.
+"""How do I fit the physics to my own measurements? Pass a CSV file of throws, rebounds or roll-outs and get constants
+with intervals.
 
     python examples/fit_your_data.py throw benchmarks/data/throw_domenech2023.csv --column speed_m_s=0.8 --fix
     R=0.0305 e_b=0.968 python examples/fit_your_data.py cushion benchmarks/data/cushion_rebound.csv --fix
@@ -30,7 +30,7 @@ from snooker_env.checks import choice, integer, number, refuse, refuse_what
 
 
 class Column(NamedTuple):
-    """One column of a file: its bounds, and the error of one measurement if it is something measured."""
+    """One column of a file: its bounds, and the error of one measurement if the column is measured."""
 
     low: float
     high: float
@@ -38,7 +38,7 @@ class Column(NamedTuple):
 
 
 class Constant(NamedTuple):
-    """One constant to fit: its bounds, and where the fit starts."""
+    """One constant to fit: its bounds and starting value."""
 
     low: float
     high: float
@@ -46,35 +46,35 @@ class Constant(NamedTuple):
 
 
 class Kind(NamedTuple):
-    """One kind of measurement: what a file holds, what can be fitted, and what the model predicts."""
+    """One kind of measurement: the columns of a file, the constants to fit, and the model's prediction."""
 
     inputs: dict[str, Column]
-    """Set by the person who measures; the first is needed, of the others what is left out has a default."""
+    """Columns set by the experimenter. The first is required; the others have defaults."""
     measured: dict[str, Column]
-    """At least one of them is needed."""
+    """Measured columns, at least one of them required."""
     constants: dict[str, Constant]
     predict: Callable[[dict, "sn.Physics"], dict]
-    """(columns, physics) -> the measured columns as the model has them."""
+    """(columns, physics) -> the measured columns according to the model."""
 
 
 class Fit(NamedTuple):
-    """What a fit found."""
+    """The result of a fit."""
 
     values: dict[str, float]
     intervals: dict[str, tuple[float, float] | None]
-    """95 %; None where the data do not determine the constant."""
+    """95 % intervals; None if the data do not determine the constant."""
     residuals: dict[str, np.ndarray]
-    """Model less measurement, of each measured column."""
+    """Model minus measurement for each measured column."""
     physics: "sn.Physics"
 
 
 def _topspin(columns, speed, radius):
-    """rad/s; a ball whose topspin is not given rolls."""
+    """Spins [rad/s]; without a given topspin, the ball rolls."""
     return columns.get("topspin_rad_s", speed / radius)
 
 
 def predict_throw(columns, physics):
-    """Throw [deg] and speed of the object ball [m/s] just after the impact, of a cue ball that moves along
+    """Throw [deg] and speed [m/s] of the object ball just after the impact of a cue ball that moves along
     +x."""
     cut, speed = np.radians(columns["cut_deg"]), columns["speed_m_s"]
     topspin, side = _topspin(columns, speed, physics.R), columns.get("side_rad_s", 0.0 * speed)
@@ -89,7 +89,7 @@ def predict_throw(columns, physics):
 
 
 def predict_rebound(columns, physics):
-    """Speed [m/s] and angle from the normal [deg] just after a cushion along x; the ball comes from -y and,
+    """Speed [m/s] and angle from the normal [deg] just after a cushion along x. The ball comes from -y and,
     at an angle, from -x."""
     angle, speed = (
         np.radians(columns.get("incident_deg", 0.0 * columns["incident_m_s"])),
@@ -107,7 +107,7 @@ def predict_rebound(columns, physics):
 
 
 def predict_roll_out(columns, physics):
-    """Distance [m] and time [s] to rest on the cloth: the ball slides until it rolls, then it rolls out
+    """Distance [m] and time [s] to rest on the cloth: the ball slides, then rolls out
     (docs/physics/model.md)."""
     speed = columns["speed_m_s"]
     slip = speed - physics.R * _topspin(columns, speed, physics.R)
@@ -159,8 +159,8 @@ KINDS = {
 
 
 def read(file, kind, filled=None):
-    """The columns of a CSV file as arrays. ``filled``: columns that have one value in every row. ValueError
-    for a bad file."""
+    """Read the columns of a CSV file as arrays. ``filled``: columns with one value for every row. ValueError
+    for an invalid file."""
     known = {**KINDS[kind].inputs, **KINDS[kind].measured}
     try:
         text = Path(file).read_text(encoding="utf-8-sig")
@@ -173,7 +173,7 @@ def read(file, kind, filled=None):
     ]
     if not lines:
         raise refuse_what(
-            f"{file}", "no line", f"must have a line of names ({', '.join(known)}) and then numbers"
+            f"{file}", "no line", f"must have a line of names ({', '.join(known)}), then numbers"
         )
     names = [name.strip() for name in next(csv.reader([lines[0][1]]))]
     for name in names:
@@ -217,7 +217,7 @@ def read(file, kind, filled=None):
         and np.median(arrays["throw_deg"]) < 0
     ):
         allowed = (
-            "must be positive for most rows without side: it counts towards the direction in which the cue "
+            "must be positive for most rows without side: positive means in the direction in which the cue "
             "ball moved"
         )
         raise refuse(f"{file}, median of throw_deg", float(np.median(arrays["throw_deg"])), allowed)
@@ -225,12 +225,12 @@ def read(file, kind, filled=None):
 
 
 def needed(kind):
-    """The columns without which nothing can be predicted."""
+    """Check the columns that every prediction needs."""
     return ("cut_deg", "speed_m_s") if kind == "throw" else tuple(KINDS[kind].inputs)[:1]
 
 
 def to_fit(kind, columns, fixed, law="constant"):
-    """Which constants these columns say something about; those that are fixed are left out."""
+    """The constants that these columns determine, without the fixed ones."""
     if kind == "throw":
         names = list("abc") if law == "marlow" else ["mu_bb"] if "throw_deg" in columns else []
         names += ["e_b"] if "object_speed_m_s" in columns else []
@@ -244,7 +244,7 @@ def to_fit(kind, columns, fixed, law="constant"):
 
 
 def fit(kind, columns, preset="match", fixed=None, law="constant", bootstrap=0, seed=0):
-    """Least squares of the model to the columns of ``read`` -> ``Fit``."""
+    """Fit the model to the columns of ``read`` by least squares."""
     fixed, what = dict(fixed or {}), KINDS[kind]
     if law == "marlow" and "throw_deg" not in columns:
         raise refuse("law", law, "must be constant where no throw_deg was measured")
@@ -294,8 +294,8 @@ def fit(kind, columns, preset="match", fixed=None, law="constant", bootstrap=0, 
 
 
 def _by_covariance(fitted, low, high):
-    """95 % intervals from the Jacobian, cut at the bounds; None for a constant at a bound or that the data do
-    not determine."""
+    """95 % intervals from the Jacobian, cut at the bounds; None for a constant at a bound or not determined by
+    the data."""
     inside = ~(np.isclose(fitted.x, low, atol=1e-4) | np.isclose(fitted.x, high, atol=1e-4))
     jacobian, freedom = fitted.jac[:, inside], len(fitted.fun) - int(inside.sum())
     lengths = np.linalg.norm(jacobian, axis=0)
@@ -309,7 +309,7 @@ def _by_covariance(fitted, low, high):
 
 
 def preset_line(fitted, preset, fixed):
-    """The line of Python that uses the constants."""
+    """A line of Python that uses the constants."""
     values = {name: float(f"{value:.4g}") for name, value in (fixed | fitted.values).items()}
     if "a" in values:
         values["mu_bb"] = tuple(values.pop(name) for name in "abc")
@@ -318,7 +318,7 @@ def preset_line(fitted, preset, fixed):
 
 
 def report(fitted, preset, fixed):
-    """What is printed."""
+    """The printed report."""
     for name, value in fitted.values.items():
         ends = fitted.intervals[name]
         says = (
@@ -338,38 +338,38 @@ def report(fitted, preset, fixed):
 
 
 def _pairs(option, words):
-    """NAME=VALUE ... as a dict of numbers."""
+    """Parse NAME=VALUE ... into a dict of numbers."""
     out = {}
     for pair in words:
         name, _, value = pair.partition("=")
         try:
             out[name] = float(value)
         except ValueError:
-            raise refuse(option, pair, "must be NAME=VALUE, the value a number") from None
+            raise refuse(option, pair, "must be NAME=VALUE with a number") from None
     return out
 
 
 def main(arguments=None):
     """Command line."""
     parser = argparse.ArgumentParser(description="Fit the physics of snooker_env to measurements.")
-    parser.add_argument("kind", choices=KINDS, help="what was measured")
+    parser.add_argument("kind", choices=KINDS, help="kind of measurement")
     parser.add_argument("file", help="a CSV file")
     parser.add_argument(
-        "--preset", default="match", help="the constants that are not fitted: paper or match [match]"
+        "--preset", default="match", help="preset of all other constants: paper or match [match]"
     )
     parser.add_argument(
         "--fix",
         nargs="+",
         default=[],
         metavar="NAME=VALUE",
-        help="fields of Physics to keep at a value of your own",
+        help="fields of Physics to fix at your own values",
     )
     parser.add_argument(
         "--column",
         nargs="+",
         default=[],
         metavar="NAME=VALUE",
-        help="columns that have one value in every row",
+        help="columns with one value for every row",
     )
     parser.add_argument(
         "--law",
@@ -382,9 +382,9 @@ def main(arguments=None):
         type=int,
         default=0,
         metavar="N",
-        help="intervals by N draws of the rows [0: by the covariance]",
+        help="intervals from N resamples of the rows [0: from the covariance]",
     )
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the draws [0]")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the resamples [0]")
     args = parser.parse_args(arguments)
     try:
         fixed, filled = _pairs("--fix", args.fix), _pairs("--column", args.column)

@@ -1,11 +1,11 @@
-"""How does a player of one's own play the benchmark? A class with ``at`` and ``play``: the widest pot, the
-softer the nearer.
+"""How does your own player play the benchmark? As a class with ``at`` and ``play``. This one plays the widest pot,
+more softly at shorter distances.
 
     python -m snooker_env.benchmark run SnookerBreak-v0 --agent examples.own_player:Softly --training-shots 0
     --episodes 50
 
-``at`` binds it to where it plays; ``play`` gives a stroke for each position. The same position and seed give
-the same one.
+``at`` binds the player to its environment; ``play`` returns a stroke for each position. Equal positions and seeds
+give equal strokes.
 """
 
 import numpy as np
@@ -16,15 +16,15 @@ from snooker_env.players import Strokes
 
 
 class Softly:
-    """The widest direct pot, without spin, at a speed that grows with the way of the cue ball; else full at a
+    """Plays the widest direct pot without spin, at a speed that grows with the cue ball's distance; otherwise full at a
     ball on."""
 
     def at(self, rules):
-        """It plays alike everywhere."""
+        """Returns itself, because it plays in the same way everywhere."""
         return self
 
     def play(self, positions, seeds):
-        """A stroke for each position."""
+        """Return a stroke for each position."""
         at = Positions.of(positions)
         lines, balls = pots(at, most=1), at.balls_on.argmax(axis=1)
         rows = np.flatnonzero(lines.ball[:, 0] >= 0)

@@ -1,12 +1,12 @@
-"""How does RLlib train on this environment? PPO of its new API stack, with masks, on vector environments.
+"""How does RLlib train on this environment? With PPO of its new API stack, masks and vector environments.
 
     pip install -e ".[rllib]"
-    python -m examples.ppo_rllib --out runs/rllib.npz              300,000 shots with one env runner: some minutes
-    python -m agents.evaluate --agent runs/rllib.npz               our protocol, beside any other agent
+    python -m examples.ppo_rllib --out runs/rllib.npz              300,000 shots with one env runner: a few minutes
+    python -m agents.evaluate --agent runs/rllib.npz               compare with any other agent
 
-RLlib resets a table in the step after an end (NEXT_STEP) and leaves that step out by itself. Its own
-``ActionMaskingTorchRLModule`` reads ``observation="masked"`` and adds the logarithm of the mask to the scores. Checkpoints are
-RLlib's: ``algorithm.save_to_path`` and ``restore_from_path``.
+RLlib resets a table in the step after an end (NEXT_STEP) and ignores that step. Its ``ActionMaskingTorchRLModule``
+reads ``observation="masked"`` and adds the logarithm of the mask to the scores. Checkpoints are RLlib's:
+``algorithm.save_to_path`` and ``restore_from_path``.
 """
 
 import argparse
@@ -34,8 +34,8 @@ SETTINGS |= {"vf_loss_coeff": 0.01, "vf_clip_param": 1e6, "grad_clip": 0.5, "gra
 
 
 class RunnerTables(snooker_env.SnookerVectorEnv):
-    """The tables of one runner. RLlib gives runner w the seed + w, and so nearly the tables of the one before: these begin
-    with seeds of 64 bits that no other runner has."""
+    """Make the tables of one runner. RLlib gives runner w the seed + w, which would repeat most tables of the previous runner;
+    these tables use 64-bit seeds that no other runner has."""
 
     own_seeds: list[int | None] | None = None
 
@@ -44,14 +44,14 @@ class RunnerTables(snooker_env.SnookerVectorEnv):
 
 
 def own_seeds(*, env, env_context, env_runner, **more):
-    """RLlib calls it in each runner that has its tables."""
+    """RLlib calls this in each runner with tables."""
     if env_runner.config.seed is not None:
         drawn = np.random.SeedSequence(env_runner.config.seed, spawn_key=(env_context.worker_index,))
         env.own_seeds = drawn.generate_state(env.num_envs, np.uint64).tolist()
 
 
 def algorithm_of(runners, tables, seed, **settings):
-    """A new PPO with so many runners, processes of so many tables each."""
+    """Make a PPO with ``runners`` processes of ``tables`` tables each."""
     tune.register_env("snooker", lambda context: RunnerTables(**context))
     network = DefaultModelConfig(fcnet_hiddens=list(HIDDEN), fcnet_activation="tanh")
     config = PPOConfig().environment(
@@ -67,14 +67,14 @@ def algorithm_of(runners, tables, seed, **settings):
 
 
 def layers_of(algorithm):
-    """The weights of its policy, as ``write_policy`` takes them."""
+    """The policy's weights in the form for ``write_policy``."""
     state = algorithm.get_module(DEFAULT_MODULE_ID).get_state()
     names = [f"encoder.encoder.net.mlp.{2 * k}" for k in range(len(HIDDEN))] + ["pi.net.mlp.0"]
     return [(state[f"{name}.weight"], state[f"{name}.bias"]) for name in names]
 
 
 def train(algorithm, steps):
-    """Updates until so many shots are played; the shots."""
+    """Update until ``shots`` shots are played. Returns their number."""
     shots = 0
     with Progress("RLlib", steps, "shots") as progress:
         while shots < steps:
@@ -92,7 +92,7 @@ def main(argv=None):
     parser.add_argument("--runners", type=int, default=1)
     parser.add_argument("--seed", type=int, default=0)
     args = parser.parse_args(argv)
-    snooker_env.warmup()  # before the runners start: each would compile everything for itself
+    snooker_env.warmup()  # before the runners start, because each would compile everything again
     paths = {"PYTHONPATH": os.getcwd(), "OMP_NUM_THREADS": "1"}
     ray.init("local", num_cpus=args.runners + 1, runtime_env={"env_vars": paths}, log_to_driver=False)
     algorithm = algorithm_of(args.runners, 64, args.seed)

@@ -1,12 +1,12 @@
-"""How is PPO written in one file? Masked PPO on the native vector environment, top to bottom, with Gymnasium,
-NumPy and PyTorch alone.
+"""How is PPO written in one file? Masked PPO on the native vector environment, from top to bottom, with only Gymnasium,
+NumPy and PyTorch.
 
     python -m examples.ppo_single_file --steps 300000 --out runs/single.npz
     python -m agents.evaluate --agent runs/single.npz
 
-The masks come from ``envs.call("action_masks")``. The tables are made with ``autoreset_mode="SameStep"``: the
-observation after the end of a visit is the first one of the next visit, so that every step is a shot, and
-only the value after the end must be left out.
+The masks come from ``envs.call("action_masks")``. With ``autoreset_mode="SameStep"``, the observation after the end
+of a visit (one turn at the table) is the first one of the next visit. Every step is then a shot, and only the value
+after the end must be left out.
 """
 
 import argparse
@@ -24,14 +24,14 @@ from torch.distributions import Categorical
 
 from snooker_env.tasks import LEVELS  # snooker_env registers Snooker-v0
 
-TABLES, STEPS = 64, 128  # a rollout: so many shots on each of so many tables
+TABLES, STEPS = 64, 128  # a rollout: shots on each table, and tables
 BATCH, EPOCHS = 2048, 4
 LEARNING_RATE, GAMMA, LAMBDA, CLIP = 1e-3, 0.95, 0.5, 0.2
 ENTROPY, VALUE, GRADIENT = 0.003, 0.01, 0.5
 
 
 class Agent(nn.Module):
-    """An actor and a critic that share nothing."""
+    """A separate actor and critic."""
 
     def __init__(self, numbers, choices):
         super().__init__()
@@ -39,8 +39,8 @@ class Agent(nn.Module):
         self.critic = mlp(numbers, 256, 256, 1)
 
     def policy(self, observations, masks):
-        """The distribution of the available choices. The least float in place of -inf: 0 times it is 0, and
-        not NaN, in the entropy."""
+        """The distribution over the available choices. Uses the smallest float instead of -inf, because 0 times it is 0
+        in the entropy, not NaN."""
         scores = self.actor(observations)
         return Categorical(
             logits=scores.masked_fill(~masks, torch.finfo(scores.dtype).min), validate_args=False
@@ -52,7 +52,7 @@ class Agent(nn.Module):
 
 
 def mlp(*sizes):
-    """Linear layers with a tanh between them."""
+    """Linear layers with tanh between them."""
     layers = []
     for a, b in pairwise(sizes):
         layers += [nn.Linear(a, b), nn.Tanh()]
@@ -60,7 +60,7 @@ def mlp(*sizes):
 
 
 def advantages_of(rewards, values, ends, last):
-    """Generalised advantages: (steps, tables) each; ``ends``: the visit ended in this step; ``last``: the
+    """Generalised advantages; all arrays are (steps, tables). ``ends``: the visit ended in this step; ``last``: the
     values after the last step."""
     advantages, running = torch.zeros_like(rewards), torch.zeros_like(last)
     for t in reversed(range(len(rewards))):
@@ -72,7 +72,7 @@ def advantages_of(rewards, values, ends, last):
 
 
 def save(path, actor, about):
-    """The actor as plain weights, as ``python -m agents.evaluate`` reads them."""
+    """Write the actor as plain weights, which ``python -m agents.evaluate`` reads."""
     layers = [layer for layer in actor if isinstance(layer, nn.Linear)]
     arrays = {f"weight_{k}": layer.weight.detach().numpy() for k, layer in enumerate(layers)}
     arrays |= {f"bias_{k}": layer.bias.detach().numpy() for k, layer in enumerate(layers)}
@@ -80,20 +80,20 @@ def save(path, actor, about):
 
 
 def main(argv=None):
-    """Train; returns the mean points of the last 1,000 visits."""
+    """Train. Returns the mean points of the last 1,000 visits."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument(
         "--steps", type=int, default=300_000, help="shots, rounded up to whole rollouts [300000]"
     )
-    parser.add_argument("--seed", type=int, default=0, help="of tables, weights and exploration [0]")
+    parser.add_argument("--seed", type=int, default=0, help="seed of tables, weights and exploration [0]")
     parser.add_argument(
         "--noise", default="professional", choices=tuple(LEVELS), help="execution noise [professional]"
     )
-    parser.add_argument("--out", default="policy.npz", help="where the policy is written [policy.npz]")
+    parser.add_argument("--out", default="policy.npz", help="file for the policy [policy.npz]")
     args = parser.parse_args(argv)
     if args.steps < 1:
         parser.error(f"--steps is {args.steps}, must be at least 1")
-    Path(args.out).parent.mkdir(parents=True, exist_ok=True)  # before the training
+    Path(args.out).parent.mkdir(parents=True, exist_ok=True)  # check this before the training
     torch.manual_seed(args.seed)
     torch.set_num_threads(1)
 
@@ -117,11 +117,11 @@ def main(argv=None):
     visits, returns = (
         np.zeros(TABLES),
         deque(maxlen=1000),
-    )  # rewards of those that go on; of the last that ended
+    )  # rewards of current visits, and of the last visits
     observation, _ = envs.reset(seed=args.seed)
     updates, played, began = -(-args.steps // (STEPS * TABLES)), 0, time.perf_counter()
     for update in range(updates):
-        for group in optimiser.param_groups:  # falls to nearly 0
+        for group in optimiser.param_groups:  # decreases to nearly 0
             group["lr"] = LEARNING_RATE * (1.0 - update / updates)
 
         # the rollout

@@ -1,13 +1,12 @@
-"""How does TorchRL train on this environment? PPO in one file: its collector, advantage and loss on the
+"""How does TorchRL train on this environment? With PPO in one file, using its collector, advantage and loss on the
 native vector environment.
 
     pip install -e ".[torchrl]"
     python -m examples.ppo_torchrl --steps 300000 --out runs/torchrl.npz
     python -m agents.evaluate --agent runs/torchrl.npz
 
-``observation="masked"`` gives the masks that ``MaskedCategorical`` reads. TorchRL takes a vector environment
-only with ``autoreset_mode="SameStep"``: it keeps the first observation of the next visit and puts
-``final_obs`` in its place.
+``observation="masked"`` provides the masks for ``MaskedCategorical``. TorchRL accepts a vector environment only with
+``autoreset_mode="SameStep"``: it keeps the first observation of the next visit and replaces it by ``final_obs``.
 """
 
 import argparse
@@ -29,14 +28,14 @@ from torchrl.objectives.value import GAE
 
 from snooker_env.tasks import LEVELS  # snooker_env registers Snooker-v0
 
-TABLES, STEPS = 64, 128  # a rollout: so many shots on each of so many tables
+TABLES, STEPS = 64, 128  # a rollout: shots on each table, and tables
 BATCH, EPOCHS = 2048, 4
 LEARNING_RATE, GAMMA, LAMBDA, CLIP = 1e-3, 0.95, 0.5, 0.2
 ENTROPY, VALUE, GRADIENT = 0.003, 0.01, 0.5
 
 
 def mlp(*sizes):
-    """Linear layers with a tanh between them."""
+    """Linear layers with tanh between them."""
     layers = []
     for a, b in pairwise(sizes):
         layers += [nn.Linear(a, b), nn.Tanh()]
@@ -44,8 +43,8 @@ def mlp(*sizes):
 
 
 def tables(noise, seed):
-    """The tables as an environment of TorchRL: int8 masks become bool, and ``episode_reward`` counts the
-    points of the visit."""
+    """Make the tables as a TorchRL environment: int8 masks become bool, and ``episode_reward`` counts the points of the
+    visit (one turn at the table)."""
     envs = gymnasium.make_vec(
         "snooker_env:Snooker-v0",
         num_envs=TABLES,
@@ -63,7 +62,7 @@ def tables(noise, seed):
 
 
 def save(path, actor, about):
-    """The actor as plain weights, as ``python -m agents.evaluate`` reads them."""
+    """Write the actor as plain weights, which ``python -m agents.evaluate`` reads."""
     layers = [layer for layer in actor if isinstance(layer, nn.Linear)]
     arrays = {f"weight_{k}": layer.weight.detach().numpy() for k, layer in enumerate(layers)}
     arrays |= {f"bias_{k}": layer.bias.detach().numpy() for k, layer in enumerate(layers)}
@@ -71,20 +70,20 @@ def save(path, actor, about):
 
 
 def main(argv=None):
-    """Train; returns the mean points of the visits of the last rollout."""
+    """Train. Returns the mean points of the last rollout's visits."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument(
         "--steps", type=int, default=300_000, help="shots, rounded up to whole rollouts [300000]"
     )
-    parser.add_argument("--seed", type=int, default=0, help="of tables, weights and exploration [0]")
+    parser.add_argument("--seed", type=int, default=0, help="seed of tables, weights and exploration [0]")
     parser.add_argument(
         "--noise", default="professional", choices=tuple(LEVELS), help="execution noise [professional]"
     )
-    parser.add_argument("--out", default="policy.npz", help="where the policy is written [policy.npz]")
+    parser.add_argument("--out", default="policy.npz", help="file for the policy [policy.npz]")
     args = parser.parse_args(argv)
     if args.steps < 1:
         parser.error(f"--steps is {args.steps}, must be at least 1")
-    Path(args.out).parent.mkdir(parents=True, exist_ok=True)  # before the training
+    Path(args.out).parent.mkdir(parents=True, exist_ok=True)  # check this before the training
     torch.manual_seed(args.seed)
     torch.set_num_threads(1)
 
@@ -125,7 +124,7 @@ def main(argv=None):
         auto_register_policy_transforms=True,
     )
     for update, rollout in enumerate(collector):
-        for group in optimiser.param_groups:  # falls to nearly 0
+        for group in optimiser.param_groups:  # decreases to nearly 0
             group["lr"] = LEARNING_RATE * (1.0 - update / updates)
         with torch.no_grad():
             advantage(rollout)

@@ -1,12 +1,11 @@
-"""How does an external program play the benchmark? It reads a state a line and writes a stroke a line:
-standard library alone.
+"""How does an external program play the benchmark? For each line with a state, it writes a line with a stroke, using
+only the standard library.
 
     python -m snooker_env.benchmark run SnookerBreak-v0 --agent program:"python examples/program_player.py" \\
         --training-shots 0 --simulated-shots 0 --episodes 20
 
-The strategy is the simplest: of the open lines to pockets the one with the most room, at a speed that carries
-the ball there; without one, full at the nearest ball on. The protocol page of the documentation
-(docs/play/protocol.md) describes every field.
+The strategy is simple: take the open line to a pocket with the most room, at a speed that carries the ball there.
+Without an open line, play full at the nearest ball on. docs/play/protocol.md describes every field.
 """
 
 import json
@@ -15,8 +14,8 @@ import sys
 
 
 def answer(state):
-    """The answer to a state, as POST api/stroke takes it."""
-    if state["phase"] == "choice":  # after a foul of the other player
+    """The answer to a state, in the form of POST api/stroke."""
+    if state["phase"] == "choice":  # after a foul by the opponent
         return {"choice": "play"}
     lines = [line for line in state["lines"] if line["open"]]
     if lines:

@@ -1,12 +1,13 @@
-"""How does an agent learn whole frames from itself alone? PPO that plays both sides of native tables, on the menu of strokes.
+"""How does an agent learn whole frames only from itself? PPO plays both sides of native tables, on the menu of strokes.
 
     pip install -e ".[train]"
-    python -m examples.self_play --out runs/self_play   # trains, then judges 1,000 frames an opponent
-    python -m examples.self_play --out runs/self_play   # the same again goes on where it was stopped
+    python -m examples.self_play --out runs/self_play   # trains, then plays 1,000 frames per opponent
+    python -m examples.self_play --out runs/self_play   # continues an interrupted run
 
-Every stroke of either side is learned from. What follows a stroke counts for its player where the same player strikes next,
-and against it where the other does: that sign is all that differs from PPO for one player. The reward is the growth of the
-lead, and more for the frame. Training begins with what the package's ``strokes`` knows of visits, unless --fresh.
+The agent learns from every stroke of both sides. The next state's value counts for a player if the same player strikes next,
+and against that player otherwise; this sign is the only difference from PPO for one player. The reward is the growth of the
+lead, plus a bonus for the frame. Training starts from the package's ``strokes`` for visits (single turns at the table) unless
+you pass --fresh.
 """
 
 import argparse
@@ -36,20 +37,20 @@ GAME: dict[str, Any] = {"action": "strokes", "observation": "strokes", "noise": 
 GAME |= {"miss": "clear_path", "max_strokes": 200}
 STEPS, BATCH, EPOCHS = 32, 512, 4
 RATE, GAMMA, LAMBDA, CLIP = 5e-4, 0.97, 0.5, 0.2
-"""The rate falls to a twentieth."""
+"""Learning rates: the final rate is a twentieth of the first."""
 ENTROPY, VALUE, GRADIENT = 0.002, 0.05, 0.5
 LEAD, WON = 0.1, 2.0
-"""The reward for a point of lead, and for the frame."""
+"""The rewards for a point of lead and for the frame."""
 CRITIC = 8
-"""Rollouts from which only the value is learned, where the policy knows more than the value does."""
+"""Rollouts that train only the value, which starts out less accurate than the policy."""
 JUDGED, OPPONENTS = 10, ("ghost_ball", "best_pot", "search")
-"""How often a training is judged on the way, and by whom at its end."""
+"""How often a run is evaluated during training, and the opponents at its end."""
 CHECKPOINT = "checkpoint.pkl"
 
 
 def make_policy(tables, *, fresh: bool = False) -> StrokesPolicy:
-    """The policy at the start: untrained, or with the layers of the package's ``strokes``, which knows no more of the state
-    than a visit has."""
+    """The initial policy: untrained, or with the layers of the package's ``strokes``, which reads only the state of a
+    visit."""
     policy = StrokesPolicy(tables.single_observation_space, tables.single_action_space, lambda _: RATE)
     net = policy.mlp_extractor
     if not fresh:
@@ -68,13 +69,13 @@ def make_policy(tables, *, fresh: bool = False) -> StrokesPolicy:
 
 
 def player_of(policy: StrokesPolicy) -> SeenPlayer:
-    """The policy as a player of frames, by its most probable choices."""
+    """A player of frames that takes the policy's most probable choices."""
     return SeenPlayer(MenuNetwork(layers_of_menu(policy.state_dict()), "frame"), name="self_play")
 
 
 def advantages_of(rewards, values, signs, last):
-    """Generalised advantages, (steps, tables): ``signs``: 1 where the striker stays, -1 where the other comes, 0 at the end
-    of a frame; ``last``: the values after the last step, of whoever strikes then."""
+    """Generalised advantages, (steps, tables). ``signs``: 1 if the same player strikes next, -1 if the opponent does, 0 at the
+    end of a frame; ``last``: the next striker's values after the last step."""
     advantages, running, after = np.zeros_like(rewards), np.zeros_like(last), last
     for t in reversed(range(len(rewards))):
         surprise = rewards[t] + GAMMA * signs[t] * after - values[t]
@@ -84,7 +85,7 @@ def advantages_of(rewards, values, signs, last):
 
 
 class Run:
-    """A training, new or from its checkpoint: the policy, the tables and how far it is."""
+    """A training, new or from its checkpoint: the policy, the tables and the progress."""
 
     def __init__(self, args: argparse.Namespace):
         self.args, self.asked = args, (args.shots, args.tables, args.seed, args.fresh)
@@ -110,14 +111,16 @@ class Run:
         return self.rollout * -(-self.args.shots // self.rollout)
 
     def _restore(self, file: Path) -> list[dict[str, Any]]:
-        """Take the state of a checkpoint; returns that of the tables."""
+        """Restore the state of a checkpoint. Returns the state of the tables."""
         try:
             state = pickle.loads(unseal(file.read_bytes(), CHECKPOINT))
         except ValueError as error:
-            raise SystemExit(f"{file}: {error}; remove it to begin anew") from None
+            raise SystemExit(f"{file}: {error}; remove it to start again") from None
         if state["asked"] != self.asked:
             words = "--shots, --tables, --seed and --fresh"
-            raise SystemExit(f"{file} was made with {words} {state['asked']}: give these, or another --out")
+            raise SystemExit(
+                f"{file} was made with {words} {state['asked']}: use these options, or another --out"
+            )
         self.policy.load_state_dict(state["policy"])
         self.optimizer.load_state_dict(state["optimizer"])
         torch.set_rng_state(state["random"])
@@ -126,18 +129,18 @@ class Run:
 
     @property
     def seconds(self) -> float:
-        """Duration so far [s], with the time before a resume."""
+        """Duration so far [s], including the time before a resume."""
         return self.spent + time.perf_counter() - self.began
 
     def save(self) -> None:
-        """Write the checkpoint: between two rollouts it loses nothing."""
+        """Write the checkpoint, which is complete between two rollouts."""
         state = {"asked": self.asked, "shots": self.shots, "curve": self.curve, "seconds": self.seconds}
         state |= {"policy": self.policy.state_dict(), "optimizer": self.optimizer.state_dict()}
         state |= {"tables": self.tables.get_state(), "random": torch.get_rng_state()}
         write_atomic(self.args.out / CHECKPOINT, seal(pickle.dumps(state), CHECKPOINT))
 
     def train(self) -> None:
-        """Rollout after rollout; judged and saved between some of them."""
+        """Train rollout by rollout, with evaluations and checkpoints in between."""
         with Progress("self-play", self.total, "shots", done=self.shots, to=sys.stdout) as progress:
             while self.shots < self.total:
                 if self.shots >= len(self.curve) * self.total // JUDGED:
@@ -155,7 +158,7 @@ class Run:
         self.save()
 
     def _play(self):
-        """One rollout: (observations, actions, logarithms of their chances), and advantages and returns; a row a stroke."""
+        """Play a rollout. Returns (observations, actions, log probabilities, advantages, returns), one row per stroke."""
         n, rows = self.args.tables, np.arange(self.args.tables)
         seen = np.empty((STEPS, n, self.seen.shape[1]), np.float32)
         actions = np.empty((STEPS, n), np.int64)
@@ -180,7 +183,7 @@ class Run:
         return [torch.from_numpy(part.reshape(STEPS * n, *part.shape[2:])) for part in parts]
 
     def _learn(self, seen, actions, logs, advantages, returns) -> None:
-        """The update of PPO on a rollout."""
+        """Update the policy by PPO on a rollout."""
         for group in self.optimizer.param_groups:
             group["lr"] = RATE * max(0.05, 1.0 - self.shots / self.total)
         known = self.shots > CRITIC * self.rollout or self.args.fresh
@@ -200,24 +203,24 @@ class Run:
 
 
 def parse(argv) -> argparse.Namespace:
-    """The options of a command line."""
+    """Parse the command line."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("--shots", type=int, default=1_000_000, help="of both sides [1000000: an hour of a core]")
-    add("--frames", type=int, default=1000, help="frames to judge against each opponent [1000]")
-    add("--judged", type=int, default=300, help="frames to judge on the way [300]")
+    add("--shots", type=int, default=1_000_000, help="strokes of both sides [1000000: an hour on one core]")
+    add("--frames", type=int, default=1000, help="frames against each opponent at the end [1000]")
+    add("--judged", type=int, default=300, help="frames of each evaluation during training [300]")
     add("--tables", type=int, default=128, help="tables side by side [128]")
     add("--threads", type=int, help="threads of the tables [all processors]")
     add("--seed", type=int, default=0)
-    add("--fresh", action="store_true", help="begin with nothing")
+    add("--fresh", action="store_true", help="start from scratch")
     add("--out", type=Path, default=Path("runs", "self_play"), help="folder of the run [runs/self_play]")
     return parser.parse_args(argv)
 
 
 def main(argv=None):
-    """Train, judge, write results.json and the weights."""
+    """Train, evaluate, and write results.json and the weights."""
     args = parse(argv)
     args.out.mkdir(parents=True, exist_ok=True)
     torch.set_num_threads(1)

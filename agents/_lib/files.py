@@ -1,4 +1,4 @@
-"""How do commands write their files? Tested before the work, and each completely or not at all."""
+"""How do commands write their files? They test them before the work and write each completely or not at all."""
 
 import io
 import json
@@ -43,7 +43,7 @@ __all__ = [
 
 
 def writable(name, file):
-    """Make the folders of an output; ValueError if it could not be written. Tried: access bits are wrong for
+    """Make the folders of an output. ValueError if it cannot be written. The test writes, because access bits are wrong for
     root."""
     if file is None:
         return
@@ -56,8 +56,7 @@ def writable(name, file):
 
 
 def read_json(name, file, wanted, checked=False):
-    """The content of a JSON file, with its checksum if ``checked``. ValueError that says what is ``wanted`` if it cannot be
-    read."""
+    """Read a JSON file, with its checksum if ``checked``. If it cannot be read, the ValueError says what is ``wanted``."""
     try:
         return files.read_json(file, name, wanted, checked=checked)
     except OSError as error:
@@ -65,12 +64,12 @@ def read_json(name, file, wanted, checked=False):
 
 
 def write_json(file, content):
-    """Write what JSON knows, completely or not at all."""
+    """Write JSON data, completely or not at all."""
     write_atomic(file, json.dumps(content, indent=1) + "\n")
 
 
 def packed_arrays(arrays):
-    """A dict of arrays and numbers as the bytes of an ``.npz``."""
+    """Convert a dict of arrays and numbers to the bytes of an ``.npz``."""
     file = io.BytesIO()
     made: Any = {name: np.asarray(value) for name, value in arrays.items()}
     np.savez(file, **made)
@@ -78,21 +77,21 @@ def packed_arrays(arrays):
 
 
 def keep_arrays(file, arrays):
-    """Write a dict of arrays and numbers, from which the same command goes on."""
+    """Write a dict of arrays and numbers, from which the same command can continue."""
     write_atomic(file, seal(packed_arrays(arrays), file.name))
 
 
 def kept_arrays(file):
-    """What ``keep_arrays`` wrote; numbers come back as arrays of no dimension. ValueError if it is damaged."""
+    """Read what ``keep_arrays`` wrote; numbers return as arrays without dimensions. ValueError if the file is damaged."""
     try:
         return arrays_in(unseal(file.read_bytes(), file.name))
     except ValueError as error:
-        wanted = f"must be as it was written ({error}): remove it, and the same command plays it again"
+        wanted = f"must be undamaged ({error}): remove it, and the same command makes it again"
         raise refuse("out", str(file), wanted) from None
 
 
 def save_figure(figure, file, **options):
-    """Write a matplotlib figure, in the format of the file's suffix, completely or not at all."""
+    """Write a matplotlib figure in the format of the file's suffix, completely or not at all."""
     drawn = io.BytesIO()
     figure.savefig(drawn, format=file.suffix[1:], **options)
     write_atomic(file, drawn.getvalue())

@@ -1,7 +1,7 @@
-"""How does a command of this project start and stop? It writes to any terminal, and an outside cause that
-stops it is reported in one line.
+"""How does a command of this project start and stop? It writes to any terminal and reports an outside cause that
+stops it in one line.
 
-Only the standard library is imported here: missing packages are reported before they are needed.
+This module imports only the standard library, so that it can report missing packages before they are needed.
 """
 
 import argparse
@@ -16,19 +16,19 @@ import traceback
 from pathlib import Path
 
 INTERRUPTED = 130
-"""The exit code after Ctrl-C, as shells have it."""
+"""The exit code after Ctrl-C, as in shells."""
 EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "cluster"}
-"""The extra of pyproject.toml that brings a package which is not in [train]."""
+"""Package that is not in [train] -> the extra of pyproject.toml that installs it."""
 OUR_OWN = ("agents", "snooker_env", "train", "benchmarks")
 
 
 def installs(extra):
-    """The line that installs an extra: a command of this repository runs in a clone."""
+    """The line that installs an extra in a clone, where the commands of this repository run."""
     return f'pip install -e ".[{extra}]"'
 
 
 def python():
-    """How a command to paste starts this interpreter: "python" if that is it, else its path, as short as may be."""
+    """How a command to paste starts this interpreter: "python" if possible, otherwise its shortest path."""
     mine, usual = Path(sys.executable or "python"), shutil.which("python")
     if usual and mine.parent.resolve() == Path(usual).parent.resolve() and mine.samefile(usual):
         return "python"
@@ -36,8 +36,8 @@ def python():
 
 
 def what_is_missing(error):
-    """An ``ImportError`` in words. Raised again if a module of this repository lacks a name."""
-    if not error.name:  # its text names what is missing
+    """Describe an ``ImportError``. Raises it again if a module of this repository lacks a name."""
+    if not error.name:  # its text names the missing package
         return str(error)
     package = error.name.partition(".")[0]
     if package in OUR_OWN:
@@ -46,8 +46,7 @@ def what_is_missing(error):
 
 
 class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import torch
-    """Around the imports of the command ``name``: one line if a package is missing, no traceback after
-    Ctrl-C."""
+    """Guard the imports of the command ``name``: one line for a missing package, no traceback after Ctrl-C."""
 
     def __init__(self, name):
         self._name = name
@@ -63,27 +62,27 @@ class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import tor
 
 
 def parser_of(name, doc):
-    """The parser of the command ``name``, with its module's docstring as it stands."""
+    """The parser of the command ``name``, which shows its module's docstring unchanged."""
     return argparse.ArgumentParser(
         name, description=doc, formatter_class=argparse.RawDescriptionHelpFormatter
     )
 
 
 def any_terminal():
-    """Print characters that the terminal cannot encode as "?" in place of a UnicodeEncodeError."""
+    """Print "?" for characters that the terminal cannot encode, instead of raising UnicodeEncodeError."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "surrogateescape"):
             stream.reconfigure(errors="replace")
 
 
 def _of_thread(uncaught):
-    """Hide a disk error of TensorBoard's writer thread: the main thread raises the same error again."""
+    """Hide a disk error of TensorBoard's writer thread; the main thread raises the same error."""
     if not isinstance(uncaught.exc_value, OSError):
         threading.__excepthook__(uncaught)
 
 
 def command(name):
-    """A decorator for ``main(argv)`` of the command ``name``: it ends as ``snooker_env._lib.command.exit_code`` says."""
+    """Decorate ``main(argv)`` of the command ``name``, which then ends according to ``snooker_env._lib.command.exit_code``."""
 
     def import_and_run(main):
         @functools.wraps(main)
@@ -91,7 +90,7 @@ def command(name):
             any_terminal()
             before, threading.excepthook = threading.excepthook, _of_thread
             try:
-                from snooker_env._lib.command import exit_code  # here: what it needs may be missing
+                from snooker_env._lib.command import exit_code  # here: its packages may be missing
 
                 return exit_code(name, lambda: main(argv), what_is_missing)
             except ImportError as error:
@@ -105,14 +104,14 @@ def command(name):
 
 
 def in_one_line(kind, error, trace):
-    """``sys.excepthook`` while a command is loaded: Ctrl-C and a missing library are one line."""
+    """``sys.excepthook`` while a command is loaded: reports Ctrl-C and a missing library in one line."""
     if isinstance(error, KeyboardInterrupt):
         print("interrupted", file=sys.stderr, flush=True)
-        os._exit(INTERRUPTED)  # Python itself would end an interrupted process by a signal
+        os._exit(INTERRUPTED)  # Python itself would end an interrupted process with a signal
     if isinstance(error, ImportError):
         with contextlib.suppress(
             ImportError
-        ):  # a mistake in a module of this repository: no library is missing
+        ):  # a mistake in a module of this repository, not a missing library
             print(what_is_missing(error), file=sys.stderr)
             return
     traceback.print_exception(kind, error, trace)

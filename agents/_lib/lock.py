@@ -1,5 +1,4 @@
-"""Which process owns a folder? The one that holds its lock; no process once that one has ended, however it
-ended."""
+"""Which process owns a folder? The one that holds its lock. When that process ends in any way, the folder is free."""
 
 import os
 import platform
@@ -11,12 +10,12 @@ from filelock import FileLock, Timeout
 from snooker_env.checks import refuse
 
 NAME = "train.lock"
-"""The file in the folder. One left by kill -9 is no obstacle: the system's lock on it counts."""
+"""The file in the folder. A file left after kill -9 is harmless: only the system's lock on it counts."""
 
 
 class Lock:
-    """Holds a folder until ``release`` or the end of the process. Raises ValueError, naming the holder, if
-    another does."""
+    """Holds a folder until ``release`` or the end of the process. If another process holds it, raises a ValueError
+    that names the holder."""
 
     def __init__(self, folder, field="out"):
         self._path = folder / NAME
@@ -25,7 +24,7 @@ class Lock:
             self._lock.acquire(timeout=0)
         except Timeout:
             raise _refuse_taken_folder(folder, field, self._path) from None
-        with suppress(OSError):  # Windows lets nobody write or read a locked file
+        with suppress(OSError):  # on Windows nobody can write or read a locked file
             self._path.write_text(
                 f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n"
             )
@@ -43,10 +42,10 @@ class Lock:
 
 
 def _refuse_taken_folder(folder, field, path):
-    """The ValueError for a folder that another process holds."""
+    """Make the ValueError for a folder that another process holds."""
     who = ""
     with suppress(OSError):
         who = path.read_text(encoding="utf-8", errors="replace").strip()
     pid = who.split()[1] if who.startswith("process ") else "PID"
-    wanted = f"must be a folder that no other process uses: {who or 'another process'} does. Wait, or stop it, which saves"
-    return refuse(field, str(folder), f"{wanted} what it did (kill -INT {pid}), or give another --{field}")
+    wanted = f"must be a folder that no other process uses: {who or 'another process'} uses it. Wait, stop it with kill"
+    return refuse(field, str(folder), f"{wanted} -INT {pid} (it saves its work), or give another --{field}")

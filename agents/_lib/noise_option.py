@@ -1,4 +1,4 @@
-"""How are execution errors given on the command line? As LEVEL or LEVEL*SCALE, for example ``professional*1.2``."""
+"""How do you pass execution errors on the command line? As LEVEL or LEVEL*SCALE, for example ``professional*1.2``."""
 
 from dataclasses import asdict
 
@@ -7,7 +7,7 @@ from snooker_env.tasks import Noise
 
 
 def noise_option(text):
-    """The environment's option ``noise`` for this text: the level's name, or a dict. Raises ValueError."""
+    """Convert this text to the environment's option ``noise``: a level's name or a dict. Raises ValueError."""
     level, star, scale = text.partition("*")
     noise = Noise.of(level)
     if not star:

@@ -1,4 +1,4 @@
-"""How is physics given on the command line? As PRESET or PRESET,FIELD=VALUE,... for example
+"""How do you pass physics on the command line? As PRESET or PRESET,FIELD=VALUE,..., for example
 ``paper,mu_bb=marlow``."""
 
 from snooker_env import Physics
@@ -7,7 +7,7 @@ from snooker_env.geometry import BALL_RADIUS
 
 
 def physics_option(text):
-    """The environment's option ``physics`` for this text, a dict. Raises ValueError."""
+    """Convert this text to the environment's option ``physics``, a dict. Raises ValueError."""
     preset, *changes = text.split(",")
     fields = {"preset": preset}
     for change in changes:
@@ -21,11 +21,11 @@ def physics_option(text):
     made = Physics.of(fields)
     made.check_stopping()
     if made.R != BALL_RADIUS:
-        raise refuse("physics", text, f"must leave R at {BALL_RADIUS}: the table is built for it")
+        raise refuse("physics", text, f"must keep R at {BALL_RADIUS}, because the table is built for it")
     return fields
 
 
 def physics_text(physics):
-    """The inverse of ``physics_option``: the text for a preset's name or a dict of fields."""
+    """Invert ``physics_option``: the text for a preset's name or a dict of fields."""
     fields = dict(physics) if isinstance(physics, dict) else {"preset": physics}
     return ",".join([fields.pop("preset", "paper"), *(f"{name}={value}" for name, value in fields.items())])

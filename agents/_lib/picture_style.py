@@ -1,10 +1,10 @@
-"""How are the charts of this repository drawn? One page, typeface, set of sizes and palette for all that
-matplotlib draws.
+"""How are the charts of this repository drawn? With one page, typeface, set of sizes and palette for all figures
+of matplotlib.
 
-A chart is ``WIDTH`` inches wide, which is 880 pixels where a README shows it: one inch is 100 pixels there,
-and the least size of a text, ``SMALL`` points, is 11 pixels high (7.6 on a page 600 pixels wide). The page is
-opaque and almost white, so that a chart reads the same in light and dark surroundings. ``tests/pictures.py``
-checks every chart: sizes, overlaps, and that nothing is cut off.
+A chart is ``WIDTH`` inches wide, or 880 pixels in a README, where one inch is 100 pixels. The smallest text,
+``SMALL`` points, is then 11 pixels high (7.6 on a page 600 pixels wide). The page is opaque and almost white, so
+that a chart looks the same on light and dark backgrounds. ``tests/pictures.py`` checks the sizes, overlaps and
+margins of every chart.
 """
 
 from collections.abc import Iterator
@@ -18,11 +18,11 @@ import snooker_env.render
 from .files import save_figure
 
 WIDTH = 8.8
-"""Of every chart [inches]."""
+"""Width of every chart [inches]."""
 DPI = 200
-"""Pixels an inch of the file: twice what a README shows, for sharp screens."""
+"""Pixels per inch in the file: twice those in a README, for sharp screens."""
 SMALL, TEXT, PANEL, TITLE = 8.0, 9.0, 10.0, 13.0
-"""Sizes of text [points]: of what is least, of the rest, of a panel's title, of the chart's title."""
+"""Sizes of text [points]: smallest, normal, title of a panel, title of the chart."""
 PAGE, PANEL_GROUND, INK, QUIET, GRID = "#f4f5f7", "#ffffff", "#1c2230", "#596273", "#e2e5ea"
 BLUE, ORANGE, GREEN, PURPLE, SKY, AMBER, GREY = (
     "#0072b2",
@@ -33,10 +33,10 @@ BLUE, ORANGE, GREEN, PURPLE, SKY, AMBER, GREY = (
     "#e69f00",
     "#8a93a3",
 )
-"""After Okabe and Ito: they differ for colour-blind readers as well."""
+"""After Okabe and Ito: colour-blind readers can distinguish them."""
 SERIES = (BLUE, ORANGE, GREEN, PURPLE, AMBER, SKY, GREY)
 HEAT, BALANCE = "YlGnBu", "PuOr_r"
-"""Colour maps: from little to much; from less than one to more than one."""
+"""Colour maps: from low to high; from below one to above one."""
 FAMILY = "Inter of snooker_env"
 
 _FONTS = Path(snooker_env.render.__file__).parent / "fonts"
@@ -51,7 +51,7 @@ _EDGE = 0.14  # around everything on the page [inches]
 
 @cache
 def _typeface():
-    """Register the typeface that snooker_env draws with; its name."""
+    """Register the typeface of snooker_env. Returns its name."""
     from matplotlib.font_manager import FontEntry, fontManager
 
     for name, weight in (("Inter-Medium.otf", 400), ("Inter-Bold.otf", 700)):
@@ -114,7 +114,7 @@ def _settings() -> Any:
 
 @contextmanager
 def drawing() -> Iterator[Any]:
-    """``matplotlib.pyplot`` that draws into files, in this style: a chart is made within."""
+    """A context with ``matplotlib.pyplot`` in this style, drawing into files."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -127,13 +127,13 @@ def drawing() -> Iterator[Any]:
 def page(
     plt: Any, height: float, title: str, note: str = "", *, foot: str = "", **grid: Any
 ) -> tuple[Any, Any]:
-    """A figure with its title, a note on how to read it, its source at the foot, and room for panels between.
+    """Make a figure with its title, a note on how to read it, its source at the foot, and room for panels between.
 
     ``height`` in inches; ``grid``: of ``Figure.subplots`` (rows, columns, ratios). Returns the figure and its
     axes, None without ``grid``.
     """
     figure = plt.figure(figsize=(WIDTH, height), layout="constrained")
-    line = 1.42 / 72  # of a text of one point [inches]
+    line = 1.42 / 72  # height of a text of one point [inches]
     top = _EDGE
     for text, size, weight, colour in ((title, TITLE, "bold", INK), (note, TEXT, "normal", QUIET)):
         if text:
@@ -169,7 +169,7 @@ def page(
 
 
 def number(value: float, _position: int | None = None) -> str:
-    """A number as an axis shows it: 0.001, 0.5, 20, 1,000; a power of ten where it is smaller or greater."""
+    """Format a number for an axis: 0.001, 0.5, 20, 1,000; smaller or larger numbers as powers of ten."""
     from math import floor, log10
 
     if value == 0:
@@ -204,13 +204,13 @@ def colour_bar(figure: Any, shown: Any, axes: Any, label: str, ticks: Any = None
 
 
 def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, dict[str, Any]]]) -> None:
-    """Write labels beside points, each where it lies on no other text: below, else right, left or above.
+    """Write labels beside points, each without covering other text: below, otherwise right, left or above.
 
-    ``labels``: of each its Axes, the point (x, y), the text, and keywords of ``Axes.annotate``.
+    ``labels`` holds for each label its Axes, the point (x, y), the text, and keywords of ``Axes.annotate``.
     """
     from matplotlib.text import Text
 
-    figure.canvas.draw()  # the layout is made here
+    figure.canvas.draw()  # this computes the layout
     figure.set_layout_engine("none")
     renderer = figure.canvas.get_renderer()
     placed = [
@@ -219,7 +219,7 @@ def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, 
         if text.get_visible() and text.get_text()
     ]
     for axes, point, text, how in labels:
-        for k, side in enumerate((*_SIDES, _SIDES[0])):  # below where no side is free
+        for k, side in enumerate((*_SIDES, _SIDES[0])):  # below if no side is free
             note = axes.annotate(text, point, textcoords="offset points", size=SMALL, **side, **how)
             box = note.get_window_extent(renderer)
             if k == len(_SIDES) or not any(box.overlaps(other) for other in placed):
@@ -229,5 +229,5 @@ def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, 
 
 
 def save(figure: Any, file: Path) -> None:
-    """Write a chart, in the format of the file's suffix, whole or not at all."""
+    """Write a chart in the format of the file's suffix, completely or not at all."""
     save_figure(figure, file, dpi=DPI)

@@ -1,4 +1,4 @@
-"""Where do figures come from? The commit of the checkout, the machine, and the versions that matter."""
+"""Where do figures come from? From the commit of the checkout, the machine and the versions of software."""
 
 from snooker_env.benchmark.provenance import commit, software
 from snooker_env.benchmark.provenance import machine as computer
@@ -12,14 +12,14 @@ def machine():
 
 
 def line(m=None):
-    """The same as one line; ``m``: a dict of ``machine`` that was kept, None for this machine."""
+    """The same on one line. ``m`` is a kept dict of ``machine``, or None for this machine."""
     m = m or machine()
     load = "" if m["load"] is None else f", load {m['load']:.1f}"
     return f"{m['cpu']}, {m['cores']} cores{load}, {m['platform']}, Python {m['python']}, numba {m['numba']}"
 
 
 def provenance():
-    """What computed the figures of a report: version, commit, machine in words, and versions."""
+    """The origin of a report's figures: version, commit, machine in words, and versions."""
     m = machine()
     words = f"{m['cpu']}, {m['cores']} cores, {m['platform']}"
     return {

@@ -1,4 +1,4 @@
-"""How is a table of words and numbers written, on a terminal and in Markdown? No wider than a terminal is."""
+"""How is a table of words and numbers written on a terminal and in Markdown? No wider than the terminal."""
 
 from dataclasses import dataclass, replace
 from textwrap import fill
@@ -8,12 +8,12 @@ from snooker_env._lib.text_tables import format_figure, markdown_table, text_tab
 __all__ = ["WIDTH", "TextTable", "format_figure", "markdown_table", "page", "show", "text_table"]
 
 WIDTH = 100
-"""Columns of text that no table is wider than."""
+"""Maximum width of a table in columns of text."""
 
 
 @dataclass
 class TextTable:
-    """Cells as text: ``keys`` columns say what a row is about, the first ``left`` are words, the others
+    """Cells as text. The first ``keys`` columns identify a row; the first ``left`` columns hold words, the others
     numbers."""
 
     title: str
@@ -22,17 +22,17 @@ class TextTable:
     keys: int
     left: int
     grouped: bool = False
-    """Whether rows with the same first cell belong together."""
+    """Whether rows with the same first cell form a group."""
 
     def tidy(self):
-        """The table without rows and columns that have nothing to say."""
+        """The table without empty rows and columns."""
         columns = [k for k in range(len(self.header)) if k < self.keys or any(row[k] for row in self.rows)]
         rows = [[row[k] for k in columns] for row in self.rows if any(row[self.keys :])]
         left = sum(k < self.left for k in columns)
         return replace(self, header=[self.header[k] for k in columns], rows=rows, left=left)
 
     def narrow(self, width=WIDTH):
-        """The same as tables that are no wider than that, each with the key columns; none if it is empty."""
+        """Split the table into tables within the maximum width, each with the key columns; none if it is empty."""
         widths = [2 + max(len(row[k]) for row in (self.header, *self.rows)) for k in range(len(self.header))]
         groups, room = [], 0
         for k in range(self.keys, len(widths)):
@@ -49,7 +49,7 @@ class TextTable:
             yield replace(self, title=title, header=[self.header[k] for k in columns], rows=rows, left=left)
 
     def text(self):
-        """It for a terminal, with a line between groups."""
+        """The table for a terminal, with a line between groups."""
         head, rule, *lines = text_table(self.header, self.rows, self.left)
         for k in range(len(lines) - 1, 0, -1):
             if self.grouped and self.rows[k][0] != self.rows[k - 1][0]:
@@ -57,7 +57,7 @@ class TextTable:
         return "\n".join([fill(self.title, WIDTH), head, rule, *lines])
 
     def markdown(self):
-        """The same in Markdown."""
+        """The table in Markdown."""
         return "\n".join([f"**{self.title}**", "", *markdown_table(self.header, self.rows, self.left)])
 
 
@@ -68,7 +68,7 @@ def show(parts):
 
 
 def page(title, command, made, parts):
-    """A Markdown page of tables and paragraphs; ``made``: with what."""
+    """A Markdown page of tables and paragraphs; ``made`` states their origin."""
     head = [f"# {title}", "", "Made by", "", "```bash", command, "```", "", f"with {made}.", ""]
     return "\n".join(
         [

@@ -1,1 +1,1 @@
-"""How well do agents play? Held-out visits, tournaments, figures with intervals, reports, models."""
+"""How well do agents play? Held-out visits, tournaments, figures with intervals and reports."""

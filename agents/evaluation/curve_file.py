@@ -1,4 +1,4 @@
-"""What is kept of learning curves? One point for each row, training seed and number of shots, and what made it."""
+"""What does a file of learning curves hold? One point per row, training seed and number of shots, and its origin."""
 
 import json
 from pathlib import Path
@@ -9,19 +9,19 @@ from snooker_env.checks import refuse
 
 NAME, VERSION = "snooker_env.curves", 1
 KEYS = {"levels": ("place", "player"), "points": ("row", "seed", "shots")}
-"""Players beside the curves, and points of the curves: lists of the file, and what is there once."""
+"""Lists of the file (players for comparison, points of the curves) -> the keys that identify an item."""
 FIELDS = {"rows": dict, "made": list, **dict.fromkeys(KEYS, list)}
-"""These, what each row trains, and the commands with their software."""
+"""All keys of the file: these lists, what each row trains, and the commands with their software."""
 
 
 def is_curves(content: Any) -> bool:
-    """Whether that is the content of a file of curves, and not another report."""
+    """Whether this is the content of a file of curves, not another report."""
     schema = content.get("schema") if isinstance(content, dict) else None
     return isinstance(schema, dict) and schema.get("name") == NAME
 
 
 def read_curves(file: Path, visits: int) -> dict[str, Any]:
-    """The content of the file, an empty one if there is none. ValueError if it is another file, or of other visits."""
+    """Read the file, or make an empty content if there is none. ValueError if it is another kind of file, or has other visits."""
     if not file.exists():
         schema = {"name": NAME, "version": VERSION}
         return {"schema": schema, "visits": visits, **{name: kind() for name, kind in FIELDS.items()}}
@@ -37,10 +37,10 @@ def read_curves(file: Path, visits: int) -> dict[str, Any]:
 
 
 def keep(file: Path, name: str, one: dict[str, Any], head: dict[str, Any]) -> None:
-    """Append it to a list of the file unless it is there, and write all; others may write the same file meanwhile.
+    """Append an item to a list of the file unless it is there, and write the file; other processes may write it too.
 
-    ``head``: what was made with it, "visits", "rows" and "made"."""
-    from filelock import FileLock  # here: who reads a file needs none
+    ``head``: the origin of the item: "visits", "rows" and "made"."""
+    from filelock import FileLock  # imported here, because readers of a file do not need it
 
     with FileLock(file.with_suffix(".lock")):
         content, made = read_curves(file, head["visits"]), head["made"]
@@ -55,7 +55,7 @@ def keep(file: Path, name: str, one: dict[str, Any], head: dict[str, Any]) -> No
 
 
 def _lines(value: Any) -> str:
-    """JSON, of a list one line for each item."""
+    """JSON with one line per item of a list."""
     if not isinstance(value, list):
         return json.dumps(value)
     return "[\n" + ",\n".join(f"  {json.dumps(item)}" for item in value) + "\n ]"

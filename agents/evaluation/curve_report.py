@@ -1,4 +1,4 @@
-"""How are learning curves shown? A table for each place where agents are judged, the code of each row, and a picture."""
+"""How are learning curves shown? One table for each task that judges the agents, the code of each row, and a picture."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -16,14 +16,15 @@ PLACES = {
     "escape": ("share of fair strokes", "{:.2f}"),
     "safety": ("points of lead a stroke", "{:.1f}"),
 }
-"""Where agents are judged: what their points are, and how these are written."""
+"""Task that judges the agents -> what a point means, and the format of the figures."""
 TITLE = "What plain Stable-Baselines3 learns, by the form of the action"
 BEGIN, END = "<!-- curves -->\n", "<!-- /curves -->"
-"""What lies between them on a page is written by ``agents.curves``."""
+"""``agents.curves`` writes everything on a page between these marks."""
 LEGEND = (
-    "Median over training seeds [least, most], of the deterministic policy on held-out tables with a professional's errors and a real "
-    "cue; ±: 1.96 standard errors over the episodes of one seed, the largest. untrained: the policy before its first shot. PPO plays "
-    "whole rollouts, up to 4,095 shots more. shots/s: a second of processor time, with learning."
+    "Each cell is the median over training seeds [lowest, highest] of the deterministic policy on held-out tables, with a "
+    "professional's errors and a real cue. ± is 1.96 standard errors over the episodes of one seed, for the seed with the largest "
+    "error. untrained: the policy before its first shot. PPO plays whole rollouts, so up to 4,095 shots more than stated. shots/s: "
+    "shots per second of processor time, learning included."
 )
 _DASHES = ((0, (1, 2)), (0, (4, 3)), (0, (7, 2, 1, 2)))
 
@@ -33,7 +34,7 @@ def _points(content: dict[str, Any], row: str, shots: int) -> list[dict[str, Any
 
 
 def _shots(content: dict[str, Any], place: str) -> list[int]:
-    """The numbers of shots after which agents were judged there, without 0."""
+    """The numbers of shots after which this task judged the agents, without 0."""
     known = {one["shots"] for one in content["points"] if content["rows"][one["row"]]["place"] == place}
     return sorted(known - {0})
 
@@ -44,7 +45,7 @@ def _rows(content: dict[str, Any], place: str) -> list[str]:
 
 
 def _spread(values: Sequence[float], form: str) -> str:
-    """Median and range; of one value that alone."""
+    """Median and range, or the value alone if there is only one."""
     low, middle, high = (form.format(value) for value in (min(values), median(values), max(values)))
     return middle if len(values) == 1 else f"{middle} [{low}, {high}]"
 
@@ -57,7 +58,7 @@ def _cell(points: Sequence[dict[str, Any]], form: str) -> str:
 
 
 def _rate(content: dict[str, Any], name: str) -> str:
-    """Shots a second of processor time of a row, until the last point of each seed: the median."""
+    """Shots per second of processor time up to the last point of each seed: the median over seeds."""
     last: dict[int, dict[str, Any]] = {}
     for one in content["points"]:
         if one["row"] == name and one["shots"] > last.get(one["seed"], {"shots": 0})["shots"]:
@@ -67,7 +68,7 @@ def _rate(content: dict[str, Any], name: str) -> str:
 
 
 def table_of(content: dict[str, Any], place: str) -> TextTable:
-    """The points of agents that were judged there."""
+    """The points of the agents that this task judged."""
     (words, form), rows, shots = PLACES[place], [], _shots(content, place)
     for name in _rows(content, place):
         cells = [_cell(_points(content, name, k), form) for k in (0, *shots)]
@@ -75,34 +76,34 @@ def table_of(content: dict[str, Any], place: str) -> TextTable:
         algorithm = content["rows"][name]["algorithm"]
         rows.append([name, algorithm, *cells, _rate(content, name), str(len(seeds))])
     beside = ", ".join(f"{player} {_cell([one], form)}" for player, one in levels_at(content, place).items())
-    title = f"{place[0].upper()}{place[1:]}: {words}" + (f". Beside them: {beside}" if beside else "")
+    title = f"{place[0].upper()}{place[1:]}: {words}" + (f". For comparison: {beside}" if beside else "")
     head = ["row", "algorithm", "untrained", *(f"{k:,} shots" for k in shots), "shots/s", "seeds"]
     return TextTable(title, head, rows, 2, 2)
 
 
 def tables_of(content: dict[str, Any]) -> Iterator[TextTable]:
-    """One for each place where agents were judged."""
+    """One table for each task that judged agents."""
     yield from (table_of(content, place) for place in PLACES if _rows(content, place))
 
 
 def levels_at(content: dict[str, Any], place: str) -> dict[str, dict[str, Any]]:
-    """What others make there, by their name."""
+    """The points of players that do not learn on this task, by name."""
     return {one["player"]: one for one in content["levels"] if one["place"] == place}
 
 
 def _code(content: dict[str, Any]) -> str:
-    """What is trained in each row."""
+    """The code that each row trains."""
     known = {one["row"] for one in content["points"]}
     return "\n".join(f"* {name}: `{row['code']}`" for name, row in content["rows"].items() if name in known)
 
 
 def title(content: dict[str, Any]) -> str:
-    """What the report is about."""
+    """The heading of the report."""
     return f"{TITLE}: {content['visits']} episodes a point"
 
 
 def parts(content: dict[str, Any]) -> Iterator[TextTable | str]:
-    """Tables no wider than a terminal and sentences, in order."""
+    """Yield tables no wider than a terminal, and sentences, in order."""
     for table in tables_of(content):
         yield from table.narrow()
     yield LEGEND
@@ -124,7 +125,7 @@ def markdown(content: dict[str, Any]) -> str:
 
 
 def fill(text: str, content: dict[str, Any], file: Path) -> str:
-    """The text of a page in ``docs/agents`` with the points of visits between its marks. ValueError if it has none."""
+    """Fill the marked part of a page in ``docs/agents`` with the points of visits. ValueError if the page has no marks."""
     before, begin, rest = text.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
@@ -134,16 +135,19 @@ def fill(text: str, content: dict[str, Any], file: Path) -> str:
     rows = [[row[k].partition(" ±")[0] for k in shown] for row in table.rows]
     points = TextTable(table.title, [table.header[k] for k in shown], rows, 1, 1).markdown()
     picture = "![points a visit by shots of training](../../results/pictures/curves.png)"
-    words = "Median over training seeds [least, most]. [All rows](../../results/agents/curves.md), with errors, rates and code."
+    words = (
+        "Each cell is the median over training seeds [lowest, highest] on held-out tables, which no agent trains on. "
+        "[All rows](../../results/agents/curves.md) has errors, rates and code; `bash results/make.sh curves` makes them."
+    )
     return "\n\n".join([before + begin.strip(), picture, points, words, end + after])
 
 
 def draw(content: dict[str, Any], file: Path) -> None:
-    """Draw the curves of visits: a panel for the menu, one for the other forms of action."""
+    """Draw the curves of visits: one panel for the menu and one for the other forms of action."""
     shots, others = _shots(content, "visit"), levels_at(content, "visit")
     note = (
         f"Points a visit of the deterministic policy on {content['visits']} held-out tables, a professional's errors, a real cue.\n"
-        "Line: the median over training seeds; band: their range. Dashed: players that learn nothing."
+        "Line: median over training seeds; band: their range. Dashed: players that do not learn."
     )
     with drawing() as plt:
         figure, panels = page(plt, 5.2, TITLE, note, rows=1, columns=2, sharey=True)

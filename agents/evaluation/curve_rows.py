@@ -1,4 +1,4 @@
-"""What does a stranger train? Algorithms of Stable-Baselines3 on each form of action, a few lines of code each."""
+"""What would a new user train? Algorithms of Stable-Baselines3 on each form of action, in a few lines of code each."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -27,20 +27,20 @@ FORMS: dict[str, dict[str, Any]] = {
 SEEDS = 1000
 """Table k of training seed s begins with this times s, plus k; held-out tables begin with a million."""
 MOST_STEPS = 20
-"""Of an episode of one stroke in a frame: who fouls plays again."""
+"""Maximum steps of a one-stroke episode in a frame, where a player who fouls may have to play again."""
 
 
 class Place(NamedTuple):
-    """Where an agent is trained and judged: options of training, and those of the judging that differ."""
+    """Where an agent is trained and evaluated: options of training, and the options that differ in the evaluation."""
 
     options: dict[str, Any]
     judged: dict[str, Any]
     shots: tuple[int, ...] = (100_000,)
-    """The numbers of shots after which it is judged, unless others are asked for."""
+    """The default numbers of shots after which the agent is evaluated."""
 
     @property
     def judged_options(self) -> dict[str, Any]:
-        """All options of the judging."""
+        """All options of the evaluation."""
         return self.options | self.judged
 
 
@@ -61,12 +61,12 @@ PLACES = {
 
 @dataclass(frozen=True)
 class Row:
-    """What is trained: an algorithm with its settings, all others at their defaults, on tables with a form of action."""
+    """What is trained: an algorithm with its settings (others at their defaults) on tables with a form of action."""
 
     form: str
     algorithm: type[BaseAlgorithm]
     tables: int | None
-    """Of a ``SnookerVecEnv``; None: one of ``gymnasium.make``."""
+    """Number of tables in a ``SnookerVecEnv``; None: a single table of ``gymnasium.make``."""
     settings: Mapping[str, object] = field(default_factory=dict)
     policy: str | type = "MlpPolicy"
     place: str = "visit"
@@ -77,20 +77,20 @@ class Row:
         return PLACES[self.place].options | FORMS[self.form]
 
     def code(self) -> str:
-        """The same in Python, as a stranger writes it."""
+        """The row in Python, as a new user would write it."""
         made = ("gymnasium.make", '"snooker_env:Snooker-v0"')
         tables = _call(*(("SnookerVecEnv", str(self.tables)) if self.tables else made), **self.options)
         policy = f'"{self.policy}"' if isinstance(self.policy, str) else self.policy.__name__
         return _call(self.algorithm.__name__, policy, tables, **self.settings)
 
     def describe(self) -> dict[str, str]:
-        """What a file of points keeps of it."""
+        """The description of the row in a file of points."""
         policy = "" if isinstance(self.policy, str) else f", {self.policy.__name__}"
         name = self.algorithm.__name__ + policy
         return {"place": self.place, "form": self.form, "algorithm": name, "code": self.code()}
 
     def agent(self, seed: int, threads: int | None) -> tuple[BaseAlgorithm, Any]:
-        """That, untrained, of one training seed, and its tables."""
+        """The untrained agent of one training seed, and its tables."""
         if self.tables is None:
             tables = gymnasium.make("snooker_env:Snooker-v0", **self.options)
         else:
@@ -103,7 +103,7 @@ class Row:
         return make(self.policy, tables, seed=seed, device="cpu", **self.settings)
 
     def judge(self, agent: BaseAlgorithm, visits: int, threads: int | None) -> np.ndarray:
-        """What the deterministic policy makes of each held-out episode (visits,)."""
+        """The return of the deterministic policy in each held-out episode (visits,)."""
 
         def decide(seen: Any, tables: SnookerVectorEnv) -> np.ndarray:
             if isinstance(agent, MaskablePPO):
@@ -114,7 +114,7 @@ class Row:
 
 
 def _call(name: str, *first: str, **more: object) -> str:
-    """A call in Python."""
+    """Write a call in Python."""
     keywords = [
         f'{key}="{value}"' if isinstance(value, str) else f"{key}={value}" for key, value in more.items()
     ]
@@ -127,9 +127,9 @@ def _recipe(name: str) -> dict[str, Any]:
     return {"tables": recipe.n_envs, "settings": recipe.settings}
 
 
-_SHORT = {"n_steps": 32}  # else 64 tables collect 131,072 strokes before the first update
-_OFF = {"gamma": 0.9, "gradient_steps": 4}  # of SAC and TQC: four updates for a stroke on each of 16 tables
-# a million observations of the menu would be 11 GB and more
+_SHORT = {"n_steps": 32}  # otherwise 64 tables collect 131,072 strokes before the first update
+_OFF = {"gamma": 0.9, "gradient_steps": 4}  # SAC and TQC: four updates per stroke on each of 16 tables
+# a million observations of the menu would need more than 11 GB
 _DQN = {"gamma": 0.9, "train_freq": 1, "gradient_steps": 4, "buffer_size": 100_000}
 ROWS = {
     "pot_ppo": Row("pot", PPO, 64, _SHORT),
@@ -157,9 +157,9 @@ def play(
     visits: int,
     threads: int | None = None,
 ) -> np.ndarray:
-    """The sums of rewards of held-out episodes (visits,); ``decide``: actions from observations and tables.
+    """Play held-out episodes and return their sums of rewards (visits,). ``decide`` maps observations and tables to actions.
 
-    Tables whose episode is over leave, for an opponent would go on to play on them."""
+    Tables leave when their episode ends, because an opponent would otherwise continue on them."""
     seeds = tables_of(options["layout"], visits)
     sums, here, steps = np.zeros(visits), np.arange(visits), 0
     tables = SnookerVectorEnv(visits, threads=threads, **options)
@@ -168,7 +168,7 @@ def play(
         seen, rewards, terminated, truncated, _ = tables.step(decide(seen, tables))
         sums[here] += rewards
         going, steps = ~(terminated | truncated), steps + 1
-        if options.get("task") == "frame" and steps == MOST_STEPS:  # states count no steps
+        if options.get("task") == "frame" and steps == MOST_STEPS:  # states do not count steps
             going[:] = False
         if not going.all():
             states = [state for state, goes in zip(tables.get_state(), going, strict=True) if goes]
@@ -181,5 +181,5 @@ def play(
 
 
 def play_nothing(place: str, visits: int, threads: int | None) -> np.ndarray:
-    """What the action of zeros makes of each held-out episode."""
+    """The return of the action of zeros in each held-out episode."""
     return play(PLACES[place].judged_options, lambda seen, _: np.zeros((len(seen), 4)), visits, threads)

@@ -1,4 +1,4 @@
-"""Who is compared? Players by name and trained models, one a training seed, and how each was trained."""
+"""Who is compared? Named players and trained models (one per training seed), with the training of each."""
 
 import glob
 from dataclasses import dataclass
@@ -25,19 +25,19 @@ UNKNOWN = dict.fromkeys(("layout", "noise", "fidelity", "physics", "cue"), "unkn
 
 @dataclass(frozen=True)
 class Entrant:
-    """What is compared: a player, or the models of one way to train, one for each seed."""
+    """A player, or the models of one training method, one per seed."""
 
     label: str
     runs: tuple
     """Names, model files or run folders."""
     trust: bool = False
-    """May code in its files run? Models of Stable-Baselines3 that train.py did not make need it."""
+    """Whether code in its files may run; Stable-Baselines3 models not made by train.py need this."""
     options: tuple = ()
-    """How the actions of such models are read: (key, value) of ``model_options.KEYS``."""
+    """How to interpret the actions of such models: (key, value) of ``model_options.KEYS``."""
 
     @classmethod
     def of(cls, text, trust=False, options=()):
-        """From NAME, PATH or LABEL=PATH,PATH,... Raises ValueError."""
+        """Parse NAME, PATH or LABEL=PATH,PATH,... Raises ValueError."""
         label, equals, paths = text.partition("=") if not Path(text).exists() else ("", "", "")
         if not equals:
             label, paths = "", text
@@ -48,8 +48,8 @@ class Entrant:
             some = [path] if Path(path).exists() else _names(path) or sorted(glob.glob(path))
             if not some:
                 if Path(path).suffix in (".zip", ".npz") and not glob.has_magic(path):
-                    raise refuse("agent", path, "must be a model file: it is missing")
-                models = "MODULE:CLASS, or name existing models: a .zip or .npz, a run folder, a pattern"
+                    raise refuse("agent", path, "must be an existing model file")
+                models = "MODULE:CLASS, or existing models: a .zip or .npz, a run folder, a pattern"
                 raise refuse("agent", path, f"must be {', '.join(players())}, {models}")
             runs += some
         if equals and not label:
@@ -63,7 +63,7 @@ class Entrant:
         return cls(label or named.stem, tuple(runs), trust, options)
 
     def trained(self):
-        """How each run was trained, as far as its files say: a dict a run, {} for an untrained player."""
+        """The training of each run according to its files: one dict per run, {} for an untrained player."""
         return [self._training(run) for run in self.runs]
 
     def origins(self):
@@ -72,17 +72,17 @@ class Entrant:
 
     @property
     def foreign(self):
-        """Whether a model is among them that train.py did not make."""
+        """Whether any model was not made by train.py."""
         return any(isinstance(self.player(k), Foreign) for k in range(len(self.runs)))
 
     def player(self, k):
-        """The player of its run k; a model is read once."""
+        """The player of run k; each model is read once."""
         run = self.runs[k]
         return player(run) if is_name(run) else _model(run, self.trust, self.options)
 
     def _training(self, run):
         if is_name(run):
-            _ = player(run)  # a player of one's own may be missing
+            _ = player(run)  # a user's own player may be missing
             run = run.partition("@")[2]
             if (
                 not run or not Path(run).exists() or run.endswith(".npz")
@@ -109,22 +109,22 @@ class Entrant:
 
 
 def entrants_of(texts, args, field):
-    """The entrants of a command line, with labels of their own and readable models. Raises ValueError."""
+    """Parse the entrants of a command line, with distinct labels and readable models. Raises ValueError."""
     options = tuple(options_of_words(args.options).items())
     entrants = [Entrant.of(text, args.trust, options) for text in texts]
     labels = [entrant.label for entrant in entrants]
     for entrant in entrants:
         if labels.count(entrant.label) > 1:
-            raise refuse(field, entrant.label, f"must be another for each {field}: give LABEL=PATH")
-        entrant.trained()  # reads its models
+            raise refuse(field, entrant.label, f"must differ for each {field}: give LABEL=PATH")
+        entrant.trained()  # this reads its models
     if options and not any(entrant.foreign for entrant in entrants):
-        unfit = "must be left out: it is for models that train.py did not make"
+        unfit = "must be left out: it is for models not made by train.py"
         raise refuse("options", " ".join(args.options), unfit)
     return entrants
 
 
 def _names(name):
-    """The player of that name in a list; several for a planner with a pattern; [] for another text."""
+    """The player with this name in a list; several for a planner with a pattern; [] for other text."""
     kind, at, pattern = name.partition("@")
     if at and is_name(name):
         return [f"{kind}@{model}" for model in sorted(glob.glob(pattern))] or [name]
@@ -132,7 +132,7 @@ def _names(name):
 
 
 class Foreign(SeenPlayer):
-    """A model that train.py did not make, and what its file says of its training."""
+    """A model not made by train.py, and its training according to its file."""
 
     def __init__(self, seen, name, data):
         super().__init__(seen, name=name)
@@ -145,7 +145,9 @@ def _model(path, trust, options):
     ours = read_model(file, "agent")
     if ours is not None:
         return ours
-    told = _read_record(SavedModel.of(file, "agent"), dict(options))  # before anything in it runs
+    told = _read_record(
+        SavedModel.of(file, "agent"), dict(options)
+    )  # check this before anything in the file runs
     return Foreign(saved_player(file, dict(options), trust, "agent").seen, path, told)
 
 
@@ -162,7 +164,7 @@ def _read_record(saved, options):
 
 
 def _number_in(file, name):
-    """The number of this name that a JSON file holds; None if it holds none. Raises ValueError."""
+    """The number with this name in a JSON file; None if there is none. Raises ValueError."""
     content = read_json("agent", file, "must be JSON") if file.is_file() else {}
     if not isinstance(content, dict):
         raise refuse("agent", str(file), f"must hold {name} in an object")

@@ -1,4 +1,4 @@
-"""How did an agent learn? Its points a visit by shots, beside those of other players: on a terminal, and as a picture."""
+"""How did an agent learn? A curve on a terminal or in a picture compares its points a visit with those of other players."""
 
 from typing import NamedTuple
 
@@ -7,21 +7,21 @@ from agents._lib.picture_style import BLUE, GREY, INK, ORANGE, drawing, number, 
 from .training_summary import interval
 
 _COLUMNS, _ROWS = 60, 16
-"""Characters of the curve on a terminal."""
+"""Size of the curve on a terminal in characters."""
 
 
 class LearningCurve(NamedTuple):
-    """A curve of training, and the means of held-out visits beside it."""
+    """A training curve, with means of held-out visits for comparison."""
 
     agent: str
     points: list
-    """Of each point "steps" and "points": of the last 1000 visits, with the choices that it tries."""
+    """"steps" and "points" of each point: over the last 1000 visits, in which the agent explores."""
     figures: dict
-    """Of ``training_summary.evaluate``; "trained" is the agent, with the choices that it likes most."""
+    """Figures of ``training_summary.evaluate``; "trained" is the agent with its preferred choices."""
 
     @property
     def levels(self):
-        """Points a visit, less luck, of the others: {name: points}."""
+        """Points a visit, less luck, of the other players: {name: points}."""
         return {name: one["adjusted_a_visit"] for name, one in self.figures.items() if name != "trained"}
 
     def text(self):
@@ -47,16 +47,16 @@ class LearningCurve(NamedTuple):
             for k, one in enumerate(rows)
         ]
         foot = f"{'0':<{_COLUMNS - len(f'{last:,}') - 6}}{last:,} shots"
-        return ["points a visit while it trains (*), and on held-out tables (O, -)", *lines, f"{'':7}{foot}"]
+        return ["points a visit during training (*) and on held-out tables (O, -)", *lines, f"{'':7}{foot}"]
 
     def draw(self, file, seconds):
-        """Write it as a picture; ``seconds``: how long the training took."""
+        """Draw the curve; ``seconds`` is the duration of the training."""
         last, (low, end, high) = self.points[-1]["steps"], interval(self.figures["trained"])
         visits = self.figures["trained"]["visits"]
         few = "".join(f" ({n}: {one['visits']})" for n, one in self.figures.items() if one["visits"] < visits)
         title = f"{self.agent}: {last:,} shots of training in {seconds / 60:.1f} minutes"
         note = (
-            "Line: its last 1,000 visits in training, where it tries choices. Dot: the trained agent, with its 95 %\n"
+            "Line: the last 1,000 visits in training, where the agent explores. Dot: the trained agent, with its 95 %\n"
             f"interval, and the other players, on {visits} held-out tables{few}, adjusted for luck."
         )
         with drawing() as plt:

@@ -1,4 +1,4 @@
-"""How good is an agent under one condition? Its figures with intervals, and ratios to those of others."""
+"""How good is an agent under one condition? It has figures with intervals, and ratios to those of other agents."""
 
 import zlib
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from snooker_env.benchmark.statistics import Resamples, bound_if_none, figure, i
 from .entrants import Entrant
 
 BELOW = sorted({below for _, below in FIGURES.values()})
-"""What figures are a share or a mean of: how often there was any, a run, is kept with them."""
+"""Denominators of shares and means, whose counts per run are kept as well."""
 AXES = ("noise", "fidelity", "physics", "cue")
 USUAL = {
     "layout": "held_out",
@@ -20,13 +20,13 @@ USUAL = {
     "physics": "paper",
     "cue": "real",
 }
-"""What is shown first, of all conditions that were played."""
+"""Conditions shown first, if they were played."""
 SCORES = ("points", "pots")
-"""Of these there are inter-quartile means and ratios to other agents, too."""
+"""Figures that also have inter-quartile means and ratios to other agents."""
 
 
 def main_condition(report):
-    """Where comparison and picture are taken: the usual of all that was played, else its first value."""
+    """The condition of comparison and picture: the default values if they were played, otherwise the first ones."""
     p = report["protocol"]
     return {
         name: USUAL[name] if USUAL[name] in p[key] else next(iter(p[key]))
@@ -39,7 +39,7 @@ def _quotient(above, below):
 
 
 def add_bound(share, trials):
-    """A share with its interval; one never or always seen with the exact bound of so many trials."""
+    """A share with its interval, or with the exact bound for this many trials if it is 0 or 1."""
     if share["low"] is not None or share["value"] not in (0.0, 1.0) or not trials:
         return share
     most = bound_if_none(trials)
@@ -48,12 +48,12 @@ def add_bound(share, trials):
 
 @dataclass
 class EntrantMetrics:
-    """What one agent did under one condition: the counts of every run and visit, name -> (runs, visits)."""
+    """One agent under one condition: the counts of every run and visit, name -> (runs, visits)."""
 
     agent: Entrant
     counted: dict
     strokes: list
-    """The ``Strokes`` of every run."""
+    """Make this from the ``Strokes`` of every run."""
     resamples: int
 
     @property
@@ -62,14 +62,14 @@ class EntrantMetrics:
         return Resamples(runs, visits, self.resamples, zlib.crc32(self.agent.label.encode()))
 
     def figures(self):
-        """All figures of this agent alone."""
+        """All figures of this agent on its own."""
         samples, c, made = self._samples, self.counted, {}
         for name, (a, b) in FIGURES.items():
             made[name] = figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b]))
         return made | {f"{name}_a_visit_iqm": figure(iqm(c[name]), samples.iqms(c[name])) for name in SCORES}
 
     def ratios(self, other):
-        """This agent's scores over another's on the same tables."""
+        """Ratios of this agent's scores to another's on the same tables."""
         mine, its, found = self._samples, other._samples, {}
         for name in SCORES:
             a, b = self.counted[name], other.counted[name]
@@ -79,7 +79,7 @@ class EntrantMetrics:
         return found
 
     def result(self, others):
-        """Everything for the JSON file; ``others``: whom to compare with."""
+        """Everything for the JSON file; ``others``: agents to compare with."""
         strokes = sum(len(s.points) for s in self.strokes)
         return {
             "figures": self.figures(),

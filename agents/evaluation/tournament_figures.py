@@ -1,15 +1,15 @@
 """Which figures follow from the frames of a tournament? Wins, breaks, fouls and strengths, with intervals.
 
-Everything is computed from the rows alone. What is resampled are the seeds: the two matches on one seed, one
-opened by each player, stay together, and all pairs with the same number of seeds have the same seeds in each
-bootstrap sample. Intervals are 95 % percentile intervals (``snooker_env.benchmark``). A share of 0 % or 100 %
-has the exact one-sided bound instead, by which each seed counts once.
+All figures follow from the rows. The bootstrap resamples seeds: the two matches on one seed, one opened by each
+player, stay together, and all pairs with the same number of seeds have the same seeds in each sample. Intervals are
+95 % percentile intervals (``snooker_env.benchmark``). A share of 0 % or 100 % has the exact one-sided bound instead,
+with each seed counted once.
 
 Strengths are those of Bradley and Terry [Biometrika 39 (1952) 324]: player i beats j with probability
 p_ij = 1 / (1 + exp(t_j - t_i)), a draw is half a win for each, and the t maximise the sum of w_ij log p_ij over
-all pairs, w_ij being the wins of i over j. With 0 % or 100 % wins there is no maximum: so each pair that met
-gets ``PRIOR`` drawn matches more. A strength counts 400 / ln 10 points of Elo: 400 more mean ten wins for one
-loss.
+all pairs, where w_ij counts the wins of i over j. With 0 % or 100 % wins there is no maximum, so each pair that met
+gets ``PRIOR`` additional drawn matches. One unit of strength is 400 / ln 10 points of Elo: 400 points more mean ten
+wins for one loss.
 """
 
 from dataclasses import dataclass
@@ -22,21 +22,21 @@ from snooker_env.benchmark.statistics import RESAMPLES, Resamples, adjust, figur
 from .metrics import add_bound
 
 PRIOR = 1.0
-"""Drawn matches that are added to each pair that met."""
+"""Drawn matches added to each pair that met."""
 ELO = 400.0 / np.log(10.0)
-"""Points of Elo for one unit of strength."""
+"""Points of Elo per unit of strength."""
 SMALLEST = 1e-10
-"""The fit ends when no player's expected wins differ by more from the real ones, in shares of all."""
+"""The fit ends when no player's expected share of wins differs from the actual share by more than this."""
 LONGEST = 2.0
-"""Longest step of Newton's method in a strength: further from the maximum it would overshoot."""
+"""Longest step of Newton's method in a strength; a longer one could overshoot far from the maximum."""
 ROUNDS = 200
 KEYS = ("first", "second", "seed", "opener", "frame", "winner")
-"""Of a row: indices of the players; seed; who of them broke in the match's first frame (0 or 1); the frame's
-index in the match; its winner, -1 if it was stopped."""
+"""First columns of a row: indices of the players; seed; which of them broke off in the match's first frame (0 or 1); the
+frame's index in the match; its winner, or -1 if it was stopped."""
 COUNTED = ("points", "scored", "visits", "strokes", "fouls", "best")
-"""What is counted of each player: points, those of its own pots, visits, strokes, fouls, its best visit."""
+"""Counts for each player: points, points of its own pots, visits, strokes, fouls, points of its best visit."""
 COLUMNS = (*KEYS, *(f"{name}_{side}" for name in COUNTED for side in KEYS[:2]), "luck")
-"""Of a row; last the luck of the first player in the frame, in ``PARTS`` of a frame."""
+"""All columns of a row. The last one is the first player's luck in the frame, in ``PARTS`` of a frame."""
 PARTS = 1000
 ANCHOR_ELO = 1000.0
 """Elo of the anchor."""
@@ -51,7 +51,7 @@ RATIOS = {
 
 @dataclass
 class PlayedPair:
-    """The frames of two players, summed for each seed; ``sums``: name -> float (2, seeds), a row a player."""
+    """The frames of two players, summed for each seed; ``sums``: name -> float (2, seeds), one row per player."""
 
     players: tuple
     sums: dict
@@ -63,7 +63,7 @@ class PlayedPair:
 
     @classmethod
     def of(cls, players, rows):
-        """From the rows (n, len(COLUMNS)) of the pair."""
+        """Make this from the rows (n, len(COLUMNS)) of the pair."""
         column = {name: rows[:, c] for c, name in enumerate(COLUMNS)}
         seeds, at = np.unique(column["seed"], return_inverse=True)
         m = len(seeds)
@@ -74,7 +74,7 @@ class PlayedPair:
         sides = [(column["winner"] == side) + 0.5 * (column["winner"] < 0) for side in (0, 1)]
         lead = np.zeros((2, m))  # frames of the match, by its opener
         np.add.at(lead, (column["opener"], at), sides[0] - sides[1])
-        won = 0.5 * (1.0 + np.sign(lead))  # of the first player
+        won = 0.5 * (1.0 + np.sign(lead))  # the first player's
         sums = {"won": np.stack([won.sum(0), (1.0 - won).sum(0)]), "matches": np.full((2, m), 2.0)}
         sums["frames_won"] = np.stack([total(side) for side in sides])
         sums["frames"] = np.stack([total(np.ones(len(rows)))] * 2)
@@ -89,7 +89,7 @@ class PlayedPair:
 
     @property
     def seeds(self):
-        """How many seeds were played."""
+        """The number of seeds played."""
         return self.opened.shape[1]
 
     def samples(self, values, resamples):
@@ -105,7 +105,7 @@ def pairs_of(rows):
 
 
 def _share(won, matches, drawn, seeds):
-    """A share with its interval; of 0 % or 100 % with the exact bound of so many seeds."""
+    """A share with its interval, or with the exact bound for this many seeds if it is 0 % or 100 %."""
     return add_bound(figure(won / matches, drawn), seeds)
 
 
@@ -113,10 +113,10 @@ def figures_of(labels, rows, anchor, resamples=RESAMPLES):
     """All figures of a tournament.
 
     "players": for each label "matches", "frames", "won", "drawn", "win_rate" (the mean over its opponents),
-    "adjusted" (that less luck), "frame_rate", "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break".
-    "pairs": for each pair "first", "second", "matches", "won", "drawn", "win_rate" and "adjusted" of the first player
-    and "when_opening", that of each in the matches that it opened. "opener": the share of matches won by the player who
-    opened them; "stopped": frames that were stopped. A figure is {"value", "low", "high"}.
+    "adjusted" (win_rate less luck), "frame_rate", "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break".
+    "pairs": for each pair "first", "second", "matches", "won", "drawn", "win_rate" and "adjusted" of the first player,
+    and "when_opening", the win rate of each in the matches that it opened. "opener": the share of matches won by the player
+    who opened them; "stopped": number of stopped frames. A figure is {"value", "low", "high"}.
     """
     pairs = pairs_of(rows)
     elo = _elo(pairs, len(labels), labels.index(anchor), resamples)
@@ -133,7 +133,7 @@ def figures_of(labels, rows, anchor, resamples=RESAMPLES):
 
 
 def _player(mine, resamples):
-    """The figures of a player in these pairs; with each its place in it."""
+    """The figures of a player in these pairs, each given with the player's place in it."""
     sums, drawn = {}, {}
     for pair, side in mine:
         for name, values in pair.sums.items():
@@ -172,7 +172,7 @@ def _pair(pair, labels, resamples):
 
 
 def _elo(pairs, k, anchor, resamples):
-    """For each of k players "elo" and whether only the prior decides its distance to the anchor."""
+    """For each of k players, "elo" and whether only the prior determines its distance from the anchor."""
     wins, drawn, seeds = np.zeros((k, k)), np.zeros((resamples, k, k)), np.zeros((k, k))
     for pair in pairs:
         for (i, j), values in zip((pair.players, pair.players[::-1]), pair.sums["won"], strict=True):
@@ -195,7 +195,7 @@ def _elo(pairs, k, anchor, resamples):
 
 
 def _bounds(elo, j, sound, wins, seeds):
-    """ "low" and "high" of a player that won all or none of those comparable with the anchor."""
+    """ "low" and "high" of a player that won or lost all matches against players comparable with the anchor."""
     others = np.flatnonzero(sound & (seeds[j] > 0))
     strength, many = elo[others] / ELO, seeds[j, others]
     if not wins[others, j].any():
@@ -213,7 +213,7 @@ def schedule(labels):
 def strengths(wins, prior=PRIOR):
     """The strengths (..., k) of k players, with mean 0, for one or many tables of wins.
 
-    ``wins[..., i, j]``: how often i beat j, draws as halves; pairs that met must link all players.
+    ``wins[..., i, j]`` counts how often i beat j, draws as halves. The pairs that met must link all players.
     """
     w = np.array(wins, np.float64)
     k = w.shape[-1]
@@ -227,7 +227,7 @@ def strengths(wins, prior=PRIOR):
         if np.abs(slope / many).max(initial=0.0) < SMALLEST:
             break
         curve = n * p * (1.0 - p)
-        bend = -curve + 1.0 / k  # the mean stays 0
+        bend = -curve + 1.0 / k  # keep the mean at 0
         bend[..., range(k), range(k)] += curve.sum(-1)
         step = np.linalg.solve(bend, slope[..., None])[..., 0]
         longest = np.abs(step).max(-1, keepdims=True)
@@ -236,12 +236,12 @@ def strengths(wins, prior=PRIOR):
 
 
 def chance(ahead):
-    """The chance to win of a player whose strength is ``ahead`` of the other's."""
+    """The chance to win of a player whose strength exceeds the other's by ``ahead``."""
     return 0.5 * (1.0 + np.tanh(0.5 * np.asarray(ahead, np.float64)))
 
 
 def find_reachable(edges, start):
-    """Which players (k,) can be reached from one, itself included, by steps that ``edges`` (k, k) allow."""
+    """Which players (k,) can be reached from one (itself included) along ``edges`` (k, k)."""
     reached = np.zeros(len(edges), bool)
     reached[start] = True
     for _ in range(len(edges)):
@@ -250,15 +250,15 @@ def find_reachable(edges, start):
 
 
 def find_comparable(wins, anchor):
-    """Who (k,) won and lost something against the anchor, perhaps by way of others: results compare them."""
+    """Which players (k,) won and lost against the anchor, directly or through others, so that results compare them."""
     won = np.asarray(wins) > 0
     return find_reachable(won, anchor) & find_reachable(won.T, anchor)
 
 
 def bound(others, matches, level=0.95):
-    """The least strength of a player that won all its matches (m,) against players of strengths (m,).
+    """The smallest strength of a player that won all its matches (m,) against players of strengths (m,).
 
-    There winning all has the probability 1 - level. For one that lost all: negate strengths and bound.
+    At this strength, winning all has probability 1 - level. For a player that lost all, negate strengths and bound.
     """
     others, matches = np.asarray(others, np.float64), np.asarray(matches, np.float64)
     if matches.sum() <= 0:

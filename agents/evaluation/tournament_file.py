@@ -1,6 +1,6 @@
-"""What is the file of a tournament? Its fields, one row for each frame, and whether it is what it says.
+"""What does a tournament's file hold? Fields and one row for each frame, with checks of their consistency.
 
-Software, machine, command, commit and date are those of a benchmark's result (``docs/benchmark.md``).
+Software, machine, command, commit and date are as in a benchmark result (``docs/benchmark.md``).
 """
 
 from datetime import datetime, timezone
@@ -24,13 +24,13 @@ FIELDS = {
     "protocol.matches": (int, False, "matches of each pair, two on each seed"),
     "protocol.best_of": (int, False, "frames of a match"),
     "protocol.tables": (int, False, "tables side by side"),
-    "protocol.chunk": (int, False, "seeds for which a player is made anew"),
+    "protocol.chunk": (int, False, "seeds after which each player is created again"),
     "protocol.resamples": (int, False, "bootstrap samples of the intervals"),
     "protocol.prior": (NUMBER, False, "drawn matches added to each pair for the strengths"),
-    "protocol.anchor": (str, False, "the player whose Elo is given"),
+    "protocol.anchor": (str, False, "the player with fixed Elo"),
     "protocol.anchor_elo": (NUMBER, False, "its Elo"),
-    "game": (dict, False, "options of the frames: noise, physics, max_strokes and those that were changed"),
-    "players": (list, False, "one object for each, see below"),
+    "game": (dict, False, "options of the frames: noise, physics, max_strokes and changed options"),
+    "players": (list, False, "one object per player, see below"),
     **{
         f"software.{name}": (str, name not in ("snooker_env", "python"), "version; null: not installed")
         for name in software()
@@ -39,25 +39,29 @@ FIELDS = {
     "machine.cpu": (str, False, "the processor's name"),
     "machine.cores": (int, False, "logical processors"),
     "machine.load": (NUMBER, True, "load average of the minute before the first frame"),
-    "machine.load_at_end": (NUMBER, True, "load average of the minute before the last one ended"),
-    "command": (str, False, "how this file was made"),
-    "commit": (str, True, "of the checkout, with -dirty if files were changed; null outside one"),
-    "date": (str, False, "when, in UTC: 2026-11-22T19:00:00Z"),
+    "machine.load_at_end": (NUMBER, True, "load average of the minute before the last frame ended"),
+    "command": (str, False, "command that made this file"),
+    "commit": (
+        str,
+        True,
+        "commit of the checkout, with -dirty if files were changed; null outside a checkout",
+    ),
+    "date": (str, False, "date in UTC: 2026-11-22T19:00:00Z"),
     "columns": (list, False, "names of the columns of rows"),
     "rows": (list, False, "one list of whole numbers for each frame, see below"),
-    "figures": (dict, True, "what follows from the rows, see below; null: there are none"),
-    "incomplete": (str, True, "why frames are missing; null: none are"),
+    "figures": (dict, True, "figures computed from the rows, see below; null if there are none"),
+    "incomplete": (str, True, "why frames are missing; null if complete"),
 }
-"""Dotted name: type, whether it may be null, meaning."""
+"""Dotted name -> type, whether it may be null, meaning."""
 PLAYER = {
     "label": (str, "the name in tables"),
-    "source": (str, "what was given on the command line: a name, a file or MODULE:CLASS"),
-    "training": (dict, "how it was trained, as far as its file says"),
-    "decisions": (int, "how often it decided, on tables that wait for others to end, too"),
-    "seconds": (NUMBER, "what that took together"),
-    "shots": (int, "simulated for these decisions"),
+    "source": (str, "argument of the command line: a name, a file or MODULE:CLASS"),
+    "training": (dict, "its training according to its file"),
+    "decisions": (int, "number of decisions, including tables that wait for others to end"),
+    "seconds": (NUMBER, "total time of these decisions"),
+    "shots": (int, "shots simulated for these decisions"),
 }
-"""Fields of a player: type, meaning."""
+"""Fields of a player -> type, meaning."""
 RANGES = {
     "protocol.matches": (2, 2**20),
     "protocol.best_of": (1, 99),
@@ -71,12 +75,12 @@ RANGES = {
 
 
 def seeds_of(protocol):
-    """The seeds on which each pair meets."""
+    """The seeds of each pair's matches."""
     return list(range(protocol["first_seed"], protocol["first_seed"] + protocol["matches"] // 2))
 
 
 def result_of(protocol, game, players, rows, *, command, load, incomplete):
-    """The object of a file."""
+    """Make the content of a file."""
     labels = [player["label"] for player in players]
     return {
         "schema": {"name": NAME, "version": VERSION},
@@ -96,7 +100,7 @@ def result_of(protocol, game, players, rows, *, command, load, incomplete):
 
 
 def faults(content):
-    """Check a tournament's file: a line for each fault of fields, players, frames and figures."""
+    """Check a tournament's file: one line per fault of fields, players, frames and figures."""
     wrong = faults_of_fields(content, FIELDS, RANGES, VERSION)
     if wrong:
         return wrong
@@ -151,12 +155,12 @@ def _faults_of_rows(content, labels):
 
 
 def _match(frames, best_of):
-    """What is wrong with the frames of one match; "" if nothing is."""
+    """The fault in the frames of one match, or ""."""
     won = [0.0, 0.0]
     for k, row in enumerate(frames):
         frame, winner = row[4], row[5]
         if winner not in (-1, 0, 1):
-            return f"winner = {winner}: must be 0, 1, or -1 for a frame that was stopped"
+            return f"winner = {winner}: must be 0, 1, or -1 for a stopped frame"
         if frame != k or k >= best_of or max(won) > 0.5 * best_of:
             return f"frame {frame} must not follow: a match is the best of {best_of} frames"
         for side in (0, 1):
@@ -166,7 +170,7 @@ def _match(frames, best_of):
 
 
 def _differences(value, want, name):
-    """Where figures differ from those that follow from the rows."""
+    """Yield the names of figures that differ from those computed from the rows."""
     if isinstance(want, dict) and isinstance(value, dict) and set(value) == set(want):
         return [line for key in want for line in _differences(value[key], want[key], f"{name}.{key}")]
     if isinstance(want, list) and isinstance(value, list) and len(value) == len(want):
@@ -177,18 +181,20 @@ def _differences(value, want, name):
     same = (
         not isinstance(value, dict | list) and value == want
     )  # NumPy compares a list with a number item by item
-    return [] if same or close else [f"{name}: must be what follows from the rows"]
+    return [] if same or close else [f"{name}: must follow from the rows"]
 
 
 def read_incomplete(path, protocol, game, sources):
-    """The content of an incomplete file of the same tournament. Raises ValueError."""
+    """Read an incomplete file of the same tournament. Raises ValueError."""
     content = read_result(path)
     wrong = faults(content)
     if wrong:
-        raise refuse("out", str(path), f"must be the file of a tournament to go on with ({wrong[0]})")
+        raise refuse("out", str(path), f"must be the file of a tournament to continue ({wrong[0]})")
     players = [(player["label"], player["source"]) for player in content["players"]]
     now = {"protocol": protocol, "game": game, "players": sources}
     for name, was in (content | {"players": players}).items():
         if name in now and was != now[name]:
-            raise refuse("out", str(path), f"must be a file with the same {name} to go on with: it has {was}")
+            raise refuse(
+                "out", str(path), f"must be a file with the same {name} to continue, but it has {was}"
+            )
     return content

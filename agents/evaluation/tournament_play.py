@@ -1,13 +1,13 @@
-"""How do two players meet? Many frames side by side; each seed twice, opened once by each.
+"""How do two players meet? In many frames side by side; each seed is played twice, opened once by each player.
 
-In one of the two matches on a seed the first player is the environment's agent, in the other the second is:
-the sides are not quite alike, since a cue ball in hand waits for a player without placement at its usual
-place, or where "ghost_ball" would put it. On even seeds the agent opens, on odd ones the opponent. A table
-whose match has ended takes the next one; when half of the tables have nothing left to play, the others go on
-in a smaller environment. The frames of a match follow each other on one table, broken in turn; the best of N
-ends when one player has won more than N / 2, or after N frames. A table's draws depend on its seed only.
+In one of the two matches on a seed the first player is the environment's agent, in the other the second is. The
+roles differ slightly: for a player without placement, a cue ball in hand stays at its usual place (agent) or goes
+where "ghost_ball" would put it (opponent). On even seeds the agent opens, on odd ones the opponent. A table whose
+match has ended takes the next one; when half of the tables have no match left, the others continue in a smaller
+environment. The frames of a match follow each other on one table, and the players break off in turn. The best of N
+ends when one player has won more than N / 2, or after N frames. A table's draws depend only on its seed.
 
-A visit is all strokes of a player in succession: also over the lot at a re-spotted black.
+A visit is all consecutive strokes of a player, even across the lot at a re-spotted black.
 """
 
 import copy
@@ -29,16 +29,16 @@ from .travel import unpack
 TABLES = 128
 """Tables side by side."""
 CHUNK = 100
-"""Seeds that are played in one go, by players made anew: between two a tournament can be resumed."""
+"""Seeds per chunk. Each chunk creates its players again; a tournament can be resumed between chunks."""
 
 
 class TimedPlayer:
-    """A player whose ``decisions`` are counted and timed, ``seconds`` together, with the ``shots`` that it simulates;
-    ``seed``: of its draws."""
+    """A player with counts of its ``decisions``, their total ``seconds`` and simulated ``shots``. ``seed`` is that of its
+    draws."""
 
     def __init__(self, player, seed=0):
         self._player, self.seed = player, seed
-        self.count = {"decisions": 0, "seconds": 0.0, "shots": 0}  # shared by all that are bound
+        self.count = {"decisions": 0, "seconds": 0.0, "shots": 0}  # shared by all bound copies
 
     def at(self, rules):
         bound = copy.copy(self)
@@ -56,10 +56,10 @@ class TimedPlayer:
 
 @dataclass
 class Encounter:
-    """Some matches of two players, and how far each table is. Side 0 is the agent, side 1 the opponent.
+    """Some matches of two players, and the state of each table. Side 0 is the agent, side 1 the opponent.
 
-    ``pair``: indices of the players, ``exchanged`` if the second of them is the agent; ``queue``: seed and
-    opening side of matches that no table has begun; ``rows``: one for each ended frame, columns ``COLUMNS``.
+    ``pair``: indices of the players; ``exchanged``: the second of them is the agent; ``queue``: seed and opening side
+    of matches that no table has begun; ``rows``: one for each ended frame, columns ``COLUMNS``.
     """
 
     pair: tuple
@@ -73,7 +73,7 @@ class Encounter:
         self.unit = np.full((n, 2), -1)  # seed and opener
         self.frame, self.won = np.zeros(n, int), np.zeros((n, 2))
         self.sums = {name: np.zeros((n, 2), int) for name in COUNTED}
-        # the agent's visit, and whether its next stroke begins another
+        # the agent's visit, and whether its next stroke begins a new one
         self.visit, self.fresh = np.zeros(n, int), np.ones(n, bool)
         self.played = np.zeros(n, int)  # strokes of both
         self.decision = np.zeros(n, int)  # the agent's, in this match
@@ -82,16 +82,16 @@ class Encounter:
 
     @property
     def going(self):
-        """Tables with a match."""
+        """Tables that have a match."""
         return self.unit[:, 0] >= 0
 
     @property
     def breakers(self):
-        """Who breaks in the frame of each table."""
+        """The side that breaks off in the frame of each table."""
         return np.where(self.going, (self.unit[:, 1] + self.frame) % 2, 0)
 
     def begun(self, which, info):
-        """The frames on the tables ``which`` (n,) bool have begun; the opponent may have had a visit."""
+        """Record that frames have begun on the tables ``which`` (n,) bool; the opponent may have had a visit."""
         for values in (*self.sums.values(), self.visit, self.played):
             values[which] = 0
         self.fresh[which] = True
@@ -99,7 +99,7 @@ class Encounter:
         self._score(which, info)
 
     def step_all(self, which, info):
-        """One step was made on the tables ``which`` (n,) bool."""
+        """Record one step on the tables ``which`` (n,) bool."""
         struck = which & (info["strokes"] - self.played - info["opponent_strokes"] > 0)
         points, penalty = (np.where(struck, info[name], 0).astype(int) for name in ("points", "penalty"))
         gained = info["opponent_score"].astype(int) - self.sums["points"][:, 1] - penalty
@@ -116,7 +116,7 @@ class Encounter:
         self._score(which, info)
 
     def _opponent(self, which, scored, conceded, strokes):
-        """One visit of the opponent, if it had any stroke; ``conceded``: points for its fouls."""
+        """Record one visit of the opponent, if it had any strokes; ``conceded``: points for its fouls."""
         struck = which & (strokes > 0)
         scored = np.where(struck, scored, 0).astype(int)
         self.sums["visits"][:, 1] += struck
@@ -135,11 +135,11 @@ class Encounter:
             self.sums["points"][which, side] = info[name][which]
 
     def take_up_next(self, which, info, luck):
-        """The frames on the tables ``which`` (n,) bool have ended: write rows, take up the next frames. ``luck`` (n,): the
-        agent's in them, which begins anew."""
+        """Record the end of frames on the tables ``which`` (n,) bool: write rows and take the next frames. ``luck`` (n,) is the
+        agent's luck in these frames, reset afterwards."""
         for k in np.flatnonzero(which).tolist():
             winner, (seed, opener) = int(info["winner"][k]), self.unit[k].tolist()
-            sides = (1, 0) if self.exchanged else (0, 1)  # of the pair's first player and of its second
+            sides = (1, 0) if self.exchanged else (0, 1)  # the pair's first player, then its second
             sums = [int(self.sums[name][k, side]) for name in COUNTED for side in sides]
             won = -1 if winner < 0 else sides[winner]
             its = round((-PARTS if self.exchanged else PARTS) * luck[k])
@@ -151,17 +151,17 @@ class Encounter:
                 self.unit[k] = self.queue.pop(0) if self.queue else -1
 
     def keep(self, which):
-        """Go on with the tables ``which`` (n,) bool only."""
+        """Continue only with the tables ``which`` (n,) bool."""
         self.sums = {name: values[which] for name, values in self.sums.items()}
         for name in ("unit", "frame", "won", "visit", "fresh", "played", "decision"):
             setattr(self, name, getattr(self, name)[which])
 
 
 def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
-    """Two matches on each seed: a row for each frame, columns ``COLUMNS``, by seeds, openers and frames.
+    """Play two matches on each seed. Returns one row per frame, columns ``COLUMNS``, by seeds, openers and frames.
 
-    ``players``: those of the ``pair`` of indices; ``game``: options of the frames; ``threads`` change
-    nothing; ``tick`` is called with the number of matches that have ended.
+    ``players``: those of the ``pair`` of indices; ``game``: options of the frames; ``threads`` do not change the
+    result; ``tick`` is called with the number of matches that have ended.
     """
     rows = []
     for exchanged in (False, True):
@@ -175,15 +175,15 @@ def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
 
 
 def seed_of_draws(label, other, first):
-    """The seed of what a player draws against ``other`` in the matches from the seed ``first`` on."""
+    """The seed of a player's draws against ``other`` in the matches from seed ``first`` on."""
     return zlib.crc32(f"{label}\n{other}\n{first}".encode())
 
 
 def play(shared, args, threads, tick=None):
-    """The task of a part, a pair on some seeds: the rows, and each player's decisions, their time [s] and simulated shots.
+    """Run a part, a pair on some seeds. Returns rows and each player's decisions, their time [s] and simulated shots.
 
     ``shared``: "players", of ``travel.pack``. ``args``: "pair" (indices), "seeds" of the matches, "draws"
-    (each player's ``seed_of_draws``), "game" as it stands in the file, "best_of"; ``tick`` is that of ``play_pair``.
+    (each player's ``seed_of_draws``), "game" as in the file, "best_of"; ``tick`` is that of ``play_pair``.
     """
     both = zip(args["pair"], args["draws"], strict=True)
     players = [TimedPlayer(unpack(shared["players"][k]), seed) for k, seed in both]
@@ -202,9 +202,9 @@ def _play(meeting, agent, opponent, game, threads, tick):
     luck = Luck(tables, "won")
     _, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
-    # since the reset: only then is a state sure to hold a stroke to play
+    # after the reset, because only then does a state surely await a stroke
     moved = np.zeros(len(meeting.frame), bool)
-    over = info["winner"] >= 0  # won by the opponent in its first visit: the next step plays nothing
+    over = info["winner"] >= 0  # won by the opponent in its first visit, so the next step plays nothing
     while (going := meeting.going).any():
         to_play = going & ~over
         actions = ask_player(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], meeting.decision))
@@ -241,9 +241,9 @@ def _tables(meeting, options, opponent, threads):
 
 
 def _renew(tables, meeting, done, before):
-    """Begin the next frames where frames have ended. Returns where the next frame is over at once.
+    """Begin the next frames on tables whose frames have ended. Returns the tables whose next frame ended at once.
 
-    A new match is dealt from its seed; in a next frame, and on tables without a match, random numbers go on.
+    A new match is dealt from its seed. In a later frame, and on tables without a match, the random numbers continue.
     """
     anew = (meeting.unit != before).any(1) & meeting.going
     seeds = [int(seed) if new else None for seed, new in zip(meeting.unit[:, 0], anew, strict=True)]

@@ -1,4 +1,4 @@
-"""How is a tournament shown? Who won, the cross table and how they play, for a terminal and as Markdown."""
+"""How is a tournament shown? As tables of winners, pairs and playing styles, for a terminal or in Markdown."""
 
 from agents._lib.tables import TextTable, format_figure, page
 
@@ -9,7 +9,7 @@ NAME = "snooker_env.tournament"
 
 
 def labels_by_elo(content):
-    """The labels of those who played, the highest Elo first."""
+    """The labels of the players, highest Elo first."""
     players = content["figures"]["players"]
     played = [label for label, one in players.items() if one is not None]
     return sorted(played, key=lambda label: (-(players[label]["elo"]["value"] or 0.0), label))
@@ -50,7 +50,7 @@ def tables_of(content):
         first, second, share = pair["first"], pair["second"], 100 * pair["win_rate"]["value"]
         won_of |= {(first, second): f"{share:.1f}", (second, first): f"{100 - share:.1f}"}
     cross = [[label, *(won_of.get((label, other), "") for other in order)] for label in order]
-    of_each = f"Share of the {won} that a player (row) won against another (column) [%]"
+    of_each = f"Share of {won} won by a player (row) against another (column) [%]"
     return [
         TextTable("Who wins", wins, standing, 1, 1).tidy(),
         TextTable("How they play", ["player", *does], play, 1, 1),
@@ -59,22 +59,22 @@ def tables_of(content):
 
 
 def sentences(content):
-    """What a reader of the tables must know."""
+    """Notes for readers of the tables."""
     p, figures, game = content["protocol"], content["figures"], content["game"]
     unit = _unit(content)
     plural = "frames" if p["best_of"] == 1 else f"matches, each the best of {p['best_of']} frames"
     notes = [
-        f"Each pair plays {p['matches']:,} {plural}: two on each seed, each player breaking first in one.",
+        f"Each pair plays {p['matches']:,} {plural}: two on each seed; each player breaks off first in one.",
         "Options: " + ", ".join(f"{name}={value}" for name, value in game.items()) + ".",
-        f"Who breaks first wins {format_figure(figures['opener'], 100.0)} %. "
-        f"Frames that were stopped, half for each: {figures['stopped']:,}.",
-        "What the figures mean: docs/agents/tournament.md. "
-        f"Elo: {p['anchor']} at {p['anchor_elo']:.0f}; to each pair {PRIOR:g} drawn {unit} is added.",
+        f"The player who breaks off first wins {format_figure(figures['opener'], 100.0)} %. "
+        f"Stopped frames (half a win each): {figures['stopped']:,}.",
+        "docs/agents/tournament.md explains the figures. "
+        f"Elo: {p['anchor']} at {p['anchor_elo']:.0f}; {PRIOR:g} drawn {unit} is added to each pair.",
     ]
     if any(one is not None and one["elo_by_prior"] for one in figures["players"].values()):
         notes.append(
-            f"* won or lost every {unit} against those who can be compared with {p['anchor']}: only the bound follows from results, "
-            "the distance itself from the added draws."
+            f"* won or lost every {unit} against the players comparable with {p['anchor']}: only the bound follows from the results; "
+            "the distance follows from the added draws."
         )
     if content["incomplete"]:
         notes.append(f"INCOMPLETE: {content['incomplete']}.")
@@ -82,7 +82,7 @@ def sentences(content):
 
 
 def is_tournament(content):
-    """Whether that is the content of a tournament's file, and not another report."""
+    """Whether this is the content of a tournament's file, not another report."""
     schema = content.get("schema") if isinstance(content, dict) else None
     return isinstance(schema, dict) and schema.get("name") == NAME
 
@@ -96,7 +96,7 @@ def title(content):
 
 
 def parts(content):
-    """Tables no wider than a terminal and sentences, in order."""
+    """Yield tables no wider than a terminal, and sentences, in order."""
     for table in tables_of(content):
         yield from table.narrow()
     yield from sentences(content)

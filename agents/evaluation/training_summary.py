@@ -1,4 +1,4 @@
-"""What did a training run learn? Held-out visits of its agent and of simple players, in table and words."""
+"""What did a training run learn? A table and sentences compare held-out visits of its agent and of simple players."""
 
 from typing import Any
 
@@ -15,12 +15,11 @@ from ..players.trained import player_of_model
 
 
 def evaluate(recipe, model, visits, loop):
-    """Figures of held-out visits of agent, ``ghost_ball`` and ``random``, under the training's noise and physics.
+    """Measure held-out visits of agent, ``ghost_ball`` and ``random``, with the training's noise and physics.
 
-    The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also
-    those of the planner with it and of the search by the rule of thumb (``search``); beside others the package's planner
-    plays a fifth of the visits. The tables are the first of ``agents.evaluate``; ValueError if there are too few.
-    ``loop``: that of the training.
+    The fidelity is the default, unless the settings differ. If the agent has a value of positions, the planner with that
+    value and the search with the rule of thumb (``search``) play as well; otherwise the package's planner plays a fifth of the
+    visits. The tables are the first of ``agents.evaluate``; ValueError if there are too few. ``loop`` is that of the training.
     """
     trained = player_of_model(model)
     players = {"trained": trained, "ghost_ball": player("ghost_ball"), "random": player("random")}
@@ -31,15 +30,15 @@ def evaluate(recipe, model, visits, loop):
         players["planner"], few = player("planner"), {"planner": max(2, visits // 5)}
     chosen = {key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS}
     shared: dict[str, Any] = {"noise": "none"} | chosen
-    # some learn on "fast" to save time, and are meant to play on the usual fidelity
+    # some agents learn on "fast" to save time, but play at the default fidelity
     if not recipe.fidelity_given:
         shared.pop("fidelity", None)
     return held_out(players, visits, loop, few, **shared)
 
 
 def held_out(players, visits, loop, few=None, **shared):
-    """Figures of held-out visits of players {name: player} under environment options; the loop's last part. ``few``:
-    {name: visits} of those who play fewer."""
+    """Measure held-out visits of players {name: player} with these environment options, as the loop's last part. ``few``:
+    {name: visits} of players with fewer visits."""
     figures, done = {}, 0
     many = {name: (few or {}).get(name, visits) for name in players}
     with loop.progress("evaluation", sum(many.values()), "visits") as progress:
@@ -55,7 +54,7 @@ def held_out(players, visits, loop, few=None, **shared):
 
 
 def interval(figures):
-    """Points a visit, less luck, with their 95 % interval over visits: low, mean, high."""
+    """Points a visit, less luck, with the 95 % interval over visits: low, mean, high."""
     mean, error = figures["adjusted_a_visit"], figures["adjusted_a_visit_se"]
     return mean - 1.96 * error, mean, mean + 1.96 * error
 
@@ -66,7 +65,7 @@ def _better(a, b):
 
 
 def conclusion(agent, steps, imitated, figures, start=None):
-    """The result in a sentence, and one on the planner; differences are claimed from two standard errors on.
+    """State the result in one sentence, and one on the planner. Claims a difference from two standard errors on.
 
     ``imitated``: positions of expert iteration; ``start``: origin of its weights (``models.load_weights``) or None.
     """
@@ -82,35 +81,37 @@ def _of_the_agent(agent, steps, imitated, figures, start):
     begun = f" after {imitated:,} positions of expert iteration" if imitated else ""
     if start:
         begun = f" on top of the {start['shots']:,} of {start['model']}"
-    after, visits = f"With {steps:,} shots of training{begun}, {agent}", f"{trained['visits']} visits"
+    practice, visits = f"{steps:,} shots of training{begun}", f"{trained['visits']} visits"
+    after = f"With {practice}, {agent}"
+    unsure = f"{visits} are too few to show that {agent}, with {practice}, is better than"
     if not _better(trained, random):
-        unsure = f"is not shown by {visits} to be better than"
-        how = "plays worse than" if _better(random, trained) else unsure
-        return f"{after} {how} random strokes: {made(trained)} against {made(random)}."
+        how = f"{after} plays worse than" if _better(random, trained) else unsure
+        return f"{how} random strokes: {made(trained)} against {made(random)}."
     against = f"ghost_ball: {made(trained)} against {made(ghost)}"
     if _better(ghost, trained):
         return f"{after} is better than random strokes but worse than {against}."
     if not _better(trained, ghost):
-        return f"{after} is not shown by {visits} to be better than {against}."
+        return f"{unsure} {against}."
     one, other = (player["next_pot_after_a_pot"] for player in (trained, ghost))
     if one is not None and other is not None:
-        against += f"; after a pot the next one follows in {100 * one:.1f} % against {100 * other:.1f} %"
+        against += f"; after a pot, another follows in {100 * one:.1f} % against {100 * other:.1f} %"
     return f"{after} is better than {against}."
 
 
 def _of_the_planner(figures):
-    """What learning is worth to the planner; nothing for an agent without a value of positions."""
+    """State what learning adds to the planner; empty for an agent without a value of positions."""
     if "search" not in figures:
         return ""
     learned, rule = figures["planner"], figures["search"]
     points = f"{learned['points_a_visit']:.2f} points a visit against {rule['points_a_visit']:.2f}"
-    shots = f"with {BUDGET} simulated shots a decision the planner makes {points}"
+    shots = f"with {BUDGET} simulated shots a decision, the planner scores {points}"
     if _better(learned, rule):
         times = learned["points_a_visit"] / rule["points_a_visit"]
-        return f" Its value and its proposals are worth {times:.2f} times a hand-written rule: {shots}."
-    unsure = f"are not shown by {learned['visits']} visits to be worth more than"
-    how = "are worth less than" if _better(rule, learned) else unsure
-    return f" Its value and its proposals {how} a hand-written rule: {shots}."
+        return f" Its value and proposals score {times:.2f} times as much as a hand-written rule: {shots}."
+    both = "its value and proposals are"
+    unsure = f" {learned['visits']} visits are too few to show that {both} better than"
+    how = f" {both.capitalize()} worse than" if _better(rule, learned) else unsure
+    return f"{how} a hand-written rule: {shots}."
 
 
 def show(figures):
@@ -128,11 +129,11 @@ def show(figures):
     title = f"Means of {', '.join([f'{visits} held-out visits on the same tables', *few])} (± standard error)"
     head = ["agent", "pots", "points", "less luck [95 %]", "fouls", "pot rate", "next pot", "best"]
     print("", title, *text_table(head, rows), "", sep="\n")
-    print("ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots.")
+    print("ghost_ball: the widest pot, played softly. random: a random stroke at one of the direct pots.")
     if "planner" in figures:
         by = (
-            "what was learned; search: the same by a rule of thumb"
+            "the learned value and proposals; search: the same with a rule of thumb"
             if "search" in figures
             else "the package's weights"
         )
-        print(f"planner: {BUDGET} simulated shots a decision, by {by}.")
+        print(f"planner: {BUDGET} simulated shots a decision, with {by}.")

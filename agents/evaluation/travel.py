@@ -1,4 +1,4 @@
-"""How does a player travel to another machine? By name, with its model's bytes; a module of one's own must be there."""
+"""How does a player travel to another machine? By name, with its model's bytes; a user's module must be installed there."""
 
 import atexit
 import hashlib
@@ -14,7 +14,7 @@ from .entrants import Entrant
 
 
 def pack(entrant, k):
-    """The run ``k`` of an ``Entrant`` as data: a dict of texts, lists and bytes."""
+    """Pack the run ``k`` of an ``Entrant`` into a dict of texts, lists and bytes."""
     from ..learning.models import file_of, pretrained_names
 
     run, file = entrant.runs[k], None
@@ -28,7 +28,7 @@ def pack(entrant, k):
 
 
 def unpack(agent):
-    """The player of what ``pack`` made."""
+    """Make the player from the result of ``pack``."""
     run = agent["run"]
     if agent["model"] is not None:
         run += _write_model(agent["model"], agent["suffix"])
@@ -37,11 +37,11 @@ def unpack(agent):
 
 
 def one_thread(run):
-    """One thread of PyTorch for a player of one's own, as models have: last bits depend on their number."""
+    """Use one PyTorch thread for a user's own player, as for models: the last bits depend on the number of threads."""
     if ":" in run:
         try:
             import torch
-        except ImportError:  # one's own player may do without
+        except ImportError:  # a user's own player may not need it
             return
         torch.set_num_threads(1)
 
@@ -55,7 +55,7 @@ def _folder():
 
 @cache
 def _write_model(model, suffix):
-    """The path of a file with these bytes, for the life of this process."""
+    """Write a file with these bytes for the life of this process, and return its path."""
     file = _folder() / f"{hashlib.sha256(model).hexdigest()[:32]}{suffix}"
     write_atomic(file, model)
     return str(file)

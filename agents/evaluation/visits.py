@@ -1,7 +1,7 @@
-"""How are the visits of an evaluation cut into parts, and put together again?
+"""How are the visits of an evaluation split into parts and joined again?
 
-A player's strokes depend on positions and seeds alone, the seeds on the table and the decision: so the parts
-together are what one machine plays at once.
+A player's strokes depend only on positions and seeds, and the seeds only on the table and the decision. Together,
+the parts therefore equal the result of one machine.
 """
 
 from typing import Any
@@ -14,18 +14,18 @@ from snooker_env.benchmark import PlayedStrokes, play_visits
 from .travel import unpack
 
 SIZE = 100
-"""Visits of a part."""
+"""Visits per part."""
 COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance", "luck")
 
 
 def parts_of(sent, k, condition, seeds) -> list[tuple[dict, dict[str, Any]]]:
-    """The parts of the run ``k`` of an agent, of ``travel.pack``, under a condition."""
+    """The parts of run ``k`` of an agent, from ``travel.pack``, under a condition."""
     same = {"k": k, "condition": condition}
     return [(sent, same | {"seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]
 
 
 def play(shared, args, threads):
-    """The task: the strokes of some visits, a dict of arrays."""
+    """Run a part: the strokes of some visits as a dict of arrays."""
     k, seeds = args["k"], args["seeds"]
     options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
     options |= {"first_seed": seeds, "seed": k, "threads": threads}
@@ -36,7 +36,7 @@ def play(shared, args, threads):
 
 
 def join_parts(results, total):
-    """The ``PlayedStrokes`` of all visits from their parts, in the order in which one machine plays them."""
+    """Join the parts to the ``PlayedStrokes`` of all visits, in the order in which one machine plays them."""
     columns = {name: np.concatenate([one[name] for one in results]) for name in COLUMNS}
     columns["visit"] = np.concatenate([one["visit"] + SIZE * n for n, one in enumerate(results)])
     order = np.lexsort((columns["visit"], columns["number"]))

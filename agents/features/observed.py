@@ -1,5 +1,5 @@
-"""What does an agent see of a table? The ``observation`` that its recipe's ``env_kwargs`` name, as it is; where they name
-none, the flat one with its pots. To train as a ``VecEnv``."""
+"""What does an agent observe of a table? The ``observation`` in its recipe's ``env_kwargs``, or by default the flat one
+with its pots. For training there is a ``VecEnv``."""
 
 import numpy as np
 from gymnasium import spaces
@@ -9,17 +9,17 @@ from snooker_env.planning.learned.pot_view import SHOWN, with_pots
 from snooker_env.tasks import OBSERVATION_SIZE, observation_space
 
 OBSERVED_SIZE = spaces.flatdim(observation_space("flat", conditions=True))
-"""Numbers in a flat observation with the constants of the table."""
+"""Size of a flat observation with the constants of the table."""
 
 
 def shown(env_kwargs):
-    """How an environment shows tables to an agent with these ``env_kwargs``, and what the agent sees of n observations."""
+    """The environment's observation for an agent with these ``env_kwargs``, and the function from n observations to its inputs."""
     named = env_kwargs.get("observation")
     return (named, _as_they_are) if named else ("flat", seen_of)
 
 
 def space_of(tables, env_kwargs):
-    """The space of what an agent with these ``env_kwargs`` sees of one of these tables."""
+    """The observation space of an agent with these ``env_kwargs`` on one of these tables."""
     if shown(env_kwargs)[1] is _as_they_are:
         return tables.single_observation_space
     size = SHOWN + (OBSERVED_SIZE - OBSERVATION_SIZE) * bool(tables.options.observe_conditions)
@@ -31,14 +31,14 @@ def _as_they_are(observations):
 
 
 def seen_of(observations):
-    """``with_pots`` of n flat observations, float32; the constants of the table follow where they hold them."""
+    """``with_pots`` of n flat observations, float32, followed by the constants of the table if they hold them."""
     seen = with_pots(observations)
     constants = observations[:, OBSERVATION_SIZE:]
     return np.concatenate([seen, constants], 1) if constants.shape[1] else seen
 
 
 def training_tables(n, threads=None, **options):
-    """n tables of ``SnookerVecEnv`` as an agent with these ``env_kwargs`` sees them: an SB3 ``VecEnv``."""
+    """n tables of ``SnookerVecEnv`` with the observations of an agent with these ``env_kwargs``: an SB3 ``VecEnv``."""
     from stable_baselines3.common.vec_env import VecEnvWrapper
 
     from snooker_env.sb3 import SnookerVecEnv
@@ -51,7 +51,7 @@ def training_tables(n, threads=None, **options):
         """All tables at once."""
 
         judge = None
-        """Values [points] of ``Positions``, added to rewards where the visit goes on; or None."""
+        """Values [points] of ``Positions``, added to rewards if the visit continues; or None."""
 
         def reset(self):
             return see(self.venv.reset())
@@ -70,7 +70,7 @@ def training_tables(n, threads=None, **options):
 
         @property
         def running(self):
-            """Returns and lengths so far of running visits, for ``episode`` in the last info; in no state."""
+            """Returns and lengths so far of current visits, for ``episode`` in the last info; not part of a state."""
             return base.episode_returns.copy(), base.episode_lengths.copy()
 
         @running.setter

@@ -1,1 +1,1 @@
-"""How do agents learn? Hyperparameters, networks, the training loop and what runs in it, model files."""
+"""How do agents learn? Hyperparameters, networks, the training loop with its parts, and model files."""

@@ -1,4 +1,4 @@
-"""How is an agent of ``hyperparams/`` trained? Expert iteration, if its recipe has it, then PPO, a rollout after the other."""
+"""How is an agent of ``hyperparams/`` trained? By expert iteration, if its recipe says so, then by PPO, rollout by rollout."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -20,8 +20,8 @@ POINTS_OF_THE_CURVE = 20
 
 
 class PolicyGradient(Part):
-    """PPO to ``steps`` shots, in whole rollouts; ``before``: of ``get_state``. Rewards are judged by the agent's own value of
-    positions if it has one."""
+    """PPO up to ``steps`` shots, in whole rollouts. ``before`` comes from ``get_state``. If the agent has its own value of
+    positions, that value adds to the rewards."""
 
     unit = "shots"
 
@@ -35,14 +35,14 @@ class PolicyGradient(Part):
         if before:
             self.curve, self._spent, self._begun = (before[name] for name in ("curve", "seconds", "begun"))
         self.running = None
-        """Sums of the visits that ran on when the run was saved."""
+        """Sums of the visits that were in progress when the run was saved."""
 
     @property
     def done(self):
         return self._model.num_timesteps
 
     def get_state(self):
-        """The state beside the model and the tables."""
+        """The state without the model and the tables."""
         return {"curve": self.curve, "seconds": self.seconds, "begun": self._begun}
 
     @property
@@ -74,14 +74,14 @@ class PolicyGradient(Part):
     def note(self):
         """Add a point to the curve if it is time."""
         due = self.done >= len(self.curve) * self._steps // POINTS_OF_THE_CURVE
-        # a resume calls this a second time
+        # a resumed run calls this a second time
         if self._recent and due and self.done > (self.curve[-1]["steps"] if self.curve else -1):
             self.curve.append({"steps": self.done, "points": round(float(np.mean(self._recent)), 3)})
 
 
 class _Between(BaseCallback):
-    """Asks ``rest`` between two rollouts, where all that was played is learned from. SB3 can stop only one shot later, which
-    is repeated after a resume."""
+    """Asks ``rest`` between two rollouts, when everything played has been used. SB3 can stop only one shot later; a resumed
+    run repeats that shot."""
 
     def __init__(self, part, rest, running):
         super().__init__()
@@ -111,7 +111,7 @@ def recipe_of(settings):
     numbers = {key: value for key, value in numbers.items() if value}
     if settings.start:
         if settings.imitate > 0:
-            wanted = "must be 0 or left out with --start: the weights given there are already trained"
+            wanted = "must be 0 or left out with --start, whose weights are already trained"
             raise refuse("imitate", settings.imitate, wanted)
         numbers["imitation"] = 0
     elif settings.imitate >= 0:
@@ -120,13 +120,13 @@ def recipe_of(settings):
     if recipe.imitation and not recipe.expert:
         raise refuse("imitate", recipe.imitation, f"must be 0 for {recipe.name}: it has no expert iteration")
     if recipe.expert and not recipe.imitation and not settings.start:
-        why = "PPO needs the value that is learned there"
+        why = "PPO needs the value that expert iteration learns"
         raise refuse("imitate", 0, f"must be 1 or more for {recipe.name} without --start: {why}")
     return recipe
 
 
 class AgentTraining:
-    """A run of these settings in the folder ``out``, new or resumed. Raises ValueError."""
+    """Open a run of these settings in the folder ``out``, new or resumed. Raises ValueError."""
 
     def __init__(self, settings, out, resume):
         state = read_checkpoint(out) if resume else None
@@ -154,7 +154,7 @@ class AgentTraining:
         self.ppo.running = state["running"] if state else None
         self.parts = [part for part in (self.expert, self.ppo) if part]
         if last and self.expert and self.expert.done >= self.expert.total and not last["begun"]:
-            self.tables.reset()  # takes the state that they were given: PPO begins with another reset
+            self.tables.reset()  # applies the given state, because PPO begins with another reset
 
     def save(self):
         """Write the checkpoint."""

@@ -1,8 +1,8 @@
-"""How do value, policy and planner make each other stronger? Expert iteration (Anthony, Tian & Barber 2017).
+"""How do value, policy and planner improve each other? By expert iteration (Anthony, Tian & Barber 2017).
 
-Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy; at
-first by the rule of thumb. The value learns by a backup from every position (``value_learning``), and the
-policy the values of choices, each simulated once and judged by the value (``judged_choices``).
+The planner plays visits. It judges strokes by the value (at first by a rule of thumb) and takes its proposals from the
+policy. The value learns from a backup at every position (``value_learning``). The policy learns the values of choices,
+each simulated once and judged by the value (``judged_choices``).
 
 PPO then improves the policy further, with the value as reward-to-go: ``judge_rewards``.
 """
@@ -24,24 +24,24 @@ from .value_learning import ValueLearning
 from .value_network import value_of
 
 BUDGET = 60
-"""Simulated shots of a decision in training."""
+"""Simulated shots per decision in training."""
 FRESH = 4
 """Fresh noise samples of the best stroke for a target."""
 EXPLORED, AMONG = 0.2, 12
-"""Share of exploratory strokes, each one of the best ``AMONG``."""
+"""Share of exploratory strokes, drawn from the best ``AMONG``."""
 _EACH = ("random:12", "random:9", "random:6", "random:3", "line_up")
 STARTS = (("", 0.6), *((name, 0.06) for name in _EACH), ("colours", 0.1))
-"""Layouts in which visits begin, and their shares; "" is the layout of the training tables."""
+"""Layouts of the starting positions of visits, with their shares; "" is the layout of the training tables."""
 POOL = 4096
-"""Positions in which visits begin, of all layouts."""
+"""Number of starting positions over all layouts."""
 HAND, EVEN = 6_144, 30_720
-"""Positions judged by the rule of thumb, and with even proposals; at most an eighth and a fifth of all."""
+"""Positions judged by the rule of thumb, and positions with even proposals; at most an eighth and a fifth of all."""
 _ALL = ("positions", "on_table", "game", "conditions")
-"""What positions of visits hold; constants of their tables only if these are drawn."""
+"""Fields of positions in visits; the constants of their tables only if these are drawn."""
 
 
 class Starts:
-    """Positions in which visits begin, drawn from several layouts."""
+    """Starting positions of visits, drawn from several layouts."""
 
     def __init__(self, seed, layout, options):
         self._pools = []
@@ -63,7 +63,7 @@ class Starts:
 
 
 class ExpertIteration(Part):
-    """Expert iteration in ``total`` positions; ``before``: of ``get_state``, with the model as it was then.
+    """Expert iteration over ``total`` positions. ``before`` comes from ``get_state``, with the model of that time.
 
     No result depends on the number of ``threads``.
     """
@@ -84,7 +84,7 @@ class ExpertIteration(Part):
 
     @property
     def shots(self):
-        """Simulated so far."""
+        """Shots simulated so far."""
         return self._shots + self._choices.shots
 
     def begin(self):
@@ -92,14 +92,14 @@ class ExpertIteration(Part):
         rng = self._rng = np.random.default_rng((self._seed, 19))
         tables = venv.unwrapped.tables
         options = {name: getattr(tables.options, name) for name in SHOT_OPTIONS}
-        self._judge = VisitJudge(options, threads=threads)  # by the rule of thumb
+        self._judge = VisitJudge(options, threads=threads)  # judged by the rule of thumb
         self._search = Search(self._judge, BUDGET)  # even proposals
         self._starts = Starts(self._seed, tables.options.layout, options)
         self._value = ValueLearning(self._model.policy.position_value, self._judge.spread, n, rng)
         self._choices = JudgedChoices(self._model.policy, options, threads, n, rng)
         if before is None:
             venv.seed(self._seed)
-        venv.reset()  # the tables wait for PPO; of a resumed run this takes the state that they were given
+        venv.reset()  # the tables wait for PPO; in a resumed run this applies their given state
         if before is None:
             self._at = self._starts.draw(n, rng)
         else:
@@ -109,7 +109,7 @@ class ExpertIteration(Part):
             self._choices.set_state(before["choices"])
 
     def get_state(self):
-        """The state, beside the model and the process's random generators; most of it are positions."""
+        """The state without the model and the process's random generators; most of it consists of positions."""
         made = {name: getattr(self, name) for name in ("done", "curve", "seconds")} | {"shots": self._shots}
         if self.done >= self.total:
             return made
@@ -119,7 +119,7 @@ class ExpertIteration(Part):
         return made | {"value": self._value.get_state(), "choices": self._choices.get_state()}
 
     def round(self):
-        """Play a stroke from every position and learn; each twentieth of all is an entry of ``curve``."""
+        """Play a stroke from every position and learn. Each twentieth of the run adds an entry to ``curve``."""
         hand, even = min(HAND, self.total // 8), min(EVEN, self.total // 5)
         remaining = 1.0 - self.done / self.total
         if self.done > hand:
@@ -136,7 +136,7 @@ class ExpertIteration(Part):
             self.curve.append({**so_far, "seconds": round(self.seconds, 1), **self._figures()})
 
     def _figures(self):
-        """Mean losses of the last gradient steps, and the points that the value expects; None before any."""
+        """Mean losses of the last gradient steps, and the points that the value expects; None before the first."""
         both = {"loss": self._choices.losses, "value_loss": self._value.losses}
         figures = {name: round(float(np.mean(one)), 3) if one else None for name, one in both.items()}
         value = self._value.mean_target
@@ -144,7 +144,7 @@ class ExpertIteration(Part):
 
     @property
     def figures(self):
-        """The same and the number of the round, in words."""
+        """The losses and the number of the round, in words."""
         words = {"loss": "loss {:.1f}", "value_loss": "value loss {:.2f}", "value": "{:.1f} points expected"}
         known = {name: value for name, value in self._figures().items() if value is not None}
         known_words = [words[name].format(value) for name, value in known.items()]
@@ -152,7 +152,7 @@ class ExpertIteration(Part):
         return ", ".join([rounds, *known_words])
 
     def _play(self):
-        """Choose a stroke for each position, keep what its samples lead to, and go on with one of them."""
+        """Choose a stroke for each position, keep the results of its samples, and continue from one of them."""
         n, rng, at, every = self._n, self._rng, self._at, np.arange(self._n)
         seeds, explored = rng.integers(2**32, size=n), rng.random(n) < EXPLORED
         before = count_shots()
@@ -180,13 +180,15 @@ class ExpertIteration(Part):
             for name in _ALL:
                 if getattr(fresh, name) is not None:
                     getattr(self._at, name)[ended] = getattr(fresh, name)
-        self._at.game[:, 2] = 0  # points of the visit so far: no break may exceed what a table allows
+        self._at.game[:, 2] = (
+            0  # points of the visit so far, because no break may exceed the maximum of the table
+        )
 
     def _features(self, at):
         return value_features(at, self._judge.spread, self._threads)
 
 
 def judge_rewards(venv, policy, threads):
-    """Let the tables add the learned value of the afterstate to rewards: reward-to-go for gamma = 0."""
+    """Let the tables add the learned value of the afterstate to rewards, as reward-to-go for gamma = 0."""
     rules = venv.unwrapped.tables.options.rules
     venv.judge = value_of(policy.position_value, rules.noise.spread(rules.physics), threads)

@@ -1,5 +1,5 @@
-"""The weights in the package as plain arrays, see ``snooker_env.players.weights``: value and policy of the planners, from the
-pre-trained ``ppo_value`` models, and the network of ``strokes``.
+"""How do weights get into the package? As plain arrays (``snooker_env.players.weights``): value and policy of the planners,
+from the pre-trained ``ppo_value`` models, and the network of ``strokes``.
 """
 
 import json
@@ -18,12 +18,12 @@ from .networks import arrays_of
 from .rounds import arrays_of as arrays_of_layers
 
 LEARNED, STROKES, SELF_PLAYED = "ppo_value", "strokes", "self_play.pt"
-"""The pre-trained models of a professional's errors; planners of another level have its name after theirs."""
+"""The pre-trained models for a professional's errors; models for other levels append the level's name."""
 
 
 def keep_models(folder):
-    """Write the models of the runs FOLDER/ppo_value-0, FOLDER/ppo_value_LEVEL, FOLDER/strokes and FOLDER/self_play, as far
-    as they are there, into results/weights: NAME.zip and its record NAME.json, and self_play.pt with its record."""
+    """Write the models of the runs FOLDER/ppo_value-0, FOLDER/ppo_value_LEVEL, FOLDER/strokes and FOLDER/self_play, if
+    present, into results/weights: NAME.zip and its record NAME.json, and self_play.pt with its record."""
     played, file = Path(folder) / "self_play", PRETRAINED / SELF_PLAYED
     if (played / "results.json").is_file():
         write_atomic(file, (played / "weights.pt").read_bytes())
@@ -46,7 +46,7 @@ def keep_models(folder):
 
 
 def export():
-    """Write one file for each level that has a pre-trained model, and that of the menu."""
+    """Write one file for each level with a pre-trained model, and one for the menu."""
     model, state = PRETRAINED / f"{STROKES}.zip", PRETRAINED / SELF_PLAYED
     if model.is_file() and state.is_file():
         arrays = arrays_of_layers("visits", layers_of_menu(load_trained(model, "agent").policy.state_dict()))
@@ -61,7 +61,7 @@ def export():
 
 
 def layers_of_menu(state):
-    """Weight and bias of each layer of a ``StrokesPolicy`` that scores strokes, from its ``state_dict``."""
+    """Weight and bias of each scoring layer of a ``StrokesPolicy``, from its ``state_dict``."""
     part = {name.removeprefix("mlp_extractor."): one.detach().numpy().copy() for name, one in state.items()}
     first = np.concatenate([part["of_stroke.weight"], part["of_state.weight"]], axis=1)
     layers = [(part[f"{name}.weight"], part[f"{name}.bias"]) for name in ("second", "score")]
@@ -69,5 +69,5 @@ def layers_of_menu(state):
 
 
 def _name_of(level):
-    """The name of the model of a level."""
+    """The name of a level's model."""
     return LEARNED if level == "professional" else f"{LEARNED}_{level}"

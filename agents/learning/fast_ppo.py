@@ -1,8 +1,8 @@
-"""How does ``MaskablePPO`` learn quickly from many tables? By the fused passes of ``TablePolicy``.
+"""How does ``MaskablePPO`` learn quickly from many tables? It uses the fused passes of ``TablePolicy``.
 
-The algorithm, its rollouts, hyperparameters, files and reports are those of sb3-contrib. Three things differ:
-``TablePolicy.forward`` draws the choices of a rollout, masks are kept as bool, and an update computes the
-gradient of a minibatch with ``FusedTable.ppo_gradient``.
+The algorithm, rollouts, hyperparameters, files and reports are those of sb3-contrib, with three differences:
+``TablePolicy.forward`` draws the choices of a rollout, masks are kept as bool, and an update computes the gradient of
+a minibatch with ``FusedTable.ppo_gradient``.
 """
 
 from typing import Any
@@ -18,7 +18,7 @@ from .networks import TablePolicy
 
 
 class BoolMasks(MaskableRolloutBuffer):
-    """A rollout buffer whose masks are bool: a quarter of the memory, 9 instead of 35 MB for 16,384 shots."""
+    """A rollout buffer with bool masks. It needs a quarter of the memory: 9 instead of 35 MB for 16,384 shots."""
 
     action_space: Any
     action_masks: Any = None
@@ -33,7 +33,7 @@ class BoolMasks(MaskableRolloutBuffer):
 
 
 class FastPPO(MaskablePPO):
-    """``MaskablePPO``, whose updates of a ``TablePolicy`` are fused; other policies are updated as there."""
+    """``MaskablePPO`` with fused updates of a ``TablePolicy``; other policies use the original updates."""
 
     clip_range: Any
 
@@ -70,13 +70,13 @@ class FastPPO(MaskablePPO):
         self._report(np.array(figures), clip)
 
     def _normalise(self, advantages):
-        """The advantages of a minibatch with mean 0 and deviation 1. A single one stays as it is."""
+        """Normalise the advantages of a minibatch to mean 0 and deviation 1. A single one stays unchanged."""
         if not self.normalize_advantage or len(advantages) < 2:
             return advantages
         return (advantages - advantages.mean()) / (advantages.std(ddof=1) + 1e-8)
 
     def _report(self, figures, clip):
-        """The curves of SB3, from the figures of ``FusedTable.ppo_gradient`` of all minibatches."""
+        """Record the curves of SB3 from the figures of ``FusedTable.ppo_gradient`` over all minibatches."""
         policy_loss, value_loss, entropy, clipped, _ = figures.mean(axis=0).tolist()
         last, seen = figures[-1], self.rollout_buffer
         curves = {"entropy_loss": -entropy, "policy_gradient_loss": policy_loss, "value_loss": value_loss}

@@ -1,9 +1,9 @@
-"""How is a round of frames of self-play played, here or by many workers? Each part plays some frames under errors of its
-own, with the worth that has been learned so far; the other is oneself, a past self or a player of the package.
+"""How is a round of self-play played, here or by many workers? Each part plays some frames with its own errors and the
+worth learned so far. The opponent is the player itself, a past self or a player of the package.
 
-A position is judged by *search*, not by luck: the best stroke that is found meets fresh noise samples, and their mean
-is what the position is worth. A frame's outcome alone varies by 60 points and would drown it. A search finds what
-a worth is wrong about, so what the best strokes of a position may leave is judged as well, in ``REPLIES`` cases."""
+*Search*, not the outcome, judges a position: the best stroke found is repeated with fresh noise samples, and their mean
+is the worth of the position. Outcomes of frames vary by 60 points, too much to see differences between positions. A
+search exploits errors of the worth, so positions that the best strokes leave are judged as well, in ``REPLIES`` cases."""
 
 from typing import Any
 
@@ -28,29 +28,29 @@ TABLES = 16
 FRESH = 8
 """Noise samples that judge the best stroke of a position."""
 TEACHER, TAUGHT = 8, 0.1
-"""How many times the budget a teacher of the player has, and the share of its positions in which the teacher is asked."""
+"""The teacher's budget relative to the player's, and the share of positions in which the teacher is asked."""
 PAIRS, CLEAR = 24, 2.0
-"""Errors that both strokes meet, and the standard errors by which the teacher's must be better to be taken."""
+"""Common errors for both strokes, and the number of standard errors by which the teacher's must be better."""
 REPLIES, FINALISTS = (1, 6), 6
-"""What the best strokes of a position may leave: cases that are judged where a pot is likely, and elsewhere; and among
-how many strokes."""
+"""Number of positions left by the best strokes that are judged, if a pot is likely and otherwise; and the number of best
+strokes that they come from."""
 
 
 def frames(shared, args, threads):
-    """The task: play frames, and say what each position that one's own side met was worth.
+    """Run a part: play frames, and judge each position of the player's own side.
 
-    ``shared``: "options" of the frames, "layers" of the worth (None: the value of the visit alone), "chance" (None or
-    its numbers), "budget", "explore" (share of strokes that are not the best), "replies" (whether cases that strokes
-    may leave are judged, too), "taught" (whether a teacher is asked). ``args``: "noise",
-    "seed" of the first table, "many" frames, "other": the name of who plays against it, or layers and chance of a past
-    self; None: itself, and both sides count.
+    ``shared``: "options" of the frames, "layers" of the worth (None: only the value of the visit), "chance" (None or
+    its numbers), "budget", "explore" (share of strokes that are not the best), "replies" (whether positions left by
+    strokes are judged as well), "taught" (whether a teacher is asked). ``args``: "noise", "seed" of the first table,
+    "many" frames, "other": the opponent's name, or layers and chance of a past self; None: itself, and both sides count.
 
     Returns a row for each stroke in the order of play: "seen" (m, SIZE) float32 with the cue ball where it was played
-    from, "hand" (m, SIZE) float32 as it was in hand (or the same), "worth" (m,) by search, "swing" (m,) points of the
-    striker less the other's until the next stroke, "same" (m,): 1 if the striker plays that, -1 the other, 0 if there
-    is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won" (m,): the striker's lead, the
-    points on the table, whether the striker won; "decided": whether anybody did; "equals": whether it played against
-    itself; "frame" and "striker" (m,), -1 in the rows of replies, which come last and which nothing followed."""
+    from, "hand" (m, SIZE) float32 with the cue ball in hand (or the same), "worth" (m,) by search, "swing" (m,) points of
+    the striker minus the opponent's until the next stroke, "same" (m,): 1 if the striker plays that stroke, -1 if the
+    opponent does, 0 if there is none; "next" (m,), the row of that stroke; "explored" (m,); "lead", "left", "won" (m,):
+    the striker's lead, the points on the table, whether the striker won; "decided": whether anybody won; "equals":
+    whether it played against itself; "frame" and "striker" (m,), -1 in the rows of replies, which come last and have no
+    next stroke."""
     options = Options(**{"task": "frame", **FRAMES, **shared["options"], "noise": args["noise"]})
     rules, many = options.rules, args["many"]
     known = options.but(conditions="fixed")  # a player does not know the constants of a table
@@ -101,10 +101,10 @@ def frames(shared, args, threads):
 
 
 def play_frames(rules, seed, many, act, other, threads):
-    """Play frames from the tables ``seed``, ``seed + 1``, ... to their ends; returns the ``Frames``.
+    """Play frames from the tables ``seed``, ``seed + 1``, ... to their ends. Returns the ``Frames``.
 
-    ``act(tables, which, at, keys)`` says the ``Strokes`` of the strikers on the tables ``which``, seen as ``at``. If
-    ``other``, a bound player, is not None, it is player 1 of all frames, and ``act`` player 0."""
+    ``act(tables, which, at, keys)`` returns the ``Strokes`` of the strikers on the tables ``which``, seen as ``at``. If
+    ``other``, a bound player, is given, it is player 1 of all frames and ``act`` is player 0."""
     tables, crew, step = Frames(rules, many, seats=[Seat.of(rules)] * 2), Threads(threads or 1), 0
     for k in range(many):
         tables.seed(k, np.random.default_rng(seed + k))
@@ -127,8 +127,8 @@ def play_frames(rules, seed, many, act, other, threads):
 
 
 def _judge_strokes(player, at, keys, rng, teacher=None):
-    """What it does in n positions, in which of them it strikes (m,), and of these what is seen and what they are worth
-    by search."""
+    """Decide in n positions. Returns the strokes, the positions in which the player strikes (m,), and the features and
+    worth (by search) of these positions."""
     decided, worth = player.decide_frames(at, keys), player.judge.worth
     here = np.flatnonzero([one is not None for one in decided.tried])
     if teacher is not None:
@@ -141,8 +141,8 @@ def _judge_strokes(player, at, keys, rng, teacher=None):
 
 
 def _teach(judge, teacher, decided, rows, rng):
-    """In the positions ``rows`` play the teacher's strokes where they are clearly better, on the same errors. The best of
-    many strokes by few samples would be worse: what is judged well by luck is taken."""
+    """In the positions ``rows``, play the teacher's stroke if it is clearly better on the same errors. Choosing the best of
+    many strokes by few samples would do worse, because it favours lucky strokes."""
     if not len(rows):
         return
     ranked = teacher.search.rank(decided.start[rows], rng.integers(2**32, size=len(rows)))
@@ -158,8 +158,8 @@ def _teach(judge, teacher, decided, rows, rng):
 
 
 def win_share(player, other, seed, many, threads=None):
-    """The share of frames that a player wins against another, both unbound, under a professional's errors, and its
-    standard error; each breaks off half of them."""
+    """The share of frames that a player wins against another, both unbound, with a professional's errors, and its standard
+    error. Each player breaks off half of the frames."""
     options = Options(**{"task": "frame", **FRAMES, **FRAME, "noise": "professional"})
     mine, theirs = player.at(options), other.at(options)
     tables = play_frames(
@@ -170,14 +170,14 @@ def win_share(player, other, seed, many, threads=None):
 
 
 def _replies(player, decided, here, rng):
-    """What is seen of cases that the best strokes of the positions ``here`` may leave, what they are worth to who plays
-    next, and for each the index in ``here``."""
+    """Judge positions that the best strokes of the positions ``here`` may leave. Returns their features, their worth to the
+    player who is next, and the index of each in ``here``."""
     rows, best = [], []
     for j, k in enumerate(here.tolist()):
         tried = decided.tried[k]
         many, hard = min(FINALISTS, max(1, int((tried.samples > 0).sum()))), bool((tried.kinds > 0).any())
         picks = rng.integers(many, size=REPLIES[hard])
-        picks[rng.random(len(picks)) < 0.5] = 0  # of half of them, what the best one leaves
+        picks[rng.random(len(picks)) < 0.5] = 0  # half of them are left by the best stroke
         rows += [j] * len(picks)
         best += [tried.strokes.values[pick] for pick in picks.tolist()]
     rows, errors = np.array(rows), player.judge.noise.draw_errors(rng, len(rows))
@@ -189,12 +189,12 @@ def _replies(player, decided, here, rng):
 
 
 def _concatenate(parts):
-    """Rows one after the other."""
+    """Concatenate rows."""
     return {name: np.concatenate([one[name] for one in parts]) for name in parts[0]}
 
 
 def _with(rows, beside):
-    """The rows of strokes that were played, and rows of positions that nothing followed."""
+    """The rows of the strokes played, and rows of positions without a next stroke."""
     n = len(beside["worth"])
     empty = {name: np.zeros((n, *part.shape[1:]), part.dtype) for name, part in rows.items()}
     more = empty | beside | {"next": np.full(n, -1), "striker": np.full(n, -1), "explored": np.ones(n, bool)}
@@ -202,13 +202,13 @@ def _with(rows, beside):
 
 
 def _seen_by_strikers(tables, which):
-    """The positions of the tables ``which`` as their strikers see them."""
+    """The positions of the tables ``which`` from their strikers' side."""
     saved = columns.Layouts(tables.layouts_before.positions[which], tables.layouts_before.on_table[which])
     return Positions(tables.positions[which], tables.on_table[which], strikers_own(tables.game[which]), saved)
 
 
 def _follow(rows, tables):
-    """The rows, with what followed each stroke."""
+    """The rows, including what followed each stroke."""
     frame, striker, before = rows["frame"], rows["striker"], rows.pop("before")
     after = np.full(len(frame), -1)
     after[before[before >= 0]] = np.flatnonzero(before >= 0)

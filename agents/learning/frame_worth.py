@@ -1,5 +1,5 @@
-"""How is the worth of a position of a frame learned? Rounds of self-play, each judged by search; a network is fitted
-to what the last rounds said, and the next round searches with it."""
+"""How is the worth of a position in a frame learned? Search judges the positions of each round of self-play. A network is
+fitted to the last rounds, and the next round searches with it."""
 
 import numpy as np
 import torch
@@ -13,18 +13,18 @@ from .rounds import Perceptron, descend
 WIDTHS = (64, 32)
 BATCH, DECAY = 512, 1.0
 SNOOKERS, NEEDS, STROKES = 0.3, 3.0, 40
-"""Standard deviations of the priors of ``Chance.snookers`` and ``needs``, for hardly anybody wins who needs some: without
-them the chance would be 0; and strokes of a frame, which count as one observation."""
+"""Standard deviations of the priors of ``Chance.snookers`` and ``needs``, without which the chance would be 0, because
+players who need snookers rarely win; and the strokes of a frame, which count as one observation."""
 TRACE = 0.4
-"""Share of what really followed in a target, beside what the search says of the next position."""
+"""Weight of the actual continuation in a target; the rest is the search's worth of the next position."""
 
 
 def targets(rows):
-    """What each position of a round was worth: float64 (m,). Mostly by the search of it, in part by what the stroke
-    brought and the target of the next one, the farther the less; none of it after a stroke that was explored."""
+    """Targets for the positions of a round: float64 (m,). They follow mostly the position's own search and partly the points of
+    the stroke plus the next target, with weights that fade with distance, and not beyond an exploratory stroke."""
     worth, after = rows["worth"], rows["next"]
     target = worth.copy()
-    for k in np.arange(len(worth))[::-1]:  # rows are in the order of play: the next one comes later
+    for k in np.arange(len(worth))[::-1]:  # rows are in the order of play, so the next one comes later
         if not rows["explored"][k]:
             follows = rows["same"][k] * target[after[k]] if after[k] >= 0 else 0.0
             target[k] = (1.0 - TRACE) * worth[k] + TRACE * (rows["swing"][k] + follows)
@@ -32,11 +32,11 @@ def targets(rows):
 
 
 def fit_network(seen, wanted, seed, passes):
-    """The layers of a network fitted to ``wanted`` (n,) points, over ``POINTS``, beside the value of the visit at ``seen``
-    (n, SIZE), from nothing: going on from those of the round before, it overfits."""
+    """Fit a network to the ``wanted`` (n,) points minus the value of the visit at ``seen`` (n, SIZE), in units of ``POINTS``.
+    It starts from new weights, because continuing from the last round's overfits."""
     torch.manual_seed(seed)
     network, rng = Perceptron(SIZE, *WIDTHS, 1), np.random.default_rng(seed)
-    with torch.no_grad():  # at first the value is all
+    with torch.no_grad():  # at first the worth equals the value
         last: nn.Linear = network[-1]  # type: ignore[assignment]
         last.weight.mul_(0.1)
     x, y = torch.from_numpy(seen), torch.from_numpy((wanted / POINTS - seen[:, -1]).astype(np.float32))
@@ -49,9 +49,9 @@ def fit_network(seen, wanted, seed, passes):
 
 
 def fitted_chance(now, worth, left, last, spread, won):
-    """The ``Chance`` that is likeliest, of leads, worths, points on the table, whether only the black is left, errors of
-    direction [rad] and who won: (n,) each. Nothing is fitted with the black alone, and where the lead is
-    what is on the table."""
+    """Find the likeliest ``Chance`` from leads, worths, points on the table, whether only the black is left, errors of
+    direction [rad] and winners: (n,) each. Positions with only the black, or with a lead equal to the points on the table,
+    are not fitted."""
     rest = ~last & (np.abs(now) != left)
     now, worth, left, errors, won = (
         torch.from_numpy(np.asarray(one, np.float64)[rest])
@@ -88,24 +88,24 @@ def calibration(chance, won, groups=10):
 
 
 def stages(now, left, last):
-    """The stages of a frame, in words, and which strokes at the leads ``now`` (n,) are of each."""
+    """The stages of a frame in words, and which strokes at the leads ``now`` (n,) belong to each."""
     ahead, beyond = np.abs(now), np.abs(now) - left
     return {
         "more than 75 points on the table": ~last & (beyond < 0) & (left > 75),
         "36 to 75": ~last & (beyond < 0) & (left > 35) & (left <= 75),
         "14 to 35": ~last & (beyond < 0) & (left > 13) & (left <= 35),
-        "pink and black, or fewer": ~last & (beyond < 0) & (left <= 13),
-        "the lead is what is on the table": ~last & (beyond == 0),
-        "1 to 4 points more": ~last & (beyond > 0) & (beyond <= 4),
-        "5 points more, or beyond": ~last & (beyond > 4),
-        "the black alone, a lead of up to 7": last & (ahead <= 7),
-        "the black alone, a larger lead": last & (ahead > 7),
+        "at most pink and black": ~last & (beyond < 0) & (left <= 13),
+        "the lead equals the points on the table": ~last & (beyond == 0),
+        "the lead is 1 to 4 points larger": ~last & (beyond > 0) & (beyond <= 4),
+        "the lead is at least 5 points larger": ~last & (beyond > 4),
+        "black alone, lead of at most 7": last & (ahead <= 7),
+        "black alone, larger lead": last & (ahead > 7),
     }
 
 
 def by_stage(chance, won, now, left, last, frames):
-    """A row for each of ``stages``: its words, strokes, frames, the mean chance of the player ahead (of the striker, if
-    level), the share of these that won, and its standard error, over frames."""
+    """One row for each of ``stages``: its words, strokes, frames, the mean chance of the player ahead (of the striker, if
+    level), the share of these players that won, and its standard error over frames."""
     ahead = now >= 0
     said, made = np.where(ahead, chance, 1.0 - chance), np.where(ahead, won, ~won)
     every = stages(now, left, last).items()

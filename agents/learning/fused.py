@@ -1,9 +1,9 @@
-"""How are choices, values and gradients of ``TablePolicy`` computed quickly? In blocks that fit the cache.
+"""How are choices, values and gradients of ``TablePolicy`` computed quickly? In blocks that fit into the cache.
 
-PyTorch spends most of its time on moving intermediate results through memory. Here kernels do all that lies
-between the layers, ``BLOCK`` tables at a time, in arrays that are made once; the gradient is written out by
-hand. Where the policy plays, the same network is a ``StrokePolicy``, whose scores of a table do not depend on
-the tables beside it. tests/agents/learning/test_fused.py compares all with PyTorch's own.
+PyTorch spends most of its time moving intermediate results through memory. Here, kernels do everything between the
+layers, ``BLOCK`` tables at a time, in arrays that are made once; the gradient is written by hand. In play, the same
+network is a ``StrokePolicy``, whose scores of a table do not depend on other tables.
+tests/agents/learning/test_fused.py compares everything with PyTorch.
 """
 
 from threading import Lock
@@ -25,7 +25,7 @@ from . import fused_kernels as kernels
 
 
 class Rollout(NamedTuple):
-    """A rollout of n tables, and how each was played."""
+    """A rollout of n tables, with the actions played."""
 
     seen: np.ndarray
     """float32 (n, SHOWN), as in ``FusedTable.act``."""
@@ -34,7 +34,7 @@ class Rollout(NamedTuple):
     actions: np.ndarray
     """int64 (n,)."""
     before: np.ndarray
-    """Logarithms of the old probabilities, and the next two: float32 (n,)."""
+    """Logarithms of the old probabilities; like the next two, float32 (n,)."""
     advantages: np.ndarray
     returns: np.ndarray
 
@@ -48,7 +48,7 @@ class Loss(NamedTuple):
 
 
 class FusedTable:
-    """Passes through a ``TablePolicy`` with its present weights. One thread at a time computes."""
+    """Passes through a ``TablePolicy`` with its current weights. Only one thread at a time may compute."""
 
     def __init__(self, policy):
         reader, value = policy.features_extractor, policy.value_net.value
@@ -60,7 +60,7 @@ class FusedTable:
         self.parameters = [p for layer in layers.values() for p in (layer.weight, layer.bias)]
         ends = np.cumsum([p.numel() for p in self.parameters]).tolist()
         self.gradient = torch.zeros(ends[-1])
-        """The gradient of all parameters in a row; ``zero_grad`` makes their ``grad`` views of it."""
+        """The gradient of all parameters in one array; ``zero_grad`` makes their ``grad`` views of it."""
         pairs = zip(self.parameters, ends, strict=True)
         self._views = [self.gradient[end - p.numel() : end].view_as(p) for p, end in pairs]
         self._layers = {}
@@ -78,17 +78,17 @@ class FusedTable:
 
     @property
     def policy(self):
-        """The ``StrokePolicy`` with the present weights: how this network plays."""
+        """The ``StrokePolicy`` with the current weights, which plays for this network."""
         parameters = [p.detach().numpy() for p in self.parameters]
         pairs = zip(parameters[::2], parameters[1::2], strict=True)
         return StrokePolicy(dict(zip(self._layers, pairs, strict=True)))
 
     def scores(self, seen, masks):
-        """The scores of all choices (n, CHOICES), ``NEVER`` where not available. Arguments as in ``act``."""
+        """The scores of all choices (n, CHOICES), ``NEVER`` if unavailable. Arguments as in ``act``."""
         return self.policy.scores(seen, masks)
 
     def act(self, seen, masks, uniform):
-        """Draws for n tables: choices int64, values and logarithms of their probabilities float32, each (n,).
+        """Draw for n tables. Returns choices int64, values and logarithms of their probabilities float32, each (n,).
 
         seen float32 (n, SHOWN), masks bool (n, CHOICES), uniform (n,) in [0, 1): the random numbers.
         """
@@ -122,7 +122,7 @@ class FusedTable:
         return sums / size
 
     def _blocks_of(self, rows):
-        """The arrays for each ``BLOCK`` of the rows, and these; takes the present weights first."""
+        """Yield the arrays for each ``BLOCK`` of the rows, and these rows, after taking the current weights."""
         for layer in self._layers.values():
             layer.refresh()
         for start in range(0, len(rows), BLOCK):
@@ -136,7 +136,7 @@ class FusedTable:
         return self._blocks[n]
 
     def _forward(self, b, rows, seen, masks):
-        """The results of all layers for the tables seen[rows]; returns their number of object balls."""
+        """Compute the results of all layers for the tables seen[rows]. Returns their numbers of object balls."""
         layers = self._layers
         read = b.balls_, b.group, b.first, b.pots_, b.context_, b.sides
         m = table_kernels.read_tables(rows, seen, read, b.at)
@@ -155,13 +155,13 @@ class FusedTable:
         return m
 
     def _learn(self, name, d, x):
-        """Add the gradients of a layer's weights, given that of its result and its input."""
+        """Add the gradients of a layer's weights, from its input and the gradient of its result."""
         layer = self._layers[name]
         layer.d_weight.addmm_(d.t(), x)
         layer.d_bias.add_(d.sum(0))
 
     def _learn_first(self, name, d, x):
-        """The same of a layer with few inputs, for which this order is five times as fast."""
+        """The same for a layer with few inputs, where this order is five times as fast."""
         layer = self._layers[name]
         layer.d_turned.addmm_(x.t(), d)
         layer.d_bias.add_(d.sum(0))
@@ -171,7 +171,7 @@ class FusedTable:
         return torch.mm(d, self._layers[name].weight, out=out)
 
     def _backward(self, b, m):
-        """Add the gradients of all weights, given those of the scores and values."""
+        """Add the gradients of all weights, from those of the scores and values."""
         n = len(b.first) - 1
         self._learn("scores", b.d_scores, b.joint)
         self._back("scores", b.d_scores, b.d_joint)
@@ -214,12 +214,12 @@ class _Layer:
         self.d_weight, self.d_bias, self.d_turned = d_weight, d_bias, d_weight.t()
 
     def refresh(self):
-        """Take the present weights."""
+        """Take the current weights."""
         weight, bias = self._copies
         weight[:, : self.outputs], bias[: self.outputs] = self.weight.numpy().T, self._bias.numpy()
 
     def __call__(self, rows, out):
-        """Write the results for each row; returns them. The last bits depend on the number of rows."""
+        """Write and return the results for each row. The last bits depend on the number of rows."""
         torch.addmm(self._bias_turned, torch.from_numpy(rows), self._turned, out=torch.from_numpy(out))
         return out
 
@@ -230,16 +230,16 @@ def _relu(x):
 
 
 class _Block(SimpleNamespace):
-    """Arrays of n tables: each layer's result by name, gradients with ``d_``, as NumPy with ``_``."""
+    """Make arrays for n tables: each layer's result by name, gradients with prefix ``d_``, NumPy views with ``_``."""
 
     def __init__(self, n: int, layers: dict[str, _Layer]):
         most = n * (N_BALLS - 1)
         of_pots = {name: n * POTS for name in ("pot_1", "pot_2", "joint", "scores")}
-        rows = {"ball_1": most, "ball_2": most} | of_pots  # of other layers n
+        rows = {"ball_1": most, "ball_2": most} | of_pots  # other layers have n rows
         made = {name: torch.zeros(rows.get(name, n), layer.outputs) for name, layer in layers.items()}
         made |= {f"d_{name}": torch.zeros_like(array) for name, array in made.items()}
         width = layers["ball_2"].outputs
-        at = 3 * width + layers["pot_2"].outputs  # where the game's state begins in the input of the context
+        at = 3 * width + layers["pot_2"].outputs  # start of the game's state in the input of the context
         made["balls"], made["pots"] = torch.zeros(most, BALL_INPUTS), torch.zeros(n * POTS, POT_ENTRIES)
         made["context"], made["d_context"] = torch.zeros(n, at + STATE + 3), torch.zeros(n, at)
         made["scores"] = torch.zeros(n * POTS, SCORED)  # wider than its gradient

@@ -1,6 +1,6 @@
-"""What does a ``fused.FusedTable`` compute besides matrix products? Draws, the loss, gradients.
+"""What does a ``fused.FusedTable`` compute besides matrix products? Draws, the loss and gradients.
 
-Each kernel goes over n rows once; gradients are of the loss with respect to the name after ``d_``.
+Each kernel passes over n rows once. A name with ``d_`` is the gradient of the loss with respect to the rest of the name.
 """
 
 from math import exp, log
@@ -11,8 +11,8 @@ from snooker_env.kernels import entry, kernel
 from snooker_env.planning.learned.table_kernels import mirror_choice
 from snooker_env.tasks import POTS
 
-_LEAST = 1e-30  # smaller ones are too near to what float32 can hold
-# literals are float64, and half as many of them fit into a register
+_LEAST = 1e-30  # smaller ones are too close to the limit of float32
+# literals are float64, and only half as many fit into a register
 _ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)
 
 
@@ -61,7 +61,7 @@ def spread_to_pots(d_codes, codes, d_context, at):
 
 @entry
 def cut_off(d, activation, n):
-    """The gradient before a ReLU, in place, from its result: the first n rows."""
+    """The gradient before a ReLU, in place, from its result, for the first n rows."""
     for j in range(n):
         d_row, row = d[j], activation[j]
         for c in range(row.shape[0]):
@@ -70,7 +70,7 @@ def cut_off(d, activation, n):
 
 @entry
 def draw(likely, uniform, sides, choices):
-    """A choice for each row of probabilities (n, k) by inversion, none of 0; ``uniform`` (n,) in [0, 1)."""
+    """Draw a choice for each row of probabilities (n, k) by inversion, never one with probability 0; ``uniform`` (n,) in [0, 1)."""
     for j in range(likely.shape[0]):
         row = likely[j]
         left, pick = np.float64(uniform[j]), 0
@@ -85,7 +85,7 @@ def draw(likely, uniform, sides, choices):
 
 @kernel
 def scale_of(scores, likely, pick):
-    """Logarithm of the sum of exp(scores), from a choice's score and probability, or the likeliest one's."""
+    """Logarithm of the sum of exp(scores), from the score and probability of a choice, or of the likeliest one."""
     if likely[pick] < _LEAST:
         for c in range(likely.shape[0]):
             if likely[c] > likely[pick]:
@@ -103,7 +103,7 @@ def log_probabilities(scores, likely, sides, choices, out):
 
 @entry
 def ppo_gradient(rows, passed, played, loss, batch, gradients, sums):
-    """The gradients (d_scores, d_values) of PPO's loss, a mean over ``batch`` rows of which these are some.
+    """The gradients (d_scores, d_values) of PPO's loss, a mean over ``batch`` rows that include these.
 
     passed: (scores, likely, mean, sides, values), with scores and likely as in ``log_probabilities``, mean:
     sums of likely * scores, and values (n, 1). played: (actions, before, advantages, returns) of a

@@ -1,9 +1,9 @@
-"""How is an agent defined? By its ``hyperparams/NAME.yml``, in RL Baselines3 Zoo's format, for SB3.
+"""How is an agent defined? By ``hyperparams/NAME.yml``, in the format of RL Baselines3 Zoo.
 
 Additional keys: ``algo`` (the algorithm), ``expert`` (true: expert iteration comes first), ``imitation`` (its positions)
-and ``first_aim_std`` (of the aim at the start). They may stand under ``agent``
-instead: the Zoo itself then trains with the same file, if the policy is one of SB3's own.
-``learning_rate: lin_X`` falls linearly from X to nearly 0.
+and ``first_aim_std`` (initial deviation of the aim). If they stand under ``agent`` instead, the Zoo itself can train with
+the same file, provided that the policy is one of SB3's own. ``learning_rate: lin_X`` decreases linearly from X to
+nearly 0.
 """
 
 import ast
@@ -19,17 +19,17 @@ from snooker_env.checks import choice, integer, number, refuse
 FOLDER = Path(__file__).parents[1] / "hyperparams"
 ENV_ID = "Snooker-v0"
 ACTION_OPTIONS = Options.group("action", "visit")
-"""Options of the environment that say how actions are read, with its defaults: they belong to the agent."""
+"""Options that determine how actions are read, with their defaults: they belong to the agent."""
 SHOT_OPTIONS = tuple(Options.group("shot"))
-"""Options that decide the outcome of a shot: the same in training and evaluation."""
+"""Options that determine the outcome of a shot: equal in training and evaluation."""
 SEEN_OPTIONS = ("observation", "observe_conditions")
-"""Options that say what the agent observes, see ``features.observed``: they belong to the agent."""
+"""Options that determine what the agent observes (``features.observed``): they belong to the agent."""
 TRAINING_OPTIONS = ("layout", "reward")
-"""Options of training alone."""
+"""Options of training only."""
 ENV_OPTIONS = (*ACTION_OPTIONS, *SHOT_OPTIONS, *SEEN_OPTIONS, *TRAINING_OPTIONS)
-"""The options that ``env_kwargs`` may hold."""
+"""The options allowed in ``env_kwargs``."""
 BY_OPTION = ("n_timesteps", "n_envs", "imitation")
-"""Keys that have their own option of train.py: --steps, --envs, --imitate."""
+"""Keys with their own options of train.py: --steps, --envs, --imitate."""
 
 
 def rate(field, value, low, high):
@@ -38,7 +38,7 @@ def rate(field, value, low, high):
     try:
         number(field, value_of(value[4:]) if falls else value, low, high)
     except ValueError:
-        wanted = f"must be a number in [{low}, {high}], or lin_X with such a number X"
+        wanted = f"must be a number X in [{low}, {high}], or lin_X"
         raise refuse(field, value, wanted) from None
     return value
 
@@ -55,7 +55,7 @@ KINDS = {
     "learning_rate": (rate, 0, 1),
     "first_aim_std": (number, 1e-6, 10),
 }
-"""Kind, least and largest value of each; advantages are normalised, so a batch has two shots or more."""
+"""Kind, smallest and largest value of each key; advantages are normalised, so a batch has at least two shots."""
 
 
 def names():
@@ -65,9 +65,9 @@ def names():
 
 @dataclass
 class Recipe:
-    """The definition of an agent: the keys named here, the algorithm's own hyperparameters in ``settings``.
+    """The definition of an agent: the keys named here, and the algorithm's own hyperparameters in ``settings``.
 
-    ``fidelity_given``: whether that of ``env_kwargs`` was asked for; else the recipe's saves training time.
+    ``fidelity_given``: whether the fidelity of ``env_kwargs`` was requested; otherwise the recipe's saves training time.
     """
 
     name: str
@@ -84,9 +84,9 @@ class Recipe:
 
     @classmethod
     def of(cls, name, changes=(), env_kwargs=None, **more):
-        """The recipe of that name with "key=value" changed, then environment options, other keys. ValueError.
+        """Read the recipe of this name and apply "key=value" changes, then environment options, then other keys. ValueError.
 
-        Algorithm, policy, network and action belong together: to change them takes another recipe.
+        Algorithm, policy, network and action belong together; changing them requires another recipe.
         """
         file = FOLDER / f"{choice('agent', name, names())}.yml"
         written = yaml.safe_load(file.read_text(encoding="utf-8"))
@@ -102,7 +102,7 @@ class Recipe:
                 keys[key] = check(key, keys[key], low, high)
         keys["env_kwargs"] = _options(keys["env_kwargs"], env_kwargs, usual, keys["policy"])
         if keys["env_kwargs"].get("observe_conditions") and keys["algo"] == "ppo_mask":
-            why = "its networks read the table without its constants"
+            why = "its networks do not read the table's constants"
             raise refuse("observe_conditions", True, f"must be left out for {name}: {why}")
         asked = "fidelity" in env_kwargs or "fidelity" in changed.get("env_kwargs", {})
         mine = {f.name: keys.pop(f.name) for f in fields(cls) if f.name in keys}
@@ -131,14 +131,14 @@ class Recipe:
         model = algorithm_class(self.algo)(policy(self.policy), tables, **settings)
         if self.first_aim_std is not None:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
-        # SB3 saves and restores additional attributes, too
+        # SB3 also saves and restores additional attributes
         model.recipe, model.env_options = self.name, dict(self.env_kwargs)
         # origin of its weights, see ``models.load_weights``; positions of expert iteration
         model.start, model.imitated = None, 0
         return model
 
     def new_network(self, observation_space, action_space):
-        """The untrained network (an SB3 policy) of ``new_model`` alone, for given weights."""
+        """The untrained network (an SB3 policy) of ``new_model``, to be filled with given weights."""
         network = policy(self.policy)
         if isinstance(network, str):
             network = algorithm_class(self.algo).policy_aliases[network]
@@ -147,7 +147,7 @@ class Recipe:
 
 
 def value_of(text):
-    """The value of a text on the command line: a Python literal, or the text itself."""
+    """The value of text on the command line: a Python literal, or the text itself."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
@@ -155,12 +155,12 @@ def value_of(text):
 
 
 def changes_of(changes, keys):
-    """The values of the "key=value" in ``changes``, each key at most once."""
+    """The values of "key=value" in ``changes``, with each key at most once."""
     free, changed = [key for key in keys if key not in BY_OPTION], {}
     for change in changes:
         key, equals, value = change.partition("=")
         if not equals or key not in free:
-            others = f" ({', '.join(BY_OPTION)} have options of their own)"
+            others = f" ({', '.join(BY_OPTION)} have their own options)"
             raise refuse("set", change, f"must be KEY=VALUE with KEY one of {', '.join(free)}{others}")
         if key in changed:
             raise refuse("set", change, f"must give {key} only once")
@@ -169,7 +169,7 @@ def changes_of(changes, keys):
 
 
 def _options(options, more, usual, policy):
-    """Environment options with ``more``; if ``policy`` needs it, actions must be read as ``usual``."""
+    """Merge ``more`` into environment options; if ``policy`` needs it, actions must be read as ``usual``."""
     if not isinstance(options, dict):
         raise refuse("env_kwargs", options, f"must be a dict with keys of {', '.join(ENV_OPTIONS)}")
     for key in options:
@@ -188,14 +188,14 @@ def _options(options, more, usual, policy):
 
 
 def not_held_out(layout):
-    """Raise ValueError for the layout of the tables that are kept for evaluation."""
+    """Raise ValueError for the layout that is reserved for evaluation."""
     if layout == "held_out":
-        why = "the held-out tables are kept for evaluation"
-        raise refuse("layout", layout, f"must be another for training: {why}")
+        why = "the held-out tables are reserved for evaluation"
+        raise refuse("layout", layout, f"must differ in training: {why}")
 
 
 def algorithm_class(name):
-    """The SB3 class of that name."""
+    """The SB3 class with this name."""
     from stable_baselines3 import PPO
 
     from .fast_ppo import FastPPO
@@ -205,7 +205,7 @@ def algorithm_class(name):
 
 
 def policy(name):
-    """A policy class of ``networks`` or of ``snooker_env.sb3``, or a name of SB3's own."""
+    """A policy class of ``networks`` or ``snooker_env.sb3``, or the name of one of SB3's own."""
     from snooker_env import sb3
 
     from . import networks

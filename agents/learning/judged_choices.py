@@ -1,8 +1,8 @@
-"""How does a policy learn the values of choices? Some in each position are simulated once and judged, and it is fitted to them.
+"""How does a policy learn the values of choices? It is fitted to some choices in each position, simulated once and judged.
 
-A choice is worth its points and, if the visit goes on, the value of what it leaves. State value + TEMPERATURE *
-(log-probability - its mean) is fitted to that by least squares: the policy becomes the softmax of the values of its
-choices, and the critic their mean under it. Half of the choices tried are its own best ones (DAgger, Ross et al. 2011).
+A choice is worth its points and, if the visit continues, the value of the position it leaves. State value + TEMPERATURE *
+(log-probability - its mean) is fitted to this worth by least squares. The policy thus becomes the softmax of the values of
+its choices, and the critic their mean under it. Half of the choices tried are its own best ones (DAgger, Ross et al. 2011).
 """
 
 from collections import deque
@@ -16,19 +16,19 @@ from snooker_env.planning import Planner, action_masks
 from snooker_env.planning.learned.pot_view import with_pots
 
 TRIES = 48
-"""Trials in each position: half the learner's best choices, half random; if they are few, each twice."""
+"""Trials in each position: half the learner's best choices, half random; each twice if there are few."""
 TEMPERATURE = 1.0
 """The difference in points that makes a choice e times as likely."""
 KEPT = 50_000
 """Positions that gradient steps are drawn from."""
 BATCH, EACH, RATE = 512, 32, 2e-3
-"""Positions in the batch of a gradient step, new positions for each step, and the first learning rate."""
+"""Positions per batch, new positions per gradient step, and the first learning rate."""
 _PARTS = 4
 """Rounds that a batch is drawn from."""
 
 
 class JudgedChoices:
-    """Fits ``policy`` to values of choices in rounds of n positions. ``shots``: simulated so far."""
+    """Fits ``policy`` to values of choices in rounds of n positions. ``shots`` counts those simulated so far."""
 
     def __init__(self, policy, options, threads, n, rng):
         self._policy, self._rng, self._n = policy, rng, n
@@ -39,7 +39,7 @@ class JudgedChoices:
         self.losses, self.shots = deque(maxlen=100), 0
 
     def round(self, at, value, remaining):
-        """Try choices in ``Positions``, judge what they leave by ``value``, learn; ``remaining``: share."""
+        """Try choices in ``Positions``, judge the resulting positions by ``value``, and learn. ``remaining``: share of training left."""
         seen, masks = with_pots(at.observations()), action_masks(at, cue=self._cue)
         with torch.no_grad():
             scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
@@ -49,7 +49,7 @@ class JudgedChoices:
         worths = np.zeros(picks.shape, np.float32)
         worths[row, column] = self._gains(at, value, row, picks[row, column], keys)
         kept = seen, np.packbits(masks, axis=1), picks.astype(np.int16), valid, worths
-        # sums depend on the layout, and a saved array comes back in this one
+        # sums depend on the memory layout, and a saved array returns in this one
         self._rounds.append(tuple(map(np.ascontiguousarray, kept)))
         del self._rounds[: -max(1, KEPT // self._n)]
         for group in self._optimizer.param_groups:
@@ -58,7 +58,7 @@ class JudgedChoices:
             self.losses.append(fit_values(self._policy, self._optimizer, *self._batch(masks.shape[1])))
 
     def _gains(self, at, value, rows, picks, keys):
-        """Points of choices (k,) and the value of what they leave, each simulated once."""
+        """Points of choices (k,) plus the value of the positions they leave, each simulated once."""
         before = count_shots()
         played = self._planner.play(at, rows, picks, keys)
         gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
@@ -82,16 +82,16 @@ class JudgedChoices:
         return state | {"optimizer": self._optimizer.state_dict()}
 
     def set_state(self, state):
-        """Go on from a state of ``get_state``."""
+        """Continue from a state of ``get_state``."""
         self._rounds, self.shots = list(state["rounds"]), state["shots"]
         self.losses.extend(state["losses"])
         self._optimizer.load_state_dict(state["optimizer"])
 
 
 def to_try(scores, masks, rng):
-    """``TRIES`` choices of each row of masks (n, SIZE), half the best, half random; which are valid.
+    """Pick ``TRIES`` choices for each row of masks (n, SIZE), half the best, half random. Also returns which are valid.
 
-    A choice can be in both halves; of fewer valid choices than half of ``TRIES``, all are in both.
+    A choice can be in both halves. If fewer choices than half of ``TRIES`` are valid, all are in both halves.
     """
     half = TRIES // 2
     best = np.argpartition(np.where(masks, -scores, np.inf), half, axis=1)[:, :half]

@@ -1,13 +1,12 @@
-"""How is ``stroke_value`` trained: what strokes are worth, without simulating them when it plays?
+"""How does ``stroke_value`` learn the values of strokes, so that it need not simulate them in play?
 
-``python train.py --agent stroke_value``. Each round of visits is played under errors from ``SCALES[0]`` to ``SCALES[1]``
-times a professional's, with what the rounds before have learned (the first one half with the planner), and in each
-position that comes about tries some of the strokes that the player looks at, each under ``ERRORS`` execution errors. What
-they bring and what the planner's value says of what they leave is their worth: a network is fitted to it, on the
-positions of its own visits (DAgger; Ross, Gordon & Bagnell 2011), after the last round for longer. Rounds of frames follow,
-against itself, ``best_pot`` and ``tactician_60``: a second network learns what the strokes of frames, safeties too, are worth
-beside what they seem to be worth. After each round the run's folder holds its data and its weights: a resumed run goes on
-from there.
+``python train.py --agent stroke_value``. Each round plays visits with errors from ``SCALES[0]`` to ``SCALES[1]`` times a
+professional's, using what earlier rounds have learned (half of the first round uses the planner). In each position reached,
+it simulates some of the strokes that the player considers, each with ``ERRORS`` execution errors. A stroke is worth its points
+plus the planner's value of the position left. A network is fitted to this worth on the positions of its own visits (DAgger;
+Ross, Gordon & Bagnell 2011), for longer after the last round. Rounds of frames follow, against itself, ``best_pot`` and
+``tactician_60``: a second network learns the difference between the worth of strokes in frames, safeties included, and their
+first estimate. After each round, the run's folder holds its data and weights, from which a resumed run continues.
 """
 
 from dataclasses import asdict, astuple, dataclass, fields
@@ -36,40 +35,40 @@ from .stroke_frames import try_frames
 
 AGENT = "stroke_value"
 STROKES_EACH, PARTS = 8, 8
-"""Strokes that are played on each table of a round, and parts of the tables with errors of their own."""
+"""Strokes played on each table of a round, and number of parts with different errors."""
 SCALES = 0.7, 4.5
-"""Errors of the visits and frames, times those of a professional; evenly spread in the logarithm."""
+"""Errors of the visits and frames relative to a professional's, evenly spread in the logarithm."""
 BEST, OTHERS, ERRORS = 10, 10, 4
-"""Strokes of a position that are tried: those that seem best, others at random; and execution errors of each."""
+"""Strokes tried in a position: the best by estimate, and random others; and execution errors for each."""
 EXPLORE, AMONG = 0.1, 8
-"""Share of strokes that are not the one that seems best, but one of the ``AMONG`` best."""
+"""Share of strokes taken from the ``AMONG`` best instead of the best by estimate."""
 WIDTHS, BATCH, DECAY = (128, 64), 512, 1e-4
 PASSES, LAST_PASSES = 15, {"visits": 60, "frames": 20}
-"""Over the positions after each round, and after the last one."""
+"""Passes over the positions after each round, and after the last one."""
 AGAINST = None, None, "best_pot", "tactician_60"
-"""Who plays the parts of a round of frames against it, in turn; None: itself."""
+"""Opponents in the parts of a round of frames, in turn; None: itself."""
 COMPARED = 2.0
-"""Weight of what the strokes of a position are worth beside each other; that of the worth itself is 1."""
+"""Weight of the differences between strokes of a position; the weight of the worth itself is 1."""
 HELD = 10
-"""One table in so many is kept from the fit, to say how good it is."""
+"""One table in this many is held out from the fit, to measure its error."""
 FIRST_SEED = 30_000_000
 """The seed of the first table."""
 
 
 def fit_strokes(seen, worth, table, seed, passes, seems=None):
-    """The layers of a network fitted to ``worth`` (n, k) points of strokes seen as (n, k, SIZE) on the tables with these
-    seeds (n,), and figures of the tables kept from the fit. ``seems`` (n, k): the network adds to these points, and errors
-    beyond ``POINTS`` count less (Huber's loss)."""
+    """Fit a network to the ``worth`` (n, k) [points] of strokes with features (n, k, SIZE) on the tables with these seeds
+    (n,). Returns its layers and figures of held-out tables. With ``seems`` (n, k), the network adds to these points, and
+    errors beyond ``POINTS`` count less (Huber's loss)."""
     torch.manual_seed(seed)
     rng, held = np.random.default_rng(seed), table % HELD == HELD - 1
     mean, deviation = seen[~held].mean((0, 1), np.float64), seen[~held].std((0, 1), np.float64) + 1e-3
     scaled = torch.from_numpy(((seen - mean) / deviation).astype(np.float32))
     network, lossy = Perceptron(seen.shape[-1], *WIDTHS, 1), nn.functional.mse_loss
     if seems is None:
-        plain, base = seen[..., 0], np.zeros_like(worth)  # what the policy says
+        plain, base = seen[..., 0], np.zeros_like(worth)  # the policy's estimate
     else:
         plain, base, lossy = seems, seems, nn.functional.huber_loss
-        with torch.no_grad():  # it begins by adding nothing
+        with torch.no_grad():  # at first the network adds nothing
             last: nn.Linear = network[-1]  # type: ignore[assignment]
             last.weight.mul_(0.1)
             last.bias.zero_()
@@ -95,14 +94,14 @@ def fit_strokes(seen, worth, table, seed, passes, seems=None):
         "worth_chosen_unlearned": POINTS * float(before.mean()),
     }
     layers = network.arrays()
-    weight, bias = layers[0]  # for what is seen as it is
+    weight, bias = layers[0]  # for features as they are
     layers[0] = weight / deviation, bias - (weight / deviation) @ mean
     return layers, figures
 
 
 def try_visits(layers, noise, cue, seeds, rng):
-    """Visits from the tables ``seeds``: what is seen of the strokes tried, float16 (n, k, SIZE), their worth [points],
-    float32 (n, k), and the seeds of the tables on which the visits began (n,)."""
+    """Play visits from the tables ``seeds``. Returns the features of the strokes tried, float16 (n, k, SIZE), their worth
+    [points], float32 (n, k), and the seeds of the tables on which the visits began (n,)."""
     n, env = len(seeds), sn.SnookerVectorEnv(len(seeds), layout="opened", **VISITS, noise=noise, cue=cue)
     env.reset(seed=seeds.tolist())
     values: StrokeValue = StrokeValuePlayer(StrokeLayers(layers)).at(env).values
@@ -133,7 +132,7 @@ def try_visits(layers, noise, cue, seeds, rng):
         chosen = np.where(rng.random(len(scores)) < EXPLORE, rng.integers(AMONG, size=len(scores)), 0)
         strokes = plain.play(visits, keys[live]).values
         strokes[found.rows] = found.strokes[every[:, 0], order[every[:, 0], chosen]]
-        if not layers:  # nothing is learned yet: half of the tables show where a good player comes
+        if not layers:  # nothing is learned yet, so half of the tables show the positions of a good player
             half = np.flatnonzero(np.arange(len(live)) % 2)
             strokes[half] = expert.play(visits[half], keys[live][half]).values
         actions = np.zeros((n, env.options.rules.actions.size))
@@ -145,20 +144,20 @@ def try_visits(layers, noise, cue, seeds, rng):
 
 @dataclass(frozen=True)
 class StrokeSettings:
-    """Of a run: what its rounds are made of."""
+    """Settings of a run's rounds."""
 
     seed: int = 0
     rounds: int = 8
     tables: int = 1024
-    """Of a round of visits."""
+    """Settings of a round of visits."""
     frame_rounds: int = 3
     frames: int = 512
-    """Of a round of frames."""
+    """Settings of a round of frames."""
     cue: str = "real"
 
     @classmethod
     def of(cls, seed, changes):
-        """With "key=value" in ``changes``. Raises ValueError."""
+        """Apply "key=value" in ``changes``. Raises ValueError."""
         made = cls(seed, **changes_of(changes, [f.name for f in fields(cls)][1:]))
         integer("seed", made.seed, 0, 80)
         for name in ("rounds", "frame_rounds"):
@@ -172,11 +171,11 @@ class StrokeSettings:
 _FRAMES = frame_strokes.SAFETIES, frame_strokes.SAMPLES, frame_strokes.FOUL, frame_strokes.POTTED
 _VISITS = LOOKS, SAMPLES, SIZE, frame_strokes.SIZE, STROKES_EACH, PARTS, SCALES
 _VERSION = *_VISITS, BEST, OTHERS, ERRORS, EXPLORE, AMONG, AGAINST, *_FRAMES
-"""What the data of rounds depend on beside the settings: rounds of other ones are not resumed."""
+"""Inputs of the rounds besides the settings; rounds with other inputs are not resumed."""
 
 
 class StrokeRounds(Rounds):
-    """Rounds of visits or frames, on tables from the seed ``first`` on."""
+    """Rounds of visits or frames, on tables from seed ``first`` on."""
 
     def __init__(self, out, settings, name, many, tables, first):
         super().__init__(out, name, many, tables, PARTS, (*astuple(settings), *_VERSION))
@@ -184,12 +183,12 @@ class StrokeRounds(Rounds):
 
     @property
     def trial_shots(self):
-        """Shots that were simulated for the strokes that were tried."""
+        """Shots simulated for the strokes tried."""
         return sum(one["worth"].size * ERRORS for one in self.rounds)
 
     @property
     def simulated(self):
-        """All shots that the rounds simulated, play and the decisions of other players too."""
+        """All shots simulated in the rounds, including play and the decisions of other players."""
         return sum(int(one["shots"].sum()) for one in self.rounds)
 
     @property
@@ -199,7 +198,7 @@ class StrokeRounds(Rounds):
         return said + explained
 
     def tried_on(self, noise, part, seeds, rng):
-        """What is seen of the strokes tried on these tables, what they are worth, and the tables' seeds."""
+        """The features of the strokes tried on these tables, their worth, and the tables' seeds."""
         raise NotImplementedError
 
     def parts_of(self, k):
@@ -213,7 +212,7 @@ class StrokeRounds(Rounds):
             yield dict(zip(("seen", "worth", "table", "shots"), (*played, shots), strict=True))
 
     def seems(self, seen):
-        """What the strokes seem to be worth before anything is learned [points]; None: nothing."""
+        """The first estimate of the strokes' worth [points]; None: no estimate."""
 
     def fit(self):
         k = len(self.rounds)
@@ -229,14 +228,14 @@ class StrokeRounds(Rounds):
 
 
 class VisitRounds(StrokeRounds):
-    """The visits of ``stroke_value``."""
+    """The rounds of visits of ``stroke_value``."""
 
     def tried_on(self, noise, part, seeds, rng):
         return try_visits(self.layers, noise, self.settings.cue, seeds, rng)
 
 
 class FrameRounds(StrokeRounds):
-    """The frames of ``stroke_value``, when those of visits are complete."""
+    """The rounds of frames of ``stroke_value``, after those of visits."""
 
     visits: VisitRounds
 
@@ -250,7 +249,7 @@ class FrameRounds(StrokeRounds):
 
 
 class StrokeTraining:
-    """A run of these settings, of which seed and changes count, in the folder ``out``. Raises ValueError."""
+    """Open a run in the folder ``out``; of these settings only seed and changes count. Raises ValueError."""
 
     def __init__(self, settings, out, resume):
         for name, usual in asdict(type(settings)()).items():
@@ -265,13 +264,13 @@ class StrokeTraining:
             part.restore()
 
     def save(self):
-        """Nothing: each round is kept."""
+        """Do nothing: each round is kept."""
 
     def close(self):
-        """Nothing is open."""
+        """Do nothing: nothing is open."""
 
     def write(self):
-        """Write both networks into ``STROKES`` of the folder; returns its path."""
+        """Write both networks into ``STROKES`` of the folder. Returns its path."""
         both = [arrays_of(part.name, part.layers) for part in self.parts]
         write_atomic(self.out / STROKES, packed_arrays(both[0] | both[1]))
         return self.out / STROKES

@@ -1,8 +1,8 @@
-"""How does every training run? Part after part in rounds, until all are done or a signal comes; stopped anywhere and resumed,
-it ends with the same bits.
+"""How does every training run? Part by part, in rounds, until all parts are done or a signal arrives. A run that was stopped
+anywhere and resumed ends with the same bits.
 
-A part says how much it has to do, plays and learns round by round, and asks between two rounds whether to go on. What is
-saved then is all that going on needs: by the clock, after a signal, and at the end of a part.
+A part states its amount of work, plays and learns round by round, and asks between two rounds whether to continue. The run
+is then saved if it is time, after a signal, and at the end of a part.
 """
 
 import signal
@@ -15,52 +15,52 @@ import rich
 from snooker_env.progress import Progress
 
 LEAST, SHARE = 30.0, 0.01
-"""Seconds that a kill may lose, and the largest share of the time for saving: a checkpoint may hold 155 MB."""
+"""Seconds that a kill may lose, and the largest share of time for saving (a checkpoint may hold 155 MB)."""
 
 
 class Part:
-    """One part of a training. A subclass has ``done`` and ``figures``, and ``round`` or a ``play`` of its own."""
+    """One part of a training. A subclass has ``done`` and ``figures``, and either ``round`` or its own ``play``."""
 
     what, unit, now = "", "", "this round"
-    """What it does, of what it does so much, and the work that is finished before the run is saved; in words."""
+    """In words: the part's work, its unit, and the work to finish before the run is saved."""
     total = 0
     _spent, _began = 0.0, None
 
     @property
     def done(self) -> int:
-        """How much of ``total``."""
+        """The amount done of ``total``."""
         raise NotImplementedError
 
     @property
     def figures(self) -> str:
-        """How it learns, in words."""
+        """The progress of learning, in words."""
         return ""
 
     @property
     def seconds(self):
-        """Duration so far [s], with the time before a resume."""
+        """Duration so far [s], including the time before a resume."""
         return self._spent + (0.0 if self._began is None else time.perf_counter() - self._began)
 
     def begin(self):
-        """Called once before the first round, also of a resumed run."""
+        """Called once before the first round, also in a resumed run."""
 
     def round(self):
         """Play and learn."""
         raise NotImplementedError
 
     def play(self, rest: Callable[[], bool]):
-        """Rounds until all is done or ``rest``, called before each, says no."""
+        """Play rounds until all is done or ``rest``, called before each, returns False."""
         while self.done < self.total and rest():
             self.round()
 
 
 class Stop:
-    """Notes SIGINT and SIGTERM: the run is saved after the current round. A second one acts at once."""
+    """Records SIGINT and SIGTERM, so that the run is saved after the current round. A second signal acts at once."""
 
     def __init__(self):
         self.signal = None
         self.now = "this round"
-        """The work that is finished before the run is saved, in words."""
+        """The work to finish before the run is saved, in words."""
 
     def __enter__(self):
         stops = signal.SIGINT, signal.SIGTERM
@@ -81,20 +81,20 @@ class Stop:
 
 
 class Loop:
-    """Runs the ``parts`` of a training called ``name``. ``save()`` keeps what going on needs, ``again`` is the command that
-    goes on; ``more``: how many parts follow."""
+    """Runs the ``parts`` of a training called ``name``. ``save()`` saves the state, ``again`` is the command that continues,
+    and ``more`` is the number of parts that follow."""
 
     def __init__(self, name, parts, save, again, more=0):
         self.name, self.again = name, again
         self._parts, self._save, self._many = parts, save, len(parts) + more
 
     def progress(self, what, total, unit, done=0, number=None):
-        """The ``Progress`` of part ``number``; by default of the last one, which follows those of learning."""
+        """The ``Progress`` of part ``number``, by default of the last one, which follows the learning."""
         head = f"{self.name}, part {number or self._many} of {self._many}" if self._many > 1 else self.name
         return Progress(f"{head}, {what}", total, unit, done=done, to=sys.stdout)
 
     def run(self):
-        """Play all parts that are left. The signal that stopped it, or None."""
+        """Play all remaining parts. Returns the signal that stopped it, or None."""
         with Stop() as stop:
             for number, part in enumerate(self._parts, 1):
                 if part.done < part.total:

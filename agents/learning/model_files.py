@@ -1,9 +1,9 @@
-"""How is a trained agent stored in a file and read again? As JSON and weights; nothing is unpickled.
+"""How is a trained agent stored in a file and read again? As JSON and weights, without unpickling.
 
-``train.py`` writes zips of Stable-Baselines3, which ``PPO.load`` reads by running the pickles in their
-``data``; ``pack_model`` makes those of ``results/weights``, ``model.json`` and ``policy.pth`` alone. From either this module reads the
-entries ``KEPT`` as plain JSON and the tensors of ``policy.pth``. The network is that of the current recipe of
-that name: a file cannot name other code.
+``train.py`` writes zips of Stable-Baselines3, which ``PPO.load`` reads by running the pickles in their ``data``.
+``pack_model`` makes those of ``results/weights``, which hold only ``model.json`` and ``policy.pth``. From either, this module
+reads the entries ``KEPT`` as plain JSON and the tensors of ``policy.pth``. The network is that of the current recipe with this
+name, so a file cannot run other code.
 """
 
 import io
@@ -24,7 +24,7 @@ WEIGHTS = "policy.pth"
 
 @dataclass
 class Trained:
-    """A trained agent as described in a file, by the attributes that train.py sets on SB3's own models."""
+    """A trained agent as described in a file, by the attributes that train.py sets on SB3's models."""
 
     policy: Any
     """Its network, an SB3 policy."""
@@ -41,7 +41,7 @@ class Trained:
 
     @property
     def action_space(self):
-        """The action space of the tables that it was trained on."""
+        """The action space of its training tables."""
         return self.policy.action_space
 
 
@@ -70,16 +70,16 @@ KEPT = {
     "imitated": _count,
     "start": _dict,
 }
-"""The entries that are read, with the check of each."""
+"""The entries read, with the check of each."""
 MAY_BE_NONE = ("seed", "imitated", "start")
 
 
 class _MismatchError(Exception):
-    """These are not the weights of the current network."""
+    """The weights do not fit the current network."""
 
 
 def read(path, field):
-    """The ``Trained`` in a file; None if train.py did not make it. ValueError, ImportError."""
+    """Read the ``Trained`` in a file; None if train.py did not make it. Raises ValueError and ImportError."""
     try:
         found = entries(path)
         if not by_train(found):
@@ -94,12 +94,14 @@ def read(path, field):
     try:
         return Trained(_network(path, described, seen), **described)
     except _MismatchError:
-        wanted = f"must be a model of the current {described['recipe']}: this one is older, train it again"
+        wanted = (
+            f"must be a model of the current {described['recipe']}, but this one is older: train it again"
+        )
         raise refuse(field, str(path), wanted) from None
     except ImportError:
         raise
     except Exception as error:  # any error of zip or torch on weights of another kind
-        why = f"its {WEIGHTS} must hold weights and nothing else: {type(error).__name__}"
+        why = f"its {WEIGHTS} must hold only weights: {type(error).__name__}"
         raise refuse(field, str(path), f"must be a model that train.py saved ({why})") from None
 
 
@@ -131,7 +133,7 @@ def _network(path, described, seen):
 
 
 def _weights(path, most):
-    """The tensors of a file by name; nothing runs. ``_MismatchError`` if above ``most`` bytes."""
+    """The tensors of a file by name; no code runs. ``_MismatchError`` above ``most`` bytes."""
     import torch
 
     try:
@@ -139,7 +141,7 @@ def _weights(path, most):
     except ValueError:
         raise _MismatchError from None
     with zipfile.ZipFile(file) as inner:
-        if sum(info.file_size for info in inner.infolist()) > most:  # compressed a second time
+        if sum(info.file_size for info in inner.infolist()) > most:  # compressed twice
             raise _MismatchError
     file.seek(0)
     return torch.load(file, map_location="cpu", weights_only=True)
@@ -150,7 +152,7 @@ def _forms(weights):
 
 
 def pack_model(trained):
-    """A ``Trained`` as the bytes of a zip with ``model.json`` and ``policy.pth`` alone; reproducible."""
+    """Pack a ``Trained`` into the bytes of a zip with only ``model.json`` and ``policy.pth``, reproducibly."""
     import torch
 
     described = {key: getattr(trained, key) for key in KEPT}

@@ -1,4 +1,4 @@
-"""Where are trained models? Pre-trained ones, the model of a run's folder, and weights to start from."""
+"""Where are trained models? There are pre-trained ones, the model of a run's folder, and weights to start from."""
 
 import io
 from pathlib import Path
@@ -10,10 +10,10 @@ from .hyperparameters import ACTION_OPTIONS
 from .model_files import read
 
 POLICY = "policy.npz"
-"""The file of a policy that another trainer made, see ``policy_files``."""
+"""File name of a policy made by another trainer, see ``policy_files``."""
 PRETRAINED = Path(__file__).parents[2] / "results" / "weights"
 CHECKPOINT = "checkpoint.pkl"
-"""A run's folder holds it from the first save on."""
+"""A run's folder holds this file from the first save on."""
 
 
 def pretrained_names():
@@ -22,23 +22,23 @@ def pretrained_names():
 
 
 def file_of(path, field):
-    """The model's file for a path to a file or a run's folder. Raises ValueError, naming ``field``."""
+    """The model's file for a path to a file or a run's folder. The ValueError names ``field``."""
     here = [path / name for name in ("model.zip", POLICY)] if path.is_dir() else [path]
     file = next((file for file in here if file.is_file()), here[0])
     if not file.is_file():
         ends = ""
         if (path / CHECKPOINT).is_file():
-            ends = f"; this run has not ended, continue it with: python train.py --resume --out {path}"
-        raise refuse(field, str(path), f"must be a model's .zip or a folder that holds model.zip{ends}")
+            ends = f"; this run has not ended: continue it with python train.py --resume --out {path}"
+        raise refuse(field, str(path), f"must be a model's .zip or a folder with model.zip{ends}")
     return file
 
 
 def load_trained(path, field):
-    """The ``Trained`` of a .zip or a run. ValueError, naming ``field``, if train.py did not make it."""
+    """Read the ``Trained`` of a .zip or a run. If train.py did not make it, the ValueError names ``field``."""
     file = file_of(path, field)
     if file.suffix == ".npz":
         wanted = "must be a model that train.py saved, its .zip or a run's folder"
-        raise refuse(field, str(file), f"{wanted}: an .npz holds plain weights alone")
+        raise refuse(field, str(file), f"{wanted}: an .npz holds only plain weights")
     trained = read(file, field)
     if trained is None:
         raise refuse(field, str(file), "must be a model that train.py saved")
@@ -46,18 +46,16 @@ def load_trained(path, field):
 
 
 def load_weights(model, path):
-    """Load the weights of another model with this network and actions; ``model.start`` says from where.
+    """Load the weights of another model with this network and actions; ``model.start`` records their origin.
 
     Raises ValueError.
     """
     other = load_trained(path, "start")
     if not isinstance(other.policy, type(model.policy)):
-        wanted = f"must be a model of {model.recipe}, or of another agent with its network"
+        wanted = f"must be a model of {model.recipe}, or of another agent with the same network"
         raise refuse("start", str(path), f"{wanted}, not of {other.recipe}")
     if other.policy.observation_space != model.policy.observation_space:
-        seen = (
-            "must be a model that observes the same as this one: both the constants of the table, or neither"
-        )
+        seen = "must be a model with the same observation as this one: both with the table's constants, or both without"
         raise refuse("start", str(path), seen)
     spaces = other.action_space == model.action_space
     if not spaces or any(other.env_options.get(key) != model.env_options.get(key) for key in ACTION_OPTIONS):
@@ -75,7 +73,7 @@ def load_weights(model, path):
 
 
 def _count_training_shots(path):
-    """All simulated shots of the training of a run's model, by the run's figures; None: not known."""
+    """All shots simulated in the training of a run's model, from the run's figures; None if unknown."""
     file = path / "results.json" if path.is_dir() else path.with_name("results.json")
     if not path.is_dir() and path.name != "model.zip":
         return None

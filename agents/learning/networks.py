@@ -1,10 +1,10 @@
-"""Which networks read a snooker table? Small ones shared by balls and by pots, sums, and a head for strokes.
+"""Which networks read a snooker table? Small networks shared by all balls and by all pots, sums, and a head for strokes.
 
-The order of balls or pots must not matter: all balls go through one network and all pots through another
-(deep sets, Zaheer et al. 2017). Masked sums of their codes and the game's state make the context. The score
-of a stroke at a pot comes from that pot's code and the context, by the same weights for every pot. The table
-is read mirrored so that the cue ball is on the right, and the choice of side spin is mirrored back. (Yellow
-and green break the symmetry: an input gives the half that the cue ball was on.)
+The order of balls or pots must not matter, so all balls pass through one network and all pots through another
+(deep sets, Zaheer et al. 2017). Masked sums of their codes and the game's state form the context. The score of a
+stroke at a pot follows from that pot's code and the context, with the same weights for every pot. The table is
+mirrored so that the cue ball is on the right, and the choice of side spin is mirrored back. (Yellow and green break
+the symmetry, so an input gives the half with the cue ball.)
 """
 
 from itertools import pairwise
@@ -35,14 +35,14 @@ def mlp(*sizes):
 
 
 class TableReader(BaseFeaturesExtractor):
-    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, -1 if mirrored, else 1."""
+    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 if mirrored, otherwise 1."""
 
     def __init__(self, observation_space, width=32):
         super().__init__(observation_space, CONTEXT + POTS * POT + 1)
         self.ball = mlp(5 + 2, width, BALL)
         self.pot = mlp(POT_ENTRIES, 2 * width, POT)
         self.context = mlp(3 * BALL + POT + _STATE + 3, CONTEXT, CONTEXT)
-        # one layer from both; the context's part is shared
+        # one layer from both; the part of the context is shared
         self.joint = nn.ModuleList([nn.Linear(CONTEXT, POT), nn.Linear(POT, POT)])
         flips = torch.zeros(SHOWN, dtype=torch.bool)
         flips[torch.arange(N_BALLS) * 5 + BALL_X] = True
@@ -76,7 +76,7 @@ class StrokeHead(nn.Module):
     def __init__(self):
         super().__init__()
         self.score = nn.Linear(POT, STROKES)
-        with torch.no_grad():  # at first all strokes are nearly alike
+        with torch.no_grad():  # at first all strokes are nearly equal
             self.score.weight.mul_(0.1)
             self.score.bias.zero_()
 
@@ -99,7 +99,7 @@ class ValueHead(nn.Module):
 
 
 class TablePolicy(MaskableActorCriticPolicy):
-    """Observes the table and its pots, scores all strokes; the value comes from the reader's context."""
+    """Observes the table and its pots and scores all strokes; the value follows from the reader's context."""
 
     reader = TableReader
     _fused = None
@@ -113,36 +113,36 @@ class TablePolicy(MaskableActorCriticPolicy):
         self.optimizer = self._new_optimizer(self.parameters(), lr_schedule)
 
     def _new_optimizer(self, parameters, lr_schedule):
-        """Adam in one call for all parameters: their 22 small arrays one by one take ten times as long."""
+        """Adam in one call for all parameters, because 22 calls for the small arrays take ten times as long."""
         settings = {"fused": True, **self.optimizer_kwargs, "lr": lr_schedule(1)}
         return self.optimizer_class(parameters, **settings)
 
     @property
     def has_fused(self):
-        """Whether there are fused passes: not for a subclass with another reader."""
+        """Whether there are fused passes; a subclass with another reader has none."""
         return self.reader is TableReader
 
     @property
     def fused(self):
-        """The quick passes through this network."""
+        """The fused passes through this network."""
         at = [part.data_ptr() for part in self.parameters()]
         if self._fused is None or self._fused[0] != at:  # the passes share the memory of the weights
             self._fused = at, FusedTable(self)
         return self._fused[1]
 
     def __getstate__(self):
-        """What copies and pickles take: not the passes, which share the memory of these weights."""
+        """The state for copies and pickles, without the passes, which share the memory of these weights."""
         return {name: part for name, part in self.__dict__.items() if name != "_fused"}
 
     def forward(self, obs, deterministic=False, action_masks=None):
-        """As in the base class; to draw with masks is quick: one random number of PyTorch's a table."""
+        """As in the base class, but quick with masks: it draws one PyTorch random number per table."""
         if deterministic or not self._plays(obs, action_masks):
             return super().forward(obs, deterministic, action_masks)
         choices, values, logs = self.fused.act(*_arrays(obs, action_masks), torch.rand(len(obs)).numpy())
         return torch.as_tensor(choices), torch.as_tensor(values)[:, None], torch.as_tensor(logs)
 
     def get_distribution(self, obs, action_masks=None):
-        """As in the base class; with masks and without gradients by the quick passes."""
+        """As in the base class; with masks and without gradients it uses the fused passes."""
         if not self._plays(obs, action_masks):
             return super().get_distribution(obs, action_masks)
         seen, masks = _arrays(obs, action_masks)
@@ -152,19 +152,19 @@ class TablePolicy(MaskableActorCriticPolicy):
         return distribution
 
     def _plays(self, obs, action_masks):
-        """Whether there are quick passes for these observations."""
+        """Whether the fused passes can read these observations."""
         quick = self.has_fused and not torch.is_grad_enabled()
         return quick and action_masks is not None and obs.device.type == "cpu"
 
 
 def _arrays(obs, action_masks):
-    """Observations and masks as ``FusedTable`` takes them."""
+    """Convert observations and masks for ``FusedTable``."""
     masks = np.ascontiguousarray(action_masks, np.bool_).reshape(len(obs), -1)
     return np.ascontiguousarray(obs.float().numpy()), masks
 
 
 class JudgedPolicy(TablePolicy):
-    """``TablePolicy`` with the value of positions that judges it; saved together, learned apart."""
+    """``TablePolicy`` with the value of positions that judges it; saved together, learned separately."""
 
     def _build(self, lr_schedule):
         super()._build(lr_schedule)

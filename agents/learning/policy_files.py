@@ -1,8 +1,8 @@
-"""How is the policy of another trainer stored? As the weights of its layers, an ``.npz`` without any code.
+"""How is the policy of another trainer stored? As the weights of its layers, in an ``.npz`` without code.
 
-RLlib, TorchRL and a loop of one's own save in ways of their own, most as pickles. A multilayer perceptron from
-the flat observation to the 540 choices is its weights: ``weight_0`` (out, in) and ``bias_0`` (out,) of the
-first layer, ``weight_1`` and so on, and ``about``, JSON with the keys ``ABOUT``. ``agents.evaluate`` plays it.
+RLlib, TorchRL and custom loops have different formats, mostly pickles. For a multilayer perceptron from the flat
+observation to the 540 choices, the weights are enough: ``weight_0`` (out, in) and ``bias_0`` (out,) of the first
+layer, ``weight_1`` and so on, and ``about``, JSON with the keys ``ABOUT``. ``agents.evaluate`` plays such a file.
 """
 
 import io
@@ -21,11 +21,11 @@ from .hyperparameters import SHOT_OPTIONS, TRAINING_OPTIONS
 from .model_files import Trained
 
 ABOUT = {"trainer": "RLlib", "activation": "tanh", "shots": 0, "seed": 0, "gamma": 0.95, "env_options": {}}
-"""What ``about`` says, with an example: ``env_options`` are the layout, noise, ... of the training."""
+"""The contents of ``about``, with an example; ``env_options`` are the layout, noise, ... of the training."""
 
 
 def packed_policy(weights, **about):
-    """A policy as its file's bytes; ``weights``: of ``dense_layers.Layers``; ``about``: as ``ABOUT``."""
+    """Pack a policy into its file's bytes; ``weights``: of ``dense_layers.Layers``; ``about``: as ``ABOUT``."""
     if set(about) != set(ABOUT):
         raise refuse("about", sorted(about), f"must have the keys {', '.join(ABOUT)}")
     arrays = {}
@@ -42,7 +42,7 @@ def write_policy(path, weights, **about):
 
 
 def read_policy(path, field):
-    """The ``Trained`` policy in a file, its network ``Layers``. ValueError, naming ``field``; no pickles."""
+    """Read the ``Trained`` policy in a file, with a ``Layers`` network and no pickles. The ValueError names ``field``."""
     try:
         arrays = arrays_in(read_bytes(path, MOST_NPZ))
         about = strict_json(arrays["about"].item())
@@ -53,7 +53,7 @@ def read_policy(path, field):
     except (ValueError, KeyError, TypeError, OSError) as error:
         wanted = "must be a policy's .npz: weights of layers from the flat observation to the choices"
         why = " ".join(str(error).split())[:200]
-        raise refuse(field, str(path), f"{wanted}, and what they are about ({why})") from None
+        raise refuse(field, str(path), f"{wanted}, and about ({why})") from None
 
 
 def _check_layers(layers):
@@ -67,14 +67,14 @@ def _check_layers(layers):
             raise ValueError(f"layer {k} is not finite")
         size = len(bias)
     if not layers or size != CHOICES:
-        raise ValueError(f"the last layer gives {size} numbers and not {CHOICES}")
+        raise ValueError(f"the last layer gives {size} numbers, not {CHOICES}")
 
 
 def _describe(about, layers):
     if not isinstance(about, dict) or set(about) != set(ABOUT):
-        raise ValueError(f"about has not the keys {', '.join(ABOUT)}")
+        raise ValueError(f"about must have exactly the keys {', '.join(ABOUT)}")
     if not isinstance(about["trainer"], str) or not isinstance(about["env_options"], dict):
-        raise ValueError("about.trainer is no text, or about.env_options no object")
+        raise ValueError("about.trainer is not text, or about.env_options is not an object")
     for key in about["env_options"]:
         choice("key of about.env_options", key, (*SHOT_OPTIONS, *TRAINING_OPTIONS))
     network = Layers(layers, choice("about.activation", about["activation"], ACTIVATIONS))

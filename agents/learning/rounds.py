@@ -1,6 +1,6 @@
-"""How is something learned from rounds of self-play? The next round plays with what the ones before have taught.
+"""How are networks learned from rounds of self-play? Each round plays with what the earlier rounds have learned.
 
-A folder holds what each round played and what was learned after it, so that a run goes on from there.
+A folder holds the data of each round and the weights learned after it, from which a run can continue.
 """
 
 import json
@@ -16,13 +16,13 @@ from snooker_env.checks import refuse
 from .loop import Part
 
 RATE = 2e-3
-"""The learning rate of ``descend`` at its highest."""
+"""The highest learning rate of ``descend``."""
 
 
 class Rounds(Part):
-    """``many`` rounds of so many ``tables`` in so many ``parts``, into files that begin with ``name``.
+    """``many`` rounds of ``tables`` tables in ``parts`` parts, kept in files that begin with ``name``.
 
-    ``asked``: what the data depend on. A subclass has ``parts_of``, ``fit`` and ``take``."""
+    ``asked`` holds the inputs that the data depend on. A subclass has ``parts_of``, ``fit`` and ``take``."""
 
     unit, now = "tables", "these tables"
 
@@ -32,15 +32,15 @@ class Rounds(Part):
         self._asked, self._playing, self._played = [*map(str, asked)], None, []
 
     def parts_of(self, k):
-        """Yield what each part of round k played: a dict of arrays."""
+        """Yield the data of each part of round k: a dict of arrays."""
         raise NotImplementedError
 
     def fit(self):
-        """What is learned from ``rounds``: a dict of arrays, and figures of it."""
+        """Learn from ``rounds``. Returns a dict of arrays, and figures."""
         raise NotImplementedError
 
     def take(self, arrays):
-        """Play on with what was learned."""
+        """Use what was learned in the next rounds."""
         raise NotImplementedError
 
     @property
@@ -48,7 +48,7 @@ class Rounds(Part):
         return len(self.rounds) * self.tables + len(self._played) * self.tables // self.parts
 
     def restore(self):
-        """Read the rounds that the folder holds. Raises ValueError."""
+        """Read the rounds in the folder. Raises ValueError."""
         while len(self.rounds) < self.many and self._file().is_file():
             rows = kept_arrays(self._file())
             asked = rows.pop("asked").tolist()
@@ -59,7 +59,7 @@ class Rounds(Part):
             self._learn(rows)
 
     def round(self):
-        """Play a part; after the last one of a round, learn."""
+        """Play a part, and learn after the last part of a round."""
         self._playing = self._playing or self.parts_of(len(self.rounds))
         self._played.append(next(self._playing))
         if len(self._played) == self.parts:
@@ -85,18 +85,18 @@ class Rounds(Part):
 
 
 def shares_of_parts(rng, parts):
-    """Where in the range of errors each part of a round lies, 0 to 1: evenly spread, at random within its own piece."""
+    """The place of each part of a round in the range of errors, 0 to 1: evenly spread, at random within its interval."""
     return (np.arange(parts) + rng.random(parts)) / parts
 
 
 def arrays_of(name, layers):
-    """The arrays of a network in a file that ``snooker_env.players.weights`` reads."""
+    """The arrays of a network for a file that ``snooker_env.players.weights`` reads."""
     made = {f"{name}/{k}/weight": weight.astype(np.float32) for k, (weight, _) in enumerate(layers)}
     return made | {f"{name}/{k}/bias": bias.astype(np.float32) for k, (_, bias) in enumerate(layers)}
 
 
 class Perceptron(nn.Sequential):
-    """Linear layers of these sizes, a ReLU between two."""
+    """Linear layers of these sizes with ReLUs between them."""
 
     def __init__(self, *sizes):
         parts = [nn.Linear(a, b) for a, b in pairwise(sizes)]
@@ -109,11 +109,11 @@ class Perceptron(nn.Sequential):
 
 
 def descend(network, loss_of, rows, rng, passes, batch, decay, **schedule):
-    """Fit a network: so many passes over ``rows`` in random batches; ``loss_of(rows)``: the mean loss of some."""
+    """Fit a network with ``passes`` passes over ``rows`` in random batches; ``loss_of(rows)`` is the mean loss of some."""
     batch = min(batch, len(rows))
     steps = max(
         20, passes * (len(rows) // batch)
-    )  # of 10, OneCycleLR's warm-up of a tenth ends where it begins
+    )  # with 10 steps, OneCycleLR's warm-up of a tenth would end where it begins
     optimiser = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=decay)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, RATE, total_steps=steps, **schedule)
     for _ in range(passes):

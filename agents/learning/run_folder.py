@@ -1,4 +1,4 @@
-"""How does a run go on from its folder? Its settings, its lock, the checkpoint of an agent, and the checks before their use."""
+"""How does a run continue from its folder? With its settings, its lock and its checkpoint, all checked before use."""
 
 import io
 import pickle
@@ -17,11 +17,11 @@ from .hyperparameters import algorithm_class
 from .models import CHECKPOINT, zip_model
 
 SETTINGS = "settings.json"
-"""What the run was asked for: a folder that holds it is that of a run."""
+"""File of the run's settings; a folder with this file is that of a run."""
 
 
 def claim(out, resume):
-    """The ``Lock`` on the folder of a new run (made here) or of one to resume. ValueError if it is unfit."""
+    """Lock the folder of a new run (made here) or of one to resume. ValueError if the folder is unfit."""
     if not (out / LOCK).exists():
         _check(out, resume)
     out.mkdir(parents=True, exist_ok=True)
@@ -30,7 +30,7 @@ def claim(out, resume):
         for file in out.iterdir():
             if UNFINISHED.fullmatch(file.name):
                 file.unlink()
-        _check(out, resume)  # again: from now on no other run changes it
+        _check(out, resume)  # repeated, because from now on no other run changes it
     except BaseException:
         lock.release()
         raise
@@ -45,12 +45,14 @@ def _check(out, resume):
             )
         return
     if out.exists() and not out.is_dir():
-        raise refuse("out", str(out), "must be a folder, new or empty")
+        raise refuse("out", str(out), "must be a new or empty folder")
     names = [p.name for p in out.iterdir()] if out.is_dir() else []
     held = sorted(name for name in names if name not in ("tb", LOCK) and not UNFINISHED.fullmatch(name))
     if held:
         others = f"is not empty (it holds {', '.join(held[:3])})"
-        raise refuse("out", str(out), f"{others}: --resume continues it, --out names another folder")
+        raise refuse(
+            "out", str(out), f"{others}: continue it with --resume, or choose another folder with --out"
+        )
 
 
 def keep_settings(out, settings):
@@ -59,8 +61,8 @@ def keep_settings(out, settings):
 
 
 def kept_settings(out, kind):
-    """The settings of the run in a folder, of this class. Raises ValueError."""
-    wanted = "must be whole, as the current train.py writes it"
+    """Read the settings, of this class, of the run in a folder. Raises ValueError."""
+    wanted = "must be complete and written by the current train.py"
     try:
         read = read_json("out", out / SETTINGS, wanted, checked=True)
         return kind(**{name: tuple(one) if isinstance(one, list) else one for name, one in read.items()})
@@ -69,7 +71,7 @@ def kept_settings(out, kind):
 
 
 def save_checkpoint(out, model, parts):
-    """Save the state of parts, model, tables and random generators: a resumed run equals an uninterrupted one."""
+    """Save the state of parts, model, tables and random generators, so that a resumed run equals an uninterrupted one."""
     tables = model.get_env()
     state = {"parts": [part.get_state() for part in parts], "model": zip_model(model)}
     state |= {"tables": tables.env_method("get_state"), "running": tables.running}
@@ -79,16 +81,16 @@ def save_checkpoint(out, model, parts):
 
 
 def _stale(out):
-    """The ValueError for a checkpoint that cannot be used."""
+    """Make the ValueError for an unusable checkpoint."""
     wanted = "must be a complete checkpoint of the current train.py"
     return refuse(
-        "resume", str(out / CHECKPOINT), f"{wanted}: this one is damaged or older, start the run again"
+        "resume", str(out / CHECKPOINT), f"{wanted}, but this one is damaged or older: start the run again"
     )
 
 
 def read_checkpoint(out):
-    """The checkpoint of a run, and the options of its tables: its recipe may have others by now. None if nothing was saved
-    yet. Raises ValueError."""
+    """Read the checkpoint of a run and the options of its tables, which may differ from its recipe's by now. None if nothing
+    has been saved. Raises ValueError."""
     if not (out / CHECKPOINT).is_file():
         return None
     try:
@@ -102,7 +104,7 @@ def read_checkpoint(out):
 
 
 def load_model(out, state, algo, envs, seed):
-    """The agent of a checkpoint, its tables and random generators as they were. Raises ValueError."""
+    """Restore the agent of a checkpoint, its tables and its random generators. Raises ValueError."""
     try:
         # a seed here would reseed the tables
         model = algorithm_class(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)
@@ -110,8 +112,8 @@ def load_model(out, state, algo, envs, seed):
         numpy_state, torch_state, model.action_space = state["random"]
         np.random.set_state(numpy_state)  # noqa: NPY002
         torch.set_rng_state(torch_state)
-        # for the reset at the beginning of learning or expert iteration
+        # for the reset at the start of learning or expert iteration
         envs.set_options([{"state": table} for table in state["tables"]])
-    except Exception:  # of an older network, or with a part missing
+    except Exception:  # of an older network, or incomplete
         raise _stale(out) from None
     return model

@@ -1,4 +1,4 @@
-"""What can a training be asked for? The options of ``train.py``."""
+"""What can you set in a training? The options of ``train.py``."""
 
 import argparse
 import shlex
@@ -23,22 +23,24 @@ class Settings:
     """The settings of a run."""
 
     agent: str = option("strokes", "the agent: a file of agents/hyperparams, or stroke_value", choices=AGENTS)
-    steps: int = option(0, "total number of shots, rounded up to whole rollouts; 0: the recipe's")
+    steps: int = option(0, "number of shots, rounded up to whole rollouts; 0: the recipe's")
     envs: int = option(0, "number of parallel tables; 0: the recipe's")
     parallel: str = option(
-        "auto", "threads: auto is one for each processor; no result depends on it", choices=("auto", "one")
+        "auto", "threads: auto is one per processor; results do not depend on it", choices=("auto", "one")
     )
     seed: int = option(0, "random seed of tables, weights and exploration")
     layout: str = option("", "layout of the training tables [the recipe's]")
     noise: str = option(
         "", "execution noise: none, professional, amateur, club, robot, olympiad [the recipe's]"
     )
-    fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
+    fidelity: str = option(
+        "", "fidelity of the simulation: fast, standard, reference or euler:N [the recipe's]"
+    )
     physics: str = option(
-        "", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]"
+        "", "physics of the tables: paper, match, or with changes, like paper,mu_bb=marlow [the recipe's]"
     )
     conditions: str = option(
-        "", "fixed, or drawn: a table of its own for each episode [the recipe's]", choices=CONDITIONS
+        "", "fixed, or drawn: a different table for each episode [the recipe's]", choices=CONDITIONS
     )
     observe_conditions: bool = option(False, "observe the constants of the table; with --conditions drawn")
     imitate: int = option(-1, "positions of expert iteration before PPO; -1: the recipe's number")
@@ -46,7 +48,7 @@ class Settings:
         "", "initial weights: a model with the same network, its .zip or run folder (read as plain data)"
     )
     set: tuple = option((), "change hyperparameters, for example gamma=0", nargs="+")
-    eval_visits: int = option(500, f"visits of the final evaluation, on held-out tables, at most {HELD_OUT}")
+    eval_visits: int = option(500, f"visits of the final evaluation on held-out tables, at most {HELD_OUT}")
 
     @property
     def command(self):
@@ -69,12 +71,12 @@ BOUNDS = {
     "eval_visits": (2, HELD_OUT),
 }
 FREE_ON_RESUME = ("steps", "parallel", "eval_visits")
-"""How long and where, not what; the learning rate falls over the new steps."""
+"""Options of duration and place, free on --resume; the learning rate falls over the new steps."""
 
 
 def parse(argv):
-    """(parser, options given on the command line, the rest: out, resume)."""
-    about = "Train an agent, evaluate it on held-out tables beside simple players, and report the result."
+    """Read the command line: (parser, the given options, the rest: out, resume)."""
+    about = "Train an agent, compare it with simple players on held-out tables, and report the result."
     parser = argparse.ArgumentParser("train.py", "python train.py [options]", about)
     for f in fields(Settings):
         name = "--" + f.name.replace("_", "-")
@@ -90,8 +92,8 @@ def parse(argv):
             nargs=f.metadata.get("nargs"),
             help=f.metadata["help"] + (f" [{f.default}]" if f.default not in ("", (), 0) else ""),
         )
-    parser.add_argument("--out", type=Path, help="the run's folder [runs/AGENT-SEED]")
-    what = "continue the run in that folder; options left out keep their values"
+    parser.add_argument("--out", type=Path, help="folder of the run [runs/AGENT-SEED]")
+    what = "continue the run in that folder; other options keep their values"
     parser.add_argument("--resume", action="store_true", help=what)
     given = vars(parser.parse_args(argv))
     rest = argparse.Namespace(**{name: given.pop(name) for name in ("out", "resume")})

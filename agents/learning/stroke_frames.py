@@ -1,6 +1,6 @@
-"""How is a part of a round of frames played for ``stroke_value``, and what are its strokes worth? In each position that it
-strikes from, some of the strokes that it looks at are played under execution errors, and the ``tactician``'s worth says
-what they leave: its own points less the other's, from there on."""
+"""How is a part of a round of frames played for ``stroke_value``, and what are its strokes worth? In each of its positions,
+some of the strokes that it considers are simulated with execution errors. The ``tactician``'s worth (expected points minus
+the opponent's) judges the positions that they leave."""
 
 import numpy as np
 
@@ -15,12 +15,12 @@ from .frame_self_play import play_frames
 
 
 def try_frames(learned, noise, cue, seeds, other, tried, rng, threads):
-    """Frames from the tables ``seeds``, of it with the layers ``learned`` against ``other``: the name of a player; None:
-    itself, and both sides count. ``tried``: how many strokes that seem best are tried, how many others, errors of each,
-    the share of strokes played that are not the best, and among how many best these are.
+    """Play frames from the tables ``seeds``, with the layers ``learned``, against ``other``: the name of a player, or None for
+    itself, in which case both sides count. ``tried``: numbers of best strokes (by estimate) and of others tried, errors for
+    each, the share of strokes played that are not the best, and the number of best strokes from which these come.
 
-    Returns what is seen of the strokes tried, float16 (n, k, SIZE), what they are worth [points], float32 (n, k), and the
-    seeds of the tables (n,)."""
+    Returns the features of the strokes tried, float16 (n, k, SIZE), their worth [points], float32 (n, k), and the seeds of
+    the tables (n,)."""
     best, others, errors, explore, among = tried
     options = Options(task="frame", **FRAMES, cue=cue, miss="clear_path", noise=noise)
     known = options.but(conditions="fixed")  # a player does not know the constants of a table

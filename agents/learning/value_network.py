@@ -1,6 +1,6 @@
-"""How is the value of a position computed? V = P x U: the chance to score, times what the visit then brings.
+"""How is the value of a position computed? V = P x U: the chance to score, times the points of the visit if it does.
 
-One small network with two outputs (``ValueNetwork``). P starts from the likeliest pot's chance by its width;
+One small network with two outputs (``ValueNetwork``). P starts from the chance of the likeliest pot by its width;
 U is positive. It is trained with torch; ``snooker_env.planning.learned.learned_value`` plays the same weights.
 """
 
@@ -14,7 +14,7 @@ from snooker_env.planning.learned.value_features import LOGIT, SIZE
 
 WIDTHS = (160, 96)
 MEMBERS = 4
-"""Networks whose mean is the value: each learns apart, and errors that they do not share cancel."""
+"""Networks whose mean is the value. Each learns separately, so that independent errors cancel."""
 
 
 class ValueNetwork(nn.Module):
@@ -29,7 +29,7 @@ class ValueNetwork(nn.Module):
             reach = a**-0.5  # as nn.Linear
             self.weights.append(nn.Parameter(torch.empty(members, a, b).uniform_(-reach, reach)))
             self.biases.append(nn.Parameter(torch.empty(members, 1, b).uniform_(-reach, reach)))
-        with torch.no_grad():  # at first P is the chance by its width, and U hardly differs
+        with torch.no_grad():  # at first P is the chance by its width, and U is nearly constant
             self.weights[-1].mul_(0.1)
 
     def forward(self, seen):
@@ -41,7 +41,7 @@ class ValueNetwork(nn.Module):
 
 
 def value_of(network, spread, threads=1):
-    """The ``LearnedValue`` with the present weights of a ``ValueNetwork``."""
+    """The ``LearnedValue`` with the current weights of a ``ValueNetwork``."""
     pairs = zip(network.weights, network.biases, strict=True)
     layers = [(weight.detach().numpy(), bias.detach().numpy()) for weight, bias in pairs]
     members = [[(weight[k].T, bias[k, 0]) for weight, bias in layers] for k in range(network.members)]

@@ -1,18 +1,18 @@
-"""Which players does the repository add? Its trained models.
+"""Which players does the repository add to the package? Its trained models.
 
 ``pyproject.toml`` names them as entry points, so that ``snooker_env.player`` finds them in a clone.
 """
 
 
 def read_model(path):
-    """The player of a model or run of ``train.py``, else None. An entry point of ``snooker_env.models``."""
+    """The player of a model or run of ``train.py``, otherwise None. An entry point of ``snooker_env.models``."""
     from .trained import read_model
 
     return read_model(path)
 
 
 def __getattr__(name):
-    """A maker of each pre-trained model, which needs other libraries."""
+    """Make a constructor for a pre-trained model, which needs other libraries."""
     if name.startswith("__"):
         raise AttributeError(name)
     from ..learning.models import PRETRAINED, pretrained_names

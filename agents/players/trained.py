@@ -1,4 +1,4 @@
-"""How does a trained model of this repository play? Its greedy choices or actions, from what it observes."""
+"""How does a trained model of this repository play? It takes its greedy choices or actions from its observations."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from ..learning.policy_files import read_policy
 
 
 class PolicyPlayer(ChoicePlayer):
-    """The choice that the policy of a ``Trained`` model likes most."""
+    """A player that takes the choice preferred by the policy of a ``Trained`` model."""
 
     def __init__(self, model):
         self.model, self.name = model, model.recipe
@@ -26,7 +26,7 @@ class PolicyPlayer(ChoicePlayer):
     @property
     def learned(self):
         """Policy and value of a planner; None if the model has no value of positions."""
-        from ..learning.networks import arrays_of  # it loads PyTorch
+        from ..learning.networks import arrays_of  # this loads PyTorch
 
         policy = self.model.policy
         return learned_of(arrays_of(policy)) if hasattr(policy, "position_value") else None
@@ -43,7 +43,7 @@ class PolicyPlayer(ChoicePlayer):
 
 
 class ActingModel:
-    """A model of box actions or of the menu as a ``Seen``: its deterministic actions, a table at a time."""
+    """A model of box actions or of the menu as a ``Seen``: its deterministic actions, one table at a time."""
 
     def __init__(self, model):
         self.model, belong = model, (*ACTION_OPTIONS, *SEEN_OPTIONS)
@@ -76,19 +76,19 @@ def player_of_model(trained):
 
 
 def load_player(path, field="agent"):
-    """The player of a .zip, an .npz or a run. ValueError, naming ``field``, if train.py did not make it."""
+    """The player of a .zip, an .npz or a run. If train.py did not make it, the ValueError names ``field``."""
     file = file_of(Path(path), field)
     return player_of_model(read_policy(file, field) if file.suffix == ".npz" else load_trained(file, field))
 
 
 def read_model(path, field="player"):
-    """As ``load_player``, naming ``field`` in errors; None for a file that others made."""
+    """Like ``load_player``, with ``field`` in errors; None for a file not made by train.py."""
     path = Path(path)
     file = file_of(path, field) if path.is_dir() else path
     if file.suffix != ".npz":
         try:
             ours = by_train(entries(file))
-        except Exception:  # no zip, or one of another kind: others say what is wrong with it
+        except Exception:  # no zip, or another kind of zip: other loaders report its fault
             return None
         if not ours:
             return None

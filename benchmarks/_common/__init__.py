@@ -1,2 +1,2 @@
-"""What several benchmarks share: their command line, the shots they play, invariants, and changed copies of
-the package."""
+"""What do several benchmarks share? Their command line, sets of shots, invariants, and changed copies of the
+package."""

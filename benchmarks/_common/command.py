@@ -1,5 +1,5 @@
-"""What do the commands of this folder share? Their options, how they start, stop and fail, and how their
-files are written."""
+"""What do the commands of this folder share? Their options, how they start, stop and fail, and how they write
+files."""
 
 import argparse
 import contextlib
@@ -15,16 +15,16 @@ from agents._lib.lifecycle import command
 RESULTS = Path(__file__).parents[2] / "results"
 PICTURES, FIGURES = RESULTS / "pictures", RESULTS / "physics"
 _transcripts = []
-"""The file for what is printed, once a command has been given ``--out``."""
+"""The file for the printed text, if a command has ``--out``."""
 
 
 class Command(argparse.ArgumentParser):
-    """The parser of ``python -m benchmarks.NAME``, with the options that all of them take.
+    """The parser of ``python -m benchmarks.NAME``, with the common options.
 
-    ``doc``: of its module. ``pictures``: names of the pictures it draws with matplotlib; ``files``: of others
-    that it always writes, both into ``folder`` unless ``--out`` names another. ``redraws``: ``--from`` draws
-    the pictures from the figures that ``--json`` wrote. ``seed``: the usual one, if anything is drawn at
-    random.
+    ``doc``: its module's docstring. ``pictures``: names of pictures that it draws with matplotlib; ``files``:
+    names of other files that it always writes. Both go into ``folder`` unless ``--out`` names another.
+    ``redraws``: ``--from`` draws the pictures from the figures that ``--json`` wrote. ``seed``: the default
+    seed, if anything is random.
     """
 
     def __init__(self, name, doc, *, pictures=(), files=(), folder=PICTURES, seed=None, redraws=False):
@@ -45,14 +45,14 @@ class Command(argparse.ArgumentParser):
             "--out",
             type=Path,
             metavar="FOLDER",
-            help=f"write {usual}what is printed, as {name}.txt, into this folder",
+            help=f"write {usual}the printed text as {name}.txt into this folder",
         )
         self.add_argument("--json", type=Path, metavar="FILE", help="write every figure into this file")
         if pictures:
             self.add_argument("--no-pictures", action="store_true", help="draw nothing")
         if redraws:
             kept = FIGURES / f"{name}.json"
-            says = f"measure nothing, draw from the figures that --json wrote [{kept.relative_to(root)}]"
+            says = f"draw from the figures that --json wrote, without measuring [{kept.relative_to(root)}]"
             self.add_argument(
                 "--from", dest="kept", type=Path, nargs="?", const=kept, metavar="FILE", help=says
             )
@@ -62,14 +62,14 @@ class Command(argparse.ArgumentParser):
                 type=at_least(0),
                 default=seed,
                 metavar="N",
-                help=f"seed of everything that is drawn at random [{seed}]",
+                help=f"seed of all random numbers [{seed}]",
             )
 
     def options(self, argv=None):
-        """The options, once it is certain that the files can be written.
+        """Parse the options and check that the files can be written.
 
-        ``folder``: where they go; ``pictures``: whether any are drawn; ``figures``: those of ``--from``, None
-        if all is to be measured.
+        ``folder``: the folder of the files; ``pictures``: whether any are drawn; ``figures``: those of ``--from``,
+        or None if everything is measured.
         """
         found = self.parse_args(argv)
         found.figures = None
@@ -93,12 +93,12 @@ class Command(argparse.ArgumentParser):
         except ValueError as error:
             self.error(str(error))
         if found.pictures:
-            pyplot()  # if matplotlib is missing, this is said before the work
+            pyplot()  # report a missing matplotlib before the work
         return found
 
 
 def at_least(least):
-    """An argparse type: whole numbers from ``least`` up."""
+    """An argparse type for whole numbers from ``least`` up."""
 
     def count(text):
         value = int(text)
@@ -110,7 +110,7 @@ def at_least(least):
 
 
 class _Copied(io.StringIO):
-    """Passes on what is printed and keeps it."""
+    """Passes printed text on and keeps it."""
 
     def __init__(self, terminal):
         super().__init__()
@@ -125,7 +125,7 @@ class _Copied(io.StringIO):
 
 
 def run(main):
-    """Run a command's ``main`` and exit with what it returns; what is printed is kept in the file for it."""
+    """Run a command's ``main``, keep the printed text in its file, and exit with the returned code."""
     loaded = sys.modules["__main__"].__spec__
     _transcripts.clear()
 
@@ -146,14 +146,14 @@ def run(main):
 
 
 def _interrupt(_number, _frame):
-    """Ctrl-C. numba clears errors in places and so may swallow an interruption (seen): raised again until
-    ``run`` has it."""
+    """Ctrl-C. numba sometimes clears errors and may swallow an interruption, so this raises it again until
+    ``run`` receives it."""
     _alarm(2.0)
     raise KeyboardInterrupt
 
 
 def _alarm(seconds):
-    """Interrupt again after so long; 0 for never. Windows has no such clock: there one presses the keys
+    """Interrupt again after ``seconds``, or never for 0. Windows has no such timer; there you press the keys
     again."""
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, _interrupt)
@@ -161,32 +161,32 @@ def _alarm(seconds):
 
 
 def save_bytes(file, data):
-    """Write a file whole or not at all."""
+    """Write a file completely or not at all."""
     file.parent.mkdir(parents=True, exist_ok=True)
     files.write_atomic(file, data)
 
 
 def save_text(file, text):
-    """The same of text, in UTF-8."""
+    """Write text in UTF-8, completely or not at all."""
     save_bytes(file, text.encode())
 
 
 def save_json(file, figures):
-    """Write every figure into ``file``; nothing if that is None."""
+    """Write every figure into ``file``, unless it is None."""
     if file is not None:
         file.parent.mkdir(parents=True, exist_ok=True)
         files.write_json(file, figures)
 
 
 def save_figure(figure, file, **options):
-    """Write a matplotlib figure, in the format of the file's suffix, and close it."""
+    """Write a matplotlib figure in the format of the file's suffix, and close it."""
     file.parent.mkdir(parents=True, exist_ok=True)
     files.save_figure(figure, file, **options)
     pyplot().close(figure)
 
 
 def pyplot():
-    """``matplotlib.pyplot`` drawing into files."""
+    """``matplotlib.pyplot`` for drawing into files."""
     import matplotlib
 
     matplotlib.use("Agg")

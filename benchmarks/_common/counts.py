@@ -1,10 +1,10 @@
-"""What runs in a shot? Calls inside the engine, counted by playing the shots as plain Python.
+"""What runs in a shot? This counts calls inside the engine by playing the shots as plain Python.
 
     NUMBA_DISABLE_JIT=1 python -m benchmarks._common.counts PHYSICS SHOTS.npz ...
 
-A file holds positions, velocities and spins. Prints JSON: of each file, per shot, the impacts integrated
-(ball-ball and cushion), the jaw arcs tested and the jaw arcs whose quartic was solved. ``benchmarks.scene``
-starts this in a process of its own.
+A file holds positions, velocities and spins. The command prints JSON: for each file, the numbers per shot of
+integrated impacts (ball-ball and cushion), of jaw arcs tested, and of jaw arcs whose quartic was solved.
+``benchmarks.scene`` starts this in a separate process.
 """
 
 import json

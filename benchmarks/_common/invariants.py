@@ -1,12 +1,11 @@
-"""Does a shot keep the laws? Reads the engine's own log of a shot, piece by piece, and gives the worst figure
+"""Does a shot obey the laws? This reads the engine's own log of a shot, piece by piece, and finds the worst figure
 of every invariant.
 
-The log holds each ball's motion as closed forms, so what lies between two events is checked as well as the
-events: for every pair the gap is followed by steps no longer than the gap allows (at least ``LEAST``, which
-can hide 2e-10 m at the most), and so are jaws. Energies are of translation, rotation and height, per unit
-mass. A ball in the air over a pocket is judged by what it brings back: it may return with no more energy than
-it had at the edge. And all balls together may at no event have more than they had, those in the air no more
-than that and what a fall by R gives.
+The log holds each ball's motion as closed forms, so the motion between events is checked as well as the events.
+For every pair, the check follows the gap in steps no longer than the gap allows (at least ``LEAST``, which can
+hide at most 2e-10 m), and likewise for jaws. Energies are those of translation, rotation and height, per unit
+mass. A ball in the air over a pocket is judged when it returns: it may have no more energy than at the edge. All
+balls together may at no event gain energy; balls in the air may gain at most the energy of a fall by R.
 """
 
 from dataclasses import dataclass
@@ -73,7 +72,7 @@ WHAT = {
 }
 LEAST = 1e-5
 LEAST_ENERGY = 1e-18
-"""Balls with a smaller part of the shot's energy are at rest, up to rounding."""
+"""Balls with a smaller share of the shot's energy count as at rest, up to rounding."""
 _BALL_BALL, _CUSHION, _JAW, _POT = (
     int(EventKind.BALL_BALL),
     int(EventKind.CUSHION),
@@ -90,7 +89,7 @@ def _energy(v, w, R):
 
 @kernel
 def _aloft(rows, state, i, t, phys):
-    """Height of ball i above the bed, its rate, and their energy per unit mass; 0 but for one that flies."""
+    """Height of ball i above the bed, its rate, and their energy per unit mass; 0 unless it flies."""
     if state[i] != AIR:
         return 0.0, 0.0, 0.0
     z, u = flight.height(rows, state, i, t, phys)
@@ -99,13 +98,13 @@ def _aloft(rows, state, i, t, phys):
 
 @kernel
 def _note(worst, what, x):
-    if not x <= worst[what]:  # a NaN counts
+    if not x <= worst[what]:  # a NaN counts as a failure
         worst[what] = x if x == x else inf
 
 
 @kernel
 def _step(gap, speed, accel, left):
-    """The time in which two bodies cannot close more than the gap."""
+    """The longest time in which two bodies cannot close more than the gap."""
     reach = max(gap, LEAST)
     if speed * left + 0.5 * accel * left * left < reach:
         return left
@@ -133,7 +132,7 @@ def _follow(rows, state, a, b, start, stop, d, phys):
 
 @kernel
 def _all_energy(rows, state, t, phys):
-    """Energy of all balls at t, those in the air with no more than is certain; how many are in the air."""
+    """Energy of all balls at t, counting only certain energy for those in the air, and the number in the air."""
     total, air = 0.0, 0
     for i in range(len(rows)):
         if state[i] != GONE:
@@ -147,7 +146,7 @@ def _all_energy(rows, state, t, phys):
 
 @kernel
 def _beyond(r, noses, falls):
-    """How far a centre is outside the rectangle about the noses and falls [m]."""
+    """Distance of a centre outside the rectangle around the noses and falls [m]."""
     out = -inf
     for axis in range(2):
         for side in (-1.0, 1.0):
@@ -164,10 +163,10 @@ def _beyond(r, noses, falls):
 
 @kernel
 def _in_jaw(jaw, x, y, R):
-    """How deep a centre is in a jaw (-inf: it does not face it), and how far from where it would be in it.
+    """Depth of a centre in a jaw (-inf if it does not face the jaw), and its distance from the jaw.
 
-    A jaw is no deeper than a ball: behind a straight facing, far away, lies another part of the table. (No
-    path gets there unseen: it is followed by steps much shorter.)
+    A jaw is no deeper than a ball, because another part of the table lies far behind a straight facing. (No path
+    gets there unseen, because the steps are much shorter.)
     """
     dx, dy = x - jaw[0], y - jaw[1]
     far, level, inner = hypot(dx, dy), jaw[2] + R, jaw[2] - R
@@ -183,7 +182,7 @@ def _in_jaw(jaw, x, y, R):
 
 @kernel
 def _in_boundary(r, noses, jaws, R):
-    """How deep a centre is in a nose or jaw; how far it is from the next jaw."""
+    """Depth of a centre in a nose or jaw, and its distance from the next jaw."""
     deepest, clear = -inf, inf
     for k in range(len(noses)):
         across, along = (r[0], r[1]) if noses[k, 0] == 0.0 else (r[1], r[0])
@@ -197,12 +196,12 @@ def _in_boundary(r, noses, jaws, R):
 
 @kernel
 def _along_boundary(rows, state, i, stop, noses, jaws, R, phys):
-    """The deepest place of ball i in noses and jaws over its present piece, until ``stop``."""
+    """The largest depth of ball i in noses and jaws over its current piece, until ``stop``."""
     t, deepest = rows[i, T0], -inf
     if state[i] == REST or len(noses) + len(jaws) == 0:
         stop = t
     accel = hypot(rows[i, AX], rows[i, AY])
-    for c in range(2):  # where a parabola turns, it may dip into a nose
+    for c in range(2):  # at its turning point, a parabola may dip into a nose
         a = rows[i, AX + c]
         turn = rows[i, T0] - rows[i, VX + c] / a if a != 0.0 else inf
         if rows[i, T0] < turn < stop:
@@ -219,19 +218,19 @@ def _along_boundary(rows, state, i, stop, noses, jaws, R, phys):
         t = stop if not t + step < stop else t + step
 
 
-@numba.njit(nogil=True, error_model="numpy")  # an inner kernel of ours makes no arrays
+@numba.njit(nogil=True, error_model="numpy")  # inner kernels allocate no arrays
 def _check(segments, what, n, duration, phys, boundaries, worst):
     noses, jaws, falls, R = boundaries
     D = 2.0 * R
     rows, state = np.zeros((n, COLUMNS)), np.zeros(n, np.int64)
     old, old_state = np.zeros((n, COLUMNS)), np.zeros(n, np.int64)
-    brought = np.zeros(n)  # energy of the balls in the air when they came to the edge
+    brought = np.zeros(n)  # energy of the balls in the air when they reached the edge
     for i in range(n):
         rows[i] = segments[i, :COLUMNS]
         state[i] = int(segments[i, COLUMNS + 1])
     at, now = n, 0.0
     shot, _ = _all_energy(rows, state, 0.0, phys)
-    had, flown = shot, 0  # what all balls had when none was last in the air, and the events since then
+    had, flown = shot, 0  # energy of all balls when none was last in the air, and the events since then
     for e in range(len(what)):
         kind, i, j = what[e, 0], what[e, 1], what[e, 2]
         balls = 2 if kind == _BALL_BALL else 1
@@ -303,7 +302,7 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
         )
         if kind == _DROP:
             brought[i] = before
-        elif balls == 2 and in_air:  # no ball can take more than both have
+        elif balls == 2 and in_air:  # no ball can take more than the energy of both
             brought[i] += before
             brought[j] += before
         elif kind == _RETURN:
@@ -373,7 +372,7 @@ def _check_all(log, ends, n, phys, boundaries, worst):
 
 @dataclass(frozen=True)
 class Checked:
-    """What became of b shots: outcome and the worst figure of each invariant."""
+    """The results of b shots: outcome and the worst figure of each invariant."""
 
     positions: np.ndarray
     on_table: np.ndarray
@@ -381,14 +380,14 @@ class Checked:
     duration: np.ndarray
     n_events: np.ndarray
     status: np.ndarray
-    """``Status`` of each; of one that is not OK nothing else is judged."""
+    """``Status`` of each shot; if it is not OK, nothing else is judged."""
     worst: np.ndarray
     """(b, len(NAMES))"""
 
 
 def play(balls, physics, table, fidelity, max_events=MAX_EVENTS, log_size=512):
-    """Play b shots and check each; balls: positions, velocities, spins and on_table, and where balls fly heights and their
-    rates; fidelity as ``parse_fidelity`` gives it."""
+    """Play b shots and check each. balls: positions, velocities, spins and on_table, plus heights and their rates if balls
+    fly; fidelity as from ``parse_fidelity``."""
     state = [np.array(a) for a in balls]
     b, n = state[0].shape[:2]
     log = log_space(b, log_size, 2 * log_size + n + 2)
@@ -399,7 +398,7 @@ def play(balls, physics, table, fidelity, max_events=MAX_EVENTS, log_size=512):
         log, ends, n, physics.pack(), Boundaries(table.noses, table.jaws, table.falls, physics.R), worst
     )
     checked = Checked(state[0], state[3], out.potted, out.duration, out.n_events, out.status, worst)
-    for k in np.flatnonzero(out.status == Status.LOG_FULL):  # few; with more room
+    for k in np.flatnonzero(out.status == Status.LOG_FULL):  # few shots, with more room
         one = play([a[k : k + 1] for a in balls], physics, table, fidelity, max_events, 8 * log_size)
         for mine, its in zip(vars(checked).values(), vars(one).values(), strict=True):
             mine[k] = its[0]

@@ -1,5 +1,5 @@
-"""Where does a benchmark keep what it makes once and runs later? In this clone, where no other user of the
-machine could have put it."""
+"""Where does a benchmark keep code that it makes once and runs later? In this clone, where no other user of the
+machine can write."""
 
 import os
 import shutil
@@ -7,12 +7,12 @@ import tempfile
 from pathlib import Path
 
 BUILD = Path(__file__).parents[2] / "build" / "benchmarks"
-"""Git ignores it. A known name under /tmp could be another user's, with code of his own."""
+"""Git ignores this folder. A known name under /tmp could belong to another user and hold their code."""
 
 
 def kept_folder(name, make):
-    """The folder of that name; if there is none, ``make(folder)`` fills it, aside: a second process never
-    sees half of it."""
+    """The folder with this name. If there is none, ``make(folder)`` fills it elsewhere first, so that a second process
+    never sees it incomplete."""
     folder = BUILD / name
     if not folder.exists():
         BUILD.mkdir(parents=True, exist_ok=True)
@@ -21,7 +21,7 @@ def kept_folder(name, make):
             make(aside)
             os.replace(aside, folder)
         except OSError:
-            if not folder.exists():  # else another process was faster
+            if not folder.exists():  # otherwise another process was faster
                 raise
         finally:
             shutil.rmtree(aside, ignore_errors=True)

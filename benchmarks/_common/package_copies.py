@@ -1,7 +1,6 @@
-"""How does a benchmark run a changed package? A copy of its source with the change, beside the product, which
-stays as it is.
+"""How does a benchmark run a changed package? It changes a copy of the source; the package itself stays unchanged.
 
-The copy is kept under a hash of its source, so that numba's cache of it is found again.
+The copy is kept under a hash of its source, so that numba finds its cache again.
 """
 
 import hashlib
@@ -15,7 +14,7 @@ from .kept import kept_folder
 
 
 def texts():
-    """The package's source: path from the package (posix) -> text."""
+    """The package's source: path in the package (posix) -> text."""
     root = Path(snooker_env.__file__).parent
     return {
         path.relative_to(root).as_posix(): path.read_text(encoding="utf-8")
@@ -24,8 +23,8 @@ def texts():
 
 
 def load(name, changed, modules, more=""):
-    """The modules (as "physics.engine") of the package ``name`` made from the texts ``changed``; more: what
-    else it depends on."""
+    """Import modules (like "physics.engine") of the package ``name`` made from the texts ``changed``; ``more`` holds its
+    other dependencies."""
     key = hashlib.sha256(repr((sorted(changed.items()), more)).encode()).hexdigest()[:16]
 
     def make(folder):

@@ -1,9 +1,9 @@
-"""Which shots do the comparisons play? Pots on two balls and on full tables, kicks and head-on stun shots,
-aimed as a player would.
+"""Which shots do the comparisons play? Pots with two balls and on full tables, kicks and head-on stun shots, aimed
+as a player would.
 
 A pot is aimed so that the object ball, alone with the cue ball on unbounded cloth, leaves exactly towards the
-pocket: throw, squirt and swerve are allowed for, as good players do. It is then struck with a professional's
-errors (``tasks.noise``), so that some pots are centred, some rattle and some miss.
+pocket. The aim allows for throw, squirt and swerve, as good players do. The shot is then struck with a
+professional's errors (``tasks.noise``), so that some pots are centred, some rattle and some miss.
 """
 
 from dataclasses import dataclass
@@ -23,28 +23,28 @@ from snooker_env.tasks.noise import Noise
 
 R, HALF_WIDTH, HALF_LENGTH = 0.02625, 0.889, 1.7845
 TOLERANCE = 5e-4
-"""Pots whose aim may err by less than this [rad] are not played: about half of a professional's standard
+"""Pots with a smaller tolerance of aim [rad] are not played. This is about half of a professional's standard
 deviation."""
 AIM_ERROR = np.radians(0.02)
-"""Aims that leave the object ball further than this [rad] from its line are thrown away (thin cuts that do
-not settle)."""
+"""Aims that leave the object ball further than this [rad] from its line are discarded (thin cuts that do not
+converge)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Shots:
-    """n shots at b balls, the cue ball first; every ball is on the table."""
+    """n shots with b balls, the cue ball first; every ball is on the table."""
 
     positions: np.ndarray
     """(n, b, 2) [m]"""
     stroke: np.ndarray
     """(n, 4) as intended: speed [m/s], aim [rad], side and top offset over R."""
     ball: np.ndarray
-    """(n,) the ball to be potted or hit."""
+    """(n,) the ball to pot or hit."""
     physics: sn.Physics
 
     def struck(self, seed=None, aim=0.0, errors: Any = "professional"):
-        """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad]; if
-        seeded, with execution errors: any ``noise``."""
+        """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad], and, if
+        seeded, with the execution errors of ``noise``."""
         n, b = self.positions.shape[:2]
         v, w = np.zeros((n, b, 2)), np.zeros((n, b, 3))
         noise, rng = Noise.of("none" if seed is None else errors), np.random.default_rng(seed)
@@ -58,7 +58,7 @@ class Shots:
 
 
 def _execute(speed, side, top, aim, noise, rng):
-    """A level stroke with the errors of a ``Noise``, six numbers of ``rng``; its elevation comes last."""
+    """A level stroke with the errors of a ``Noise``, from six numbers of ``rng``; its elevation comes last."""
     if noise.silent:
         return speed, side, top, aim, 0.0
     z, more = noise.draw_errors(rng, 1)[0], hypot(1.0, noise.growth * speed)
@@ -69,7 +69,7 @@ def _execute(speed, side, top, aim, noise, rng):
 
 
 def _inside(place, margin=0.01):
-    """Is there room for a ball, clear of cushions and pockets?"""
+    """Whether there is room for a ball, clear of cushions and pockets."""
     room = np.abs(place) < np.array([HALF_WIDTH, HALF_LENGTH]) - R - margin
     return room.all() and np.hypot(*(POCKET_AIMS[:, :2] - place).T).min() > 0.1
 
@@ -80,7 +80,7 @@ def _turn(d, angle):
 
 
 def _settle(positions, stroke, ball, target, physics):
-    """Turn the aims until each object ball leaves towards its target; the shots that did."""
+    """Turn the aims until each object ball leaves towards its target. Returns the shots that converged."""
     pair = np.stack([positions[:, 0], positions[np.arange(len(ball)), ball]], 1)
     line = target - pair[:, 1]
     ghost = pair[:, 1] - 2 * R * line / np.hypot(*line.T)[:, None] - pair[:, 0]
@@ -106,8 +106,8 @@ def _join(parts, n):
 
 
 def _strokes(rng, n, speed, spin):
-    """Strokes without an aim: speeds in a range, the tip anywhere in an upright box (0.25 R by 0.35 R, scaled
-    by ``spin``)."""
+    """Draw strokes without an aim: speeds in a range, the tip anywhere in an upright box (0.25 R by 0.35 R, scaled by
+    ``spin``)."""
     return np.column_stack(
         [
             rng.uniform(*speed, n),
@@ -123,7 +123,7 @@ def _anywhere(rng):
 
 
 def by_the_rail(rng):
-    """A place 1 to 20 mm from a cushion and 0.2 to 0.6 m from a corner: what is potted from there meets the
+    """Draw a place 1 to 20 mm from a cushion and 0.2 to 0.6 m from a corner, from where a potted ball meets the
     jaw."""
     along, gap = rng.uniform(0.2, 0.6), R + rng.uniform(1e-3, 0.02)
     corner = np.array([HALF_WIDTH, HALF_LENGTH]) - ([along, gap] if rng.random() < 0.5 else [gap, along])
@@ -133,8 +133,8 @@ def by_the_rail(rng):
 def two_ball(
     n, physics, seed=0, *, cut=(0.0, 65.0), speed=(1.0, 4.5), run=(0.2, 1.5), spin=1.0, place=_anywhere
 ):
-    """n pots with cuts [deg], speeds [m/s] and distances to the pocket [m] in these ranges; the object ball
-    where ``place`` puts it."""
+    """Draw n pots with cuts [deg], speeds [m/s] and distances to the pocket [m] in these ranges, with the object ball
+    placed by ``place``."""
     rng, parts = np.random.default_rng(seed), []
     on_table = np.arange(22) < 2
     while sum(len(p.ball) for p in parts) < n:
@@ -164,7 +164,7 @@ def two_ball(
 
 
 def full_table(n, physics, seed=0, *, speed=(1.0, 4.5)):
-    """n pots, each one of the five widest of an opened table with all 22 balls (the held-out tables)."""
+    """Draw n pots from the five widest of an opened table with all 22 balls (the held-out tables)."""
     rng, parts = np.random.default_rng(seed), []
     while sum(len(p.ball) for p in parts) < n:
         found, balls, targets = [], [], []
@@ -186,8 +186,8 @@ def full_table(n, physics, seed=0, *, speed=(1.0, 4.5)):
 
 
 def kicks(n, physics, seed=0, *, speed=(1.5, 4.0)):
-    """n shots that meet one cushion and then the object ball: of a fan of aims, the middle one of those that
-    do."""
+    """Draw n shots that meet one cushion and then the object ball: the middle one of the successful aims in a
+    fan."""
     rng, found, strokes = np.random.default_rng(seed), [], []
     while len(found) < n:
         p = np.array([_anywhere(rng), _anywhere(rng)])
@@ -211,12 +211,12 @@ def kicks(n, physics, seed=0, *, speed=(1.5, 4.0)):
 
 
 def _kick(kinds):
-    """Is the first contact a cushion, and the second the other ball?"""
+    """Whether the first contact is a cushion and the second the other ball."""
     return kinds[kinds < EventKind.ROLL][:2].tolist() == [EventKind.CUSHION, EventKind.BALL_BALL]
 
 
 def head_on(n, physics, seed=0):
-    """n full-ball shots far from every cushion at which the cue ball arrives without any spin."""
+    """Draw n full-ball shots far from every cushion in which the cue ball arrives without spin."""
     rng = np.random.default_rng(seed)
     gap, arrives = rng.uniform(0.05, 0.12, n), rng.uniform(0.5, 0.7, n)
     leaves = np.sqrt(arrives**2 + 2 * physics.mu_s * physics.g * gap)

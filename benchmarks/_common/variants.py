@@ -1,8 +1,8 @@
-"""How would a shot run without one of its models? A copy of the package with other impacts, since the product
+"""How would a shot run without one of its models? A copy of the package has other impacts, because the package itself
 has no such switches.
 
-The copy's ``contact.py`` gets one more piece of text, and its ``engine.py`` one more condition, which add
-fidelities beyond the product's own: each is ``standard`` with one model left out.
+Additional text in the copy's ``contact.py`` and a condition in its ``engine.py`` add fidelities: each is
+``standard`` without one model.
 """
 
 from snooker_env.physics import parameters
@@ -11,13 +11,12 @@ from snooker_env.physics.impact.tables import TABLED
 from . import package_copies
 
 FREE_BALLS, LOOSE_CUSHION, SMOOTH_CLOTH, MIRROR, AT_ONCE = 101, 102, 103, 104, 105
-"""Fidelities of the copy. Two balls as free spheres (the closed form of ``fast``); the cushion with the loose
-tolerance of ``fast``; the cushion in closed form, with friction at the nose but none at the cloth; the
-cushion as a mirror with a restitution. A ball that drops at once where its centre crosses the edge of a
-pocket."""
+"""Fidelities of the copy: balls as free spheres (the closed form of ``fast``); the cushion with the loose tolerance
+of ``fast``; the cushion in closed form, with friction at the nose but not at the cloth; the cushion as a mirror
+with a restitution; and a ball that drops as soon as its centre crosses the edge of a pocket."""
 
 _FLIES = "if kind == events.POT and state[i] != FALLING"
-"""Where the engine tests whether a ball at the edge of a pocket can meet a jaw behind it."""
+"""The engine's test whether a ball at the edge of a pocket can meet a jaw behind it."""
 
 _ADDED = '''
 
@@ -75,6 +74,6 @@ def load():
     texts["physics/engine.py"] = texts["physics/engine.py"].replace(
         _FLIES, f"{_FLIES} and law.fidelity != {AT_ONCE}"
     )
-    # its shots have constants of the product, whose rolling impacts come from tables at these fidelities too
+    # its shots use the package's constants, whose rolling impacts come from tables at these fidelities as well
     parameters.TABLED = (*TABLED, *range(FREE_BALLS, AT_ONCE + 1))
     return package_copies.load("snooker_env_variants", texts, ["simulation"])[0]

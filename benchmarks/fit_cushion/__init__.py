@@ -1,1 +1,1 @@
-"""The cushion's restitution fitted to measurements: ``python -m benchmarks.fit_cushion``."""
+"""How is the cushion's restitution fitted to measurements? ``python -m benchmarks.fit_cushion``."""

@@ -1,20 +1,21 @@
-"""Where do the constants of ``physics="match"`` for cushions and cloth at speed come from? They are fitted
-together to all that is known of them.
+"""Where do the constants of ``physics="match"`` for cushions and cloth at speed come from? They are fitted together to
+all known measurements.
 
     python -m benchmarks.fit_cushion [--steps 60000] [--seed 0] [--json FILE] [--out FOLDER]
 
-Measured: rebounds of a ball that rolls straight into a snooker cushion (Mathavan 2010, Fig. 7a: 19 speeds up
-to 3.4 m/s; an error of 0.037 m/s each, what is left of the best fit to them alone), and the rows of
-``benchmarks/data/hard_strokes.csv``: how far balls thrown as hard as possible and balls off a ramp run on
-full-size tables, a snooker cloth's rolling deceleration, and the fall of restitution on a carom table.
-Free: the knee and the power of e(v) = e_c (v / knee)^(-power), mu_r, and, as unknowns of no further interest,
-the speed of the throw and roll_drag, the growth of the rolling resistance. e_c stays at the authors' own 0.98
-(their fit below 1.5 m/s): left free it runs into its bound at 1. Printed: the least squares, with roll_drag 0
-and free; intervals by Metropolis steps in all five; each measurement beside the model; lengths of strokes.
+Measurements: rebounds of a ball that rolls straight into a snooker cushion (Mathavan 2010, Fig. 7a: 19 speeds up
+to 3.4 m/s, each with an error of 0.037 m/s, the residual of the best fit to them alone), and the rows of
+``benchmarks/data/hard_strokes.csv``: the distance that balls thrown as hard as possible and balls off a ramp run on
+full-size tables, a snooker cloth's rolling deceleration, and the drop of restitution on a carom table.
+Free parameters: the knee and the power of e(v) = e_c (v / knee)^(-power), mu_r, and two nuisance parameters, the
+speed of the throw and roll_drag (the growth of the rolling resistance). e_c stays at the authors' 0.98 (their fit
+below 1.5 m/s), because a free e_c reaches its bound at 1. The command prints the least squares with roll_drag 0 and
+free, intervals from Metropolis steps in all five parameters, each measurement with the model's value, and lengths of
+strokes.
 
-Alciatore's lengths of pool strokes (TP B.6, "accounting for rail rebound and drag losses") are printed, not
-fitted: they are a calculation by all signs, the shortest is a rolling resistance of 0.010 to 0.001 lengths, and
-say nothing new about how either depends on speed.
+Alciatore's lengths of pool strokes (TP B.6, "accounting for rail rebound and drag losses") are printed but not
+fitted. They appear to be calculated: the shortest equals a rolling resistance of 0.010 to within 0.001 lengths. They
+therefore add nothing about the dependence on speed.
 """
 
 import csv
@@ -38,7 +39,7 @@ LOW, HIGH = np.array((0.5, 0.0, 0.005, 4.0, 0.0)), np.array((3.4, 0.8, 0.02, 13.
 START_AT = np.array((2.1, 0.25, 0.0115, 10.0, 0.002))
 STEP = np.array((0.12, 0.04, 0.0007, 0.8, 0.002))
 BEFORE = {"e_c_knee": 2.17, "e_c_power": 0.31, "mu_r": 0.0127}
-"""The preset before this fit: the cushion fitted to its rebounds alone, the cloth of one table."""
+"""The preset before this fit: the cushion fitted only to its rebounds, the cloth of one table."""
 RADIUS = sn.Physics().R
 ALONG = LENGTH - 2.0 * RADIUS
 MPH, POOL_LENGTH, POOL_BALL = 0.44704, 2.54, 0.028575
@@ -72,7 +73,7 @@ class Misfit:
         self.names = [*(f"rebound at {v:.2f} m/s" for v in self.speed), *strokes]
 
     def model(self, values):
-        """What is measured, as the model has it: rebounds [m/s], then the rows that have an error."""
+        """The model's values of the measurements: rebounds [m/s], then the rows with an error."""
         knee, power, mu_r, thrown, drag = values
         constants = (E_C, knee, power, mu_r, drag)
         rebound = self.speed * np.interp(restitution(self.speed, knee, power), line.SHARES, self._rolling)
@@ -84,7 +85,7 @@ class Misfit:
         return np.array((*rebound, lengths, thrown, ramp, slows, fall))
 
     def __call__(self, values):
-        """Of the whole."""
+        """Total sum of squares."""
         known = np.array([pair for pair in self.known.values() if pair[1] > 0])
         want = np.concatenate((self.rebound, known[:, 0]))
         errors = np.concatenate((np.full(len(self.speed), REBOUND_ERROR), known[:, 1]))
@@ -92,8 +93,8 @@ class Misfit:
 
 
 def fit_constants(misfit, free):
-    """Least squares over the values named ``free``, the others at ``START_AT``, roll_drag at 0; from several
-    knees, because the kink makes the problem bumpy."""
+    """Least squares over the values named ``free``, with the others at ``START_AT`` and roll_drag at 0. It starts from
+    several knees, because the kink creates local minima."""
     which = [NAMES.index(name) for name in free]
 
     def whole(x):
@@ -115,7 +116,7 @@ def fit_constants(misfit, free):
 
 
 def random_walk(misfit, steps, seed):
-    """Metropolis steps: (steps, 5) values as probable as their squares say, uniform within their bounds."""
+    """Metropolis steps: (steps, 5) values sampled by their squares, with uniform priors within their bounds."""
     rng = np.random.default_rng(seed)
     here, out = START_AT.copy(), np.empty((steps, len(NAMES)))
     square = np.sum(misfit(here) ** 2)
@@ -152,14 +153,14 @@ def print_constants(misfit, fits, walk):
 
 
 def print_measurements(misfit, values):
-    """Each measurement beside the model."""
+    """Print each measurement with the model's value."""
     print(f"\n{'measurement':28s}   model   off by, in errors")
     for name, model, off in zip(misfit.names, misfit.model(values), misfit(values), strict=True):
         print(f"{name:28s}{model:8.3f}{off:+8.1f}")
 
 
 def print_pool(misfit):
-    """Alciatore's calculated lengths beside those of match's law of e on a pool table with his cloth."""
+    """Print Alciatore's calculated lengths and those of match's law of e on a pool table with his cloth."""
     physics = {"R": POOL_BALL, "sin_theta": 0.27}
     table, match = line.impacts(**physics), sn.Physics.preset("match")
     print(
@@ -178,7 +179,7 @@ def print_pool(misfit):
 
 
 def main():
-    """Command line: fit, print the tables."""
+    """Command line: fit and print the tables."""
     parser = Command("fit_cushion", __doc__, seed=0)
     parser.add_argument("--steps", type=at_least(100), default=60_000, help="Metropolis steps [60000]")
     options = parser.options()

@@ -1,13 +1,13 @@
-"""How many lengths of the table does a stroke travel? The cue ball alone, up and down the long axis, by the
-engine, with several sets of constants.
+"""How many lengths of the table does a stroke travel? The engine plays the cue ball alone, up and down the long axis,
+with several sets of constants.
 
-Measured: I. Stevenage, The Amateur Billiard Player, October 1996 (https://www.eaba.co.uk/?p=4149), on
-full-size tables. A ball thrown from the baulk end as hard as possible goes 4.25 to 4.75 lengths on nine
-tables, 4.75 on a heated one with new cloth and steel-block cushions; there a ball from a test ramp 3.5 inches
-high comes back from the top cushion to 6 inches past the pink's spot. Players say about five lengths for the
-hardest stroke. A thrown ball starts without spin, as one struck at its middle does; its speed was not
-measured. Two experienced players close to their maximum stayed under 13.4 m/s (Carroll and Stevenage,
-Billiards Quarterly Review, July 1993).
+Measurements on full-size tables: I. Stevenage, The Amateur Billiard Player, October 1996
+(https://www.eaba.co.uk/?p=4149). A ball thrown from the baulk end as hard as possible travels 4.25 to 4.75 lengths
+on nine tables, and 4.75 on a heated one with new cloth and steel-block cushions. On that table, a ball from a test
+ramp 3.5 inches high returns from the top cushion to 6 inches past the pink's spot. Players report about five lengths
+for the hardest stroke. A thrown ball starts without spin, like one struck at its middle; its speed was not measured.
+Two experienced players near their maximum stayed below 13.4 m/s (Carroll and Stevenage, Billiards Quarterly Review,
+July 1993).
 """
 
 from math import pi, sqrt
@@ -21,9 +21,9 @@ BAULK_END = -LENGTH / 2.0
 PINK = LENGTH / 4.0
 SPEEDS = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 13.0)
 START = 0.05
-"""Where a ball starts, from the baulk cushion's nose [m]."""
+"""Start of a ball, from the baulk cushion's nose [m]."""
 RAMP = sqrt(10.0 / 7.0 * 9.81 * 3.5 * 0.0254)
-"""Speed [m/s] of a ball that has rolled down 3.5 inches."""
+"""Speed [m/s] of a ball after rolling down 3.5 inches."""
 
 
 def path(speed, physics, rolling=False):
@@ -36,13 +36,13 @@ def path(speed, physics, rolling=False):
 
 
 def lengths(speed, physics, rolling=False):
-    """Distance travelled over the table's length, for a stroke at the middle of the ball at this speed
-    [m/s], or a rolling ball."""
+    """Distance travelled divided by the table's length, for a stroke at the middle of the ball at this speed [m/s],
+    or for a rolling ball."""
     return float(np.abs(np.diff(path(speed, physics, rolling))).sum()) / LENGTH
 
 
 def print_lengths(others):
-    """Print the table of lengths and give it, {speed: {constants: lengths}}; others: physics by name."""
+    """Print and return the table of lengths, {speed: {constants: lengths}}; others: physics by name."""
     laws = {"match": sn.Physics.preset("match"), "paper": sn.Physics(), **others}
     print(f"\nlengths of the table travelled ({LENGTH} m each), struck at the middle, along the long axis")
     print("m/s   " + "".join(f"{name:>22s}" for name in laws))

@@ -1,8 +1,8 @@
-"""How far does a ball run up and down the long axis, cushion to cushion? The engine's motion in one
+"""How far does a ball run up and down the long axis, from cushion to cushion? This is the engine's motion in one
 dimension, fast enough for a hundred thousand tries (``tests/physics/test_cushion_law.py`` compares the two).
 
-Between cushions the closed forms of docs/physics/model.md. At a cushion the outcome over the incoming speed
-depends on e and on the spin alone: it is read off a table that the package's own impact fills.
+Between cushions, the closed forms of docs/physics/model.md apply. At a cushion, the outcome divided by the incoming
+speed depends only on e and the spin, so it is read from a table that the package's own impact fills.
 """
 
 from math import expm1, log1p, sqrt
@@ -16,12 +16,12 @@ G, MU_S = 9.81, sn.Physics().mu_s
 SHARES = np.linspace(0.0, 1.0, 101)
 """Restitutions of the table."""
 SPINS = np.linspace(-2.0, 2.0, 161)
-"""Top spin over that of a rolling ball, of the table."""
+"""Top spins of the table, relative to a rolling ball's."""
 
 
 def impacts(**fields):
-    """Rebound speed and the spin then, both over the incoming speed: (restitutions, spins, 2). Spin as R w,
-    positive as of a ball that rolls the way it came from."""
+    """Rebound speed and spin, both divided by the incoming speed: (restitutions, spins, 2). Spin is R w, positive for a
+    ball that rolls back the way it came."""
     radius = sn.Physics.preset("match", **fields).R
     out = np.empty((len(SHARES), len(SPINS), 2))
     for k, e in enumerate(SHARES):
@@ -34,7 +34,7 @@ def impacts(**fields):
 
 @numba.njit
 def off(table, e, spin):
-    """Interpolated: (rebound speed, spin then) over the incoming speed."""
+    """Interpolate (rebound speed, spin) divided by the incoming speed."""
     x = min(max(e, 0.0), 1.0) * 100.0
     y = (min(max(spin, -2.0), 2.0) + 2.0) * 40.0
     i, j = min(int(x), 99), min(int(y), 159)
@@ -49,8 +49,8 @@ def off(table, e, spin):
 
 @numba.njit
 def leg(v, spin, left, mu_r, drag):
-    """A ball at v [m/s] with R w = spin [m/s], ``left`` metres before a cushion: how far it gets [m], and its
-    speed and spin there; speed 0: it stays."""
+    """Roll a ball at v [m/s] with R w = spin [m/s], ``left`` metres before a cushion. Returns the distance [m], and
+    its speed and spin there; speed 0 if it stops."""
     slip = v - spin
     slows = MU_S * G if slip > 0 else -MU_S * G
     ends = abs(slip) / (3.5 * MU_S * G)
@@ -73,8 +73,8 @@ def leg(v, spin, left, mu_r, drag):
 
 @numba.njit
 def travels(v, spin, start, length, constants, table):
-    """The whole way [m] of a ball that starts at v [m/s] with R w = spin [m/s], ``start`` metres from the
-    cushion behind it; ``length``: from cushion to cushion for its centre [m]. constants: e_c, e_c_knee,
+    """The total distance [m] of a ball that starts at v [m/s] with R w = spin [m/s], ``start`` metres from the cushion
+    behind it. ``length``: from cushion to cushion for its centre [m]. constants: e_c, e_c_knee,
     e_c_power, mu_r, roll_drag."""
     e_c, knee, power, mu_r, drag = constants
     way, left = 0.0, length - start

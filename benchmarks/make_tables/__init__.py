@@ -1,1 +1,1 @@
-"""The stored tables of three layouts: ``python -m benchmarks.make_tables``."""
+"""How are the stored tables of three layouts made? ``python -m benchmarks.make_tables``."""

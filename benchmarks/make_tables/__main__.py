@@ -1,5 +1,5 @@
-"""How are the stored tables of a layout made? By simulated play: ``opened``, ``safety`` and ``escape``, see the file of
-each. Writes ``game/LAYOUT.npz``.
+"""How are the stored tables of a layout made? By simulated play; see the files of ``opened``, ``safety`` and ``escape``.
+Writes ``game/LAYOUT.npz``.
 
     python -m benchmarks.make_tables LAYOUT [--tables N] [--seed 0] [--out FOLDER]
 """
@@ -14,7 +14,7 @@ from .._common.command import Command, at_least, run, save_bytes
 from . import escape, opened, safety
 
 MAKERS = {"opened": (opened, 10240), "safety": (safety, 1024), "escape": (escape, 1024)}
-"""Layout -> the file that makes its tables, and how many."""
+"""Layout -> the module that makes its tables, and their number."""
 
 
 def main():
@@ -22,7 +22,7 @@ def main():
     parser = Command("make_tables", __doc__, files=("LAYOUT.npz",), folder=FOLDER, seed=0)
     parser.add_argument("layout", choices=MAKERS, help="whose tables")
     parser.add_argument(
-        "--tables", type=at_least(2), metavar="N", help="so many [opened: 10240, others: 1024]"
+        "--tables", type=at_least(2), metavar="N", help="number of tables [opened: 10240, others: 1024]"
     )
     options = parser.options()
     maker, usual = MAKERS[options.layout]

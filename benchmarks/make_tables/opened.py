@@ -1,4 +1,4 @@
-"""Where do the tables of the layout "opened" come from? From frames that hard strokes play open."""
+"""Where do the tables of the layout "opened" come from? From frames whose reds are spread by hard strokes."""
 
 from math import atan2
 
@@ -23,7 +23,7 @@ STROKES = 8
 
 
 def stroke(rng, positions, on_table):
-    """One hard stroke at a red; the settled table, or None if a ball other than the cue ball left it."""
+    """Play one hard stroke at a red. Returns the settled table, or None if a ball other than the cue ball left it."""
     red = positions[rng.integers(1, 1 + N_REDS)]
     aim = atan2(red[1] - positions[CUE, 1], red[0] - positions[CUE, 0]) + rng.normal(0.0, 0.02)
     speed, side, top = rng.uniform([3.0, -0.3, -0.3], [6.5, 0.3, 0.3]).tolist()
@@ -42,7 +42,7 @@ def stroke(rng, positions, on_table):
 
 
 def in_hand(rng, positions, on_table):
-    """The cue ball at a free random place of the D."""
+    """Place the cue ball at a free random place in the D."""
     while True:
         place = rng.uniform((-D_RADIUS, BAULK_Y - D_RADIUS), (D_RADIUS, BAULK_Y))
         others = positions[on_table]
@@ -52,7 +52,7 @@ def in_hand(rng, positions, on_table):
 
 
 def opened_table(rng):
-    """One opened table, or None if this frame gave none."""
+    """One opened table, or None if this frame gives none."""
     table = layouts.layout("break_off", rng)
     for _ in range(STROKES):
         table = stroke(rng, *table)
@@ -65,7 +65,7 @@ def opened_table(rng):
 
 
 def make(size, seed):
-    """Tables (size, 22, 2), to a tenth of a micrometre: within what the engine accepts as touching; and the frames played."""
+    """Tables (size, 22, 2), rounded to 0.1 micrometres (within the engine's tolerance for touching), and the frames played."""
     rng = np.random.default_rng(seed)
     tables, frames = [], 0
     while len(tables) < size:

@@ -1,9 +1,9 @@
-"""Where do the tables of the layout "safety" come from? From frames of the tactician against itself: the positions in
-which no pot is on.
+"""Where do the tables of the layout "safety" come from? From frames of the tactician against itself: they are positions
+without a likely pot.
 
-A position is kept if a red is on and can be struck, no direct pot is likelier than 40 %, three reds or more and the six
-colours are on the table, the cue ball is not in hand and no ball is free; of a frame at most three of them. The later
-half of the tables is held out; no frame has tables in both halves.
+A position is kept if a red is the ball on (to be struck first) and can be struck, no direct pot is likelier than 40 %, at
+least three reds and the six colours are on the table, the cue ball is not in hand, and there is no free ball. Each frame
+gives at most three positions. The later half of the tables is held out; no frame has tables in both halves.
 """
 
 import numpy as np
@@ -15,16 +15,16 @@ from snooker_env.planning import Positions, prospects_of
 from snooker_env.players import FRAMES, ask_player, decision_seeds, player
 
 PLAYER = "tactician_30"
-"""On both sides."""
+"""The player on both sides."""
 RULES = {"task": "frame", "noise": "professional", "cue": "real", "miss": "clear_path", **FRAMES}
 LIKELY = 0.4
-"""Chance of a direct pot, by its width, above which a position is none for a safety."""
+"""Chance of a direct pot, by its width, above which a position is not kept."""
 REDS, SIDE_BY_SIDE, A_FRAME = 3, 32, 3
-"""The fewest reds; frames that are played side by side; the most positions that are kept of one."""
+"""Minimum reds; frames played side by side; maximum positions kept per frame."""
 
 
 def calls_for_safety(at, spread, rails):
-    """Whether each position is one to keep: bool (n,)."""
+    """Whether to keep each position: bool (n,)."""
     kept = (at.ball_on == BallOn.RED) & ~at.in_hand & ~at.free_ball & ~at.choice
     kept &= at.on_table[:, 16:].all(axis=1) & (at.on_table[:, 1:16].sum(axis=1) >= REDS)
     kept &= prospects_of(at, spread, most=16, rails=rails)[1].max(axis=1) <= LIKELY
@@ -34,8 +34,8 @@ def calls_for_safety(at, spread, rails):
 
 
 def play_frames(first, many):
-    """Of each of ``many`` frames with seeds from ``first`` on the positions to keep: (22, 2) each, with NaN for balls
-    that are not on the table."""
+    """The kept positions of each of ``many`` frames with seeds from ``first`` on: (22, 2) each, with NaN for balls off the
+    table."""
     tables = MatchVectorEnv(many, **RULES)
     rules, seeds = tables.options.rules, np.arange(first, first + many)
     spread, who = rules.noise.spread(rules.physics), player(PLAYER).at(tables)
@@ -47,7 +47,7 @@ def play_frames(first, many):
             found[k].append(np.where(at.on_table[k][:, None], at.positions[k], np.nan))
         actions = ask_player(who, tables, going, decision_seeds(first, seeds, number))
         _, _, terminated, truncated, _ = tables.step(actions)
-        # with fewer reds no position to come is kept
+        # with fewer reds, no later position is kept
         going &= ~(terminated | truncated) & (tables.tables.on_table[:, 1:16].sum(axis=1) >= REDS)
         number += 1
     tables.close()
@@ -55,15 +55,15 @@ def play_frames(first, many):
 
 
 def some_of(tables, rng):
-    """At most ``A_FRAME`` of a frame's tables, all different: after a miss they may have been replaced."""
+    """At most ``A_FRAME`` of a frame's tables, all different, because balls may have been replaced after a miss."""
     different = list({table.tobytes(): table for table in tables}.values())
     chosen = rng.permutation(len(different))[:A_FRAME]
     return [different[k].astype(np.float32) for k in sorted(chosen.tolist())]
 
 
 def in_halves(frames, size):
-    """``size`` tables of frames [[table, ...], ...], half of them of earlier frames than the rest; fewer if there are
-    not so many."""
+    """``size`` tables of frames [[table, ...], ...], half of them from earlier frames than the rest; fewer if there are
+    not enough."""
     made = []
     for tables in frames:
         across = len(made) < size // 2 < len(made) + len(tables)

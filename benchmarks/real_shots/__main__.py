@@ -1,19 +1,19 @@
-"""How near does the engine come to the paths of real balls? Tracked three-cushion shots, of which only the strike is fitted.
+"""How close does the engine come to the paths of real balls? This compares tracked three-cushion shots, fitting only the strike.
 
     python -m benchmarks.real_shots FILE [--physics carom] [--fit MINUTES] [--json FILE] [--out FOLDER]
 
-FILE holds shots in metres and seconds (``tracks.py`` says the form). Those of the figures kept here were digitised at 50 Hz
-from one match (December 2022); they are published under the GPL by github tailuge/billiards (dist/fit/trajectories.json)
-and erdo100/3cushiontool, and are no part of this project: here are only results.
+FILE holds shots in metres and seconds (``tracks.py`` describes the format). The shots behind the kept figures were
+digitised at 50 Hz from one match (December 2022). github tailuge/billiards (dist/fit/trajectories.json) and
+erdo100/3cushiontool publish them under the GPL; this project contains only the results.
 
-For each shot speed, direction, side, top and elevation of the cue are fitted, and the moment of the strike, which lies
-between two samples. All else is one set of constants for all shots, the preset "carom" (``--physics``). It was fitted
-on half of the shots, those of even id (``--fit`` makes it anew from the even ids of FILE); the others are held out.
+For each shot, the speed, direction, side, top and elevation of the cue are fitted, and the time of the strike between two
+samples. All shots share one set of constants, the preset "carom" (``--physics``). It was fitted to the half of the shots
+with even ids (``--fit`` repeats this with the even ids of FILE); the other half is held out.
 
-Error of a path: at the time of each sample, the distance between the measured and the simulated ball; of a shot the root
-mean square over its samples (and the mean). Samples that no ball can have reached are left out (their number is
-printed). Contacts: of the cue ball with cushions, and the first with each ball; the order is right if the first four
-are the same ones in the same order; two within 0.03 s may change places.
+The error of a path is the distance between measured and simulated ball at each sample; for a shot, the root mean square
+over its samples (and the mean). Samples that no ball can have reached are omitted (their number is printed). Contacts are
+those of the cue ball with cushions, and the first with each ball. The order is right if the first four contacts are the
+same in the same order; two within 0.03 s may swap.
 """
 
 import dataclasses
@@ -36,19 +36,19 @@ USED, HELD_OUT = "used for the constants", "held out"
 
 
 def part(number):
-    """Which half a shot belongs to. The preset's constants come from the even ids of a file without the ids 2, 5, 8, ..."""
+    """The half that a shot belongs to. The preset's constants come from the even ids of a file without the ids 2, 5, 8, ..."""
     return USED if number % 2 == 0 and number % 3 != 2 else HELD_OUT
 
 
 def main(argv=None):
     """Command line."""
     parser = Command("real_shots", __doc__, pictures=(FILE,), seed=0)
-    parser.add_argument("file", type=Path, metavar="FILE", help="the tracked shots, JSON")
+    parser.add_argument("file", type=Path, metavar="FILE", help="JSON file of tracked shots")
     parser.add_argument(
-        "--physics", default="carom", choices=sorted(PRESETS), help="the constants of all shots [carom]"
+        "--physics", default="carom", choices=sorted(PRESETS), help="constants of all shots [carom]"
     )
     parser.add_argument(
-        "--fit", type=float, metavar="MINUTES", help="fit the constants anew, for so long, and judge those"
+        "--fit", type=float, metavar="MINUTES", help="first fit the constants for this many minutes"
     )
     options = parser.options(argv)
     try:
@@ -59,13 +59,13 @@ def main(argv=None):
 
 
 def constants_of(options):
-    """The constants that all shots share: those of the preset, with this table's ball and no tables to make."""
+    """The shared constants: those of the preset, with this table's ball and without tables to compile."""
     ball = {"R": tracks.R, "M": 0.2125}
     return dataclasses.replace(Physics.preset(options.physics), **ball, tables=False)
 
 
 def measure(options, shots):
-    """Measure and print everything; the figures."""
+    """Measure and print everything. Returns the figures."""
     print(provenance.line())
     physics = constants_of(options)
     if options.fit:
@@ -76,7 +76,7 @@ def measure(options, shots):
             + ", ".join(f"{k} {getattr(physics, k):.4g}" for k in constants.SEARCHED)
         )
     print(
-        f"{len(shots)} shots of {options.file.name}, physics {'fitted anew' if options.fit else repr(options.physics)}"
+        f"{len(shots)} shots of {options.file.name}, physics {'newly fitted' if options.fit else repr(options.physics)}"
     )
     found, judges, strikes = [], [], []
     for shot in shots:
@@ -97,13 +97,13 @@ def measure(options, shots):
 
 
 def parts(found):
-    """The shots by the half that they belong to, and all."""
+    """The shots of each half, and all shots."""
     halves = {name: [s for s in found if s["part"] == name] for name in (USED, HELD_OUT)}
     return {"all": found} | {name: rows for name, rows in halves.items() if rows}
 
 
 def say(figures):
-    """Print the medians, the order of contacts, and the runs across."""
+    """Print the medians, the order of contacts, and the runs across the table."""
     head = ["shots", "", "whole shot", "90 %", "mean", "first 3 s", "other balls", "order of contacts"]
     rows = []
     for name, m in figures["medians"].items():

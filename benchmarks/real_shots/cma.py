@@ -1,5 +1,5 @@
-"""How is a rough function of a few numbers minimised? CMA-ES (Hansen 2016, arXiv:1604.00772): candidates are asked for,
-costs are told; mean, step size and covariance follow the better half."""
+"""How is a rough function of a few numbers minimised? By CMA-ES (Hansen 2016, arXiv:1604.00772): ask for candidates, then
+report their costs; mean, step size and covariance follow the better half."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ class Cma:
         self._told = 0
 
     def ask(self):
-        """Candidates (population, n)."""
+        """Return candidates (population, n)."""
         d, self._B = np.linalg.eigh(self._C)
         self._d = np.sqrt(np.maximum(d, 1e-14))
         y = (self._rng.normal(size=(self.population, len(self._mean))) * self._d) @ self._B.T
@@ -41,11 +41,11 @@ class Cma:
 
     @property
     def mean(self):
-        """The middle of the candidates."""
+        """The centre of the candidates."""
         return self._start + self._mean * self._scale
 
     def tell(self, candidates, costs):
-        """The costs of candidates, which may have been moved since they were asked for."""
+        """Report the costs of candidates, which may have moved since ``ask``."""
         n, mu, cs, cc = len(self._mean), self._mu, self._cs, self._cc
         self._told += 1
         best = np.argsort(costs)[: len(self._weights)]

@@ -1,8 +1,8 @@
-"""Which constants suit a table best? Those shared by all of its shots, fitted while each shot keeps its own strike.
+"""Which constants suit a table best? One set shared by all its shots is fitted, while each shot keeps its own strike.
 
-Gauss and Newton's step for the constants and all strikes at once: each shot's strike is eliminated from the normal
-equations, so a step takes some tens of simulations a shot. Between the steps every strike is refined alone, and now
-and then searched anew, because a shot whose contacts are the wrong ones says nothing of the constants.
+A Gauss-Newton step adjusts the constants and all strikes at once. Each shot's strike is eliminated from the normal
+equations, so a step takes a few dozen simulations per shot. Between steps every strike is refined alone, and sometimes
+searched again, because a shot with wrong contacts reveals nothing about the constants.
 """
 
 import dataclasses
@@ -26,13 +26,13 @@ SEARCHED = {
     "mu_c": (0.03, 0.45),
     "sin_theta": (0.05, 0.45),
 }
-"""The fields that are fitted, and the range of each."""
+"""The fitted fields, and the range of each."""
 MIDDLING = 0.15
-"""An error that counts half [m]: one shot that goes another way should not decide."""
+"""An error that counts half [m], so that one shot on a different path does not decide."""
 _LEAST = 0.01
-"""Errors below count alike [m]."""
+"""Errors below this count equally [m]."""
 _STEP = 2e-4
-"""Of the difference quotients: a share of a range, and of a strike's scale 100 times that."""
+"""Step of the difference quotients: this share of a range, and 100 times this share of a strike's scale."""
 
 
 def rms(judge, strike):
@@ -41,7 +41,7 @@ def rms(judge, strike):
 
 
 def loss(errors):
-    """What is minimised over the constants: the mean over shots of e / (1 + e / MIDDLING)."""
+    """The objective for the constants: the mean over shots of e / (1 + e / MIDDLING)."""
     errors = np.asarray(errors)
     return float((errors / (1 + errors / MIDDLING)).mean())
 
@@ -75,7 +75,7 @@ def step(judges, strikes, physics, names, damping):
         weight = weights(judge) / (1 + squares / 0.3**2) ** 2
         e = max(np.sqrt(squares[: judge.offsets[1]].mean()), _LEAST)
         weight = np.repeat(weight / (e * (1 + e / MIDDLING) ** 2), 2)
-        # a slope of metres a step is chaos: it is told nothing
+        # a slope of metres per step is chaos and carries no information
         weight = weight / (1 + (np.abs(by_constant).max(1) / 30.0) ** 2)
         Js, Jc = by_strike * weight[:, None], by_constant * weight[:, None]
         Ass = by_strike.T @ Js
@@ -92,7 +92,7 @@ def step(judges, strikes, physics, names, damping):
 
 
 def _try(judges, strikes, physics):
-    """Strikes settled with these constants, and their errors [m]."""
+    """Refine the strikes with these constants. Returns strikes and errors [m]."""
     found = []
     for judge, strike in zip(judges, strikes, strict=True):
         judge.use(physics)
@@ -101,7 +101,7 @@ def _try(judges, strikes, physics):
 
 
 def fit_real_shots(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=print, strikes=None):
-    """The constants that suit ``shots`` best, and the strikes; in so many minutes, from ``physics`` on."""
+    """Fit the constants to ``shots`` for ``minutes``, starting from ``physics``. Returns constants and strikes."""
     began = time.monotonic()
     low, high = (np.array([SEARCHED[name][k] for name in names]) for k in (0, 1))
     judges = [Judge(shot, physics) for shot in shots]
@@ -122,7 +122,7 @@ def fit_real_shots(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=p
             for judge, strike, move in zip(judges, strikes, moves, strict=True):
                 lo, hi = bounds(judge.shot, other)
                 moved.append(clip((strike + share * move * SCALE)[None], lo, hi)[0])
-            # of each shot the better of both: the strike that was, and the one that was moved
+            # keep the better strike of each shot: the old one or the moved one
             for judge in judges:
                 judge.use(other)
             moved = [
@@ -146,7 +146,7 @@ def fit_real_shots(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=p
                     tried.append(fit(judge, seed + rounds, runs=1)[0])
                 strikes[k] = min(tried, key=lambda s, j=judge: float(costs(j, s[None])[0]))
             best, damping = loss([rms(j, s) for j, s in zip(judges, strikes, strict=True)]), min(damping, 1.0)
-            say(f"strikes anew: {100 * best:.3f}")
+            say(f"new strikes: {100 * best:.3f}")
     return physics, strikes
 
 

@@ -1,4 +1,4 @@
-"""How far are simulated paths from measured ones? Many strikes of one shot at once, each against the samples of all balls."""
+"""How far are simulated paths from measured ones? This compares many strikes of one shot at once with the samples of all balls."""
 
 import numba
 import numpy as np
@@ -31,7 +31,7 @@ def _strikes(strikes, phys, ratio, velocities, spins):
 
 @numba.njit(nogil=True, error_model="numpy")
 def _differences(segments, n_segments, starts, times, offsets, xy, horizon, phys, out):
-    """``out`` (b, samples, 2): from each sample up to the horizon [s] to the simulated ball."""
+    """Fill ``out`` (b, samples, 2) with the vectors from each sample up to the horizon [s] to the simulated ball."""
     n_balls = len(offsets) - 1
     for c in range(len(segments)):
         rows, n = segments[c], n_segments[c]
@@ -54,7 +54,7 @@ def _differences(segments, n_segments, starts, times, offsets, xy, horizon, phys
 
 @numba.njit(nogil=True, error_model="numpy")
 def _places(rows, n, start, times, phys, out):
-    """``out`` (times, balls, 2): where the balls of one shot are."""
+    """Fill ``out`` (times, balls, 2) with the places of the balls of one shot."""
     state = np.empty(n, np.int64)
     for s in range(n):
         state[s] = int(rows[s, cloth.SEGMENT_STATE])
@@ -71,7 +71,7 @@ def _places(rows, n, start, times, phys, out):
 
 
 class Judge:
-    """The samples of one shot, and the engine that plays strikes against them."""
+    """The samples of one shot, and the engine that plays strikes for comparison."""
 
     def __init__(self, shot, physics, table: TableLike = "carom", fidelity="standard"):
         self.shot = shot
@@ -83,12 +83,12 @@ class Judge:
         self.evaluations = 0
 
     def use(self, physics):
-        """The constants from now on."""
+        """Set the constants."""
         self.physics = Physics.of(physics)
         self.packed = self.physics.packed_for(self.solver)
 
     def run(self, strikes, max_events=100_000, fast=False):
-        """The engine's run of strikes (b, 6); ``fast``: its impacts to a looser tolerance."""
+        """Run strikes (b, 6) in the engine; ``fast``: with a looser tolerance of impacts."""
         b, n = len(strikes), len(self.shot.balls)
         r = np.repeat(self.shot.places[None], b, axis=0)
         v, w = np.zeros((b, n, 2)), np.zeros((b, n, 3))
@@ -104,18 +104,18 @@ class Judge:
         )
 
     def events_until(self, strikes, horizon):
-        """As many events as strikes (b, 6) have up to the horizon [s], and some more."""
+        """The number of events of strikes (b, 6) up to the horizon [s], with a margin."""
         ran = self.run(strikes, fast=True)
         counted = np.arange(ran.event_time.shape[1]) < ran.n_events[:, None]
         return int((counted & (ran.event_time <= horizon)).sum(1).max()) + 8
 
     def squares(self, strikes, horizon=np.inf, **how):
-        """Squared distances (b, samples) [m^2] of strikes (b, 6); beyond the horizon 0."""
+        """Squared distances (b, samples) [m^2] of strikes (b, 6); 0 beyond the horizon."""
         found = self.differences(strikes, horizon, **how)
         return found[..., 0] ** 2 + found[..., 1] ** 2
 
     def differences(self, strikes, horizon=np.inf, max_events=100_000, fast=False):
-        """From each sample to the simulated ball (b, samples, 2) [m]; beyond the horizon 0."""
+        """Vectors from each sample to the simulated ball (b, samples, 2) [m]; 0 beyond the horizon."""
         strikes = np.ascontiguousarray(strikes)
         out = np.zeros((len(strikes), len(self.times), 2))
         for a in range(0, len(strikes), _CHUNK):
@@ -135,7 +135,7 @@ class Judge:
         return out
 
     def places(self, strike, times):
-        """Where the balls are at times of the track's clock: (times, balls, 2)."""
+        """Places of the balls at times of the track's clock: (times, balls, 2)."""
         ran = self.run(strike[None])
         found = np.empty((len(times), len(self.shot.balls), 2))
         _places(ran.segments[0], int(ran.n_segments[0]), strike[START], times, self.packed, found)

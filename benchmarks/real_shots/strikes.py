@@ -1,8 +1,8 @@
-"""Which strike makes a simulated shot follow a measured one? A search from the first contact on to the whole shot.
+"""Which strike makes a simulated shot follow a measured one? A search extends from the first contact to the whole shot.
 
-The landscape is rough: a ball that is just missed changes all that follows. So a population of strikes (differential
-evolution) is fitted to the path up to the second contact, then up to the third, and so on to the end; the best of it,
-and others that differ, are refined (CMA-ES). Both are cheap: a strike takes 20 to 50 us.
+The cost function is rough, because narrowly missing a ball changes everything that follows. A population of strikes
+(differential evolution) is therefore fitted to the path up to the second contact, then up to the third, and so on to the
+end. The best strike and others that differ are then refined (CMA-ES). Both are cheap: a strike takes 20 to 50 us.
 """
 
 from itertools import pairwise
@@ -13,12 +13,12 @@ from .cma import Cma
 from .paths import ELEVATION, SIDE, SPEED, TOP, Judge
 
 OTHERS = 0.1
-"""Weight of the other balls' mean squared error against the cue ball's."""
+"""Weight of the other balls' mean squared error relative to the cue ball's."""
 MOST_ELEVATION = 0.6
 SCALE = np.array([0.02, 0.004, 0.03, 0.03, 0.02, 0.002])
-"""Steps of a strike that shift its path by some centimetres; that of the speed is a share of it."""
+"""Steps of a strike that shift its path by a few centimetres; the step of the speed is relative."""
 _QUOTIENT = 0.02
-"""Of the difference quotients of a path by its strike, in these steps."""
+"""Step of the difference quotients of a path by its strike, in units of these steps."""
 
 
 def _robust(squares, cap):
@@ -40,8 +40,8 @@ def costs(judge, strikes, horizon=np.inf, cap=1.0, others=OTHERS, **how):
 
 
 def bounds(shot, physics):
-    """Lowest and highest strikes (6,) that are searched, from the first samples; side and top lie in a disc
-    besides."""
+    """Lowest and highest strikes (6,) of the search, from the first samples; side and top also lie in a
+    disc."""
     cue = shot.balls[0]
     first = shot.contacts[0][0] if shot.contacts else cue.t[-1]
     moving = cue.t >= shot.moved
@@ -54,7 +54,7 @@ def bounds(shot, physics):
     elif n == 3:
         speed = np.hypot(*(xy[2] - xy[0])) / (t[2] - t[0])
         slowest, fastest, turn = 0.8 * speed, 1.2 * speed + 0.1, 0.06
-    else:  # another ball or a cushion is hit at once: the samples after it bound the speed
+    else:  # another ball or a cushion is hit at once, so the samples after the hit bound the speed
         steps = np.hypot(*np.diff(xy, axis=0).T) / np.diff(t) if len(t) > 1 else np.array([1.0])
         slowest, fastest, turn = 0.6 * steps.max(), 2.2 * steps.max() + 0.3, 0.15
     gone = xy[max(n, 1) - 1] - shot.places[0]
@@ -66,7 +66,7 @@ def bounds(shot, physics):
 
 
 def clip(strikes, low, high):
-    """Strikes (b, 6) moved into the bounds, tips on to the disc."""
+    """Move strikes (b, 6) into the bounds, and tips on to the disc."""
     found = np.clip(strikes, low, high)
     offset = np.hypot(found[:, SIDE], found[:, TOP])
     most = high[SIDE]
@@ -85,7 +85,7 @@ def _draw(rng, low, high, n):
 
 
 def horizons(shot):
-    """Times up to which the path is fitted in turn: shortly before each contact but the first, and the end [s]."""
+    """Successive horizons of the fit [s]: shortly before each contact except the first, and the end."""
     times = [t for t, _ in shot.contacts]
     end = max(b.t[-1] for b in shot.balls)
     found = [max(b - 0.02, a + 0.05) for a, b in pairwise(times)]
@@ -97,7 +97,7 @@ def horizons(shot):
 
 
 def evolve(judge, rng, low, high, population=96, generations=12, first=5):
-    """A population of strikes fitted with longer and longer horizons: (population, 6) and their costs."""
+    """Fit a population of strikes with growing horizons: (population, 6) and their costs."""
     steps = horizons(judge.shot)
     pool = _draw(rng, low, high, first * population)
     cap = 0.15
@@ -128,7 +128,7 @@ def evolve(judge, rng, low, high, population=96, generations=12, first=5):
 
 
 def refine(judge, rng, start, low, high, sigma=0.5, generations=40, population=16, cap=1.0, others=OTHERS):
-    """CMA-ES from one strike: the best found (6,) and its cost."""
+    """Run CMA-ES from one strike. Returns the best strike (6,) and its cost."""
     scale = SCALE.copy()
     scale[SPEED] *= start[SPEED]
     best, best_cost = start.copy(), float(costs(judge, start[None], np.inf, cap, others)[0])
@@ -146,7 +146,7 @@ def refine(judge, rng, start, low, high, sigma=0.5, generations=40, population=1
 
 
 def weights(judge):
-    """Of each sample, so that the sum of weighted squares is the cost of ``costs``."""
+    """Weights of the samples, so that the sum of weighted squares equals the cost of ``costs``."""
     a = judge.offsets
     w = np.full(len(judge.times), OTHERS / max(a[-1] - a[1], 1))
     w[: a[1]] = 1.0 / a[1]
@@ -154,7 +154,7 @@ def weights(judge):
 
 
 def settle_strike(judge, strike, steps=4):
-    """A strike after some of Gauss and Newton's own steps, each taken only if it lowers the cost; and the cost."""
+    """Refine a strike by Gauss-Newton steps, each taken only if it lowers the cost. Returns strike and cost."""
     low, high = bounds(judge.shot, judge.physics)
     weight = np.repeat(weights(judge), 2)
     best, cost = strike, float(costs(judge, strike[None])[0])
@@ -179,10 +179,10 @@ def settle_strike(judge, strike, steps=4):
 
 
 def fit(judge: Judge, seed=0, runs=3, enough=0.03, bad=0.1):
-    """The strike of a shot, from nothing but its samples: (6,), and its cost [m^2].
+    """Find the strike of a shot from its samples alone: (6,), and its cost [m^2].
 
-    Searched anew up to ``runs`` times, until the cost is below ``enough`` squared or the best was found twice; three times
-    as often while it is above ``bad`` squared.
+    Repeats the search up to ``runs`` times, until the cost is below ``enough`` squared or the best was found twice; up to
+    three times as often while the cost is above ``bad`` squared.
     """
     rng = np.random.default_rng([seed, judge.shot.id])
     low, high = bounds(judge.shot, judge.physics)
@@ -204,7 +204,7 @@ def fit(judge: Judge, seed=0, runs=3, enough=0.03, bad=0.1):
 
 
 def refit(judge, strike, seed=0, sigma=0.3, generations=25, population=12):
-    """A strike that was fitted with other constants, fitted again from there."""
+    """Refit a strike that was fitted with other constants."""
     rng = np.random.default_rng([seed, judge.shot.id])
     low, high = bounds(judge.shot, judge.physics)
     return refine(judge, rng, strike, low, high, sigma, generations, population)

@@ -1,7 +1,7 @@
-"""What does a file of tracked shots hold? Its shots, read and checked; of each the cue ball, its contacts, wild samples.
+"""What does a file of tracked shots hold? This reads and checks the shots, and finds cue balls, contacts and wild samples.
 
-The form: {"shots": [{"id": 0, "balls": {"1": {"t": [...], "x": [...], "y": [...]}, "2": ..., "3": ...}}, ...]},
-metres and seconds, the origin in the middle of a carom table (noses at x +-0.71 and y +-1.42), three balls.
+The format: {"shots": [{"id": 0, "balls": {"1": {"t": [...], "x": [...], "y": [...]}, "2": ..., "3": ...}}, ...]},
+in metres and seconds, with the origin in the middle of a carom table (noses at x +-0.71 and y +-1.42) and three balls.
 """
 
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ _CUSHIONS = ("right", "left", "far", "near")
 
 @dataclass
 class Track:
-    """The samples of one ball, wild ones left out: t [s], xy [m]."""
+    """The samples of one ball without wild ones: t [s], xy [m]."""
 
     t: np.ndarray
     xy: np.ndarray
@@ -33,8 +33,8 @@ class Track:
 class Tracked:
     """One shot; the cue ball is ``balls[0]``.
 
-    ``moved``: when its samples first show it away from its place; ``still``: the last sample before. ``contacts``: of
-    the cue ball, in order, each (time, what): "ball 1", "ball 2" or a cushion's name.
+    ``moved``: time of the first sample away from its place; ``still``: the last sample before. ``contacts``: contacts of the
+    cue ball in order, each (time, what), with "ball 1", "ball 2" or a cushion's name.
     """
 
     id: int
@@ -46,7 +46,7 @@ class Tracked:
 
     @property
     def places(self):
-        """Where the balls lie before the strike, a ball that overlaps a nose or a ball moved off it."""
+        """Places of the balls before the strike; a ball that overlaps a nose or a ball is moved off it."""
         return self._places
 
     def __post_init__(self):
@@ -54,7 +54,7 @@ class Tracked:
 
 
 def _apart(p):
-    """Places as the engine takes them: no ball in a nose, none in another."""
+    """Places for the engine, without overlaps of noses and balls."""
     p = p.copy()
     for _ in range(20):
         for a in range(2):
@@ -83,8 +83,8 @@ def _numbers(where, ball, key):
 
 
 def _wild(t, xy):
-    """Which samples lie where no ball of this track can have been: the way there and back takes half as long again as
-    the speeds beside it allow."""
+    """Which samples lie where no ball of this track can have been, because the way there and back would take 1.5 times
+    the speeds around the sample."""
     wild = np.zeros(len(t), bool)
     if len(t) < 5:
         return wild
@@ -122,7 +122,7 @@ def _first_moves(track):
 
 
 def read(file):
-    """The shots of a file, [Tracked]; ValueError that names the field if one is wrong."""
+    """Read the shots of a file, [Tracked]. The ValueError names an invalid field."""
     try:
         data = read_json(file, "file", "must be JSON of tracked shots")
     except OSError as error:
@@ -160,7 +160,7 @@ def _shot(where, shot):
 
 
 def contacts(shot):
-    """The contacts of the measured cue ball, [(time, what)]: see ``Tracked``."""
+    """The contacts of the measured cue ball, [(time, what)], see ``Tracked``."""
     found = _cushions(shot.balls[0]) + _hits(shot)
     return sorted(found)
 
@@ -177,9 +177,9 @@ def _cushions(track):
 
 
 def _turns(t, gap, near=0.25, touch=0.012, least=0.006):
-    """Times at which the distance from a cushion turns at 0: it came from ``least`` farther off, and goes there again."""
+    """Times at which the distance from a cushion turns at 0, having been larger by ``least`` before and after."""
     found, k, n = [], 0, len(gap)
-    high = gap[0]  # the farthest since the last turn
+    high = gap[0]  # the largest since the last turn
     while k < n - 1:
         high = max(high, gap[k])
         if not (gap[k + 1] > gap[k] and gap[k] < near):
@@ -194,7 +194,7 @@ def _turns(t, gap, near=0.25, touch=0.012, least=0.006):
             unseen = t[min(k + 1, n - 1)] - t[k - 1] if k else 0.0
             if min(gap[k], reached) < max(
                 touch, 0.08 * unseen
-            ):  # in a pause of the track the lines meet less well
+            ):  # in a pause of the track the lines meet less precisely
                 found.append(time)
                 high = gap[k]
         k = last
@@ -202,7 +202,7 @@ def _turns(t, gap, near=0.25, touch=0.012, least=0.006):
 
 
 def _crossing(t, gap, k):
-    """Time and gap where the lines through the two samples before and the two after the turn meet; k: the deepest."""
+    """Time and gap where the lines through the two samples before and after the turn meet; k is the deepest sample."""
     best = (float(t[k]), float(gap[k]))
     for a in (k, k - 1):  # the turn lies after sample a
         if a < 1 or a + 2 >= len(t):
@@ -220,7 +220,7 @@ def _crossing(t, gap, k):
 
 
 def _hits(shot):
-    """The first contact of the cue ball with each other ball: when that begins to move, with the cue ball beside it."""
+    """The first contact of the cue ball with each other ball: when that ball begins to move next to the cue ball."""
     found = []
     for k in (1, 2):
         track, at = shot.balls[k], _first_moves(shot.balls[k])
@@ -236,7 +236,7 @@ def _hits(shot):
 
 
 def _start(track, at):
-    """When a ball begins to move: its first two moving samples carried back to its place, within the samples' gap."""
+    """When a ball begins to move: its first two moving samples extrapolated back to its place, within the samples' gap."""
     low, high = max(track.t[at - 1], track.t[at] - 0.1), track.t[at]
     if at + 1 < len(track.t):
         step = np.hypot(*(track.xy[at + 1] - track.xy[at])) / (track.t[at + 1] - track.t[at])
@@ -246,5 +246,5 @@ def _start(track, at):
 
 
 def place(track, time):
-    """Where the track is at a time, between its samples by a straight line."""
+    """The place on the track at a time, by linear interpolation."""
     return np.array([np.interp(time, track.t, track.xy[:, axis]) for axis in range(2)])

@@ -1,21 +1,21 @@
-"""What is said of a shot that was played against its samples? Errors of the paths, the order of contacts, runs across."""
+"""How does a simulated shot compare with its samples? By errors of paths, the order of contacts and runs across the table."""
 
 import numpy as np
 
 from .paths import _BALL_BALL, _CUSHION, _ROOM, START
 
 FIRST = 3.0
-"""Seconds of the beginning that is judged apart."""
+"""Seconds of the beginning that is judged separately."""
 CONTACTS = 4
 UNSURE = 0.03
-"""Two measured contacts closer than this [s] may have come in either order: a sample takes 0.02 s."""
+"""Two measured contacts closer than this [s] may have either order, because samples are 0.02 s apart."""
 NOSES = ("left", "right", "near", "far")
 """The cushions in the engine's order: x -, x +, y -, y +."""
 ACROSS = {"left": "right", "right": "left", "near": "far", "far": "near"}
 
 
 def played_contacts(run):
-    """The contacts of the simulated cue ball, [(time, what)], as ``tracks.contacts`` has them: the first with each ball."""
+    """The contacts of the simulated cue ball, [(time, what)], as in ``tracks.contacts``: the first with each ball."""
     found, hit = [], set()
     for m in range(int(run.n_events[0])):
         kind, i, j = run.event_what[0, m].tolist()
@@ -30,7 +30,7 @@ def played_contacts(run):
 
 
 def same_order(measured, simulated, first=CONTACTS):
-    """Whether the first contacts are the same, in order; measured ones within ``UNSURE`` may change places."""
+    """Whether the first contacts agree in order; measured ones within ``UNSURE`` may swap."""
     want = measured[:first]
     have = [what for _, what in simulated[: len(want)]]
     names = [what for _, what in want]
@@ -48,7 +48,7 @@ def same_order(measured, simulated, first=CONTACTS):
 
 
 def across(contacts):
-    """Runs from cushion to cushion and back with nothing between: [(from [s], to [s], crossings)], to the contact after."""
+    """Runs from cushion to cushion and back without other contacts: [(from [s], to [s], crossings)], until the next contact."""
     found, k = [], 0
     while k < len(contacts):
         last = k
@@ -96,7 +96,7 @@ def judge_shot(judge, strike):
 
 
 def medians(shots):
-    """The figures of many shots: medians, 90 % of the cue ball's error, and the share with the right order."""
+    """The figures of many shots: medians, the 90 % quantile of the cue ball's error, and the share with the right order."""
     if not shots:
         return {}
     found = {

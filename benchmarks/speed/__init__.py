@@ -1,1 +1,1 @@
-"""The time of impacts, shots and starts: ``python -m benchmarks.speed``."""
+"""How long do impacts, shots and starts take? ``python -m benchmarks.speed``."""

@@ -1,20 +1,19 @@
-"""How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; of whole
-steps; the start.
+"""How fast is the engine? Measures impacts, two-ball pots, random 22-ball shots and break-offs, whole steps, and the
+start.
 
     python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots steps start]
         [--seed 0] [--json FILE] [--out FOLDER]
     python -m benchmarks.speed --against COMMIT
 
-Times are kernel times on one core, each shot (or impact) timed by itself: one kernel plays the whole set in
-order, each shot once, and reads the processor's cycle counter before and after each (``clock.py``). The set
-is played ``--repeats`` times after one unseen time; a shot's time is its median over these passes. "set" (a
-set of impacts in one call, the counter unread), batches and threads are the quickest of their repeats. Where
-there is no x86 counter, each shot is called from Python ``--repeats`` times, its best time taken and the
-call's own cost taken off. An event is one entry of the shot's log. Errors are against ``reference``, in units
-of the incoming speed.
+Times are kernel times on one core, with each shot (or impact) timed separately: one kernel plays the whole set in
+order, each shot once, and reads the processor's cycle counter before and after each (``clock.py``). The set is
+played ``--repeats`` times after an uncounted pass; a shot's time is its median over these passes. "set" (a set of
+impacts in one call, without reading the counter), batches and threads are the fastest of their repeats. Without an
+x86 counter, each shot is called from Python ``--repeats`` times, and its time is the best one minus the cost of the
+call. An event is one entry of the shot's log. Errors are relative to ``reference``, in units of the incoming speed.
 
-Steps, the start and ``--against COMMIT`` are explained in ``steps.py``, ``first_shot.py`` and ``against_commit.py``. With
-``--against`` and no ``--parts``, only this is done.
+``steps.py``, ``first_shot.py`` and ``against_commit.py`` explain steps, the start and ``--against COMMIT``. With
+``--against`` and no ``--parts``, the command does only this comparison.
 """
 
 import time
@@ -46,10 +45,10 @@ GOALS = {
     "random 22 balls": (25.0, 14.0),
     "break-off": (450.0, 250.0),
 }
-"""Microseconds at ``standard``: what must be reached and what is aimed at."""
+"""Microseconds at ``standard``: requirement and target."""
 PARTS = ("impacts", "shots", "steps", "start")
 TABLES = 1024
-"""Of a vector environment."""
+"""Tables of a vector environment."""
 
 
 @entry(what="the benchmark of an impact", uses=(contact.collide_balls,))
@@ -63,7 +62,7 @@ def _same_impact(x, normal, times, phys, code, n_steps):
 
 
 def median_impact(x, normals, phys, code, n_steps, times):
-    """Median over impacts of each one's own time [us], played ``times`` times in a row; the best of three."""
+    """Median over impacts of the time of each [us], played ``times`` times in a row; the best of three."""
     _same_impact(x[0], normals[0], 1, phys, code, n_steps)
     best = np.full(len(x), np.inf)
     for _ in range(3):
@@ -75,7 +74,7 @@ def median_impact(x, normals, phys, code, n_steps, times):
 
 
 def results(x, normals, fidelity, physics):
-    """(n, 12) velocities and R * spins after each impact."""
+    """Velocities and R * spins after each impact, (n, 12)."""
     out = np.zeros((len(x), 12))
     for k in range(len(x)):
         args = (*x[k, :2], 0.0), x[k, 2:], (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (*normals[k], 0.0)
@@ -85,7 +84,7 @@ def results(x, normals, fidelity, physics):
 
 
 def impacts(n, seed=0):
-    """Impacts of real play: cue speeds 0.3 to 6 m/s, cuts to 80 degrees, cue ball anywhere from full draw to
+    """Realistic impacts: cue speeds 0.3 to 6 m/s, cuts up to 80 degrees, cue ball anywhere from full draw to
     full follow, side to 0.4 R."""
     rng = np.random.default_rng(seed)
     speed, cut = rng.uniform(0.3, 6, n), np.radians(rng.uniform(-80, 80, n))
@@ -97,7 +96,7 @@ def impacts(n, seed=0):
 
 
 def shots(kind, n, seed=0):
-    """n seeded shots of "two-ball pot", "break-off" or "random N balls": positions (n, b, 2), velocities,
+    """Draw n seeded shots of "two-ball pot", "break-off" or "random N balls": positions (n, b, 2), velocities,
     spins."""
     rng = np.random.default_rng(seed)
     balls = {"two-ball pot": 2, "break-off": 22}.get(kind) or int(kind.split()[1])
@@ -130,8 +129,8 @@ def shots(kind, n, seed=0):
 
 
 def summary(times):
-    """Figures of a set; times (passes, items). An item's time is its median over the passes, so that no
-    interruption enters a mean."""
+    """Figures of a set; times (passes, items). An item's time is its median over the passes, so that interruptions do
+    not affect a mean."""
     each, medians = np.median(times, axis=0), np.median(times, axis=1)
     found = {"median": float(np.median(each)), "mean": float(each.mean())}
     found |= {f"p{q}": float(np.percentile(each, q)) for q in (5, 25, 75, 95, 99)}
@@ -228,7 +227,7 @@ def measure_start():
 
 
 def measure_against_commit(commit, n, repeats, seed=0):
-    """The same shots by the code of a commit and by this tree, in turn."""
+    """Play the same shots with the code of a commit and of this tree, in turn."""
     found = against_commit.compare(commit, n, repeats, seed)
     print(
         f"\n{commit} and this tree in turn, {against_commit.ROUNDS} times; medians over {n} shots, one core; `standard`"
@@ -247,7 +246,9 @@ def main():
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots (and impacts) in a set")
     parser.add_argument("--repeats", type=at_least(1), default=7, help="passes over a set")
     parser.add_argument("--parts", nargs="+", choices=PARTS, help="only these")
-    parser.add_argument("--against", metavar="COMMIT", help="play the same shots with a commit, in turn")
+    parser.add_argument(
+        "--against", metavar="COMMIT", help="play the same shots with a commit and this tree, in turn"
+    )
     options = parser.options()
     parts = options.parts or (() if options.against else PARTS)
     figures: dict[str, object] = {"machine": provenance.machine()}

@@ -1,9 +1,8 @@
-"""Is this tree faster than a commit of it? Both measured in turn on this machine, in fresh processes; only
-ratios are compared.
+"""Is this tree faster than a commit? Both are measured in turn on this machine, in fresh processes; only ratios are
+compared.
 
-Part of ``python -m benchmarks.speed --against COMMIT``. The commit is taken out of git into a temporary
-folder. Each side plays its own copy of the same seeded shots, so that its kernels, its `simulate` and its
-compiling are those of its own source.
+``python -m benchmarks.speed --against COMMIT`` runs this. It extracts the commit into a temporary folder. Each side
+plays its own copy of the same seeded shots, so that kernels, `simulate` and compiling come from its own source.
 """
 
 import json
@@ -51,11 +50,11 @@ print(json.dumps(found))
 
 
 class CommitError(RuntimeError):
-    """The commit cannot be taken out or measured; the message says why, in one line."""
+    """The commit cannot be extracted or measured; the message says why in one line."""
 
 
 def _take_out(commit, folder):
-    """The files of a commit, in a folder."""
+    """Extract the files of a commit into a folder."""
     packed = subprocess.run(["git", "archive", "--format=tar", commit], cwd=ROOT, capture_output=True)
     if packed.returncode:
         raise CommitError(
@@ -79,7 +78,7 @@ def _measure(tree, arguments):
 
 
 def compare(commit, shots, repeats, seed, rounds=ROUNDS):
-    """{figure: {"before", "now", "ratio"}}: medians over rounds in which the two sides take turns, and the
+    """Returns {figure: {"before", "now", "ratio"}}: medians over rounds in which the two sides take turns, and the
     median of their ratios."""
     with tempfile.TemporaryDirectory() as folder:
         _take_out(commit, folder)

@@ -1,11 +1,11 @@
-"""How long does each shot take inside one kernel? The processor's cycle counter, read before and after each
+"""How long does each shot take inside one kernel? The kernel reads the processor's cycle counter before and after each
 shot.
 
-A kernel plays shot after shot, each once, and notes the counter's ticks of each, so that no call from Python
-is in the figures and caches and branch predictors are as cold as the other shots leave them. What reading the
-counter costs, and making the work space (measured with an empty range of shots), is taken off. Ticks become
-nanoseconds by comparison with ``time.perf_counter`` over the first 50 ms. The counter is x86's (RDTSC,
-constant rate since about 2008); on other machines, ``HAS_COUNTER`` False, each shot is one call from Python.
+The kernel plays the shots one after another and records the ticks of each. The figures therefore contain no call from
+Python, and caches and branch predictors are in the state left by the other shots. The cost of reading the counter and
+of allocating the work space (measured with an empty range of shots) is subtracted. Comparison with
+``time.perf_counter`` over the first 50 ms converts ticks to nanoseconds. The counter is x86's (RDTSC, constant rate
+since about 2008). On other machines (``HAS_COUNTER`` False), each shot is one call from Python.
 """
 
 import platform
@@ -67,7 +67,7 @@ def ns_per_tick():
 
 @cache
 def _each_shot(run_batch):
-    """A kernel that plays shot after shot with this engine's ``run_batch`` and notes the ticks of each."""
+    """Make a kernel that plays shot after shot with this engine's ``run_batch`` and records the ticks of each."""
 
     @numba.njit(nogil=True, error_model="numpy")
     def each(cost, idle, arguments):
@@ -84,7 +84,7 @@ def _each_shot(run_batch):
 
 @entry(what="the benchmark of impacts", uses=(contact.collide_balls,))
 def _each_impact(cost, idle, x, normals, phys, code, n_steps):
-    """With an empty ``cost`` the counter is not read."""
+    """With an empty ``cost``, the counter is not read."""
     total, read = 0.0, len(cost) > 0
     before = between = 0
     law, work = Law(phys, code, n_steps), np.empty(WORK)
@@ -104,7 +104,7 @@ def _each_impact(cost, idle, x, normals, phys, code, n_steps):
 
 
 class Way(NamedTuple):
-    """How shots are played: constants, table, ``(code, steps)`` of the fidelity, and whose engine."""
+    """How to play shots: constants, table, ``(code, steps)`` of the fidelity, and the engine."""
 
     physics: sn.Physics
     solver: tuple[int, int] = STANDARD
@@ -113,11 +113,11 @@ class Way(NamedTuple):
 
 
 def kernel_arguments(start, way):
-    """What ``simulation._run`` hands to the kernel ``run_batch`` for fresh copies of these shots (positions,
-    velocities, spins), but for the range at the end."""
+    """The arguments that ``simulation._run`` passes to the kernel ``run_batch`` for fresh copies of these shots
+    (positions, velocities, spins), except the range at the end."""
     caught = []
     state = [np.array(a) for a in (*start, np.ones(start[0].shape[:2], bool))]
-    if getattr(way.physics, "flight", False):  # another version may not have it
+    if getattr(way.physics, "flight", False):  # another version may lack it
         state.append(np.zeros(start[0].shape))
     engine = way.simulation.engine
     with mock.patch.object(engine, "run_batch", lambda *arguments: caught.append(arguments[:-2])):
@@ -126,7 +126,7 @@ def kernel_arguments(start, way):
 
 
 def _play(run_batch, cost, idle, arguments):
-    """One pass over the shots: the ticks of each, and those of a call that plays none."""
+    """One pass over the shots: the ticks of each, and those of a call without shots."""
     if HAS_COUNTER:
         _each_shot(run_batch)(cost, idle, arguments)
         return
@@ -145,8 +145,8 @@ def _less_idle(cost, idle):
 def time_ways(ways, start, passes=1):
     """Kernel time of every shot [us], {name: (passes, shots)}, for each name of ``ways`` (name: ``Way``).
 
-    In a pass each shot is played once, one after the other; the ways take turns, and who comes first changes
-    from pass to pass, so that all see the same machine. A first pass is not counted.
+    In a pass each shot is played once, one after another. The ways take turns and alternate the first place from pass
+    to pass, so that all see the same machine. The first pass is not counted.
     """
     cost, idle = np.zeros((2, len(start[0])), np.int64)
     names, times = list(ways), {name: [] for name in ways}
@@ -177,7 +177,7 @@ def time_impacts(x, normals, phys, fidelity, passes=1):
 
 
 def time_impact_set(x, normals, phys, fidelity, repeats=1):
-    """Microseconds an impact when the set runs as a whole, the counter unread; the quickest of
+    """Microseconds per impact if the set runs as a whole without reading the counter; the fastest of
     ``repeats``."""
     code, steps = contact.parse_fidelity(fidelity)
     none, found = np.zeros(0, np.int64), []
@@ -189,7 +189,7 @@ def time_impact_set(x, normals, phys, fidelity, repeats=1):
 
 
 def time_batch(p, v, w, fidelity, threads, repeats):
-    """Microseconds a shot of a set that the engine plays as one batch: the quickest of the repeats that fit into a second."""
+    """Microseconds per shot of a set played as one batch: the fastest of the repeats that fit into a second."""
     physics, table, found = sn.Physics.of(None), sn.Table.preset("match"), []
     while not found or (len(found) < repeats and sum(found) < 1.0):
         state = [np.array(a) for a in (p, v, w, np.ones(p.shape[:2], bool))]

@@ -1,4 +1,4 @@
-"""How long until the first shot? Fresh processes with an empty and with a filled cache of compiled
+"""How long until the first shot? This measures fresh processes with an empty and with a filled cache of compiled
 kernels."""
 
 import json
@@ -29,8 +29,8 @@ STEPS = ("import", "first shot", "warmup() after it")
 
 
 def start(warm_starts=5):
-    """{"cold", "warm"}: {step: [wall s, processor s]}; cold is one start with an empty cache, warm the median
-    by wall of some after it."""
+    """Returns {"cold", "warm"}: {step: [wall s, processor s]}. "cold" is one start with an empty cache; "warm" is the
+    median by wall time of later starts."""
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | {"NUMBA_CACHE_DIR": folder}
         runs = []

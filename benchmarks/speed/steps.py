@@ -1,10 +1,9 @@
-"""How fast are whole steps? The vector environment on one and two threads, and single tables.
+"""How fast are whole steps? This measures the vector environment on one and two threads, and single tables.
 
-Random actions on opened 22-ball tables; a step is one shot with everything around it (SAME_STEP: a visit that
-ends is followed by a new one within the step, so every step holds a shot). Frames: the agent plays alone,
-from the same tables. Steps a second are medians over the repeats, in which the kinds take turns, so
-that a busy machine slows all alike. Read what two threads give against the control, plain arithmetic on two threads at
-the same time.
+It plays random actions on opened 22-ball tables. A step is one shot with everything around it (SAME_STEP: after the
+end of a visit, a new one starts within the step, so every step has a shot). In frames, the agent plays alone from the
+same tables. Steps per second are medians over the repeats, in which the kinds take turns, so that a busy machine slows
+all equally. Compare the gain of two threads with the control, plain arithmetic on two threads at the same time.
 """
 
 import threading
@@ -32,7 +31,7 @@ PLANAR, FLYING, FLIGHT = (
 )
 SLOWER, SINGLE_SLOWER = "a frame's step over a visit's", "the same on a single table"
 SECONDS = 2.0
-"""Of each timing."""
+"""Duration of each timing [s]."""
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)
 
 
@@ -45,7 +44,7 @@ def _spin(n):
 
 
 def control(n=3_000_000):
-    """How many times as much plain arithmetic two threads do in the time of one."""
+    """The gain of two threads over one in plain arithmetic."""
     _spin(1)
     times = []
     for count in (1, 2):
@@ -60,7 +59,7 @@ def control(n=3_000_000):
 
 
 def rate(step, tables, seconds):
-    """Steps of a table a second; ``step(k)`` plays all tables once."""
+    """Steps of a table per second; ``step(k)`` plays all tables once."""
     start, k = time.perf_counter(), 0
     while True:
         step(k)
@@ -81,7 +80,7 @@ def stepper(env, seed):
 FORM: dict[str, Any] = {
     "aim": "absolute",
     "observation": "flat",
-}  # the shot's time is measured, not that of its aim
+}  # measure the shot, not the solution of its aim
 FRAME = {"task": "frame", "layout": "opened"}
 
 
@@ -101,12 +100,12 @@ def single(seed, **options):
 
 
 def native(n, threads, **options):
-    """The vector environment of n tables."""
+    """Make the vector environment of n tables."""
     return SnookerVectorEnv(n, threads=threads, autoreset_mode=AutoresetMode.SAME_STEP, **FORM, **options)
 
 
 def rates(tables, seconds, repeats, seed):
-    """Medians of steps a second of every kind, the kinds taking turns."""
+    """Medians of steps per second of every kind, with the kinds taking turns."""
     mode = {"autoreset_mode": AutoresetMode.SAME_STEP}
     sync = gymnasium.make_vec("Snooker-v0", 16, vectorization_mode="sync", vector_kwargs=mode, **FORM)
     kinds = {
@@ -137,7 +136,7 @@ def rates(tables, seconds, repeats, seed):
 
 
 def sizes(seconds, seed):
-    """Steps a second on one thread by number of tables."""
+    """Steps per second on one thread by number of tables."""
     return {n: rate(stepper(native(n, 1), seed), n, seconds) for n in SIZES}
 
 
@@ -159,7 +158,7 @@ def show(found):
 
 
 def measure(tables, repeats, seed):
-    """The figures, printed, too; ``tables`` at once."""
+    """Measure and print the figures, with ``tables`` at once."""
     snooker_env.warmup()
     found = {
         "tables": tables,

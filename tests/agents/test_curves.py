@@ -161,14 +161,14 @@ CONTENT = {
 def test_the_tables_hold_median_range_and_error():
     visit, escape = curve_report.tables_of(CONTENT)
     assert visit.title == (
-        "Visit: points a visit. Beside them: zero action 4.3 ± 0.5, random 1.1 ± 0.1, ghost_ball 5.9 ± 0.2"
+        "Visit: points a visit. For comparison: zero action 4.3 ± 0.5, random 1.1 ± 0.1, ghost_ball 5.9 ± 0.2"
     )
     assert visit.header == ["row", "algorithm", "untrained", "1,000 shots", "2,000 shots", "shots/s", "seeds"]
     assert visit.rows == [
         ["pot_ppo", "PPO", "4.0 [4.0, 4.0] ± 1.0", "5.5 [5.0, 7.0] ± 1.0", "", "200", "3"],
         ["strokes_dqn_policy", "DQN, StrokesQPolicy", "0.0 ± 2.0", "5.0 ± 2.0", "10.0 ± 2.0", "200", "1"],
     ]
-    assert escape.title == "Escape: share of fair strokes. Beside them: zero action 0.40 ± 0.04"
+    assert escape.title == "Escape: share of fair strokes. For comparison: zero action 0.40 ± 0.04"
     assert escape.rows == [["escape_sac", "SAC", "", "0.61 ± 0.02", "200", "1"]]
 
 

@@ -38,9 +38,9 @@ train --set gamma=2 | gamma = 2: must be a finite number in [0, 1]
 train --set gamma=0 gamma=0.5 | must give gamma only once
 train --set n_epochs=abc | n_epochs = 'abc': must be an integer
 train --set batch_size=0 | batch_size = 0
-train --set learning_rate=lin_abc | learning_rate = 'lin_abc': must be a number in [0, 1], or lin_X
+train --set learning_rate=lin_abc | learning_rate = 'lin_abc': must be a number X in [0, 1], or lin_X
 train --set policy=Foo | 'policy=Foo'
-train --set n_envs=0 | (n_timesteps, n_envs, imitation have options of their own)
+train --set n_envs=0 | (n_timesteps, n_envs, imitation have their own options)
 train --set env_kwargs=3 | env_kwargs = 3: must be a dict
 train --set "env_kwargs={'fun':1}" | env_kwargs = 'fun': must be one of 'action'
 train --set "env_kwargs={'aim':'target'}" | action = 'box': must be 'strokes'
@@ -53,7 +53,7 @@ train --agent stroke_value --seed 81 | seed = 81
 evaluate --agent nobody | agent = 'nobody': must be random,
 evaluate --agent tests/bombs.py | tests/bombs.py': must be a model saved by Stable-Baselines3
 evaluate --agent x=nowhere-* | agent = 'nowhere-*': must be
-evaluate --agent random random | agent = 'random': must be another
+evaluate --agent random random | agent = 'random': must differ for each agent
 evaluate --agent random --against me | against = 'me': must be one of random, ghost_ball
 evaluate --agent random --layouts moon=3 | layout = 'moon': must be one of
 evaluate --agent random --layouts colours=x | layouts = 'colours=x': must be LAYOUT or
@@ -62,20 +62,20 @@ evaluate --agent random --noise loud | noise = 'loud': must be one of
 evaluate --agent random --fidelity true | fidelity = 'true': must be
 evaluate --agent random --physics mars | physics = 'mars': must be one of
 evaluate --agent random --physics paper,mu_bb | physics = 'paper,mu_bb': must be PRESET
-evaluate --agent random --physics paper,R=0.03 | physics = 'paper,R=0.03': must leave R
+evaluate --agent random --physics paper,R=0.03 | physics = 'paper,R=0.03': must keep R
 evaluate --agent random --physics paper,mu_r=0 | physics.mu_r = 0.0: must be > 0
 evaluate --agent search_1 | player = 'search_1': must end in a number of simulated shots from 8
 evaluate --agent random --json tests | json = 'tests': must be a file
 evaluate --agent random --markdown /proc/none/r.md | markdown = '/proc/none/r.md': must be a file
 evaluate --agent random --resamples 5 | resamples = 5: must be an integer in
-evaluate --agent random --options aim=target | 'aim=target': must be left out: it is for models that train.py did not make
+evaluate --agent random --options aim=target | 'aim=target': must be left out: it is for models not made by train.py
 evaluate --agent random --options noise=club | options = 'noise=club': must be KEY=VALUE, KEY once each of action
 evaluate --agent random --options aim=target aim=target | must be KEY=VALUE, KEY once each of action
 evaluate --agent random --options aim=up | aim = 'up': must be one of 'pot', 'absolute', 'target'
 evaluate --agent random --ray host: | ray = 'host:': must be local, auto, or HOST:PORT
 tournament ghost_ball | players = 'ghost_ball': must be two or more
 tournament ghost_ball nobody | agent = 'nobody': must be random,
-tournament ghost_ball ghost_ball | player = 'ghost_ball': must be another
+tournament ghost_ball ghost_ball | player = 'ghost_ball': must differ for each player
 tournament ghost_ball x=ghost_ball,random | player = 'x=ghost_ball,random': must be one player
 tournament ghost_ball tests.agents.user_players:Mute | player = a Mute: must be a player: at(rules) and play
 tournament ghost_ball tests.agents.user_players:Loud | key of the options of player Loud = 'noise'

@@ -124,7 +124,7 @@ def test_existing_run_is_not_overwritten(finished, tmp_path, refused):
     assert (finished / "checkpoint.pkl").read_bytes() == before
     (file := tmp_path / "thesis.txt").write_text("mine")
     assert "thesis.txt" in refused(train.main, "--out", tmp_path)
-    assert "must be a folder, new or empty" in refused(train.main, "--out", file)
+    assert "must be a new or empty folder" in refused(train.main, "--out", file)
     assert "must be a folder that can be written" in refused(train.main, "--out", file / "run")
     assert file.read_text() == "mine"
     assert "must be the folder of a run" in refused(train.main, "--resume", "--out", tmp_path)

@@ -117,7 +117,7 @@ def test_it_sees_those_of_the_table_that_it_plays_on(observed, monkeypatch):
 def test_weights_of_an_agent_that_observes_something_else_are_refused(observed, tmp_path, refused):
     start = ["--agent", "ppo_target", "--start", observed, "--out", tmp_path / "run"]
     error = refused(train.main, *start, "--conditions", "drawn")
-    assert "start = " in error and "must be a model that observes the same as this one" in error
+    assert "start = " in error and "must be a model with the same observation as this one" in error
     assert not (tmp_path / "run").exists()
     assert run(tmp_path / "run", *map(str, start[:4]), *OBSERVED, "--set", "learning_rate=0.0") == 0
     assert np.array_equal(weights(tmp_path / "run"), weights(observed))

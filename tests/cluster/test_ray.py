@@ -161,7 +161,7 @@ def test_what_befalls_a_worker_is_one_line(where, monkeypatch, name, kind, says)
 
 def test_a_node_with_another_source_is_refused(where, monkeypatch):
     monkeypatch.setattr(cluster, "source", lambda: "another")
-    with pytest.raises(ClusterError, match="holds another source or other libraries"):
+    with pytest.raises(ClusterError, match="has different source code or libraries"):
         list(where.play_parts(visits.play, parts_of("random", 2, 2, monkeypatch)))
 
 
@@ -176,5 +176,5 @@ def test_an_address_without_a_head_is_one_line(command, arguments, capsys):
     assert command.main([*arguments, f"127.0.0.1:{port}"]) == 1
     said = [line for line in capsys.readouterr().err.splitlines() if "ray" in line]
     assert (
-        len(said) == 1 and f"ray = '127.0.0.1:{port}': must be the head of a Ray cluster that runs" in said[0]
+        len(said) == 1 and f"ray = '127.0.0.1:{port}': must be the head of a running Ray cluster" in said[0]
     )

@@ -55,7 +55,7 @@ def test_a_network_is_learned(tmp_path, capsys, frame_rounds):
     assert results["steps"] < results["simulated_shots"] <= 3 * results["steps"]
     assert [len(results["curve"][of]) for of in ("visits", "frames")] == [2, frame_rounds]
     assert (
-        f"without those of the planner and the tactician that it learned from: {results['simulated_shots']:,}."
+        f"without those of its teachers, the planner and the tactician: {results['simulated_shots']:,}."
         in said
     )
     repeated = ["--agent", "stroke_value", "--seed", "3", "--set", *settings]

@@ -48,7 +48,7 @@ def test_no_table_of_the_judging_is_among_them():
     assert dataset.seeds_of(1)[0] == dataset.seeds_of(0)[-1] + 1
     most = (HELD_OUT_SEED - dataset.FIRST_SEED) // 6
     assert dataset.seeds_of(most - 1)[-1] < HELD_OUT_SEED
-    with pytest.raises(ValueError, match=r"^strokes = more: must be at most those of 799,998 episodes"):
+    with pytest.raises(ValueError, match=r"^strokes = more: must be at most the strokes of 799,998 episodes"):
         dataset.seeds_of(most)
 
 
@@ -90,7 +90,7 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
     before = (folder / "data" / "main_data.hdf5").stat().st_size
     shutil.rmtree(parts)  # from nothing again: the same data set
     assert dataset.main([*command, "30", "--check", "4"]) == 0
-    assert "4 of 4 episodes are played again bit for bit" in capsys.readouterr().out
+    assert "4 of 4 replayed episodes are equal bit for bit" in capsys.readouterr().out
     again = list(minari.MinariDataset(folder / "data").iterate_episodes())
     assert all(np.array_equal(a.actions, b.actions) for a, b in zip(long, again, strict=True))
     assert abs((folder / "data" / "main_data.hdf5").stat().st_size - before) < 1000
@@ -109,7 +109,7 @@ def test_a_changed_number_is_found_when_episodes_are_played_again(tmp_path, caps
     command = f"--out made --task {task} --player ghost_ball --strokes 5 --check 9"
     assert dataset.main(command.split()) == 0
     said = capsys.readouterr().out
-    assert "6 of 6 episodes are played again bit for bit" in said and "strokes/s" in said
+    assert "6 of 6 replayed episodes are equal bit for bit" in said and "strokes/s" in said
     (folder,) = (tmp_path / "made" / "snooker").iterdir()
     with h5py.File(folder / "data" / "main_data.hdf5", "r+") as file:
         values = file[f"episode_2/{of}"]

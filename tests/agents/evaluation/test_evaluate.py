@@ -103,10 +103,13 @@ def test_a_player_of_ones_own_is_compared(tmp_path):
 def test_a_path_with_a_colon_is_a_path(models, tmp_path):
     (tmp_path / "10:00").symlink_to(models)
     assert len(evaluate.Entrant.of(f"x={tmp_path}/10:00/m-?").runs) == 2
-    for path, why in ((r"C:\runs\m-0\model.zip", "it is missing"), ("a/b:c", "or name existing models")):
+    for path, why in (
+        (r"C:\runs\m-0\model.zip", "must be an existing model file"),
+        ("a/b:c", "or existing models"),
+    ):
         with pytest.raises(ValueError, match=why):
             evaluate.Entrant.of(f"x={path}")
-    with pytest.raises(ValueError, match="or name existing models"):
+    with pytest.raises(ValueError, match="or existing models"):
         evaluate.Entrant.of("x=10:00")
 
 
@@ -145,7 +148,7 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     interrupted_at(monkeypatch, evaluate, "play_agent", 4)
     assert evaluate.main([*BOTH, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
-    lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
+    lost = "interrupted after 1 of 2 parts (one layout and noise level each): the others are lost"
     assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}"
     assert f"INCOMPLETE: {lost}." in " ".join(printed.out.split())
     found, part = read(tmp_path / "r.json"), tmp_path / "r.incomplete.md"

@@ -62,7 +62,7 @@ def test_what_agents_were_given(changes, which, sentence):
 
 def test_copies_of_one_model_are_one_seed():
     assert said(agent("a")) == []
-    alone = "a has 1 training seed: its intervals say nothing about other seeds."
+    alone = "a has 1 training seed: its intervals do not cover other seeds."
     assert said(agent("a", (0, 0, 0, 0, 0))) == [alone]
     assert said(agent("a", (0, 1, 1, 1, 1))) == ["a has 2 training seeds, fewer than 5."]
     assert report.agents_table(report_of(agent("a", (0, 1, 1))))[0].rows[0][7] == "2"
@@ -237,7 +237,7 @@ def test_the_command_writes_the_markdown_beside(tmp_path, capsys, refused):
     assert report.main(["--show", str(file)]) == 0 and "IQM" in capsys.readouterr().out
     for text in ("{}", "[", json.dumps(json.loads(file.read_text()) | {"results": [{}]})):
         file.write_text(text)
-        assert "must be what agents.evaluate writes" in refused(report.main, file)
+        assert "must be a file written by agents.evaluate" in refused(report.main, file)
 
 
 def concluded(*players):
@@ -250,7 +250,7 @@ def concluded(*players):
 
 
 POOR = (0.5, 0.1)
-ALIKE = "is not shown by 100 visits to be better than"
+ALIKE = "100 visits are too few to show that ppo_value, with 1,000 shots of training, is better than"
 WORSE = "0.03 pots and 0.10 points a visit against 0.67 pots"
 
 

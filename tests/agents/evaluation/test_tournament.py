@@ -117,7 +117,7 @@ def test_another_tournament_is_not_gone_on_with(tmp_path, refused, parts, monkey
     again = [tournament.main, *QUICK, "--out", tmp_path / "t.json", "--resume"]
     for change, what in (("--noise club", "game"), ("--seed 5", "protocol"), ("--max-strokes 9", "game")):
         error = refused(*again, *PLAYERS, *change.split())
-        assert f"must be a file with the same {what} to go on with" in error
+        assert f"must be a file with the same {what} to continue" in error
     assert "same players" in refused(*again, *PLAYERS[:2])
 
 

@@ -149,8 +149,8 @@ def swollen(data):
     return file.getvalue()
 
 
-OLDER = "must be a model of the current ppo_value: this one is older"
-OTHER = r"must be a model that train.py saved \(its policy.pth must hold weights and nothing else"
+OLDER = "must be a model of the current ppo_value, but this one is older"
+OTHER = r"must be a model that train.py saved \(its policy.pth must hold only weights"
 
 
 @pytest.mark.parametrize(
@@ -242,7 +242,7 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused
     file = tmp_path / POLICY
     write_policy(file, WEIGHTS, **ABOUT)
     whole = (
-        "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone"
+        "must be a model that train.py saved, its .zip or a run's folder: an .npz holds only plain weights"
     )
     both = "must name a model with policy and value: none, professional, amateur, club or its file"
     for path in (file, tmp_path):
@@ -259,14 +259,14 @@ def about(**changes):
 
 WRONG_ARRAYS = """
 about=None | about
-about=np.array("[]") | about has not the keys
+about=np.array("[]") | about must have exactly the keys
 about=np.array("?") | Expecting value
-**about(more=1) | about has not the keys
+**about(more=1) | about must have exactly the keys
 **about(shots=-1) | about.shots = -1
 **about(activation="sin") | about.activation = 'sin': must be one of 'tanh', 'relu'
 **about(env_options={"aim": "target"}) | key of about.env_options = 'aim'
-**about(trainer=3) | about.trainer is no text
-weight_0=None | the last layer gives 121 numbers and not 540
+**about(trainer=3) | about.trainer is not text
+weight_0=None | the last layer gives 121 numbers, not 540
 weight_1=None | the last layer gives 32 numbers
 bias_1=None | bias_1
 bias_0=np.zeros(7, np.float32) | weight_0 float32 (32, 121), bias_0 float32 (7,)

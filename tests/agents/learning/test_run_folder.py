@@ -57,7 +57,7 @@ def test_a_folder_in_use_is_refused_by_the_name_of_the_process(
     error = refused(train.main, *TINY, "--out", tmp_path, *more)
     why = f"out = {str(tmp_path)!r}: must be a folder that no other process uses: process {other.pid} on "
     assert why in error
-    assert " since 20" in error and f"(kill -INT {other.pid})" in error and "another --out" in error
+    assert " since 20" in error and f"kill -INT {other.pid} (it saves" in error and "another --out" in error
     assert sorted(p.name for p in tmp_path.iterdir()) == [*holds, "train.lock"]
     assert all((tmp_path / name).read_bytes() == b"of the other" for name in holds)
 
@@ -103,7 +103,9 @@ def test_no_flipped_bit_of_a_checkpoint_or_of_settings_is_used(whole, tmp_path):
         with pytest.raises(ValueError, match=rf"^resume = '{tmp_path / CHECKPOINT}': must be a complete"):
             read_checkpoint(tmp_path)
     for _ in flipped(tmp_path / SETTINGS):
-        with pytest.raises(ValueError, match=rf"^out = '{tmp_path / SETTINGS}': must be whole"):
+        with pytest.raises(
+            ValueError, match=rf"^out = '{tmp_path / SETTINGS}': must be complete and written"
+        ):
             kept_settings(tmp_path, Settings)
     assert read_checkpoint(tmp_path)["parts"] and kept_settings(tmp_path, Settings).steps == 128
 
