@@ -107,7 +107,7 @@ export class Advisor {
       odds.append(" ", dot(BALL_CLOUD), `${found.first.replace(/ \d+$/, "")}: potted ${Math.round(100 * found.potted)} %`);
     } else odds.append(": strikes no ball");
     for (const [words, share] of [["foul", found.foul], ["in-off", found.in_off]]) {
-      if (share > 0.004) odds.append(", ", make("span", { className: share > 0.5 ? "trouble" : "", textContent: `${words} ${Math.round(100 * share)} %` }));
+      if (Math.round(100 * share)) odds.append(", ", make("span", { className: share > 0.5 ? "trouble" : "", textContent: `${words} ${Math.round(100 * share)} %` }));
     }
   }
 
