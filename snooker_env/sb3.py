@@ -175,8 +175,7 @@ class SnookerVecEnv(VecEnv):
         return [issubclass(wrapper_class, Monitor) for _ in self._get_indices(indices)]
 
 
-HIDDEN = 64
-"""Units of each of the two layers that read a stroke, and of the one that reads the position."""
+HIDDEN = 64  # units of each of the two layers that read a stroke, and of the one that reads the position
 _AWAY = -1e8  # the score of a stroke that is not there
 
 

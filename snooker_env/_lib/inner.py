@@ -21,8 +21,7 @@ from numba.core.compiler_machinery import register_pass
 from numba.core.registry import CPUDispatcher
 from numba.core.types.functions import BaseFunction, Function
 
-FIND = "get_call_type"
-"""The method of numba's functions that finds what they give for some types."""
+FIND = "get_call_type"  # the method of numba's functions that finds what they give for some types
 _PARTS = (
     (codegen.JITCodeLibrary, ("_optimize_functions", "_optimize_final_module")),
     (codegen.JITCPUCodegen, ("_function_pass_manager",)),

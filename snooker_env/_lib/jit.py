@@ -22,8 +22,7 @@ _ENTRY: dict[str, Any] = _OPTIONS | ENTRY_OPTIONS
 _INNER: dict[str, Any] = _OPTIONS | OPTIONS
 _INLINED: dict[str, Any] = _INNER | {"inline": "always"}
 
-ENTRIES: list[Any] = []
-"""All entry kernels of this process, in the order in which they were made."""
+ENTRIES: list[Any] = []  # all entry kernels of this process, in the order in which they were made
 
 
 class Entry(CPUDispatcher):

@@ -109,18 +109,13 @@ lower_builtin(operator.mul, _Lanes, _Lanes)(
 )
 
 # Intrinsics, not overloads: numba would compile a function for each use of those.
-lanes: Any = intrinsic(_make)
-"""Four numbers side by side."""
+lanes: Any = intrinsic(_make)  # four numbers side by side
 lanes_at: Any = intrinsic(_load)
 """The numbers i to i + 3 of a float64 array, of several axes too, in one piece; ends are not checked."""
-put_lanes: Any = intrinsic(_store)
-"""Writes x to the places i to i + 3 of such an array; ends are not checked."""
-lane: Any = intrinsic(prefer_literal=True)(_take)
-"""Number k of the four; k is a constant."""
-no_more: Any = intrinsic(_no_more)
-"""An integer whose bit k is 1 where lane k of x is at most that of y."""
-lesser: Any = intrinsic(_lesser)
-"""The lesser of two numbers in each lane."""
+put_lanes: Any = intrinsic(_store)  # writes x to the places i to i + 3 of such an array; ends are not checked
+lane: Any = intrinsic(prefer_literal=True)(_take)  # number k of the four; k is a constant
+no_more: Any = intrinsic(_no_more)  # an integer whose bit k is 1 where lane k of x is at most that of y
+lesser: Any = intrinsic(_lesser)  # the lesser of two numbers in each lane
 
 if getattr(config, "DISABLE_JIT", 0):
     lanes = lambda a, b, c, d: np.array([a, b, c, d])  # noqa: E731

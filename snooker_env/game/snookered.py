@@ -20,8 +20,7 @@ from .spotting import touches
 
 BESIDE, SLACK = 360, 1e-9
 """Number of places beside a ball that are tested; nearer than 2 R by more than this [m] a ball obstructs."""
-NO_JAWS = np.empty((0, 3))
-"""No curved cushion faces; other arrays (m, 3) hold their circles (x, y, radius) [m]."""
+NO_JAWS = np.empty((0, 3))  # no curved cushion faces; else rows are their circles (x, y, radius) [m]
 
 
 @kernel

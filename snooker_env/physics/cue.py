@@ -12,8 +12,7 @@ from .._lib.types import Real
 from .flight import SETTLE, rub_bed
 from .parameters import FASTEST, Physics
 
-MAX_ELEVATION = 1.5
-"""Highest elevation of the cue [rad]: just below the vertical."""
+MAX_ELEVATION = 1.5  # highest elevation of the cue [rad]: just below the vertical
 
 
 @kernel

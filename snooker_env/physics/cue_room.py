@@ -30,11 +30,9 @@ from .._lib.types import Floats
 from .columns import NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 from .cue import MAX_ELEVATION, squirt
 
-TIP, BUTT, LENGTH = 4.75e-3, 14e-3, 1.45
-"""Radii of the cue at its ends, and its length [m]."""
+TIP, BUTT, LENGTH = 4.75e-3, 14e-3, 1.45  # radii of the cue at its ends, and its length [m]
 TAPER = (BUTT - TIP) / LENGTH
-RAIL = 0.038
-"""Height of a rail above the bed [m]."""
+RAIL = 0.038  # height of a rail above the bed [m]
 STEEPEST = radians(45.0)
 """The highest elevation of a stroke that keeps its tip [rad]. Above it a player stands over the ball, the bridge in
 the air: a masse, which nobody plays for position. Our choice; players' limits are not published."""
@@ -47,20 +45,15 @@ FREE, RAISED, MOVED, UNPLAYABLE = 0, 1, 2, 4
 OVER_NOTHING, OVER_RAIL = -1, 0
 """What sets the least elevation: nothing, or a rail; else the id of a ball, which is never ball 0."""
 
-_ABOVE = 1e-9
-"""The edge of a rail that a vertical cue still touches stands so far in the cue, or further [m]."""
-_TINY = 1e-12
-"""Keeps a cue that lies along a rail from a quotient of zeros."""
-_PASSES = 3
-"""Over the balls, at most."""
-_HALVINGS = 40
-"""Bisections of a tip's way, to 1e-12 R; few strokes need them."""
+_ABOVE = 1e-9  # the edge of a rail that a vertical cue still touches stands so far in the cue, or further [m]
+_TINY = 1e-12  # keeps a cue that lies along a rail from a quotient of zeros
+_PASSES = 3  # over the balls, at most
+_HALVINGS = 40  # bisections of a tip's way, to 1e-12 R; few strokes need them
 _TRIALS, _SAME = 8, 1e-13
 """Newton's steps and fixed points gain two digits and more each; below such a step they stay [rad]."""
 
 
-NO_RAILS = np.empty(0)
-"""The rails of a free cue, which nothing is in the way of."""
+NO_RAILS = np.empty(0)  # the rails of a free cue, which nothing is in the way of
 NO_RAILS.setflags(write=False)
 
 
@@ -216,8 +209,12 @@ def least_elevation(stroke, positions, on_table, rails, R):
 
 
 @kernel
-def _fits(side, top, ax, ay, positions, on_table, rails, R):
-    return _least(side, top, ax, ay, 0.0, positions, on_table, rails, R) <= STEEPEST
+def _tip_at(part, straight, side, top, highest, max_offset):
+    """The tip at a part of its way: ``straight`` up, or along the miscue limit."""
+    if straight:
+        return side, top + part * (highest - top)
+    across = side * (1.0 - part)
+    return across, sqrt(max(max_offset * max_offset - across * across, 0.0))
 
 
 @kernel
@@ -225,21 +222,13 @@ def _moved_tip(side, top, ax, ay, positions, on_table, rails, R, max_offset):
     """The tip nearest to (side, top), on a way up to the miscue limit and along that to the top, that fits."""
     highest = sqrt(max(max_offset * max_offset - side * side, 0.0))
     low, high = 0.0, 1.0
-    straight = _fits(side, highest, ax, ay, positions, on_table, rails, R)
+    straight = _least(side, highest, ax, ay, 0.0, positions, on_table, rails, R) <= STEEPEST
     for _ in range(_HALVINGS):
         part = 0.5 * (low + high)
-        across = side if straight else side * (1.0 - part)
-        up = (
-            top + part * (highest - top)
-            if straight
-            else sqrt(max(max_offset * max_offset - across * across, 0.0))
-        )
-        fits = _fits(across, up, ax, ay, positions, on_table, rails, R)
+        across, up = _tip_at(part, straight, side, top, highest, max_offset)
+        fits = _least(across, up, ax, ay, 0.0, positions, on_table, rails, R) <= STEEPEST
         low, high = (low, part) if fits else (part, high)
-    if straight:
-        return side, top + high * (highest - top)
-    across = side * (1.0 - high)
-    return across, sqrt(max(max_offset * max_offset - across * across, 0.0))
+    return _tip_at(high, straight, side, top, highest, max_offset)
 
 
 @kernel

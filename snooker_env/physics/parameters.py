@@ -14,21 +14,7 @@ import numpy as np
 from .._lib.check import choice, number, refuse, truth
 from .._lib.types import Floats, Ints, PhysicsName, Solver
 from ..geometry import BALL_RADIUS
-from . import conditions
-from .columns import (
-    P_BALLS,
-    P_E_B,
-    P_E_C,
-    P_E_J,
-    P_JAW,
-    P_MU_BB_EXTRA,
-    P_MU_BB_LEAST,
-    P_MU_C,
-    P_MU_R,
-    P_MU_S,
-    P_RAIL,
-    P_SPIN,
-)
+from . import columns, conditions
 from .impact.tables import SIZE, TABLED, Rolling, table_of
 
 MARLOW = (9.951e-3, 0.108, 1.088)
@@ -41,8 +27,7 @@ end."""
 MOST_SPIN = 1e5
 """Largest spin component of a shot [rad/s], what a strike at ``FASTEST`` can give. Measured: shots are right
 to 1e6 and do not end at 1e7."""
-FARTHEST = 1e6
-"""The largest coordinate of a ball [m]: up to there float64 resolves 1e-10 m."""
+FARTHEST = 1e6  # the largest coordinate of a ball [m]: up to there float64 resolves 1e-10 m
 FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
 """The same for one impact alone: its outcome scales with its speeds (but for laws that contain one)."""
 _LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
@@ -50,6 +35,11 @@ _FLIES = 1e-300  # in place of a restitution of 0 of the bed, which says that no
 _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
 """Bounds of ``e_c_knee`` and ``e_c_power``. The rebound varies with at most the power 1.25 of e
 (tests/physics/test_cushion_law.py): with a power up to 0.8 it never falls with the speed."""
+_RANGES = {"R": (1e-3, 1), "e_c_power": (0, _MOST_POWER), "nap": (-np.inf, np.inf), "max_offset": (0, 0.999)}
+_RANGES |= dict.fromkeys(("M", "g", "spin_decel", "e_c_knee", "end_mass_ratio"), (0, np.inf))
+_RANGES |= dict.fromkeys(("mu_s", "mu_r", "roll_drag", "e_b", "e_c", "mu_c"), (0, 1))
+_RANGES |= dict.fromkeys(("sin_theta", "e_t"), (0, 0.95))
+"""The lowest and highest value of each field that is a number."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,38 +143,14 @@ class Physics:
     tables: bool = True
 
     def __post_init__(self) -> None:
-        low_high = {
-            "R": (1e-3, 1),
-            "M": (0, np.inf),
-            "g": (0, np.inf),
-            "mu_s": (0, 1),
-            "mu_r": (0, 1),
-            "spin_decel": (0, np.inf),
-            "nap": (-np.inf, np.inf),
-            "roll_drag": (0, 1),
-            "e_b": (0, 1),
-            "e_c": (0, 1),
-            "e_c_knee": (0, np.inf),
-            "e_c_power": (0, _MOST_POWER),
-            "mu_c": (0, 1),
-            "sin_theta": (0, 0.95),
-            "end_mass_ratio": (0, np.inf),
-            "max_offset": (0, 0.999),
-            "e_t": (0, 0.95),
-        }
         for field in ("R", "M"):
             value = getattr(self, field)
             if isinstance(value, (list, tuple, np.ndarray)) and np.shape(value)[:1] > (1,):
-                raise refuse(
-                    f"physics.{field}",
-                    value,
-                    "must be one number: all balls of a shot are equal (docs/physics/limits.md)",
-                )
-        for field, (low, high) in low_high.items():
-            open_low = field in ("M", "g", "max_offset")
-            object.__setattr__(
-                self, field, number(f"physics.{field}", getattr(self, field), low, high, open_low=open_low)
-            )
+                allowed = "must be one number: all balls of a shot are equal (docs/physics/limits.md)"
+                raise refuse(f"physics.{field}", value, allowed)
+        for field, (low, high) in _RANGES.items():
+            value, open_low = getattr(self, field), field in ("M", "g", "max_offset")
+            object.__setattr__(self, field, number(f"physics.{field}", value, low, high, open_low=open_low))
         if self.e_j is not None:
             object.__setattr__(self, "e_j", number("physics.e_j", self.e_j, 0, 1))
         object.__setattr__(self, "mu_bb", _mu_bb(self.mu_bb))
@@ -194,9 +160,8 @@ class Physics:
             allowed = f"must be at least {_LEAST_KNEE:g} m/s where e_c_power > 0: above it e(v) = e_c (v / e_c_knee)^(-e_c_power)"
             raise refuse("physics.e_c_knee", self.e_c_knee, allowed)
         if self.nap != 0 and not abs(self.nap) < self.mu_r * self.g:
-            raise refuse(
-                "physics.nap", self.nap, f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
-            )
+            allowed = f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
+            raise refuse("physics.nap", self.nap, allowed)
         if self.nap != 0 and self.roll_drag != 0:
             allowed = f"must be 0 with physics.nap = {self.nap!r}: no path is known with both"
             raise refuse("physics.roll_drag", self.roll_drag, allowed)
@@ -227,9 +192,8 @@ class Physics:
 
     @classmethod
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
-        """The constants that an argument ``physics`` stands for: None is "paper", a str names a preset, a
-        dict replaces fields of the preset under its key "preset" (or "paper"), a ``Physics`` is itself.
-        ValueError for anything else."""
+        """The constants for an argument ``physics``: None is "paper", a str names a preset, a dict replaces fields of the
+        preset under its key "preset" (or "paper"), a ``Physics`` is itself. ValueError for anything else."""
         if isinstance(physics, cls):
             return physics
         if physics is None or isinstance(physics, str):
@@ -323,45 +287,25 @@ class Physics:
         return self._constants.copy()
 
     def packed_for(self, solver: Solver) -> Floats:
-        """The array that the kernels read, always the same one: nobody may write to it.
-
-        For a ``solver`` (as of ``parse_fidelity``) that asks tables of rolling impacts, they stand behind the constants;
-        those that are not a preset's are made now.
-        """
+        """The array that the kernels read, always the same one: nobody may write to it. For a ``solver`` of
+        ``parse_fidelity`` that reads tables of rolling impacts, these stand behind the constants."""
         return self._with_tables if self.tables and solver[0] in TABLED else self._constants
 
     @cached_property
     def _constants(self) -> Floats:
-        return np.array(
-            [
-                self.R,
-                self.M,
-                self.g,
-                self.mu_s,
-                self.mu_r,
-                self.spin_decel,
-                self.e_b,
-                *self.friction_law,
-                self.e_c,
-                self.e_c_knee,
-                self.e_c_power,
-                self.mu_c,
-                self.sin_theta,
-                self.e_c if self.e_j is None else self.e_j,
-                self.nap,
-                self.roll_drag,
-                self.bed_restitution,
-                *(0.0, 0.0, 0.0),
-            ]
-        )
+        balls = self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law
+        cushions = self.e_c, self.e_c_knee, self.e_c_power, self.mu_c, self.sin_theta
+        e_j = self.e_c if self.e_j is None else self.e_j
+        tables = 0.0, 0.0, 0.0
+        return np.array([*balls, *cushions, e_j, self.nap, self.roll_drag, self.bed_restitution, *tables])
 
     @cached_property
     def _with_tables(self) -> Floats:
         packed = self._constants.copy()
         rail = Rolling(self.sin_theta, self.mu_c, self.mu_s, self.e_c)
-        wanted = {P_RAIL: rail, P_JAW: rail._replace(e=float(packed[P_E_J]))}
+        wanted = {columns.P_RAIL: rail, columns.P_JAW: rail._replace(e=float(packed[columns.P_E_J]))}
         if self.friction_law[1] == 0.0:
-            wanted[P_BALLS] = Rolling(-1.0, self.friction_law[0], self.mu_s, self.e_b)
+            wanted[columns.P_BALLS] = Rolling(-1.0, self.friction_law[0], self.mu_s, self.e_b)
         made: dict[Rolling, Floats] = {}
         for place, rolling in wanted.items():
             table = made.get(rolling, table_of(rolling))
@@ -392,16 +336,21 @@ def _physics_with(base: Physics, values: tuple[float, ...]) -> Physics:
 def pack_into(rows: Floats, which: Ints, values: Floats, base: Physics) -> None:
     """Write the constants (len(which), 8) into rows (n, 22), each ``Physics.pack`` of ``physics_with``."""
     law, scale = base.friction_law, values[:, conditions.MU_BB_SCALE]
-    rows[which, P_MU_S], rows[which, P_MU_R] = values[:, conditions.MU_S], values[:, conditions.MU_R]
-    rows[which, P_SPIN], rows[which, P_E_B] = values[:, conditions.SPIN_DECEL], values[:, conditions.E_B]
-    rows[which, P_MU_BB_LEAST], rows[which, P_MU_BB_EXTRA] = scale * law[0], scale * law[1]
-    rows[which, P_MU_C], rows[which, P_E_C] = values[:, conditions.MU_C], values[:, conditions.E_C]
+    for column, place in _DRAWN.items():
+        rows[which, place] = values[:, column]
+    rows[which, columns.P_MU_BB_LEAST] = scale * law[0]
+    rows[which, columns.P_MU_BB_EXTRA] = scale * law[1]
     if base.e_j is None:
-        rows[which, P_E_J] = values[:, conditions.E_C]
+        rows[which, columns.P_E_J] = values[:, conditions.E_C]
 
 
-PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None
-"""The type of an argument ``physics``, see ``Physics.of``."""
+PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None  # an argument of ``Physics.of``
+_DRAWN = {conditions.MU_S: columns.P_MU_S, conditions.MU_R: columns.P_MU_R, conditions.E_B: columns.P_E_B}
+_DRAWN |= {
+    conditions.MU_C: columns.P_MU_C,
+    conditions.E_C: columns.P_E_C,
+    conditions.SPIN_DECEL: columns.P_SPIN,
+}
 
 
 def _mu_bb(value: object) -> float | Literal["marlow"] | tuple[float, float, float]:
@@ -420,30 +369,14 @@ def _mu_bb(value: object) -> float | Literal["marlow"] | tuple[float, float, flo
     return number("physics.mu_bb", value, 0, 1)
 
 
-PRESETS: dict[str, dict[str, Any]] = {
-    "paper": {},
-    "match": {
-        "mu_r": 0.0114,
-        "e_b": 0.94,
-        "mu_bb": "marlow",
-        "e_c": 0.98,
-        "e_c_knee": 2.02,
-        "e_c_power": 0.243,
-    },
-    "carom": {
-        "R": 0.03075,
-        "M": 0.2125,
-        "mu_s": 0.146,
-        "mu_r": 0.00431,
-        "roll_drag": 0.0136,
-        "spin_decel": 3.77,
-        "e_b": 0.917,
-        "mu_bb": 0.0803,
-        "e_c": 0.911,
-        "e_c_knee": 0.695,
-        "e_c_power": 0.0455,
-        "mu_c": 0.238,
-        "sin_theta": 0.201,
-        "tables": False,  # above the knee none is used
-    },
-}
+_MATCH = {"mu_r": 0.0114, "e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.02, "e_c_power": 0.243}
+_BALLS = {"R": 0.03075, "M": 0.2125, "e_b": 0.917, "mu_bb": 0.0803}
+_CLOTH = {"mu_s": 0.146, "mu_r": 0.00431, "roll_drag": 0.0136, "spin_decel": 3.77}
+_CUSHION = {"e_c": 0.911, "e_c_knee": 0.695, "e_c_power": 0.0455, "mu_c": 0.238, "sin_theta": 0.201}
+_CAROM = {
+    **_BALLS,
+    **_CLOTH,
+    **_CUSHION,
+    "tables": False,
+}  # above the knee no table of rolling impacts is used
+PRESETS: dict[str, dict[str, Any]] = {"paper": {}, "match": _MATCH, "carom": _CAROM}

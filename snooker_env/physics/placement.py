@@ -48,10 +48,8 @@ def _piece_at(x, y, boundaries, allowed, edge):
     noses, jaws, falls, R = boundaries
     for j in range(noses.shape[0]):
         along, across = (y, x) if noses[j, NOSE_AXIS] == 0.0 else (x, y)
-        if (
-            noses[j, NOSE_LOW] <= along <= noses[j, NOSE_HIGH]
-            and noses[j, NOSE_LEVEL] - R - noses[j, NOSE_SIDE] * across < -allowed
-        ):
+        gap = noses[j, NOSE_LEVEL] - R - noses[j, NOSE_SIDE] * across
+        if noses[j, NOSE_LOW] <= along <= noses[j, NOSE_HIGH] and gap < -allowed:
             return IN_NOSE, j
     for j in range(falls.shape[0]):
         dx, dy, radius = x - falls[j, FALL_X], y - falls[j, FALL_Y], falls[j, FALL_RADIUS] - edge

@@ -40,21 +40,15 @@ from .columns import (
     P_SIN,
 )
 
-JAW, LOST, BACK = range(3)
-"""How a leg of the flight ends."""
-EDGE = 0.5
-"""Restitution on the slate's edge (a ball dropped on covered slate rises to about a quarter)."""
-SLOW = 0.4
-"""A ball slower than this is lost at the edge [m/s]: it tips in before it could come back."""
-SOFT = 0.05
-"""Closing speed below which the ball does not bounce on edge or jaw, but stays in contact [m/s]."""
+JAW, LOST, BACK = range(3)  # how a leg of the flight ends
+EDGE = 0.5  # restitution on the slate's edge (a ball dropped on covered slate rises to about a quarter)
+SLOW = 0.4  # a ball slower than this is lost at the edge [m/s]: it tips in before it could come back
+SOFT = 0.05  # closing speed below which the ball does not bounce on edge or jaw, but stays in contact [m/s]
 STRIDE, STEP = 4e-4, 4e-4
 """Distance in a step [m], and the longest step [s]. With a quarter of both no window of a pocket
 (``benchmarks.pockets``) changes by more than 1.1 mm of its width, most by at most 0.3 mm."""
-SHORTEST = 1e-9
-"""The shortest leg [s]; the ball can meet a jaw right at the edge."""
-_MOST_STEPS = 10_000
-"""After so many steps (seconds) in the mouth a ball is lost: wedged in a throat narrower than it."""
+SHORTEST = 1e-9  # the shortest leg [s]; the ball can meet a jaw right at the edge
+_MOST_STEPS = 10_000  # after so many steps (seconds) a ball in the mouth is lost: wedged in a narrow throat
 IN_X, IN_Y, POCKET, HAD, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(12)
 FLIGHT = 12
 """Columns of ``flight``. IN_X, IN_Y: where the ball came in, from the pocket's centre [m]; POCKET. HAD: its
@@ -143,13 +137,8 @@ def jaw_gap(r, jaws, k, R, sin_theta):
     # on the bed a ball touches at R from the table's arc; dropped too, so it comes back without an overlap
     sin_phi = min(1.0, max(0.0, sin_theta + z / R))
     high = min(sin_phi, sin_theta)
-    return (
-        far - jaws[k, JAW_RADIUS] - R * (1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)),
-        -nx,
-        -ny,
-        sin_phi,
-        part,
-    )
+    reach = 1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)
+    return far - jaws[k, JAW_RADIUS] - R * reach, -nx, -ny, sin_phi, part
 
 
 @kernel
@@ -197,9 +186,8 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
         # from the middle of the arc (the centre of a straight facing's very large circle is far away)
         dx = jaws[k, JAW_X] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UX] - falls[pocket, FALL_X]
         dy = jaws[k, JAW_Y] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UY] - falls[pocket, FALL_Y]
-        reach = (
-            jaws[k, JAW_RADIUS] * sqrt(2.0 * (1.0 - jaws[k, JAW_COS])) + 4.0 * R + falls[pocket, FALL_RADIUS]
-        )
+        half = jaws[k, JAW_RADIUS] * sqrt(2.0 * (1.0 - jaws[k, JAW_COS]))
+        reach = half + 4.0 * R + falls[pocket, FALL_RADIUS]
         if dx * dx + dy * dy < reach * reach:
             first, last = min(first, k), k + 1
     T = 0.0
@@ -212,9 +200,8 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
         dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
         far = sqrt(dx * dx + dy * dy)
         depth, high = falls[pocket, FALL_RADIUS] - far, R - z
-        jaw, deepest, hard, px, py, pz, touches, behind = _deepest_jaw(
-            (x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta
-        )
+        found = _deepest_jaw((x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta)
+        jaw, deepest, hard, px, py, pz, touches, behind = found
         if behind and depth > 0.0:
             return LOST, -1, T, (x, y, z), (vx, vy, u)  # through the throat
         # it met the jaw within the step, with the velocity of the step: the edge comes after it
@@ -231,9 +218,8 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
                 p = closing * (1.0 + EDGE if closing > SOFT else 1.0)
                 vx, vy, u = vx + p * ex, vy + p * ey, u - p * ez
         if touches:
-            _, _, hard, px, py, pz, _, _ = _deepest_jaw(
-                (x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta
-            )
+            found = _deepest_jaw((x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta)
+            _, _, hard, px, py, pz, _, _ = found
             # it stays on the jaw; if the edge has driven it into the jaw harder, the next step finds it there
             if hard <= SOFT:
                 vx, vy, u = vx - hard * px, vy - hard * py, u + hard * pz
@@ -273,23 +259,13 @@ def _write(paths, i, t, r, v, w, leg, phys):
     motion[i, AX] = motion[i, AY] = 0.0
     motion[i, WX], motion[i, WY], motion[i, WZ] = w
     motion[i, T0], motion[i, T_END] = t, t + T
-    motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y] = (
-        min(x, x1),
-        max(x, x1),
-        min(y, y1),
-        max(y, y1),
-    )
+    motion[i, LO_X], motion[i, HI_X] = min(x, x1), max(x, x1)
+    motion[i, LO_Y], motion[i, HI_Y] = min(y, y1), max(y, y1)
     # a free fall between the heights at both ends
     motion[i, Z], motion[i, UZ] = -z, (z - z1) / T + 0.5 * phys[P_G] * T
     flight[i, HAD] = 0.5 * (vx * vx + vy * vy + u * u) - phys[P_G] * z
-    flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1], flight[i, END_VX], flight[i, END_VY] = (
-        z,
-        u,
-        z1,
-        u1,
-        vx1,
-        vy1,
-    )
+    flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1] = z, u, z1, u1
+    flight[i, END_VX], flight[i, END_VY] = vx1, vy1
     flight[i, KIND] = events.JAW if end == JAW else events.RETURN if end == BACK else events.POT
     flight[i, INDEX] = jaw if end == JAW else int(flight[i, POCKET])
 
@@ -302,10 +278,8 @@ def aloft(motion, flight, i, t, v, phys):
     ball had. Then it is slower.
     """
     s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
-    z, u = (
-        flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]),
-        flight[i, U0] + s * (flight[i, U1] - flight[i, U0]),
-    )
+    z = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0])
+    u = flight[i, U0] + s * (flight[i, U1] - flight[i, U0])
     vx, vy = v
     has, had = 0.5 * (vx * vx + vy * vy + u * u), max(0.0, flight[i, HAD] + phys[P_G] * z)
     if has > had:

@@ -12,11 +12,8 @@ def check_shapes(noses: Floats, jaws: Floats, falls: Floats) -> None:
     """Raise ValueError for a nose, jaw or fall that is not valid."""
     for k, (axis, side, _, low, high) in enumerate(noses.tolist()):
         if axis not in (0, 1) or side not in (-1, 1) or not low <= high:
-            raise refuse(
-                f"table.noses[{k}]",
-                tuple(noses[k].tolist()),
-                "must be axis 0 or 1, side -1 or 1, level, and lo <= hi",
-            )
+            allowed = "must be axis 0 or 1, side -1 or 1, level, and lo <= hi"
+            raise refuse(f"table.noses[{k}]", tuple(noses[k].tolist()), allowed)
     for k, (_, _, radius, ux, uy, cos_half) in enumerate(jaws.tolist()):
         if radius < 0 or abs(hypot(ux, uy) - 1.0) > 1e-6 or abs(cos_half) > 1:
             allowed = "must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine"
@@ -32,11 +29,8 @@ def check_fit(bed: Bed, ball_radius: float | None) -> None:
     middle = bed.middle.start if bed.middle else 0.0
     for name, half, taken in (("width", bed.width / 2, end), ("length", bed.length / 2, end + middle)):
         if not half > taken:
-            raise refuse(
-                f"table.{name}",
-                2 * half,
-                f"must be more than {2 * taken:.6g}, the length that the pockets take on that side",
-            )
+            allowed = f"must be more than {2 * taken:.6g}, the length that the pockets take on that side"
+            raise refuse(f"table.{name}", 2 * half, allowed)
     if ball_radius is None:
         return
     for name, pocket in (("corner", bed.corner), ("middle", bed.middle)):

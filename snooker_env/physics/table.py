@@ -21,10 +21,8 @@ from .shapes import check_fit, check_shapes
 MOUTH = 0.012
 """How far past the noses a ball can lie at rest [m], unless the pockets let it lie deeper: the depth between
 jaw and fall of snooker's middle pocket."""
-PLAY = 1e-3
-"""Facing noses must be at least this much further apart than a ball is wide [m]."""
-SAME_BALL = 1e-9
-"""A ball's radius may differ by this much from the one that a table is made for [m]."""
+PLAY = 1e-3  # facing noses must be at least this much further apart than a ball is wide [m]
+SAME_BALL = 1e-9  # a ball's radius may differ by this much from the one that a table is made for [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,14 +91,10 @@ class Table:
         if self.ball_radius is not None:
             object.__setattr__(self, "ball_radius", number("table.ball_radius", self.ball_radius, 1e-3, 1))
         names = self.pockets
-        if (
-            not isinstance(names, tuple)
-            or not all(isinstance(name, str) for name in names)
-            or len(names) not in (0, len(self.falls))
-        ):
-            raise refuse(
-                "table.pockets", names, f"must be a tuple of {len(self.falls)} names, one a fall, or ()"
-            )
+        named = isinstance(names, tuple) and all(isinstance(name, str) for name in names)
+        if not named or len(names) not in (0, len(self.falls)):
+            allowed = f"must be a tuple of {len(self.falls)} names, one a fall, or ()"
+            raise refuse("table.pockets", names, allowed)
         bounds = bounds_of(self.noses)
         bounds.setflags(write=False)
         object.__setattr__(self, "bounds", bounds)
@@ -143,11 +137,8 @@ class Table:
             if shape is not None and not needed:
                 raise refuse(f"table.{field_name}", shape, f"must be None on a table with {pockets} pockets")
             if shape is not None and (not isinstance(shape, Pocket) or shape.is_middle != is_middle):
-                raise refuse(
-                    f"table.{field_name}",
-                    shape,
-                    f"must be a Pocket made by Pocket.{field_name}, or None for snooker's",
-                )
+                allowed = f"must be a Pocket made by Pocket.{field_name}, or None for snooker's"
+                raise refuse(f"table.{field_name}", shape, allowed)
             shapes.append((shape or getattr(PRESETS["match"], field_name)) if needed else None)
         if ball_radius is not None:
             ball_radius = number("table.ball_radius", ball_radius, 1e-3, 1)
@@ -164,11 +155,8 @@ class Table:
             return table
         if isinstance(table, str):
             return cls.preset(table)
-        raise refuse(
-            "table",
-            table,
-            f"must be {', '.join(map(_quote, PRESETS))}, a Table, or None for unbounded cloth",
-        )
+        names = ", ".join(f'"{name}"' for name in PRESETS)
+        raise refuse("table", table, f"must be {names}, a Table, or None for unbounded cloth")
 
     @property
     def is_preset(self) -> bool:
@@ -203,14 +191,16 @@ class Table:
             self._reaches[R] = np.tile(self.bounds, 2) + np.array([-past, past, R, -R])
         return self._reaches[R]
 
+    def _first_fault(self, positions, here, R):
+        """``placement.first_fault`` on this table, of balls of radius ``R``."""
+        return first_fault(positions, here, self._reach(R), self.noses, self.jaws, self.falls, float(R))
+
     def unfit(self, positions: Floats, R: float) -> list[int]:
         """The layouts that ``check`` would refuse: their indices, in order. ``positions`` (b, n, 2) [m], NaN for
         balls that are not on the table; ``R``: their radius [m]."""
         here, unfit, first = ~np.isnan(positions[..., 0]), [], 0
         while True:
-            k, _, fault, _ = first_fault(
-                positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R)
-            )
+            k, _, fault, _ = self._first_fault(positions[first:], here[first:], R)
             if fault == SOUND:
                 return unfit
             first += k + 1
@@ -221,9 +211,8 @@ class Table:
         radius = self.ball_radius
         if radius is not None and abs(R - radius) > SAME_BALL:
             made = f'must be {radius} on table "{self.name}", which is made for it'
-            raise refuse(
-                "physics.R", R, f'{made}: write physics={{"R": {radius}}}, or give a Table of your own'
-            )
+            allowed = f'{made}: write physics={{"R": {radius}}}, or give a Table of your own'
+            raise refuse("physics.R", R, allowed)
         width, *pair = self._narrowest
         if width - 2 * R < PLAY:  # it would bounce between them infinitely often in a finite time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
@@ -244,39 +233,30 @@ class Table:
         positions = np.ascontiguousarray(positions, np.float64)
         many = positions.ndim == 3
         if positions.ndim not in (2, 3) or positions.shape[-1] != 2:
-            raise refuse_what(
-                field, f"array of shape {positions.shape}", "must have shape (n, 2) or (b, n, 2)"
-            )
+            allowed = "must have shape (n, 2) or (b, n, 2)"
+            raise refuse_what(field, f"array of shape {positions.shape}", allowed)
         places, shape = positions if many else positions[None], positions.shape[:-1]
-        here = (np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)).reshape(
-            places.shape[:2]
-        )
-        k, i, fault, j = first_fault(
-            places, here, self._reach(R), self.noses, self.jaws, self.falls, float(R)
-        )
+        here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
+        k, i, fault, j = self._first_fault(places, here.reshape(places.shape[:2]), R)
         if fault == SOUND:
             return
         field = f"{field}[{k}]" if many else field
         place = f"{field}[{i}]", (float(places[k, i, 0]), float(places[k, i, 1]))
         if fault == OFF:
-            ranges = [
-                _range(name, low + R, high - R)
-                for name, (low, high) in zip("xy", self.bounds.tolist(), strict=True)
-            ]
-            raise refuse(*place, f"must be on the table, {', '.join(filter(None, ranges))} away from pockets")
+            ends = zip("xy", self.bounds.tolist(), strict=True)
+            ranges = ", ".join(filter(None, (_range(name, low + R, high - R) for name, (low, high) in ends)))
+            raise refuse(*place, f"must be on the table, {ranges} away from pockets")
         if fault == IN_NOSE:
             axis, side, level = self.noses[j, [NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL]]
             raise refuse(*place, f"overlaps the cushion at {'xy'[int(axis)]} = {side * level:g}")
         if fault == OVER_POCKET:
             raise refuse(*place, "is over a pocket")
         if fault == IN_JAW:
-            raise refuse(
-                *place, f"overlaps jaw {j} at ({self.jaws[j, JAW_X]:.4f}, {self.jaws[j, JAW_Y]:.4f})"
-            )
+            at = f"({self.jaws[j, JAW_X]:.4f}, {self.jaws[j, JAW_Y]:.4f})"
+            raise refuse(*place, f"overlaps jaw {j} at {at}")
         depth = 2 * R - float(hypot(*(places[k, i] - places[k, j])))
-        raise refuse_what(
-            field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed"
-        )
+        allowed = f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed"
+        raise refuse_what(field, f"balls {i} and {j}", allowed)
 
 
 TableLike: TypeAlias = Table | TableName | None  # the type of an argument ``table``
@@ -285,10 +265,6 @@ TableLike: TypeAlias = Table | TableName | None  # the type of an argument ``tab
 def _again(name, noses, jaws, falls, ball_radius, pockets):
     """A table that is no preset; pickling and copying call it."""
     return Table(name, noses, jaws, falls, ball_radius=ball_radius, pockets=pockets)
-
-
-def _quote(name):
-    return f'"{name}"'
 
 
 def _range(name: str, low: float, high: float) -> str | None:

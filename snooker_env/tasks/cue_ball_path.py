@@ -34,8 +34,7 @@ reach the ball, 2 if it passes it; how far the ball to be potted would roll, ove
 NONE = 8  # no ball is on: the visit has cleared the table
 MEETINGS, PHASES, PARTS = 12, 60, 3
 """Meetings of a cue ball that are predicted, phases of its motion, and chords of a sliding phase."""
-TAKEN = 0.055
-"""A cue ball that reaches the line of the noses so near to a pocket's aim point is taken [m]."""
+TAKEN = 0.055  # a cue ball that reaches the line of the noses so near to a pocket's aim point is taken [m]
 FAREST = 3.0  # largest ``REACH``
 _LONGEST = 60.0  # longest phase that is looked at [s]
 

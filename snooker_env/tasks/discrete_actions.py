@@ -36,8 +36,7 @@ SIZE = POTS * STROKES
 _NEAR_RAIL, _NEAR_BALL = 0.035, 0.061
 """A real cue need not be steeper than ``STEEPEST`` for what is farther from the cue ball's centre [m]: the nose of a
 rail; the centre of a ball."""
-_BESIDE = 0.036
-"""A ball farther from the cue's line is not under a steep cue [m]."""
+_BESIDE = 0.036  # a ball farther from the cue's line is not under a steep cue [m]
 _LOW, _ASIDE = TIP - min(TOPS) * BALL_RADIUS + 1e-3, max(SIDES) * BALL_RADIUS
 """The lowest tip's reach below the centre, with 1 mm for the taper and for squirt, which turns the cue, and the tips'
 reach to the side [m]."""

@@ -1,6 +1,6 @@
-"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, over tables.
-Row j of a shot's arrays belongs to which[j]. ``tables``, ``saved``, ``shots``, ``output``, ``setting``: the
-parts of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``."""
+"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos.
+Row j of a shot's arrays belongs to table which[j]. ``tables``, ``saved``, ``shots``, ``output`` and ``setting`` are
+plain tuples of the fields of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``."""
 
 from typing import NamedTuple
 
@@ -110,14 +110,6 @@ def _hand_back(row):
         row[columns.STRIKER] = AGENT  # ``after_stroke`` has ended the break already
 
 
-@kernel
-def _leave_the_black(positions, on_table):
-    """Before a re-spotted black: nothing else is on the table, also where the time was up with more on it."""
-    for i in range(1, N_BALLS):
-        on_table[i] = i == BLACK
-    positions[BLACK, 0], positions[BLACK, 1] = SPOTS[BLACK, 0], SPOTS[BLACK, 1]
-
-
 @entry
 def hold_late(which, game, rules, time_to_play, v, w, aloft, shots):
     """Shots that would not be begun within the shot clock are not played: the cue ball is not struck."""
@@ -165,7 +157,9 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
         if row[columns.OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
             give_up(row, setting.reward)
         if row[columns.PHASE] == columns.LOT:
-            _leave_the_black(p, on)
+            for i in range(1, N_BALLS):  # more were on the table if the time was up
+                on[i] = i == BLACK
+            p[BLACK, 0], p[BLACK, 1] = SPOTS[BLACK, 0], SPOTS[BLACK, 1]
             u, _ = pair(tables.streams[k])
             row[columns.STRIKER] = int(2.0 * u)  # the winner of the lot
             if alone or not setting.lot:
@@ -254,14 +248,13 @@ def _worth(row, reward):
     return earnings(reward, columns.lead_of(row, AGENT), frames_lead)
 
 
-MOST_STEPS = 20
-"""Steps of an episode of one stroke at most: who fouls, or is sent back to the table, plays again."""
+MOST_STEPS = 20  # steps of an episode of one stroke at most: a player who fouls, or is sent back, plays again
 
 
 @entry(what="the steps of frames", seconds=1)
 def finish(which, tables, saved, setting, due, through, replies, played, output):
-    """Write a step's results; ``played`` (n,): whether the agent had a stroke. No end stays ``due``; ``through``: which
-    episodes of one stroke have ended."""
+    """Write a step's results; ``played``: whether the agent had a stroke; ``through``: whether one stroke was to be played,
+    and was. No end stays ``due``."""
     tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
@@ -277,12 +270,10 @@ def finish(which, tables, saved, setting, due, through, replies, played, output)
         fair = played[k] and not out.counts[k, I_FOULS]  # its stroke was no foul
         fair = setting.one_stroke and fair and row[columns.PHASE] != columns.CHOICE
         spent = setting.one_stroke and row[columns.STEPS] >= MOST_STEPS
-        stopped = not row[columns.OVER] and (
-            row[columns.STROKES] >= setting.max_strokes or (spent and not fair)
-        )
+        stopped = row[columns.STROKES] >= setting.max_strokes or (spent and not fair)
         through[k] = fair or spent
         out.terminated[k] = row[columns.OVER] or fair
-        out.truncated[k] = stopped or row[columns.STEPS] >= setting.limit
+        out.truncated[k] = (stopped and not row[columns.OVER]) or row[columns.STEPS] >= setting.limit
         _write_frame_info(k, row, AGENT, replies[k], out)
         observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
 

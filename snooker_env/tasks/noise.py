@@ -39,10 +39,8 @@ from ..physics.parameters import Physics, PhysicsLike
     N_LAPSE,
     N_LAPSE_FACTOR,
 ) = range(11)
-DRAWN = 6
-"""Standard normal numbers that a stroke draws: five errors, and one that says whether it is a lapse."""
-_SHAPE = ("growth", "lapse", "lapse_factor")
-"""Fields of ``Noise`` that shape errors and make none."""
+DRAWN = 6  # standard normal numbers that a stroke draws: five errors, and one that says whether it is a lapse
+_SHAPE = ("growth", "lapse", "lapse_factor")  # fields of ``Noise`` that shape errors and make none
 _NORMAL = NormalDist()
 KICK = 0.2
 """Friction between balls in a kick: a stun shot's contact sticks with it up to a cut of 45 degrees, so that

@@ -30,8 +30,7 @@ from .stroke_menu import LEAST_SPEEDS, MOST_SPEEDS, SPEEDS, Menu
 from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
-MOST_TIME = 15.0
-"""The most time to play [s]: the longest shot clock. With more no stroke would ever be in time."""
+MOST_TIME = 15.0  # the most time to play [s]: the longest shot clock, after which no stroke is in time
 TIME_TO_PLAY = 9.0
 """Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
 ACTIONS = ("box", "discrete", "strokes")
@@ -42,8 +41,7 @@ LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 MAX_STROKES = 1000
 """Default number of strokes after which the referee stops a frame. Random players that aim near a pot needed
 284 on average, at most 560 in 2,000 frames (docs/environment/frames.md); some players never finish."""
-FRAMES = 7
-"""Default length of a match: best of 7."""
+FRAMES = 7  # default length of a match: best of 7
 OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
 object: a player or an OpponentPool; players.SeenPlayer makes a player of what acts on observations"""
 OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
@@ -252,7 +250,9 @@ class Options:
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
             layout = f"break_off:{rule_set(self.game).reds}"
         plan = fit_plan(layout, table)
-        kind = self._observation()
+        kinds = observations.OBSERVATIONS[frame:]  # "pots" is of visits alone
+        choice("observation", self.observation, ("default", *kinds))
+        kind = kinds[0] if self.observation == "default" else self.observation
         if kind == "masked" and not isinstance(actions, Choices):
             allowed = 'must be "pots", "flat" or "balls" with action="box": a Box has no masks'
             raise refuse("observation", self.observation, allowed)
@@ -265,8 +265,8 @@ class Options:
             raise refuse("one_stroke", True, 'must be False with task="match"')
         limit = NEVER
         self._check_task()
-        frames = self.frames if self.task == "match" else 0
-        if self.task == "match" and integer("frames", frames, 1, 999) % 2 == 0:
+        frames = integer("frames", self.frames, 1, 999) if self.task == "match" else 0
+        if self.task == "match" and frames % 2 == 0:
             raise refuse("frames", frames, "must be odd, so that one player wins")
         if frame:
             choice("miss", self.miss, MISS_RULES)
@@ -284,26 +284,9 @@ class Options:
             object.__setattr__(self, "opponent", str(self.opponent))
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
         world = actions, noise, physics, table, fidelity, plan, self.reward, kind
-        read = Rules(
-            *world,
-            self.miss,
-            limit,
-            one_stroke,
-            frames,
-            self.game,
-            pause,
-            drawn,
-            observed,
-            self.cue,
-            self.speeds,
-        )
+        play = self.miss, limit, one_stroke, frames, self.game, pause
+        read = Rules(*world, *play, drawn, observed, self.cue, self.speeds)
         object.__setattr__(self, "rules", read)
-
-    def _observation(self) -> ObservationKind:
-        """The kind of observations; ValueError for one that the task has not."""
-        kinds = observations.OBSERVATIONS[self.task != "visit" :]
-        choice("observation", self.observation, ("default", *kinds))
-        return kinds[0] if self.observation == "default" else self.observation
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)

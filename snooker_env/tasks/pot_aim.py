@@ -14,14 +14,12 @@ from ..physics.impact.contact import collide_balls
 
 _ENOUGH = 1e-6  # rad that the object ball may pass the aim point by, a hundredth of the best player's error
 _TRIALS = 12
-_ROUNDS, _NEARLY = 4, 1e-5
-"""Of ``swerved_aim``: corrections of the aim; the last may be as large as that [rad]."""
+_ROUNDS, _NEARLY = 4, 1e-5  # corrections in ``swerved_aim``; the last may be as large as that [rad]
 _STEPS, _THERE = 30, 1e-9  # of Newton's method along the path, two to four as a rule; near enough [m]
 _SAME_ROOM = 1e-4
 """A cue that turns by less keeps its elevation while an aim is solved [rad]: nine of ten object balls then pass the aim
 point by less than 2e-5 rad."""
-_SWERVE = 5e-3
-"""The same of the first trial, which only shows the way and is never the last [rad]."""
+_SWERVE = 5e-3  # the same of the first trial, which only shows the way and is never the last [rad]
 _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve of a pot
 
 
@@ -37,10 +35,8 @@ def stroke_in_room(aim, stroke, positions, on_table, law):
 @kernel
 def struck_by(played, law):
     """Velocity and spin of a stroke of ``stroke_in_room``; see ``cue.strike_ball``."""
-    speed, side, top, aim, elevation = played
-    return cue.strike_ball(
-        speed, aim, side, top, elevation, law.phys[P_R], law.phys[P_MU_S], law.end_mass_ratio, 0.0
-    )
+    (speed, side, top, aim, elevation), R, mu_s = played, law.phys[P_R], law.phys[P_MU_S]
+    return cue.strike_ball(speed, aim, side, top, elevation, R, mu_s, law.end_mass_ratio, 0.0)
 
 
 @kernel
@@ -75,8 +71,7 @@ def _passes(played, positions, b, p, law, work):
     d = hypot(nx, ny)
     still, impact = (0.0, 0.0, 0.0), Law(phys, law.fidelity, law.n_steps)
     ball, normal = (v[0], v[1], 0.0), (nx / d, ny / d)
-    after = collide_balls(ball, w, still, still, normal, impact, phys[P_E_B], work.series)
-    _v1, _w1, v2, w2, solved = after
+    _, _, v2, w2, solved = collide_balls(ball, w, still, still, normal, impact, phys[P_E_B], work.series)
     if not solved:
         return 9.0
     cloth.begin(motion, state, 1, t, (bx, by), (v2[0], v2[1]), w2, phys)
@@ -213,7 +208,8 @@ def aim_from(begin, effort, positions, on_table, ball, target, ghost, stroke, la
 def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
     """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised
     as it must be."""
-    line = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0])
-    return aim_from(
-        line, (_ENOUGH, _SAME_ROOM, _TRIALS), positions, on_table, ball, target, ghost, stroke, law, work
-    )[0]
+    line, effort = (
+        atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0]),
+        (_ENOUGH, _SAME_ROOM, _TRIALS),
+    )
+    return aim_from(line, effort, positions, on_table, ball, target, ghost, stroke, law, work)[0]

@@ -8,8 +8,7 @@ from ..game.pots import POT_BALL
 from .pot_chance import FAR, length_of, plain_chance
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
-FOLLOWS = 25.0
-"""Points to expect after a made pot from the rest of the visit; fewer if fewer are left on the table."""
+FOLLOWS = 25.0  # points that the rest of the visit brings after a pot; fewer if fewer are left on the table
 SECOND, THIRD = 0.15, 0.05
 """Shares of the second and third best pot that count: they leave a choice of where to play next."""
 DISTANT = 0.09

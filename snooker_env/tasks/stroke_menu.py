@@ -32,10 +32,8 @@ SPEEDS = 9
 LEAST_SPEEDS, MOST_SPEEDS = 2, 20
 TOPS = (-MOST_TOP, 0.0, MOST_TOP)
 """The tip offsets at pots, over R, upwards."""
-PER_SPEED = POTS * len(TOPS)
-"""Strokes at pots of each cue speed."""
-SAFE_SPEEDS, SAFE_TOPS = (0.8, 1.4, 2.2, 3.4), (-0.3, 0.15)
-"""The same of safeties."""
+PER_SPEED = POTS * len(TOPS)  # strokes at pots of each cue speed
+SAFE_SPEEDS, SAFE_TOPS = (0.8, 1.4, 2.2, 3.4), (-0.3, 0.15)  # the same of safeties
 SAFE_ALONG = len(SAFE_SPEEDS) * len(SAFE_TOPS)
 SAFETIES = SAFE_LINES * SAFE_ALONG
 DECISIONS = 2
