@@ -234,16 +234,10 @@ def _net_of(observations: Any, actions: Any) -> _StrokesNet:
     """The network for an environment; ValueError for spaces of another one."""
     choices = int(getattr(actions, "n", 0))
     shape = observations.shape or (0,)
-    if (
-        not (speeds_of(choices, False) or speeds_of(choices, True))
-        or len(shape) != 1
-        or shape[0] // choices != STROKE_SIZE
-    ):
-        given, allowed = (
-            f"{observations} and {actions}",
-            'must be those of action="strokes", observation="strokes"',
-        )
-        raise refuse_what("spaces", given, allowed)
+    menu = speeds_of(choices, False) or speeds_of(choices, True)
+    if not menu or len(shape) != 1 or shape[0] // choices != STROKE_SIZE:
+        allowed = 'must be those of action="strokes", observation="strokes"'
+        raise refuse_what("spaces", f"{observations} and {actions}", allowed)
     return _StrokesNet(choices, shape[0])
 
 

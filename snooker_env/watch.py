@@ -68,13 +68,8 @@ def parser() -> argparse.ArgumentParser:
     add("--layout", default="held_out", help="of the tables [%(default)s: those of judging]")
     add("--noise", default="professional", help="execution noise [%(default)s]")
     add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table [%(default)s]")
-    add(
-        "--at-least",
-        type=int,
-        default=0,
-        metavar="POINTS",
-        help="show the first visit with so many, or the longest",
-    )
+    at_least = "show the first visit with at least so many points, or the longest"
+    add("--at-least", type=int, default=0, metavar="POINTS", help=at_least)
     add("--tries", type=int, default=200, help="most visits played to find it [%(default)s]")
     add("--speed", type=float, default=1.0, help="of a film, over that of the play")
     add("--size", help="of a film, WIDTHxHEIGHT, both even")

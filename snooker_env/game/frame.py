@@ -274,10 +274,8 @@ class Frame:
         balls = rule_set(rules).on_table
         if on_table is not None:
             balls = integer("on_table", on_table, 0, ALL_MASK) & ~CUE_BIT
-        on = BallOn(next_on(balls))
-        return cls(
-            striker=breaker, breaker=breaker, rules=rules, miss=miss, on_table=balls, rack=balls, ball_on=on
-        )
+        game = {"rules": rules, "miss": miss, "on_table": balls, "rack": balls}
+        return cls(striker=breaker, breaker=breaker, ball_on=BallOn(next_on(balls)), **game)
 
     @property
     def rule_set(self) -> RuleSet:
@@ -441,14 +439,9 @@ def _unpack(row, rules, miss, layout):
     saved = None
     if at[columns.SAVED]:
         placed, kept = at[columns.SAVED_IN_HAND], layout if at[columns.SAVED_LAYOUT] else None
-        saved = Saved(
-            on_table=at[columns.SAVED_ON_TABLE],
-            ball_on=BallOn(at[columns.SAVED_BALL_ON]),
-            in_hand=placed > 0,
-            free_ball=bool(at[columns.SAVED_FREE_BALL]),
-            anywhere=placed == 2,
-            layout=kept,
-        )
+        balls = {"on_table": at[columns.SAVED_ON_TABLE], "ball_on": BallOn(at[columns.SAVED_BALL_ON])}
+        cue = {"in_hand": placed > 0, "anywhere": placed == 2}
+        saved = Saved(**balls, **cue, free_ball=bool(at[columns.SAVED_FREE_BALL]), layout=kept)
     fields = dict(zip(_INTEGERS, _integers(at), strict=True))
     fields |= zip(_FLAGS, map(bool, _flags(at)), strict=True)
     fields |= {"scores": (at[columns.SCORE_0], at[columns.SCORE_1]), "ball_on": BallOn(at[columns.BALL_ON])}

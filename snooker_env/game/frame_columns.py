@@ -52,9 +52,7 @@ RACK = 32  # mask of the object balls that the frame began with
 COLUMNS = 33
 
 (STROKE, CHOICE, LOT, FINISHED) = range(4)  # Phases, in the order of ``frame.PHASES``
-(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(
-    4
-)  # decisions after a foul, in the order of ``frame.CHOICES``
+(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(4)  # decisions after a foul: ``frame.CHOICES``
 (NO_MISSES, CLEAR_PATHS, ATTEMPTS) = range(3)  # miss rules, in the order of ``frame.MISS_RULES``
 MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 

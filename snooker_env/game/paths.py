@@ -162,7 +162,7 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
         inside = 0
         for k in range(
             n
-        ):  # into (-pi, pi]: so the target's window is one interval about 0; those in it, in order
+        ):  # into (-pi, pi], so that the target's window is one interval; those in it, in order
             edge = edges[k] - 2.0 * np.pi * np.round(edges[k] / (2.0 * np.pi))
             if -half <= edge <= half:
                 j = inside
@@ -174,9 +174,8 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
         for k in range(inside - 1):
             low, high = edges[k], edges[k + 1]
             angle = towards + 0.5 * (low + high)
-            if high - low > WINDOW and _open_direction(
-                positions, on_table, on, target, angle, noses, jaws, radius
-            ):
+            wide = high - low > WINDOW
+            if wide and _open_direction(positions, on_table, on, target, angle, noses, jaws, radius):
                 return True
     return False
 

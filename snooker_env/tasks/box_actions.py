@@ -86,10 +86,8 @@ def shot_of(a, positions, on_table, on, options, law, work):
     direction = pi * a[3]
     if options[A_AIM] == _TARGET:
         # without rails a line is aimed as for a level cue
-        raised = elevation if law.rails.shape[0] else 0.0
-        direction = (
-            _target_line(positions, on_table, on, (speed, side, top, raised), law, work) + TARGET_SPAN * a[3]
-        )
+        stroke = speed, side, top, elevation if law.rails.shape[0] else 0.0
+        direction = _target_line(positions, on_table, on, stroke, law, work) + TARGET_SPAN * a[3]
     return speed, side, top, direction - squirt(side, law.end_mass_ratio), elevation
 
 

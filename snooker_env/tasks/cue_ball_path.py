@@ -120,10 +120,8 @@ def _run(positions, on_table, skip, law, work, out):
         ball = v[0], v[1], 0.0
         if met == 1:
             x, y = min(max(x, -right), right), min(max(y, -top), top)
-            closing = v[0] * nx + v[1] * ny
-            v, w, _ok = collide_cushion(
-                ball, w, (nx, ny), law, cushion_restitution(closing, phys), work.series
-            )
+            e = cushion_restitution(v[0] * nx + v[1] * ny, phys)
+            v, w, _ok = collide_cushion(ball, w, (nx, ny), law, e, work.series)
             out[NOSES] += 1.0
         else:
             nx, ny = positions[who, 0] - x, positions[who, 1] - y
@@ -142,9 +140,8 @@ def _run(positions, on_table, skip, law, work, out):
 @kernel
 def played_in_room(stroke, positions, on_table, cue_law):
     """A stroke (5,), its cue raised as it must be, as ``stroke_in_room``."""
-    return stroke_in_room(
-        stroke[3], (stroke[0], stroke[1], stroke[2], stroke[4]), positions, on_table, cue_law
-    )
+    with_tip = stroke[0], stroke[1], stroke[2], stroke[4]
+    return stroke_in_room(stroke[3], with_tip, positions, on_table, cue_law)
 
 
 @kernel(seconds=1)
@@ -164,10 +161,9 @@ def _meet(played, ball, positions, cue_law, work, out):
         out[MISSED] = 1.0 if hypot(x - cx, y - cy) < hypot(bx - cx, by - cy) else 2.0
         return False, still, still
     nx, ny = bx - x, by - y
-    away = hypot(nx, ny)
-    own, w, other, spin, _ok = collide_balls(
-        (v[0], v[1], 0.0), w, still, still, (nx / away, ny / away), law, phys[P_E_B], work.series
-    )
+    away, ball_v = hypot(nx, ny), (v[0], v[1], 0.0)
+    met_at = nx / away, ny / away
+    own, w, other, spin, _ok = collide_balls(ball_v, w, still, still, met_at, law, phys[P_E_B], work.series)
     cloth.begin(motion, state, 0, t, (x, y), (own[0], own[1]), w, phys)
     return True, other, spin
 
@@ -299,8 +295,7 @@ def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
         ball = met[j] = foresee_contact(tried, p, here, its, work, out[j, 0], out[j, 1])
-        fair = strikeable(game[k], bits(here) & ~1)
-        legal[j] = is_fair(ball, near, fair)
+        legal[j] = is_fair(ball, near, strikeable(game[k], bits(here) & ~1))
         for b in range(N_BALLS):
             after[j, b, 0], after[j, b, 1] = p[b, 0], p[b, 1]
         if ball:

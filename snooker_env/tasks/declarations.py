@@ -22,6 +22,7 @@ A_SPEEDS = 10  # of a menu, the cue speeds along each line; 0: the choices are t
 SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
 DECLARES = SAYS[2:]
 (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)  # declarations
+OPTION_OF = ((CONCEDES, A_CONCEDE), (CLAIMS, A_CLAIM), (OTHER_BEGINS, A_LOT))  # the column that allows each
 COLOURS = 6
 STROKE_CHOICES = 540  # ``discrete_actions.SIZE``, the number of discrete actions that only choose a stroke
 
@@ -108,7 +109,7 @@ def declaration_of(a, options, row):
         extra = int(a[0]) - STROKE_CHOICES * (1 + COLOURS if options[A_NOMINATE] >= 0 else 1)
         if extra < 0:
             return SAYS_NOTHING
-        for declared, column in ((CONCEDES, A_CONCEDE), (CLAIMS, A_CLAIM), (OTHER_BEGINS, A_LOT)):
+        for declared, column in OPTION_OF:
             if options[column]:
                 if extra == 0:
                     what = declared

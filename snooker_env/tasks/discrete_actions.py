@@ -149,11 +149,7 @@ def masks(which, positions, on_table, game, options, cue, out):
             if crowded:
                 _without_room(p, here, cue, rows, pots, many, out[j, n * SIZE : (n + 1) * SIZE])
         at = parts * SIZE
-        for what, column in (
-            (declarations.CONCEDES, declarations.A_CONCEDE),
-            (declarations.CLAIMS, declarations.A_CLAIM),
-            (declarations.OTHER_BEGINS, declarations.A_LOT),
-        ):
+        for what, column in declarations.OPTION_OF:
             if options[column]:
                 out[j, at] = declarations.may_declare(what, row)
                 at += 1

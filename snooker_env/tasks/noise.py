@@ -26,19 +26,8 @@ from ..physics.parameters import Physics, PhysicsLike
 # the probability of a kick; by how much those of tip and aim grow with the elevation [1/rad], 0 for a free cue, and
 # with the speed [s/m]; the normal number from which a stroke is a lapse, inf for never, and how many times larger its
 # errors are.
-(
-    N_SILENT,
-    N_SPEED,
-    N_SPEED_REL,
-    N_TIP,
-    N_AIM,
-    N_ELEVATION,
-    N_KICK,
-    N_STEEPER,
-    N_FASTER,
-    N_LAPSE,
-    N_LAPSE_FACTOR,
-) = range(11)
+N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION, N_KICK = range(7)
+N_STEEPER, N_FASTER, N_LAPSE, N_LAPSE_FACTOR = range(7, 11)
 DRAWN = 6  # standard normal numbers that a stroke draws: five errors, and one that says whether it is a lapse
 _SHAPE = ("growth", "lapse", "lapse_factor")  # fields of ``Noise`` that shape errors and make none
 _NORMAL = NormalDist()
@@ -201,12 +190,8 @@ class Noise:
 
     def scale(self, times: float) -> "Noise":
         """Return a ``Noise`` with every error ``times`` as large; growth, lapses and kicks are the same."""
-        return replace(
-            self,
-            **{
-                f.name: getattr(self, f.name) * times for f in fields(self) if f.name not in (*_SHAPE, "kick")
-            },
-        )
+        errors = (f.name for f in fields(self) if f.name not in (*_SHAPE, "kick"))
+        return replace(self, **{name: getattr(self, name) * times for name in errors})
 
     @property
     def silent(self) -> bool:
@@ -259,15 +244,8 @@ class Noise:
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
 """The types that arguments called ``noise`` accept, see ``Noise.of``."""
-_PROFESSIONAL = Noise(
-    aim_deg=0.014,
-    speed_rel=0.017,
-    offset_mm=0.085,
-    elevation_deg=0.11,
-    growth=1.0,
-    lapse=0.1,
-    lapse_factor=7.0,
-)
+_ERRORS = {"aim_deg": 0.014, "speed_rel": 0.017, "offset_mm": 0.085, "elevation_deg": 0.11}
+_PROFESSIONAL = Noise(**_ERRORS, growth=1.0, lapse=0.1, lapse_factor=7.0)
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
     "professional": _PROFESSIONAL,

@@ -202,12 +202,8 @@ def observe_pots_into(row, positions, on_table, ball_on, on, in_hand, points, vi
         row[at], row[at + 1] = chance, scale_log(chance)
         row[at + 2] = (cut if left else -cut) / (0.5 * pi)
         row[at + 3], row[at + 4] = scale_room(pots[k, TOLERANCE]), VALUES[ball] / 7.0
-        row[at + 5], row[at + 6], row[at + 7], row[at + 8] = (
-            x / HALF_WIDTH,
-            y / HALF_LENGTH,
-            px / far,
-            py / far,
-        )
+        row[at + 5], row[at + 6] = x / HALF_WIDTH, y / HALF_LENGTH
+        row[at + 7], row[at + 8] = px / far, py / far
         row[at + 9], row[at + 10], row[at + 11] = far / _FAR, tx / HALF_WIDTH, ty / HALF_LENGTH
     at, here = POTS * size, on_table[0]
     row[at], row[at + 1] = cx / HALF_WIDTH if here else 0.0, cy / HALF_LENGTH if here else 0.0

@@ -43,9 +43,7 @@ class Played:
     frame: Frame | None = None  # all that the rules know of it after the stroke; None in a visit
     before: Frame | None = None  # the same before the stroke; None where nobody kept it, as the next
     meant: dict[str, Any] | None = None  # the stroke without errors: the fields of ``CueStroke``
-    room: tuple[
-        str, ...
-    ] = ()  # what a real cue did to it: "raised", "moved" (its tip, upwards), "unplayable"
+    room: tuple[str, ...] = ()  # what a real cue did to it: "raised", "moved" (its tip, up), "unplayable"
 
 
 def judgement_of(seen: list[int]) -> dict[str, Any]:

@@ -121,9 +121,8 @@ def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
     speed, side, top, aim, elevation = struck
     side, top = tip_on_disc(side, top, cue_row[C_MAX_OFFSET])
     if side != intended[1] or top != intended[2] or aim != intended[3] or elevation != intended[4]:
-        elevation = raise_cue(
-            (side, top, aim, elevation), positions, on_table, cue_row[C_RAILS:], BALL_RADIUS
-        )
+        cue_at, rails = (side, top, aim, elevation), cue_row[C_RAILS:]
+        elevation = raise_cue(cue_at, positions, on_table, rails, BALL_RADIUS)
     shot, r, v, w, aloft, here = shots.shots[j], shots.r, shots.v, shots.w, shots.aloft, shots.here
     mu_s, m = cue_row[C_MU_S], cue_row[C_END_MASS]
     after = cue.strike_ball(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m, cue_row[C_E_T])

@@ -48,17 +48,15 @@ def _check_noses(cloth: Table) -> None:
 
 def _check_pockets(cloth: Table) -> None:
     room = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS
-    for name, circles, reach in (
-        ("jaws", cloth.jaws, cloth.jaws[:, 2] + BALL_RADIUS),
-        ("falls", cloth.falls, cloth.falls[:, 2]),
-    ):
+    kinds = ("jaws", cloth.jaws, BALL_RADIUS), ("falls", cloth.falls, 0.0)
+    for name, circles, more in kinds:
+        reach = circles[:, 2] + more
         inside = reach - np.hypot(*np.maximum(np.abs(circles[:, :2]) - room, 0.0).T)
         if len(inside) and inside.max() > ROUNDING:
             k = int(inside.argmax())
-            allowed = (
-                f"must leave a ball's centre free in |x| <= {room[0]:g}, |y| <= {room[1]:g} in Snooker-v0, whose layouts put balls there: "
-                f"{name}[{k}], its whole circle, reaches {inside[k]:.3g} m into that"
-            )
+            free = f"|x| <= {room[0]:g}, |y| <= {room[1]:g} in Snooker-v0, whose layouts put balls there"
+            into = f"{name}[{k}], its whole circle, reaches {inside[k]:.3g} m into that"
+            allowed = f"must leave a ball's centre free in {free}: {into}"
             raise refuse("table", cloth.name, allowed)
 
 

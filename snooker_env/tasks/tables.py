@@ -1,5 +1,5 @@
-"""What do visits and frames share? n tables side by side: reset, step, infos, states. A step is the same for
-every caller: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads."""
+"""What do visits and frames share? n tables side by side: reset, step, infos, states, for ``SnookerEnv`` with one
+table and ``SnookerVectorEnv`` with thousands, on threads."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -180,10 +180,9 @@ class Tables(ABC):
         self.reals = self.REALS
         self.conditions = np.empty((0, CONDITIONS))
         options, self.cues, errors, self.phys = rules.pack()
-        self._errors: tuple[Errors, ...] = (
-            Errors.of(rules.noise, rules.physics, rules.speeds),
-        )  # of each seat
-        self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)  # of each seat
+        # of each seat
+        self._errors: tuple[Errors, ...] = (Errors.of(rules.noise, rules.physics, rules.speeds),)
+        self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)
         if rules.drawn:
             self.reals = (*self.REALS, *CONDITION_NAMES)
             self.conditions = np.tile(nominal(rules.physics), (n, 1))
