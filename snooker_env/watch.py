@@ -1,8 +1,8 @@
-"""How does an agent play a visit, or a frame? Printed stroke by stroke, and written as a replay or a film.
+"""How does an agent play a visit or a frame? Printed stroke by stroke, and written as a replay or a film.
 
-Without --out the replay, an HTML file, is opened in the browser. Visits are played with a real cue on held-out tables,
-the seeds one after the other, as ``benchmark.play_visits`` does; --at-least takes the first of --tries visits with so many
-points, else the longest. With --frame: a frame against --opponent, with the miss rule "clear_path"."""
+Without --out the browser opens the replay, an HTML file. Visits are played with a real cue on held-out tables, one seed
+after the other; --at-least takes the first of --tries visits with so many points, else the best. --frame plays a frame
+against --opponent, with the miss rule "clear_path"."""
 
 import argparse
 import tempfile

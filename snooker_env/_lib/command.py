@@ -32,8 +32,8 @@ def of_file(error: OSError) -> str:
 
 
 def exit_code(name: str, command: Callable[[], int], missing: Callable[[ImportError], str] = str) -> int:
-    """What ``command()`` returns; 130 after Ctrl-C; 1 if a library is missing (``missing`` says how to install it) or a file
-    cannot be read or written. Whatever it is, the command ``name`` says it in one line on stderr."""
+    """The result of ``command()``; 130 after Ctrl-C, 1 if a library is missing (``missing`` says how to install it) or a file
+    cannot be read or written, with one line on stderr that begins with ``name``."""
     code = 1
     try:
         with stop_with_reader():

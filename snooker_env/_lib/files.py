@@ -26,8 +26,8 @@ UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")  # temporary files: 
 def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], object]) -> None:
     """Write a file so that ``path`` holds the old or the new content, complete, whenever the machine stops.
 
-    ``content``: bytes, a text, or a function that writes the file at a path with the same suffix. On failure
-    nothing is left, and the OSError names ``path``. A device or a pipe is written directly."""
+    ``content`` may be a function that writes a file at a path with the same suffix. An OSError names ``path``, and nothing
+    is left behind. A device or a pipe is written directly."""
     target, data = Path(os.path.realpath(path)), content.encode() if isinstance(content, str) else content
     write = data if callable(data) else lambda file: file.write_bytes(data)
     if target.exists() and not target.is_file():
@@ -83,8 +83,8 @@ def _sound(text: str) -> Any:
 
 
 def strict_json(text: str | bytes) -> Any:
-    """What JSON in UTF-8 holds. ValueError for NaN, Infinity, 1e999, an integer beyond ``MOST_INTEGER``, a key twice
-    in one object, and what is nested deeper than ``DEPTH``."""
+    """What JSON in UTF-8 holds. ValueError for NaN, Infinity, 1e999, an integer beyond ``MOST_INTEGER``, a repeated key, and
+    more than ``DEPTH`` levels."""
     if isinstance(text, bytes):
         text = text.decode("utf-8")
     try:
@@ -123,9 +123,8 @@ def without_checksum(content: dict[str, Any]) -> dict[str, Any]:
 def read_json(
     path: str | Path, field: str = "path", wanted: str = "must be JSON", *, checked: bool = False
 ) -> Any:
-    """``strict_json`` of a file of at most ``MOST_JSON`` bytes, without its checksum, which it must have if ``checked``.
-
-    The ValueError names ``field``, the file, what is ``wanted`` and what is wrong. OSError if it cannot be read."""
+    """``strict_json`` of a file of at most ``MOST_JSON`` bytes, without its checksum, which must be there if ``checked``.
+    ValueError names ``field``, the file, what is ``wanted`` and the fault; OSError if the file cannot be read."""
     try:
         read = strict_json(read_bytes(path, MOST_JSON))
         found = isinstance(read, dict) and (checked or CHECKSUM in read)
@@ -172,8 +171,8 @@ def _array(data: bytes) -> np.ndarray:
 
 
 def arrays_in(data: bytes) -> dict[str, np.ndarray]:
-    """The arrays of an ``.npz``, without objects: nothing is unpickled. ValueError for anything else, and for more
-    than ``MOST_NPZ`` bytes, by its directory before anything is unpacked; what is not compressed may be longer."""
+    """The arrays of an ``.npz``; nothing is unpickled. ValueError for anything else, and before unpacking if the directory
+    says more than ``MOST_NPZ`` bytes (or than ``data`` has)."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as file:
             parts, most = file.infolist(), max(MOST_NPZ, len(data))

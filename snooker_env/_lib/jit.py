@@ -1,9 +1,7 @@
-"""How are kernels compiled? The one place of numba's options; where machine code is kept: ``cache.py``.
+"""How are kernels compiled? The one place of numba's options; ``cache.py`` says where machine code is kept.
 
 * Strict IEEE: with ``fastmath`` a fresh and a cached kernel could give different trajectories.
-* No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch.
-* Only entry kernels are cached, under a hash of all the source that they may have been made from.
-"""
+* No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch."""
 
 import gc
 from collections.abc import Callable

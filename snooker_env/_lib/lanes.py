@@ -1,12 +1,8 @@
-"""How does a kernel compute with four float64 at once? A type for four: one instruction where there is AVX.
+"""How does a kernel compute with four float64 at once? With a type for four: one instruction where there is AVX.
 
-``lanes(a, b, c, d)``, ``lanes_at(array, i)``, ``put_lanes(array, i, x)``, ``lane(x, k)`` (k a constant),
-``+`` and ``*``. Each lane's operation is the IEEE one: the results of four separate numbers.
-(``NUMBA_SLP_VECTORIZE`` finds such sums, but stores the numbers one by one, and a load of four waits: nothing
-is gained.)
-
-With ``NUMBA_DISABLE_JIT`` the same source works on small numpy arrays.
-"""
+Each lane's operation is the IEEE one, with the results of four separate numbers. (``NUMBA_SLP_VECTORIZE`` gains
+nothing here: it stores the numbers one by one, and a load of four waits.) With ``NUMBA_DISABLE_JIT`` the same
+source works on small numpy arrays."""
 
 import operator
 from typing import Any

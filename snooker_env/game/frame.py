@@ -5,11 +5,9 @@
     frame = frame.choose("play")                # after a foul the opponent decides
     Frame.from_dict(json.loads(json.dumps(frame.to_dict()))) == frame
 
-A ``Frame`` never changes: each act packs it into a row, lets a kernel of ``frame_columns`` change that, and
-unpacks the next frame. Players are 0 and 1. An act that is not allowed raises ValueError.
-
-The miss rules, and what is left out, stand in docs/environment/rules.md. Stalemates (``restart`` carries one out) and the
-lot for a re-spotted black are passed in."""
+A ``Frame`` never changes: each act packs it into a row, lets a kernel of ``frame_columns`` change that row, and
+unpacks the next frame. Players are 0 and 1. An act that is not allowed raises ValueError. The caller decides on
+stalemates (``restart``) and the lot for a re-spotted black; docs/environment/rules.md has the miss rules."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -327,10 +325,11 @@ class Frame:
         time_to_play: int = 0,
         duration: int = 0,
     ) -> tuple["Frame", Verdict]:
-        """One stroke: the next frame and the referee's ``Verdict``. ``clear_path``, ``full_ball_path``, ``attempt``: for the
-        miss rules, of ``paths.best_paths`` before it, and whether the cue ball came near a ball on (``attempt``);
-        ``layout``: see ``Saved``. ``time_to_play``, ``duration``: for a clock [ms], from the rest of the balls to this
-        stroke, and to the next rest: one later than ``shot_clock`` is read as ``Stroke(late=True)``."""
+        """One stroke: the next frame and the referee's ``Verdict``.
+
+        ``clear_path``, ``full_ball_path`` (``paths.best_paths`` before the stroke) and ``attempt`` (whether the cue ball came near
+        a ball on) are for the miss rules; ``layout``: see ``Saved``. For a clock [ms]: ``time_to_play`` before the stroke,
+        ``duration`` after it; a stroke later than ``shot_clock`` counts as ``Stroke(late=True)``."""
         self._in_phase("stroke", "play")
         late, lasted, rules = False, 0, self.rule_set
         integer("time_to_play", time_to_play, 0, MOST_CLOCK)
@@ -354,9 +353,9 @@ class Frame:
     def choose(self, what: Choice) -> "Frame":
         """The opponent's decision after a foul, which is final.
 
-        "play": the opponent plays the table as it lies, with the free ball, if any. "play_again": the
-        offender plays it, without. "replace", after a miss: the offender plays from ``saved``. "anywhere",
-        after the last miss in succession: the opponent plays from anywhere, without a free ball."""
+        "play": the opponent plays the table as it lies, with the free ball, if any. "play_again": the offender plays it,
+        without. "replace", after a miss: the offender plays from ``saved``. "anywhere", after the last miss in
+        succession: the opponent plays from anywhere, without a free ball."""
         self._in_phase("choice", "choose")
         choice("choice", what, self.choices)
         if what == "replace" and self.saved is None:

@@ -1,6 +1,5 @@
-"""Where may the cue ball in hand stand? At the free place nearest to a point, in the D or anywhere; exact.
-The centre must be on or within the lines of the D; anywhere on the table, within the rectangle that leaves a
-gap to the cushions, off pockets."""
+"""Where may the cue ball in hand stand? At the free place nearest to a point; exact. In the D its centre must be on or
+within the lines; anywhere on the table, in the rectangle that leaves a gap to the cushions, off pockets."""
 
 import numpy as np
 
@@ -98,8 +97,8 @@ def _better(positions, on_table, wish, p, best, anywhere, radius):
 
 @kernel
 def nearest_place(positions, on_table, x, y, radius):
-    """The free place in the D nearest to (x, y) [m]: (x, y, whether there is one); on_table[0] False. Each
-    ball bars a disc; tried are the wish itself, the nearest points of circles, and all crossings."""
+    """The free place in the D nearest to (x, y) [m]: (x, y, whether there is one); on_table[0] False. Each ball bars a disc;
+    candidates are the wish itself, the nearest points of circles, and all crossings."""
     wish = x, y = _into_d(x, y)
     reach = 2.0 * radius + CLEARANCE
     place = _better(positions, on_table, wish, wish, (x, y, np.inf), False, radius)

@@ -140,8 +140,7 @@ def pot_at(positions, on_table, ball, k, d, least):
 
 @kernel
 def insert_pot(pots, count, ball, pocket, ghost, cos_cut, tolerance):
-    """Insert a pot into the first ``count`` rows of ``pots``, widest first, in place of the last if all are full; returns
-    the number of rows then."""
+    """Insert a pot into the first ``count`` rows of ``pots``, widest first, over the last if all are full -> the new number."""
     at = min(count, pots.shape[0] - 1)
     while at > 0 and pots[at - 1, TOLERANCE] < tolerance:
         for c in range(POT_COLUMNS):

@@ -33,8 +33,8 @@ def has_no_room(positions, on_table, x, y, radius):
 
 @kernel
 def nearest_free(positions, on_table, x, y, direction, radius):
-    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no
-    other: it moves to the far end of each interval that a ball bars, until none does, which is exact."""
+    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no other. Exact: y moves
+    to the far end of each interval that a ball bars, until none does."""
     reach = 2.0 * radius + balls.CLEARANCE
     moved = True
     while moved:

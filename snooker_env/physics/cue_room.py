@@ -58,9 +58,8 @@ NO_RAILS.setflags(write=False)
 
 
 def rails_of(noses: Floats, falls: Floats) -> Floats:
-    """The rails behind the noses of a table, for the kernels: ``EDGE`` numbers for each nose, those of one side
-    together. Behind a pocket a rail begins where the fall ends that reaches farthest behind the noses of that side.
-    Noses (k, 5) and falls (p, 3): as of ``Table``."""
+    """The rails behind the noses of a table: ``EDGE`` numbers for each nose, those of one side together. Behind a pocket a
+    rail begins where the fall ends that reaches farthest behind the noses of that side."""
     rows = []
     for nose in sorted(noses.tolist()):
         axis, side, level = int(nose[NOSE_AXIS]), nose[NOSE_SIDE], nose[NOSE_LEVEL]
@@ -111,8 +110,7 @@ def _over_rail(D, sin_phi, c, side, top, q, R):
 
 @kernel
 def _over_ball(b, beside, top, q, se, ce, R):
-    """Sine and cosine of the least elevation, from (``se``, ``ce``) on, that clears a ball b behind and ``beside``
-    the tip [m]."""
+    """The least elevation (sine, cosine), from (``se``, ``ce``) on, over a ball b behind and ``beside`` the tip [m]."""
     first_se, first_ce, cosine, far = se, ce, sqrt(1.0 - TAPER * TAPER), 0.0
     for trial in range(_TRIALS):
         far = (R + TIP + TAPER * (b * ce - R * q)) / cosine
@@ -132,8 +130,7 @@ def _over_ball(b, beside, top, q, se, ce, R):
 
 @kernel
 def _over_rails(ax, ay, side, top, q, x, y, rails, R):
-    """Sine and cosine of the least elevation over the rails, and how far behind the cue ball, along the cue, the edge
-    is that sets it [m]."""
+    """The least elevation over the rails (sine, cosine), and how far behind the cue ball the edge is that sets it [m]."""
     # the cue crosses one end rail and one side rail at most, the nearest edge of each
     across_x, across_y, c_x, c_y = inf, inf, 0.0, 0.0
     for m in range(0, rails.shape[0], EDGE):
@@ -166,8 +163,8 @@ def _over_rails(ax, ay, side, top, q, x, y, rails, R):
 
 @kernel
 def _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R):
-    """``least_elevation`` of a cue that points along (ax, ay), what sets it (``OVER_NOTHING``, ``OVER_RAIL`` or a
-    ball), and how far that is behind the cue ball, along the cue [m]."""
+    """``least_elevation`` of a cue along (ax, ay), what sets it (``OVER_NOTHING``, ``OVER_RAIL`` or a ball), and how far that
+    is behind the cue ball, along the cue [m]."""
     x, y, q = positions[0, 0], positions[0, 1], sqrt(max(1.0 - side * side - top * top, 0.0))
     own, its = (sin(elevation), cos(elevation)) if elevation != 0.0 else (0.0, 1.0)
     se, ce, behind = _over_rails(ax, ay, side, top, q, x, y, rails, R)
@@ -199,11 +196,8 @@ def _least(side, top, ax, ay, elevation, positions, on_table, rails, R):
 
 @kernel
 def least_elevation(stroke, positions, on_table, rails, R):
-    """The least elevation of the cue [rad] at which a stroke of ball 0 can be played: its own, or a higher one.
-
-    ``stroke``: (side, top, aim, elevation), aim the direction of the cue [rad]; ``rails``: rows of ``EDGE``
-    numbers, one after the other. pi/2: it cannot be played.
-    """
+    """The least elevation of the cue [rad] for a stroke of ball 0: its own or a higher one; pi/2: it cannot be played.
+    ``stroke``: (side, top, aim of the cue, elevation); ``rails``: of ``rails_of``."""
     side, top, aim, elevation = stroke
     return _least(side, top, cos(aim), sin(aim), elevation, positions, on_table, rails, R)
 
@@ -236,10 +230,8 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
     """A stroke (speed, side, top, aim, elevation) as the cue can play it, and what was done: ``FREE``, or a sum of
     ``RAISED``, ``MOVED``, ``UNPLAYABLE``.
 
-    The elevation is raised to the least one. If that is above ``STEEPEST``, the tip goes up until it is not, along
-    the miscue limit at last; where that does not help, the stroke cannot be played, but for a cue that nearly
-    stands. A cue without rails is free.
-    """
+    The elevation is raised to the least one. If that is above ``STEEPEST``, the tip goes up until it is not, along the
+    miscue limit at last; if that does not help, only a cue that nearly stands can play. A cue without rails is free."""
     if rails.shape[0] == 0:
         return stroke, FREE
     speed, side, top, aim, elevation = stroke
@@ -258,8 +250,8 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
 
 @entry
 def in_room_over(stroke, positions, on_table, rails, R, max_offset, end_mass_ratio):
-    """``in_room`` of a stroke whose aim is where the ball leaves the tip, not the cue's; and what the cue passes
-    over, as of ``_least_over``: what raised it, or moved its tip."""
+    """``in_room`` of a stroke whose aim is where the ball leaves the tip; and what raised the cue or moved its tip, as of
+    ``_least_over``."""
     speed, side, top, aim, elevation = stroke
     stroke = (speed, side, top, aim - squirt(side, end_mass_ratio), elevation)
     played, done = in_room(stroke, positions, on_table, rails, R, max_offset)

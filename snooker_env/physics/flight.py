@@ -89,8 +89,8 @@ OVER = 1e-3  # seen from above a ball covers a part of another if they overlap b
 
 @kernel
 def rub_bed(v, w, press, mu_s, R):
-    """(vx, vy) [m/s] and (wx, wy) [rad/s] of a ball after the bed has given it ``press`` [m/s], the upward
-    impulse over the mass: friction mu_s ``press`` against the slip, or 2/7 of the slip, and the ball rolls."""
+    """(vx, vy) [m/s] and (wx, wy) [rad/s] of a ball after the bed has given it ``press`` [m/s], the upward impulse over the
+    mass: friction mu_s ``press`` against the slip; at 2/7 of the slip the ball rolls."""
     (vx, vy), (wx, wy) = v, w
     ux, uy = vx - R * wy, vy + R * wx
     slip, friction = hypot(ux, uy), mu_s * press
@@ -191,8 +191,8 @@ def pair_time(motion, state, i, j, t, d, phys):
 
 @kernel
 def _edge_of(x, y, jaws, k, inset):
-    """The place on the edge of jaw k that is nearest to (x, y) [m], and how hollow the edge is from there, as ``_jaw_time``
-    needs it: at most 1 in front of it; ``inset``: how far the edge lies inside the table's line."""
+    """The place on the edge of jaw k nearest to (x, y) [m], and how hollow the edge is from there (``_jaw_time``): at most 1
+    in front of it. ``inset``: how far the edge lies inside the table's line."""
     dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
     cos_half, radius, far = jaws[k, JAW_COS], jaws[k, JAW_RADIUS] + inset, hypot(dx, dy)
     if far == 0.0:

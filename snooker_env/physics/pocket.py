@@ -80,10 +80,8 @@ def _first_arc(x, y, vx, vy, jaws, R):
 def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
     """A ball crosses the edge at (x, y) [m]: time until it hits a jaw [s] (inf: never, -1: maybe), the jaw.
 
-    -1 means that it touches the edge, as tested at the end of the path: over a circle depth grows ever more
-    slowly, but clearing it needs almost linear growth (sqrt(g R)). So who clears it there did before, but for
-    a graze.
-    """
+    -1: it touches the edge, as tested at the end of the path. Over a circle depth grows ever more slowly, but clearing it
+    needs almost linear growth (sqrt(g R)): a ball that clears the edge there did before, but for a graze."""
     R, g = phys[P_R], phys[P_G]
     if vx * vx + vy * vy < SLOW * SLOW:
         return inf, -1
@@ -115,9 +113,7 @@ def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
 def jaw_gap(r, jaws, k, R, sin_theta):
     """Of a sphere at r = (x, y, z): distance from jaw k in the plane [m], unit vector to it, sin(phi), part.
 
-    Past its ends (part 1, else 0) the arc goes on along its tangents, as throat or nose. Above the nose's
-    height it is a wall: no ball flies over a cushion.
-    """
+    Past its ends (part 1, else 0) the arc goes on along its tangents, as throat or nose. Above the nose it is a wall."""
     x, y, z = r
     dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
     cos_half = jaws[k, JAW_COS]
@@ -143,10 +139,8 @@ def jaw_gap(r, jaws, k, R, sin_theta):
 
 @kernel
 def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
-    """Of the jaws that a ball moves into, the deepest: index (or -1), gap [m], closing [m/s], normal.
-
-    Also: whether the ball touches any jaw, and whether one behind its arc.
-    """
+    """Of the jaws that a ball moves into, the deepest: index (or -1), gap [m], closing [m/s], normal; then whether the ball
+    touches any jaw, and whether one behind its arc."""
     vx, vy, u = v
     jaw, deepest, hard, touches, behind = -1, 0.0, 0.0, False, False
     px, py, pz = 0.0, 0.0, 0.0
@@ -165,11 +159,9 @@ def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
 
 @kernel
 def fly(r, v, entered, falls, pocket, jaws, phys):
-    """One leg of a flight over ``pocket`` from r = (x, y, z) [m] with v = (vx, vy, u) [m/s].
-
-    entered: where it came in, from the pocket's centre [m]. Returns ``JAW``, ``LOST`` or ``BACK``, the jaw,
-    the duration [s], and r and v at the end (before the jaw's impact; on the bed for ``BACK``).
-    """
+    """One leg of a flight over ``pocket`` from r = (x, y, z) [m] with v = (vx, vy, u) [m/s], which ``entered`` the circle at a
+    place from its centre [m]. Returns ``JAW``, ``LOST`` or ``BACK``, the jaw, the duration [s], and r and v at the end
+    (before the jaw's impact; on the bed for ``BACK``)."""
     R, sin_theta, g = phys[P_R], phys[P_SIN], phys[P_G]
     (x, y, z), (vx, vy, u), (in_x, in_y) = r, v, entered
     if z == 0.0 and u == 0.0:  # just over the edge: a ball that clears it goes on to the first jaw
@@ -272,11 +264,8 @@ def _write(paths, i, t, r, v, w, leg, phys):
 
 @kernel
 def aloft(motion, flight, i, t, v, phys):
-    """Ball i in the air meets a ball at t with its leg's velocity v: its velocity; its leg starts anew.
-
-    A leg by the edge or a soft jaw is not straight: its mean speed and the drop may have more energy than the
-    ball had. Then it is slower.
-    """
+    """The velocity of ball i over a pocket as a ball meets it at t; its leg, whose velocity is v, starts anew. A leg by the edge
+    or a soft jaw is not straight: its mean speed and the drop may have more energy than the ball had, which is then slowed."""
     s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
     z = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0])
     u = flight[i, U0] + s * (flight[i, U1] - flight[i, U0])

@@ -1,8 +1,6 @@
 """What bounds the balls? A ``Table``: straight noses, jaw arcs and falls, checked, as arrays for the kernels.
 
-Frame, places and sizes: ``geometry``. Behind the arcs the throat goes on straight; a ball that touches it
-there is lost (``pocket.py``).
-"""
+Frame, places and sizes: ``geometry``. Behind the arcs the throat goes on straight; a ball there is lost."""
 
 from dataclasses import dataclass, field
 from math import hypot, inf
@@ -165,9 +163,8 @@ class Table:
 
     @property
     def ball(self) -> dict[str, float]:
-        """Fields for ``Physics.preset("match", **table.ball)`` of the balls that the table is made for: R
-        [m], M [kg] and sin_theta (nose height) of a preset, R of a table of your own, nothing of a table for
-        any ball."""
+        """Fields for ``Physics.preset("match", **table.ball)`` of the balls that the table is made for: R [m], M [kg] and
+        sin_theta (nose height) of a preset, R of your own table, none of a table for any ball."""
         if self.is_preset:
             return dict(PRESETS[self.name].ball)
         return {} if self.ball_radius is None else {"R": self.ball_radius}
@@ -180,11 +177,8 @@ class Table:
         return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
     def _reach(self, R):
-        """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth, and beside them the places of
-        balls that touch the noses; kept per R.
-
-        Without pockets that is nowhere: beyond a corner's two noses a ball would be off the table.
-        """
+        """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth (nowhere without pockets), and
+        beside them the places of balls that touch the noses; kept per R."""
         if R not in self._reaches:
             has_mouths = len(self.jaws) + len(self.falls) > 0
             past = max(MOUTH, deepest(self.jaws, self.falls, self.bounds, R)) if has_mouths else 0.0
@@ -196,8 +190,7 @@ class Table:
         return first_fault(positions, here, self._reach(R), self.noses, self.jaws, self.falls, float(R))
 
     def unfit(self, positions: Floats, R: float) -> list[int]:
-        """The layouts that ``check`` would refuse: their indices, in order. ``positions`` (b, n, 2) [m], NaN for
-        balls that are not on the table; ``R``: their radius [m]."""
+        """The indices of the layouts that ``check`` would refuse. ``positions`` (b, n, 2) [m], NaN for a ball off the table."""
         here, unfit, first = ~np.isnan(positions[..., 0]), [], 0
         while True:
             k, _, fault, _ = self._first_fault(positions[first:], here[first:], R)
@@ -225,10 +218,9 @@ class Table:
         field: str = "positions",
         on_table: FlagRows | Flags | None = None,
     ) -> None:
-        """ValueError if a ball is off the table, in a cushion, jaw or other ball, or over a pocket, or the
-        table is made for other balls than ``R`` [m]. ``positions``: float (n, 2) or (b, n, 2), centres [m];
-        ``field``: their name in messages; ``on_table``: bool for each place, False for balls to leave out;
-        None: all."""
+        """ValueError if a ball is off the table, in a cushion, jaw or other ball, or over a pocket, or if the table is made for
+        other balls than ``R`` [m]. ``positions``: centres [m], (n, 2) or (b, n, 2), called ``field`` in messages;
+        ``on_table``: False for places to leave out, None: all count."""
         self.check_ball(R)
         positions = np.ascontiguousarray(positions, np.float64)
         many = positions.ndim == 3

@@ -260,8 +260,8 @@ _NO_KICKS = np.empty(0)
 
 
 def _take_log(log_size, path_size):
-    """``log_space`` of one shot: this thread's last one if the size fits, as making it takes longer than most shots. It is
-    taken out until results are copied: a shot inside a shot (a signal, a trace function) makes its own."""
+    """``log_space`` of one shot: this thread's last one if the size fits, as making it takes longer than most shots. A shot
+    inside a shot (a signal, a trace function) finds none and makes its own."""
     log = _KEPT.__dict__.pop("log", None)
     if log is None or (log.time.shape[1], log.segments.shape[1]) != (log_size, path_size):
         return log_space(1, log_size, path_size)

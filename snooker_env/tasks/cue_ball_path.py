@@ -1,10 +1,8 @@
-"""Where will a stroke leave the cue ball, and in a safety the ball that it meets? As a player predicts it: each of them
-alone, past balls that stay where they are. No shot is simulated.
+"""Where will a stroke leave the cue ball, and in a safety the ball that it meets? By closed forms: no shot is simulated.
 
-The solved aim says where the cue ball meets the ball to be potted. From there it moves by the closed forms of ``cloth``;
-each meeting with a nose or another ball is a single impact. Its path is looked at in chords, three for the parabola of a
-sliding ball. A ball that it meets stays where it is, and the potted one is gone: the prediction ends where these would matter.
-"""
+The solved aim says where the cue ball meets the ball to be potted. From there ``cloth`` moves it; each meeting with a
+nose or another ball is a single impact. Its path is tested in chords, three for the parabola of a sliding ball. Balls
+that it meets stay where they are, and the potted one is gone."""
 
 from math import cos, hypot, sin, sqrt
 
@@ -41,8 +39,8 @@ _LONGEST = 60.0  # longest phase that is looked at [s]
 
 @kernel
 def _moment(motion, state, t0, t1, share, x, y, normal, phys):
-    """When within (t0, t1) the cue ball has passed the line through (x, y) with this normal: the share of the chord, and
-    one step of Newton's method."""
+    """When in (t0, t1) the cue ball has passed the line through (x, y) with this normal: by share of the chord, then one step
+    of Newton's method."""
     t = t0 + (t1 - t0) * share
     (px, py), v, _ = cloth.evaluate(motion, state, 0, t, phys)
     speed = v[0] * normal[0] + v[1] * normal[1]
@@ -146,8 +144,8 @@ def played_in_room(stroke, positions, on_table, cue_law):
 
 @kernel(seconds=1)
 def _meet(played, ball, positions, cue_law, work, out):
-    """The cue ball of a stroke of ``stroke_in_room`` meets ``ball``, past all others: whether it does, the velocity and the spin
-    that the ball leaves with. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
+    """The cue ball of a stroke of ``stroke_in_room`` meets ``ball``, past all others: whether, the ball's velocity and spin.
+    The cue ball's way begins there; clears ``out`` (SEEN,)."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
@@ -202,8 +200,7 @@ def _first_in_way(stroke, positions, on_table, d):
 
 @kernel(seconds=1, uses=(_meet, _run))
 def foresee_contact(stroke, positions, on_table, cue_law, work, out, its):
-    """What is predicted of a stroke (5,) and of the ball that lies in its way; fills ``out`` and ``its`` (SEEN,), and
-    returns that ball, 0 if there is none."""
+    """What is predicted of a stroke (5,) and of the first ball in its way, which is returned (0: none), in ``out`` and ``its``."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
     ball = _first_in_way(stroke, positions, on_table, 2.0 * phys[P_R])
@@ -255,8 +252,7 @@ def leave(ball, ball_on, positions, on_table, after, there):
 @entry(what="the paths of cue balls", seconds=2, uses=(foresee_pot,))
 def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
     """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,), each under standard normal
-    ``errors`` (k, 5): fills ``out`` (n k, SEEN), and with what they leave if the ball is potted ``left``: positions,
-    on_table, and the ball on or ``NONE``."""
+    ``errors`` (k, 5): fills ``out`` (n k, SEEN) and ``left``: positions, on_table, the ball on or ``NONE`` after the pot."""
     (positions, on_table, ball_on), (after, there, on) = balls, left
     phys, ratios, fidelity, n_steps, most, rails = law
     work, tried = new_work(), np.empty(5)
@@ -274,16 +270,15 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
 
 @kernel
 def is_fair(ball, touching, on):
-    """Whether a stroke whose cue ball meets ``ball``, 0 for none, is fair, with these masks of balls that touch it and that are
-    on: away from a touching ball on all is fair; into a touching one is a push."""
+    """Whether a stroke whose cue ball meets ``ball``, 0 for none, is fair with these masks of balls that touch it and are on.
+    Away from a touching ball on every contact is fair; into a touching ball is a push."""
     return ball > 0 and not (touching >> ball) & 1 and (touching & on != 0 or (on >> ball) & 1 != 0)
 
 
 @entry(what="the paths of both balls", seconds=2, uses=(foresee_contact,))
 def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
-    """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors``
-    (k, 5): fills ``out`` (n k, 2, SEEN), of the cue ball and of the first ball in its way, and ``left``: positions,
-    that ball, 0 if it meets none, and whether the stroke meets it as the rules ask."""
+    """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors`` (k, 5):
+    fills ``out`` (n k, 2, SEEN), of the cue ball and the ball it meets, and ``left``: positions, that ball, whether fair."""
     (positions, on_table, game), (after, met, legal) = balls, left
     phys, ratios, fidelity, n_steps, most, rails = law
     work, tried = new_work(), np.empty(5)

@@ -1,6 +1,5 @@
-"""Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top; the
-aim is solved for them, or is the straight line if none can be. Without a direct pot (``game.pots``), other
-``lines`` stand in the pots' places. ``action_masks`` says how many there are."""
+"""Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top; the aim is solved
+for them, or is the straight line. Without a direct pot other ``lines`` take the pots' places; ``action_masks`` tells."""
 
 from collections.abc import Collection
 from math import atan2, cos, sin, sqrt
@@ -82,10 +81,8 @@ def solve_choice(index, positions, on_table, on, law, work):
 
 @kernel
 def _lacks_room(positions, on_table, rails, ax, ay):
-    """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``: one that points about
-    along (ax, ay), or any cue if that is (0, 0). A free cue never.
-
-    Over a rail: equations of ``cue_room`` at 45 degrees, tan(t) = 1 / sin(phi), solved for the largest D."""
+    """Whether a cue along (ax, ay), any cue if that is (0, 0), may have to be steeper than ``STEEPEST`` over a rail or ball; a
+    free cue never. Over a rail: equations of ``cue_room`` at 45 degrees, tan(t) = 1 / sin(phi), solved for the largest D."""
     x, y, near, every = positions[0, 0], positions[0, 1], False, ax == 0.0 and ay == 0.0
     for m in range(0, rails.shape[0], EDGE):
         across, along = (x, ax) if rails[m + EDGE_AXIS] == 0.0 else (y, ay)
@@ -103,8 +100,8 @@ def _lacks_room(positions, on_table, rails, ax, ay):
 
 @kernel
 def _without_room(positions, on_table, cue, rows, pots, many, out):
-    """Of the ``many`` lines in ``rows``, which are ``pots`` or not, clear the choices in ``out`` (SIZE,)
-    whose cue must be steeper than ``STEEPEST``, unless none were left."""
+    """Of the ``many`` lines in ``rows`` (``pots`` or not) clear the choices in ``out`` (SIZE,) whose cue must be steeper than
+    ``STEEPEST``, unless none were left."""
     rails, x, y, left = cue[C_RAILS:], positions[0, 0], positions[0, 1], 0
     for line in range(many):
         aim = atan2(rows[line, GHOST_Y] - y, rows[line, GHOST_X] - x) if pots else rows[line, LINE_AIM]

@@ -1,4 +1,4 @@
-"""What does ``observation="strokes"`` show? Of each stroke on the menu what a player foresees of it, by closed forms: no shot is
+"""What does ``observation="strokes"`` show? What a player foresees of each stroke on the menu, by closed forms: no shot is
 simulated and nothing is learned. One kernel for one table and a thousand."""
 
 from math import acos, atan2, pi

@@ -288,8 +288,8 @@ def inform(player, game, output):
 
 @entry(what="the start of a frame", seconds=1)
 def begin(which, drawn, breakers, in_hand, on_table, game, streams):
-    """New frames on tables already dealt. Who breaks: the agent, or if ``drawn``, ``breakers`` (n,), where -1
-    by lot; a number is drawn in any case, so that the errors of strokes do not depend on it."""
+    """New frames on tables already dealt. The agent breaks or, if ``drawn``, ``breakers`` (n,), by lot where that is -1. A
+    number is drawn in any case, so that the errors of strokes do not depend on it."""
     for j in range(which.shape[0]):
         k = which[j]
         breaker = AGENT
@@ -385,10 +385,8 @@ def gap_of(positions, on_table, row, shots, path, j):
 
 
 def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[int, float]:
-    """Write into ``b.seen`` which shots were attempts; returns the gaps [m], by row, of those that struck no
-    ball on and had no clear path: they are played once more, uncounted, with the cue ball's path. Where no
-    ball on can be hit, only the balls on that the stroke goes toward are left on the table. In hand that never
-    is: too few balls are not on to shut the D in."""
+    """Write into ``b.seen`` which shots were attempts -> the gaps [m], by row, of shots that struck no ball on and had no clear
+    path: they are played again, uncounted, with their path. If no ball on can be hit, only balls on ahead stay."""
     positions, on_table, game, *_ = tables.arrays
     asked, cushions = np.empty(len(which), np.bool_), (tables.rules.table.noses, tables.rules.table.jaws)
     question(which, on_table, game, b.status, b.seen, asked)

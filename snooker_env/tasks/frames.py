@@ -242,8 +242,8 @@ class Frames(Tables):
         return self._played > 0
 
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> Bools:
-        """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k). Returns
-        where there was a stroke, (n,)."""
+        """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k). Returns where there was a
+        stroke, (n,)."""
         going, striker = ~self.are_over(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
@@ -336,8 +336,8 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
-        """New frames on ``which``. Who breaks: the agent, or ``drawn``: ``breakers`` (n,), -1 by lot; without
-        them by lot, too, but the agent in an episode of one stroke."""
+        """New frames on ``which``. The agent breaks or, if ``drawn``, ``breakers`` (n,); -1, or without them: by lot (by the agent
+        in an episode of one stroke)."""
         plan, usual = self.rules.plan, AGENT if self.rules.one_stroke else -1
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, usual) if breakers is None else breakers

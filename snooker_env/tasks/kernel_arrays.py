@@ -1,6 +1,5 @@
-"""What do the kernels of tasks take? Arrays of tables, shots and a step's results, dynamics, and work space.
-Python hands over plain tuples, which a kernel names where it begins: a named tuple takes 0.7 us more. Each
-array takes 0.1 us, so that no tuple holds more than its kernels need."""
+"""What do the kernels of tasks take? Arrays of tables, shots and a step's results, dynamics, and work space. Python hands
+over plain tuples, which a kernel names: a named tuple takes 0.7 us more, and each array 0.1 us."""
 
 from typing import NamedTuple, TypeAlias
 

@@ -1,9 +1,9 @@
 """Along which lines may the cue ball be sent? To the direct pots, else to what it sees, or over cushions.
 
 ``action="discrete"`` and ``aim="pot"`` choose among up to ``POTS`` lines; ``aim="target"`` is measured from the first.
-Without a direct pot they are, best first: at the start of a frame, thin at the end red of either side, the break-off;
-where hardly anything is seen, escapes, whose aim is found for the stroke; the middle of the widest window of
-directions in which a ball on is met first, its two edges, thin, and the middles of other windows."""
+Without a direct pot they are, best first: at the start of a frame, thin at the end red of either side; where hardly
+anything is seen, escapes; the middle of the widest window of directions in which a ball on is met first, its two
+edges, thin, and the middles of other windows."""
 
 from math import atan2, cos, hypot, pi, sin
 
@@ -203,8 +203,8 @@ def line_of(positions, on_table, on, rows):
 
 @kernel
 def aim_at_ball(aim, stroke, positions, on_table, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation) leaves, so that it comes to the ball that lies
-    in the direction ``aim``, its cue raised as it must be."""
+    """Direction [rad] in which the stroke (speed, side, top, elevation), its cue raised as it must be, reaches the ball that lies
+    in the direction ``aim``."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return aim
     x, y = positions[0, 0], positions[0, 1]

@@ -1,12 +1,10 @@
 """How accurately does a player execute a shot? Errors of aim, speed, tip offset and elevation, now and then large ones.
 
-The law: each of a stroke's five errors is normal, and all five are ``lapse_factor`` times as large in a *lapse*, which a
-stroke is with the probability ``lapse``: a bad cueing, a lost concentration. So each error is a mixture of two
-normal laws, and the errors of one stroke are large together. Without lapses the law is Gaussian.
+Each of a stroke's five errors is normal, and all five are ``lapse_factor`` times as large in a *lapse*, which a stroke
+is with the probability ``lapse``. So each error is a mixture of two normal laws, and large errors come together.
 
-What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): aim, and the squirt of a tip
-that is off to the side. No measurement of a snooker player's errors was found: what the levels are set by, their sources
-and what of them is our choice say docs/validation/execution_errors.md."""
+The total error of the cue ball's direction (``Noise.direction_deg``), of aim and squirt, decides a pot. No measurement
+of snooker players' errors was found: docs/validation/execution_errors.md has the sources of the levels and our choices."""
 
 from dataclasses import asdict, dataclass, fields, replace
 from math import degrees, erf, hypot, radians, sqrt
@@ -41,8 +39,8 @@ TWICE = radians(15.0)
 
 
 class Spread(NamedTuple):
-    """How the cue ball's direction errs in a stroke at ``POT_SPEED``: normally with the standard deviation ``core`` [rad], and
-    in a lapse, of the probability ``lapse``, with ``factor`` times that."""
+    """How the cue ball's direction errs: normally with the standard deviation ``core`` [rad], in a lapse, of the probability
+    ``lapse``, with ``factor`` times that."""
 
     core: float
     lapse: float = 0.0
@@ -57,8 +55,8 @@ def widen(spread, times):
 
 @kernel
 def chance_within(tolerance, spread):
-    """The chance that an error of the ``Spread`` is within +- ``tolerance`` [rad]: of each normal law
-    P(|e| < t) = erf(t / (sqrt(2) sigma)), of both their mean by the probability of a lapse."""
+    """The chance that an error of the ``Spread`` is within +- ``tolerance`` [rad]: P(|e| < t) = erf(t / (sqrt(2) sigma)) of
+    each normal law, weighted by the probability of a lapse."""
     share = tolerance / (spread.core * sqrt(2.0))
     within = erf(share)
     if spread.lapse > 0.0:
@@ -68,8 +66,7 @@ def chance_within(tolerance, spread):
 
 @kernel
 def with_errors(speed, side, top, aim, elevation, errors, noise):
-    """The shot under ``errors`` (5,) in standard deviations, a lapse's factor applied: the only law of errors; see
-    ``execute_stroke``."""
+    """The shot under ``errors`` (5,) in standard deviations, a lapse's factor applied: the only law of errors."""
     more = (1.0 + elevation * noise[N_STEEPER]) * sqrt(1.0 + (noise[N_FASTER] * speed) ** 2)
     return (
         max(0.0, speed + errors[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),

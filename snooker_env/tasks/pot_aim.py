@@ -1,6 +1,6 @@
-"""In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve
-and the object ball's own curve: the two balls alone are played on unbounded cloth until the object ball
-rolls; secant steps correct the direction by how far it passes the pocket's aim point."""
+"""In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve and the object
+ball's own curve: both balls alone are played on unbounded cloth until the object ball rolls, and secant steps correct
+the direction by how far it passes the pocket's aim point."""
 
 from math import atan2, hypot, pi
 
@@ -25,8 +25,8 @@ _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve
 
 @kernel
 def stroke_in_room(aim, stroke, positions, on_table, law):
-    """(speed, side, top, aim of the cue, elevation) of a stroke (speed, side, top, elevation) that is meant to leave
-    in the direction ``aim``, its cue raised as it must be."""
+    """(speed, side, top, aim of the cue, elevation) of a stroke (speed, side, top, elevation) that is to leave in the
+    direction ``aim``, its cue raised as it must be."""
     speed, side, top, elevation = stroke
     meant = speed, side, top, aim - cue.squirt(side, law.end_mass_ratio), elevation
     return in_room(meant, positions, on_table, law.rails, law.phys[P_R], law.max_offset)[0]
@@ -41,8 +41,8 @@ def struck_by(played, law):
 
 @kernel
 def meets(played, positions, b, law, work):
-    """Follow the cue ball of a stroke of ``stroke_in_room`` until it meets the ball at b, past all others: whether it
-    does, and when [s]. Both balls are then in ``work.motion``."""
+    """Follow the cue ball of a stroke of ``stroke_in_room`` until it meets the ball at b, past all others -> whether, and when
+    [s]; both balls are then in ``work.motion``."""
     phys, motion, state = law.phys, work.motion, work.state
     (vx, vy, _), w = struck_by(played, law)
     cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
@@ -140,8 +140,8 @@ def _off(played, line, far, positions, law, work):
 
 @kernel
 def swerved_aim(line, far, stroke, positions, on_table, law, work):
-    """Direction [rad] in which a stroke (speed, side, top, elevation) leaves, so that its swerve under a raised
-    cue brings it to the place that is ``far`` along the direction ``line``. A free cue's is the line itself."""
+    """Direction [rad] in which a stroke (speed, side, top, elevation) leaves, so that its swerve under a raised cue brings it
+    to the place ``far`` along the direction ``line``. A free cue's is the line itself."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return line
     aim, last_aim, last, slope = line, line, 0.0, 1.0
@@ -158,8 +158,8 @@ def swerved_aim(line, far, stroke, positions, on_table, law, work):
 
 @kernel(seconds=5, uses=(collide_balls,))
 def aim_from(begin, effort, positions, on_table, ball, target, ghost, stroke, law, work):
-    """``solved_aim``, sought from the direction ``begin`` on [rad], and the stroke as ``stroke_in_room``. ``effort``: the ball
-    may pass the target by so much [rad], a cue that turns by less keeps its elevation [rad], and the most trials."""
+    """``solved_aim``, sought from the direction ``begin`` on [rad], and the stroke as ``stroke_in_room``. ``effort``: how far the
+    ball may pass the target [rad], by how much the cue may turn at the same elevation [rad], the most trials."""
     enough, same, trials = effort
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
@@ -206,8 +206,7 @@ def aim_from(begin, effort, positions, on_table, ball, target, ghost, stroke, la
 
 @kernel(uses=(aim_from,))
 def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
-    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised
-    as it must be."""
+    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised as needed."""
     line, effort = (
         atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0]),
         (_ENOUGH, _SAME_ROOM, _TRIALS),

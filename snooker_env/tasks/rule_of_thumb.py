@@ -32,8 +32,8 @@ def points_left(on_table, ball_on):
 
 @kernel
 def worth_of_pots(lines, many, positions, on_table, left, spread, constants, rails, chances):
-    """The worth [points] of the first ``many`` rows of ``find_pots`` together, with ``left`` points on the table; the chances
-    of the widest go into ``chances``, and those of the two that are worth most are returned with it."""
+    """The worth [points] of the first ``many`` rows of ``find_pots`` together, with ``left`` points on the table, and the chances
+    of the two that are worth most; ``chances`` takes those of the widest."""
     follows, second, third, distant = constants
     a = b = c = first = other = 0.0
     for j in range(many):

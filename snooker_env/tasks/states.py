@@ -169,8 +169,8 @@ def check_visit(
 def check_frame_state(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, lot: bool
 ) -> FrameState:
-    """The ``FrameState`` that a dict describes, under these rules; ``lot``: a player may be asked who begins at a
-    re-spotted black. ValueError names the first wrong part."""
+    """The ``FrameState`` that a dict describes; ValueError names the first wrong part. ``lot``: whether a player may be asked
+    who begins at a re-spotted black."""
     conditions = check_conditions(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)

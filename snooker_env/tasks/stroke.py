@@ -1,6 +1,5 @@
-"""How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike),
-then ``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table
-which[j]. Each table draws from its own stream: no result depends on other tables or threads."""
+"""How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike), then
+``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table which[j]."""
 
 from typing import Any
 
@@ -52,8 +51,8 @@ _WHY = {
 
 @kernel
 def _played_into(positions, ball, vx, vy, time):
-    """Whether the cue ball, struck with (vx, vy) [m/s], was played into the touching ``ball`` that it met at
-    ``time`` [s]: its line leads into it, or they met at once, also along the tangent."""
+    """Whether the cue ball, struck with (vx, vy) [m/s], was played into the touching ``ball`` that it met at ``time`` [s]: its
+    line leads into it, or they met at once, also along the tangent."""
     dx, dy = positions[ball, 0] - positions[CUE, 0], positions[ball, 1] - positions[CUE, 1]
     speed = np.hypot(vx, vy)
     into = abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH
@@ -62,8 +61,8 @@ def _played_into(positions, ball, vx, vy, time):
 
 @kernel
 def find_first_contact(event_time, event_what, n_events, touching, positions, vx, vy):
-    """Masks, from a shot's log, of the balls struck first, and of the ``touching`` ones that it was played
-    into, a push stroke; one that it meets later off a cushion is struck but not moved in leaving."""
+    """Masks, from a shot's log, of the balls struck first, and of the ``touching`` ones that it was played into, a push stroke;
+    one that it meets later off a cushion is struck but not moved in leaving."""
     first, moved, start = 0, 0, np.inf
     for e in range(n_events):
         kind, time = event_what[e, 0], event_time[e]
@@ -105,8 +104,8 @@ def reached_cushion(event_what, n_events):
 
 @kernel
 def played_in(intended, positions, on_table, cue_row, shot):
-    """The stroke that is ``intended`` (speed, side, top, aim of the cue, elevation) as the cue has room for it; what
-    was done is recorded in the row ``shot``."""
+    """The stroke that is ``intended`` (speed, side, top, aim of the cue, elevation) as the cue has room for it; ``shot`` records
+    what was done."""
     rails, most = cue_row[C_RAILS:], cue_row[C_MAX_OFFSET]
     played, shot[ROOM] = in_room(intended, positions, on_table, rails, BALL_RADIUS, most)
     for c in range(5):
@@ -116,8 +115,8 @@ def played_in(intended, positions, on_table, cue_row, shot):
 
 @kernel
 def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
-    """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, for which there is room, with errors.
-    The cue is raised once more where these took its room."""
+    """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, with errors. Where these took the cue's room, it
+    is raised once more."""
     speed, side, top, aim, elevation = struck
     side, top = tip_on_disc(side, top, cue_row[C_MAX_OFFSET])
     if side != intended[1] or top != intended[2] or aim != intended[3] or elevation != intended[4]:
@@ -138,8 +137,7 @@ def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
 
 @kernel
 def strike(intended, positions, on_table, stream, cue_row, noise, j, shots):
-    """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``execute_stroke``), as far as there is room
-    for the cue, with errors."""
+    """Shot j: the table as it lies, the cue ball struck as ``intended``, as far as the cue has room, with errors."""
     meant = played_in(intended, positions, on_table, cue_row, shots.shots[j])
     strike_with(meant, execute_stroke(*meant, noise, stream), positions, on_table, cue_row, j, shots)
     shots.kicks[j] = kick_of(noise, stream)
@@ -212,8 +210,8 @@ def address(which, actions, tables, shots, packed, fidelity):
 
 @kernel
 def see(j, shots, positions, on_table):
-    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; also in ``seen``,
-    with whether it was a jump shot."""
+    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; ``seen`` has them too, and
+    whether it was a jump shot."""
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
     log = shots.event_time[j], shots.event_what[j], shots.n_events[j]

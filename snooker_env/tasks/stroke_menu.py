@@ -1,6 +1,6 @@
-"""Which strokes does ``action="strokes"`` choose from? A menu of complete strokes for the position: along up to ``POTS`` direct
-pots or, where there is none, other ``lines``, at every speed and height of the tip. In frames safeties follow, along lines of
-their own, and the decisions after a foul. The aim is solved for the stroke."""
+"""Which strokes does ``action="strokes"`` choose from? A menu of complete strokes: along up to ``POTS`` direct pots or, where
+there is none, other ``lines``, at every speed and height of the tip; in frames then safeties, along lines of their own,
+and the decisions after a foul. The aim is solved for the stroke."""
 
 import numpy as np
 from gymnasium import spaces
@@ -78,8 +78,8 @@ def safe_stroke(safety, end_red, lines, positions, on_table, on, law, work):
 
 @kernel(seconds=1, uses=(aim_on, safe_stroke))
 def solve_menu_stroke(index, speeds, positions, on_table, on, law, work):
-    """(speed, side, top, aim, elevation) of the choice ``index``, as ``box_actions.shot_of``; one that is not there is the same
-    stroke along the last line that is, a decision the last stroke."""
+    """(speed, side, top, aim, elevation) of the choice ``index``; if that is not there, of the same stroke along the last line
+    that is, or, for a decision, of the last stroke."""
     safety = min(index - speeds * PER_SPEED, SAFETIES - 1)
     if safety < 0:
         line, speed, side, top = menu_stroke(index, speeds)

@@ -16,9 +16,8 @@ ROUNDING = 1e-9  # tolerance of noses, jaws and falls [m]
 
 
 def table_of(table: TableLike) -> Table:
-    """The ``Table`` of an environment's argument; ValueError unless every place that a layout may deal is
-    free on it. Spots, rack, D, random and respotted balls lie where |x| <= 0.86275 and |y| <= 1.75825: the
-    noses must be where snooker's are, and no jaw or fall may reach a ball there."""
+    """The ``Table`` of an environment's argument; ValueError unless it leaves every place free that a layout may deal: the noses
+    must be snooker's, and no jaw or fall may reach a ball at |x| <= 0.86275, |y| <= 1.75825."""
     cloth = Table.of(table)
     if cloth is UNBOUNDED:
         raise refuse("table", table, 'must be "match", "tight" or a Table')

@@ -275,8 +275,7 @@ class Tables(ABC):
             masks[which] = self.action_masks(which)
 
     def show_strokes(self, which: Ints, at: Ints, rows: Singles, player: int = 0) -> None:
-        """Write what ``player`` foresees of the strokes on the menus of the tables ``which`` into ``rows[at]``, which hold the
-        flat observation; nothing unless that is observed."""
+        """With ``observation="strokes"`` write what ``player`` foresees of the menus of the tables ``which`` into ``rows[at]``."""
         if self.rules.observation == "strokes":
             tables = self.positions, self.on_table, self.game
             law = self.rules.rule_set.code, self.cues, self.phys, *self.rules.fidelity
@@ -367,9 +366,8 @@ class Tables(ABC):
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
     ) -> None:
-        """One step of all tables: checked actions (n, k) float64, results into ``out``. ``waiting`` (n,)
-        bool: tables that begin a new episode instead; ``same_step``: those that end begin one at once.
-        SimulationError if a shot cannot be computed: its balls are left as they lay."""
+        """One step of all tables: checked actions (n, k) float64, results into ``out``. Tables ``waiting`` (n,) begin a new episode
+        instead; with ``same_step`` those that end begin one at once. After SimulationError a shot's balls lie as before."""
 
     @abstractmethod
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
@@ -405,13 +403,11 @@ class Tables(ABC):
 
     @abstractmethod
     def standing(self, k: int) -> dict[str, Any]:
-        """More fields of ``Played``: next_player, next_free_ball, scores, break_points, choice, winner,
-        and of frames frame."""
+        """More fields of ``Played``: next_player, next_free_ball, scores, break_points, choice, winner, and of frames frame."""
 
     @abstractmethod
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin an episode on table k with a valid position; ``game``: a visit's row. The stream goes on, and
-        the constants are to be drawn once it has its seed."""
+        """Begin an episode on table k with a valid position; ``game``: a visit's row. The stream goes on; the caller draws constants."""
 
     @abstractmethod
     def text(self, k: int) -> str:
