@@ -32,15 +32,7 @@ class Progress:
     ...         progress.at(frame + 1, "lead 3.2")
     """
 
-    def __init__(
-        self,
-        what: str,
-        total: int,
-        unit: str,
-        *,
-        done: int = 0,
-        to: TextIO | None = None,
-    ):
+    def __init__(self, what: str, total: int, unit: str, *, done: int = 0, to: TextIO | None = None):
         self.done: int = done
         self.total: int = total
         silent = os.environ.get("SNOOKER_ENV_QUIET", "0") not in ("", "0")

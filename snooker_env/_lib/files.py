@@ -87,10 +87,9 @@ def strict_json(text: str | bytes) -> Any:
     more than ``DEPTH`` levels."""
     if isinstance(text, bytes):
         text = text.decode("utf-8")
+    numbers = dict.fromkeys(("parse_constant", "parse_int", "parse_float"), _sound)
     try:
-        read = json.loads(
-            text, parse_constant=_sound, parse_int=_sound, parse_float=_sound, object_pairs_hook=_once
-        )
+        read = json.loads(text, **numbers, object_pairs_hook=_once)
     except RecursionError:
         raise ValueError(f"it is nested deeper than {DEPTH}") from None
     inner = [read]

@@ -93,19 +93,9 @@ def _finding_once():
         setattr(BaseFunction, FIND, before)
 
 
-_UNUSED = {
-    "WithLifting",
-    "InlineClosureLikes",
-    "RewriteDynamicRaises",
-    "MakeFunctionToJitFunction",
-    "FindLiterallyCalls",
-    "LiteralUnroll",
-    "LiteralPropagationSubPipelinePass",
-    "InlineOverloads",
-    "NopythonRewrites",
-    "NoPythonSupportedFeatureValidation",
-    "DumpParforDiagnostics",
-}
+_UNUSED = "WithLifting InlineClosureLikes RewriteDynamicRaises MakeFunctionToJitFunction FindLiterallyCalls "
+_UNUSED += "LiteralUnroll LiteralPropagationSubPipelinePass InlineOverloads NopythonRewrites "
+_UNUSED += "NoPythonSupportedFeatureValidation DumpParforDiagnostics"
 """Passes of numba for what no inner kernel has: contexts, closures, exceptions, literals, sums of arrays."""
 
 
@@ -136,19 +126,15 @@ class _Compiler(compiler.Compiler):
     """Compiles one inner kernel."""
 
     def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
-        made = targetctx.codegen()
-        flags = flags.copy()
+        library, flags = _Library(targetctx.codegen(), "inner kernel"), flags.copy()
         flags.no_compile = True
-        super().__init__(
-            typingctx, targetctx, _Library(made, "inner kernel"), args, return_type, flags, locals
-        )
+        super().__init__(typingctx, targetctx, library, args, return_type, flags, locals)
 
     def define_pipelines(self):
         (passes,) = super().define_pipelines()
-        of_ours = {typed_passes.NativeLowering: _Lowering}
-        passes.passes = [
-            (of_ours.get(made, made), what) for made, what in passes.passes if made.__name__ not in _UNUSED
-        ]
+        of_ours, unused = {typed_passes.NativeLowering: _Lowering}, _UNUSED.split()
+        kept = [(made, what) for made, what in passes.passes if made.__name__ not in unused]
+        passes.passes = [(of_ours.get(made, made), what) for made, what in kept]
         passes.finalize()
         return [passes]
 

@@ -69,10 +69,11 @@ def _make(typing_context, a, b, c, d):
 def _take(typing_context, x, k):
     if not isinstance(k, types.IntegerLiteral):
         return None
-    which = ir.Constant(_INT32, k.literal_value)
-    return types.float64(_LANES, k), lambda context, builder, signature, arguments: builder.extract_element(
-        arguments[0], which
-    )
+
+    def make(context, builder, signature, arguments):
+        return builder.extract_element(arguments[0], ir.Constant(_INT32, k.literal_value))
+
+    return types.float64(_LANES, k), make
 
 
 def _no_more(typing_context, x, y):
@@ -97,12 +98,8 @@ class _Both(ConcreteTemplate):
 infer_global: Any = templates.infer_global
 infer_global(operator.add)(_Both)
 infer_global(operator.mul)(_Both)
-lower_builtin(operator.add, _Lanes, _Lanes)(
-    lambda context, builder, signature, arguments: builder.fadd(*arguments)
-)
-lower_builtin(operator.mul, _Lanes, _Lanes)(
-    lambda context, builder, signature, arguments: builder.fmul(*arguments)
-)
+lower_builtin(operator.add, _Lanes, _Lanes)(lambda context, builder, signature, both: builder.fadd(*both))
+lower_builtin(operator.mul, _Lanes, _Lanes)(lambda context, builder, signature, both: builder.fmul(*both))
 
 # Intrinsics, not overloads: numba would compile a function for each use of those.
 lanes: Any = intrinsic(_make)  # four numbers side by side

@@ -132,10 +132,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     # Gymnasium's interface
 
     def reset(
-        self,
-        *,
-        seed: int | list[int | None] | None = None,
-        options: dict[str, Any] | None = None,
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin new episodes on all tables, or on some; ``options``: see the class.
 

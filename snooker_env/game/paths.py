@@ -11,8 +11,8 @@ clear from some place of ``in_hand`` (R14(a), and S2 R17 for a snooker); an open
 import numpy as np
 
 from .._lib.jit import entry, kernel
+from ..geometry import BALL_RADIUS
 from .balls import N_BALLS, REDS_MASK, REFEREE_TOUCH
-from .first_contact import meets
 from .in_hand import PLACES_IN_D, PLACES_ON_BED
 from .snookered import SLACK, segment_distance
 from .spotting import touches
@@ -21,6 +21,27 @@ WINDOW = 1e-9  # a narrower opening does not count [rad]: it is rounding
 # columns of ``noses`` and ``jaws``, as of ``physics.Table``
 AXIS, SIDE, LEVEL, LOW, HIGH = range(5)
 ARC_X, ARC_Y, ARC_RADIUS, ARC_UX, ARC_UY, ARC_COS = range(6)
+
+
+@kernel
+def meets(bx, by, ux, uy, radius):
+    """How far it rolls from the origin along the unit vector u until it meets a ball at b [m], or inf."""
+    along, across = bx * ux + by * uy, bx * uy - by * ux
+    if along <= 0.0 or abs(across) >= 2.0 * radius:
+        return np.inf
+    return along - np.sqrt(4.0 * radius * radius - across * across)
+
+
+@kernel
+def find_first_ball(positions, on_table, x, y, ux, uy, far):
+    """The ball met first from (x, y) along the unit vector u, up to the distance ``far`` [m]; 0 if none."""
+    ball = 0
+    for i in range(1, N_BALLS):
+        if on_table[i]:
+            run = meets(positions[i, 0] - x, positions[i, 1] - y, ux, uy, BALL_RADIUS)
+            if run < far:
+                far, ball = run, i
+    return ball
 
 
 @kernel
@@ -158,9 +179,7 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
                     n += 1
         n = _cushion_edges(edges, n, (cx, cy), (tx + cx, ty + cy), towards, noses, jaws, radius)
         inside = 0
-        for k in range(
-            n
-        ):  # into (-pi, pi], so that the target's window is one interval; those in it, in order
+        for k in range(n):  # into (-pi, pi]: the target's window is one interval; the edges in it, in order
             edge = edges[k] - 2.0 * np.pi * np.round(edges[k] / (2.0 * np.pi))
             if -half <= edge <= half:
                 j = inside

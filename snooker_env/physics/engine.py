@@ -73,10 +73,8 @@ def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
         impulse = min(impulse, sqrt(2.0 * energy_loss(before, after, phys[P_R])))
     (xi, yi), (xj, yj) = ball_i[0], ball_j[0]
     nx, ny = (xj - xi) / (2.0 * phys[P_R]), (yj - yi) / (2.0 * phys[P_R])
-    for k, (r, v, w), way, other in (
-        (i, ball_i, (nx, ny), ball_j[1]),
-        (j, ball_j, (-nx, -ny), ball_i[1]),
-    ):
+    both = (i, ball_i, (nx, ny), ball_j[1]), (j, ball_j, (-nx, -ny), ball_i[1])
+    for k, (r, v, w), way, other in both:
         if state[k] == FALLING:
             _begin_again(paths, k, t, (r, v, w), way, other, boundaries, phys)
         elif v[2] > 0.0:
@@ -104,10 +102,9 @@ def _meet_in_air(paths, i, j, t, law, boundaries, series):
         zj, uj = 0.0, 0.0
     nx, ny, nz = x2 - x1, y2 - y1, zj - zi
     d = sqrt(nx * nx + ny * ny + nz * nz)
-    lies = other != AIR and other != FALLING
-    a, wa, b, wb, press, solved = meet_in_air(
-        (v1[0], v1[1], ui), w1, (v2[0], v2[1], uj), w2, (nx / d, ny / d, nz / d), lies, law, series
-    )
+    lies, normal = other != AIR and other != FALLING, (nx / d, ny / d, nz / d)
+    v1, v2 = (v1[0], v1[1], ui), (v2[0], v2[1], uj)
+    a, wa, b, wb, press, solved = meet_in_air(v1, w1, v2, w2, normal, lies, law, series)
     flight.take_off(motion, state, i, t, (x1, y1, zi), a, wa, phys)
     if other == AIR:
         flight.take_off(motion, state, j, t, (x2, y2, zj), b, wb, phys)
@@ -258,11 +255,9 @@ def _is_clear(motion, i, clear):
 @kernel
 def _is_astray(motion, state, i, reach, boundaries):
     """Whether ball i is on the bed deeper than ``HELD`` in a cushion, over a pocket, or off the table."""
-    return (
-        state[i] != FALLING
-        and state[i] != AIR
-        and place_fault(motion[i, X], motion[i, Y], reach, boundaries, HELD, HELD)[0] != SOUND
-    )
+    if state[i] == FALLING or state[i] == AIR:
+        return False
+    return place_fault(motion[i, X], motion[i, Y], reach, boundaries, HELD, HELD)[0] != SOUND
 
 
 @kernel
@@ -379,11 +374,8 @@ def _kind_now(paths, aloft, t, kind, i, j, setup):
         (x, y), (vx, vy), _ = cloth.evaluate(motion, state, i, t, law.phys)
         if pocket.ahead(x, y, vx, vy, boundaries.falls, j, boundaries.jaws, law.phys)[0] < inf:
             return np.int64(events.DROP)
-    if (
-        aloft is not None
-        and (kind == events.LAND or kind == events.RETURN)
-        and _lands_off(motion, state, i, t, clear, reach, boundaries)
-    ):
+    down = aloft is not None and (kind == events.LAND or kind == events.RETURN)
+    if down and _lands_off(motion, state, i, t, clear, reach, boundaries):
         return np.int64(events.OFF if kind == events.LAND else events.POT)
     return kind
 
@@ -558,9 +550,8 @@ def run(balls, aloft, lift, setup, max_events, log, paths, forecast, series, so_
         flies = False
         if aloft is None:
             # also where a ball over a pocket comes back or meets one: ``pocket.aloft`` cannot begin an impact twice
-            if lift < inf and (
-                kind == events.RETURN or (pair and (state[i] == FALLING or state[j] == FALLING))
-            ):
+            at_pocket = kind == events.RETURN or (pair and (state[i] == FALLING or state[j] == FALLING))
+            if lift < inf and at_pocket:
                 status = _LIFTS
                 break
         else:

@@ -135,11 +135,8 @@ def evaluate(motion, state, i, t, phys):
     """``cloth.evaluate`` of a ball that may be in the air."""
     if state[i] != AIR:
         return cloth.evaluate(motion, state, i, t, phys)
-    dt, v, w = (
-        t - motion[i, T0],
-        (motion[i, VX], motion[i, VY]),
-        (motion[i, WX], motion[i, WY], motion[i, WZ]),
-    )
+    dt, v = t - motion[i, T0], (motion[i, VX], motion[i, VY])
+    w = motion[i, WX], motion[i, WY], motion[i, WZ]
     return (motion[i, X] + v[0] * dt, motion[i, Y] + v[1] * dt), v, w
 
 

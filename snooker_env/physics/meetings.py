@@ -48,13 +48,8 @@ def meet(v1, w1, v2, w2, normal, law, series):
         # two equal balls: the reduced mass is M/2, so the spin energy counts double
         parting, k = _hop(closing, 2.0 * (_spin_energy(w1, phys[P_R]) + _spin_energy(w2, phys[P_R])))
         dv = 0.5 * (closing + parting)
-        return (
-            (v1[0] - dv * nx, v1[1] - dv * ny, 0.0),
-            _scale(w1, k),
-            (v2[0] + dv * nx, v2[1] + dv * ny, 0.0),
-            _scale(w2, k),
-            True,
-        )
+        u1, u2 = (v1[0] - dv * nx, v1[1] - dv * ny, 0.0), (v2[0] + dv * nx, v2[1] + dv * ny, 0.0)
+        return u1, _scale(w1, k), u2, _scale(w2, k), True
     e = max(phys[P_E_B], PART / closing)
     v1, v2 = (v1[0], v1[1], 0.0), (v2[0], v2[1], 0.0)
     return collide_balls(v1, w1, v2, w2, normal, law, e, series)

@@ -346,11 +346,8 @@ def pack_into(rows: Floats, which: Ints, values: Floats, base: Physics) -> None:
 
 PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None  # an argument of ``Physics.of``
 _DRAWN = {conditions.MU_S: columns.P_MU_S, conditions.MU_R: columns.P_MU_R, conditions.E_B: columns.P_E_B}
-_DRAWN |= {
-    conditions.MU_C: columns.P_MU_C,
-    conditions.E_C: columns.P_E_C,
-    conditions.SPIN_DECEL: columns.P_SPIN,
-}
+_DRAWN |= {conditions.MU_C: columns.P_MU_C, conditions.E_C: columns.P_E_C}
+_DRAWN[conditions.SPIN_DECEL] = columns.P_SPIN
 
 
 def _mu_bb(value: object) -> float | Literal["marlow"] | tuple[float, float, float]:
@@ -373,10 +370,5 @@ _MATCH = {"mu_r": 0.0114, "e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee
 _BALLS = {"R": 0.03075, "M": 0.2125, "e_b": 0.917, "mu_bb": 0.0803}
 _CLOTH = {"mu_s": 0.146, "mu_r": 0.00431, "roll_drag": 0.0136, "spin_decel": 3.77}
 _CUSHION = {"e_c": 0.911, "e_c_knee": 0.695, "e_c_power": 0.0455, "mu_c": 0.238, "sin_theta": 0.201}
-_CAROM = {
-    **_BALLS,
-    **_CLOTH,
-    **_CUSHION,
-    "tables": False,
-}  # above the knee no table of rolling impacts is used
+_CAROM = {**_BALLS, **_CLOTH, **_CUSHION, "tables": False}  # above the knee no table would be used
 PRESETS: dict[str, dict[str, Any]] = {"paper": {}, "match": _MATCH, "carom": _CAROM}

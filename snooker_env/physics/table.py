@@ -12,15 +12,45 @@ from .._lib.check import array, choice, flags, number, refuse, refuse_what
 from .._lib.types import Batches, FlagRows, Flags, Floats, TableName, Vectors
 from ..geometry import PRESETS, Bed, Pocket, parts
 from .bounds import bounds_of, deepest, narrowest
-from .columns import JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
+from .columns import FALL_RADIUS, JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 from .placement import IN_JAW, IN_NOSE, OFF, OVER_POCKET, OVERLAP_ALLOWED, SOUND, first_fault
-from .shapes import check_fit, check_shapes
 
 MOUTH = 0.012
 """How far past the noses a ball can lie at rest [m], unless the pockets let it lie deeper: the depth between
 jaw and fall of snooker's middle pocket."""
 PLAY = 1e-3  # facing noses must be at least this much further apart than a ball is wide [m]
 SAME_BALL = 1e-9  # a ball's radius may differ by this much from the one that a table is made for [m]
+
+
+def _check_shapes(noses: Floats, jaws: Floats, falls: Floats) -> None:
+    """Raise ValueError for a nose, jaw or fall that is not valid."""
+    for k, (axis, side, _, low, high) in enumerate(noses.tolist()):
+        if axis not in (0, 1) or side not in (-1, 1) or not low <= high:
+            allowed = "must be axis 0 or 1, side -1 or 1, level, and lo <= hi"
+            raise refuse(f"table.noses[{k}]", tuple(noses[k].tolist()), allowed)
+    for k, (_, _, radius, ux, uy, cos_half) in enumerate(jaws.tolist()):
+        if radius < 0 or abs(hypot(ux, uy) - 1.0) > 1e-6 or abs(cos_half) > 1:
+            allowed = "must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine"
+            raise refuse(f"table.jaws[{k}]", tuple(jaws[k].tolist()), allowed)
+    for k, radius in enumerate(falls[:, FALL_RADIUS].tolist()):
+        if radius <= 0:
+            raise refuse(f"table.falls[{k}]", tuple(falls[k].tolist()), "must be x, y, and a radius > 0")
+
+
+def _check_fit(bed: Bed, ball_radius: float | None) -> None:
+    """Raise ValueError unless a rectangular table's pockets fit its sides and let its ball through."""
+    end = bed.corner.start if bed.corner else 0.0
+    middle = bed.middle.start if bed.middle else 0.0
+    for name, half, taken in (("width", bed.width / 2, end), ("length", bed.length / 2, end + middle)):
+        if not half > taken:
+            allowed = f"must be more than {2 * taken:.6g}, the length that the pockets take on that side"
+            raise refuse(f"table.{name}", 2 * half, allowed)
+    if ball_radius is None:
+        return
+    for name, pocket in (("corner", bed.corner), ("middle", bed.middle)):
+        if pocket is not None and not pocket.throat > 2 * ball_radius:
+            allowed = f"must be less than {pocket.throat / 2:.6g}, half the throat of the {name} pockets"
+            raise refuse("table.ball_radius", ball_radius, allowed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +115,7 @@ class Table:
             a = array(f"table.{name}", getattr(self, name), (-1, columns))
             a.setflags(write=False)
             object.__setattr__(self, name, a)
-        check_shapes(self.noses, self.jaws, self.falls)
+        _check_shapes(self.noses, self.jaws, self.falls)
         if self.ball_radius is not None:
             object.__setattr__(self, "ball_radius", number("table.ball_radius", self.ball_radius, 1e-3, 1))
         names = self.pockets
@@ -141,7 +171,7 @@ class Table:
         if ball_radius is not None:
             ball_radius = number("table.ball_radius", ball_radius, 1e-3, 1)
         bed = Bed(length=length, width=width, corner=shapes[0], middle=shapes[1], ball={})
-        check_fit(bed, ball_radius)
+        _check_fit(bed, ball_radius)
         return cls(name, *parts(bed), ball_radius=ball_radius, pockets=bed.pockets)
 
     @classmethod

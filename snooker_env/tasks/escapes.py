@@ -13,7 +13,7 @@ import numpy as np
 
 from .._lib.jit import kernel
 from ..game.balls import N_BALLS
-from ..game.first_contact import find_first_ball
+from ..game.paths import find_first_ball
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics import cloth, events
 from ..physics.arrays import Boundaries, Law

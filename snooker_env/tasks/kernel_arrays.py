@@ -19,9 +19,8 @@ C_RAILS = 4  # from here on the rails that it passes over (``cue_room.rails_of``
 
 def pack_cue(physics: Physics, rails: Floats) -> Floats:
     """A cue's row for the kernels: float64 (4 + len(rails),), in the columns ``C_*``."""
-    return np.array(
-        [physics.end_mass_ratio, physics.max_offset, physics.mu_s, physics.bed_restitution, *rails]
-    )
+    law = physics.end_mass_ratio, physics.max_offset, physics.mu_s, physics.bed_restitution
+    return np.array([*law, *rails])
 
 
 Packed: TypeAlias = tuple[Floats, Floats, Floats, Floats]

@@ -11,7 +11,7 @@ import numpy as np
 
 from .._lib.jit import entry, kernel
 from ..game.balls import N_BALLS, N_REDS, SPOTS, touching_balls
-from ..game.first_contact import find_first_ball
+from ..game.paths import find_first_ball
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, count_pots, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cloth import COLUMNS
@@ -31,9 +31,7 @@ EASY, NARROW, _SLIT, _APART = 0.01, 0.25 * 0.01, 1e-6, 2e-3
 """Half windows [rad]: a sure one; below it an escape is better; none. Least difference of two lines."""
 
 
-BREAK_X = float(
-    SPOTS[0, 0]
-)  # the cue ball's place for the break-off: its x, either sign, on the baulk line [m]
+BREAK_X = float(SPOTS[0, 0])  # where the cue ball stands for the break-off: its x, either sign [m]
 _BREAK_SPEED, _BREAK_SIDE, _BREAK_TOP = 3.4, 0.42, 0.1
 """Of the break-off, thin at the end red, with running side, back to baulk over three cushions: among 6,000
 random ones that return to baulk in 40 trials of a professional, one that leaves hardly a pot."""

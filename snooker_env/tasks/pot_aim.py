@@ -207,8 +207,6 @@ def aim_from(begin, effort, positions, on_table, ball, target, ghost, stroke, la
 @kernel(uses=(aim_from,))
 def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
     """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised as needed."""
-    line, effort = (
-        atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0]),
-        (_ENOUGH, _SAME_ROOM, _TRIALS),
-    )
+    line = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0])
+    effort = _ENOUGH, _SAME_ROOM, _TRIALS
     return aim_from(line, effort, positions, on_table, ball, target, ghost, stroke, law, work)[0]

@@ -7,7 +7,7 @@ from math import asin, atan2, cos, floor, hypot, pi, sin, sqrt
 
 from .._lib.jit import kernel
 from ..game.balls import N_BALLS
-from ..game.first_contact import find_first_ball
+from ..game.paths import find_first_ball
 from ..geometry import BALL_RADIUS
 
 LOW, HIGH, EDGE = range(3)
