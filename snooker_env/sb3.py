@@ -85,9 +85,9 @@ class SnookerVecEnv(VecEnv):
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
         self._actions: Any = None
+        # rewards and steps so far: no state of a table holds them, save them with it
         self.episode_returns: Floats = np.zeros(num_envs)
         self.episode_lengths: Ints = np.zeros(num_envs, np.int64)
-        """Rewards and steps so far, (n,) each: no state of a table holds them, save them with it."""
         self._start = time.time()
         if seed is not None:
             self.seed(seed)

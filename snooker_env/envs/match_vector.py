@@ -103,7 +103,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         written = tables.output()
         with self._playing():
             tables.turns(checked, written, self._crew)
-        infos = self._infos(written) | {"striker": self.strikers}
+        infos = tables.infos(written.reals, written.counts) | {"striker": self.strikers}
         rewards = np.stack([written.rewards, -written.rewards], axis=1) + 0.0  # no negative zero
         return self._arrange(written), rewards, written.terminated, written.truncated, infos
 

@@ -7,10 +7,10 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from .._lib.check import choice, refuse
+from .._lib.check import choice
 from .._lib.types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
-from ..tasks.discrete_actions import Choices
+from ..tasks.discrete_actions import require_choices
 from ..tasks.options import Options, observation_space_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput
@@ -127,8 +127,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
     def action_masks(self) -> Bools:
         """Return the choices, bool (540,) or longer, for maskable algorithms; ValueError with "box"."""
-        if not isinstance(self.options.rules.actions, Choices):
-            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
+        require_choices(self.options.rules.actions)
         return self.tables.action_masks()[0]
 
     def _arrange(self, out: StepOutput) -> Observation:

@@ -220,12 +220,12 @@ class Tables(ABC):
         info |= {name: info[name] != 0 for name in self.FLAGS}
         return info | {"foul": info["fouls"] != 0}
 
-    def infos(self, reals: Floats, counts: Ints, present: Bools) -> dict[str, Any]:
-        """Infos as of Gymnasium's vector environments: arrays, and masks of the tables that they hold for."""
+    def infos(self, reals: Floats, counts: Ints, present: Bools | None = None) -> dict[str, Any]:
+        """Infos as of Gymnasium's vector environments: arrays, and masks of the tables that they hold for, or all."""
+        present = np.ones(self.n, np.bool_) if present is None else present
         every = zip((*self.reals, *self.COUNTS), (*reals.T, *counts.T), strict=True)
         infos: dict[str, Any] = {name: column * present for name, column in every}
-        infos |= {name: infos[name] != 0 for name in self.FLAGS}
-        infos["foul"] = infos["fouls"] != 0
+        infos |= {name: infos[name] != 0 for name in self.FLAGS} | {"foul": infos["fouls"] != 0}
         return infos | {f"_{name}": present.copy() for name in infos}
 
     def record(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
