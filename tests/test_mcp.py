@@ -73,9 +73,8 @@ def test_an_anchor_that_plays_over_the_protocol_leaves_its_own_result(tmp_path, 
     game = judged(path, track)
     talk(Desk(game, track), one_visit)
     kept, own = read_result(path), play_episodes(TASK, "ghost_ball", seeds)
-    assert (
-        faults(kept) == [] and kept["incomplete"] is None and kept["rows"] == own.rows and numbers == [0, 1]
-    )
+    assert faults(kept) == [] and kept["incomplete"] is None and kept["rows"] == own.rows
+    assert numbers == [0, 1]
     assert all(map(np.array_equal, strokes_of(kept), own.strokes))
     assert (kept["agent"]["sources"], kept["agent"]["class"]) == ([f"program:mcp {track}"], "model_free")
     with pytest.raises(ValueError, match="must be a result of"):

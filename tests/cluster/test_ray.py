@@ -175,6 +175,5 @@ def test_an_address_without_a_head_is_one_line(command, arguments, capsys):
         port = free.getsockname()[1]
     assert command.main([*arguments, f"127.0.0.1:{port}"]) == 1
     said = [line for line in capsys.readouterr().err.splitlines() if "ray" in line]
-    assert (
-        len(said) == 1 and f"ray = '127.0.0.1:{port}': must be the head of a Ray cluster that runs" in said[0]
-    )
+    assert len(said) == 1
+    assert f"ray = '127.0.0.1:{port}': must be the head of a Ray cluster that runs" in said[0]

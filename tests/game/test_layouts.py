@@ -98,9 +98,8 @@ def test_no_pot_is_on_where_a_safety_is_asked_for(name):
     assert 0.05 < chances.max() <= LIKELY
     assert at.on_table[:, [0, *range(YELLOW, 22)]].all() and (at.on_table[:, 1:YELLOW].sum(axis=1) >= 3).all()
     for positions, on_table in zip(at.positions, at.on_table, strict=True):
-        assert (
-            np.array_equal(positions[~on_table], SPOTS[~on_table]) and gaps(positions, on_table).min() > -1e-6
-        )
+        assert np.array_equal(positions[~on_table], SPOTS[~on_table])
+        assert gaps(positions, on_table).min() > -1e-6
         assert not is_snookered(positions, on_table, 0xFFFE)[0]
 
 

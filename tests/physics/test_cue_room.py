@@ -90,14 +90,10 @@ def test_what_is_done_to_a_stroke_is_what_is_said():
         stroke = (2.0, *tip_of(rng), np.pi + rng.uniform(-1.0, 1.0), rng.choice([0.0, 0.2]))
         played, done = in_room(stroke, positions)
         speed, side, top, aim, elevation = played
-        assert (
-            (speed, aim) == (stroke[0], stroke[3])
-            and elevation >= stroke[4]
-            and np.hypot(side, top) < 0.5 + 1e-9
-        )
-        assert bool(done & RAISED) == (elevation > stroke[4]) and bool(done & MOVED) == (
-            (side, top) != stroke[1:3]
-        )
+        assert (speed, aim) == (stroke[0], stroke[3]) and elevation >= stroke[4]
+        assert np.hypot(side, top) < 0.5 + 1e-9
+        assert bool(done & RAISED) == (elevation > stroke[4])
+        assert bool(done & MOVED) == ((side, top) != stroke[1:3])
         assert done != FREE or played == stroke
         needed = min(least((side, top), aim, positions, elevation=stroke[4]), MAX_ELEVATION)
         assert elevation == pytest.approx(needed, abs=1e-9)

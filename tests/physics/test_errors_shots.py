@@ -261,7 +261,8 @@ def test_balls_off_the_table_may_lie_anywhere():
     shot = sn.simulate(
         places, [(0.0, 1.0), (9.0, 0.0), (0.0, 0.0)], np.zeros((3, 3)), on_table=[True, False, False]
     )
-    assert shot.positions[1:].tolist() == [[0.0, 0.0], [5.0, 5.0]] and shot.on_table.tolist() == [
+    assert shot.positions[1:].tolist() == [[0.0, 0.0], [5.0, 5.0]]
+    assert shot.on_table.tolist() == [
         True,
         False,
         False,
@@ -302,8 +303,5 @@ def test_a_shot_inside_a_shot_has_its_own_log(monkeypatch):
 
     monkeypatch.setattr(simulation, "_run", interrupted)
     got = sn.simulate(*first)
-    assert (
-        np.array_equal(got.events, want.events)
-        and np.array_equal(got.segments, want.segments)
-        and len(want.events) > 1
-    )
+    assert np.array_equal(got.events, want.events) and np.array_equal(got.segments, want.segments)
+    assert len(want.events) > 1

@@ -216,9 +216,8 @@ def test_a_frame_has_safeties_the_break_off_and_decisions():
     first = env.agent_selection
     (rows,), state = rows_of(env.observe(first), CHOICES + 50)
     assert state.shape == (1, 30) and rows[108:156, 0].any() and not rows[156:, 0].any()
-    assert rows[108, COLUMN["speed"]] == pytest.approx(3.4 / 4.6) and rows[
-        108, COLUMN["top"]
-    ] == pytest.approx(0.1 / 0.4)
+    assert rows[108, COLUMN["speed"]] == pytest.approx(3.4 / 4.6)
+    assert rows[108, COLUMN["top"]] == pytest.approx(0.1 / 0.4)
     other = next(name for name in env.possible_agents if name != first)
     assert not rows_of(env.observe(other), CHOICES + 50)[0][..., 0].any()
     assert env.action_mask(first)[:156].tolist() == rows[:156, 0].tolist()
@@ -238,7 +237,8 @@ def test_the_decisions_after_a_foul(choice, miss):
     back = miss != "off"
     (rows,), _ = rows_of(env.observe(striker), CHOICES + 50)
     assert env.action_mask(striker)[156:].tolist() == rows[156:, 0].tolist() == [1, back]
-    assert rows[156:, COLUMN["speed"]].tolist() == [-1.0, 1.0] and rows[156:, COLUMN["pot"]].tolist() == [
+    assert rows[156:, COLUMN["speed"]].tolist() == [-1.0, 1.0]
+    assert rows[156:, COLUMN["pot"]].tolist() == [
         -1.0,
         -1.0,
     ]
