@@ -120,10 +120,8 @@ def test_a_stroke_of_the_menu_pots_the_ball_that_it_names():
 
 
 def test_with_a_free_ball_the_menu_names_reds_and_colours():
-    game, position = (
-        FreeGame(),
-        {"cue": [0, 0], "reds": [[0.5, 0.9]], "blue": [0.6, -0.3], "pink": [-0.5, 1.2]},
-    )
+    game = FreeGame()
+    position = {"cue": [0, 0], "reds": [[0.5, 0.9]], "blue": [0.6, -0.3], "pink": [-0.5, 1.2]}
     game.new({"noise": "none", "opponent": "random"})
     place = {"position": position | {"black": [0, 1.46], "on": "red"}, "free_ball": True}
 

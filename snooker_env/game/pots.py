@@ -115,25 +115,19 @@ def pot_at(positions, on_table, ball, k, d, least):
     gx, gy = bx - d * dx, by - d * dy
     px, py = gx - cx, gy - cy
     path = sqrt(px * px + py * py)
-    if path < 1e-9:
-        return 0.0, 0.0, 0.0, 0.0
-    # the ghost ball would be in the cushion
-    if abs(gx) > _WIDTH - 0.5 * d + 1e-9 or abs(gy) > _LENGTH - 0.5 * d + 1e-9:
+    # or the ghost ball would be in the cushion
+    if path < 1e-9 or abs(gx) > _WIDTH - 0.5 * d + 1e-9 or abs(gy) > _LENGTH - 0.5 * d + 1e-9:
         return 0.0, 0.0, 0.0, 0.0
     cos_cut = (px * dx + py * dy) / path
-    if cos_cut < 0.05:  # a cut of more than 87 degrees
-        return 0.0, 0.0, 0.0, 0.0
     of_width = d * cos_cut / (2.0 * run * path)
-    if (_MIDDLE_WIDEST if middle else _CORNER_WIDEST) * of_width <= least:
+    # no cut of more than 87 degrees
+    if cos_cut < 0.05 or (_MIDDLE_WIDEST if middle else _CORNER_WIDEST) * of_width <= least:
         return 0.0, 0.0, 0.0, 0.0
     width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], middle)
-    tolerance = width * of_width
-    if width <= 0.0 or tolerance <= least:
-        return 0.0, 0.0, 0.0, 0.0
-    pocket = POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y]
-    if not clear_segment(positions, on_table, (bx, by), pocket, ball, 0, d):
-        return 0.0, 0.0, 0.0, 0.0
-    if not clear_segment(positions, on_table, (cx, cy), (gx, gy), ball, 0, d * (1.0 - 1e-9)):
+    tolerance, pocket = width * of_width, (POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y])
+    is_open = width > 0.0 and tolerance > least
+    is_open = is_open and clear_segment(positions, on_table, (bx, by), pocket, ball, 0, d)
+    if not (is_open and clear_segment(positions, on_table, (cx, cy), (gx, gy), ball, 0, d * (1.0 - 1e-9))):
         return 0.0, 0.0, 0.0, 0.0
     return tolerance, gx, gy, cos_cut
 

@@ -65,14 +65,11 @@ class Physics:
         Deceleration of the spin about the vertical [rad/s^2], in every state, >= 0 [MJP14 eq. 21]. With 0
         such a spin stays: a shot ends when no ball moves across the table.
     nap : float
-        Acceleration of a rolling ball along +y by the nap, which runs from baulk to the black end [m/s^2]. 0:
-        none; else below mu_r g in size, so that a ball at rest stays. Not measured; 0.001 is the most that
-        the range of mu_r allows (docs/physics/limits.md).
+        Acceleration of a rolling ball along +y by the nap, which runs from baulk to the black end [m/s^2]: 0 (none)
+        or below mu_r g in size, so that a ball at rest stays. Not measured (docs/physics/limits.md).
     roll_drag : float
         Growth of the rolling resistance with speed [1/m], in [0, 1]: at v m/s a rolling ball decelerates by
-        mu_r g + roll_drag v^2. 0: none; must be 0 where nap is not. On heated carom cloth it was measured as
-        0.0151, beside 0.0417 m/s^2, up to 1.5 m/s (docs/physics/limits.md); on snooker's, not. Drag in free
-        air would be 0.0042.
+        mu_r g + roll_drag v^2. Must be 0 where nap is not. Measured on heated carom cloth (docs/physics/limits.md).
     e_b : float
         Energetic restitution between balls, in [0, 1] [MJP14 2.4.2].
     mu_bb : float, "marlow" or (float, float, float)
@@ -84,12 +81,11 @@ class Physics:
         Speed into the cushion above which e falls [m/s], >= 0, and >= 0.001 where e_c_power > 0.
     e_c_power : float
         Exponent of that fall, in [0, 0.8]; 0: none. e(v) = e_c up to e_c_knee, and above it
-        e_c (v / e_c_knee)^(-e_c_power), so v e(v) rises with v; for mu_c, mu_s and sin_theta up to 0.5 so
-        does the rebound of a rolling or stunned ball. An impact that loses energy by yielding has 1/4
-        (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
+        e_c (v / e_c_knee)^(-e_c_power). An impact that loses energy by yielding has 1/4 (Johnson, Contact Mechanics,
+        1985, 11.5).
     e_j : float, optional
-        Energetic restitution at a jaw, at every speed, in [0, 1]. None: e_c, without its fall with speed,
-        because a jaw's rubber is cut thin over wood. Not measured.
+        Energetic restitution at a jaw, at every speed, in [0, 1]; None: e_c, without its fall with speed. Not
+        measured.
     mu_c : float
         Sliding friction between ball and cushion, in [0, 1] [MJP10].
     sin_theta : float
@@ -99,14 +95,14 @@ class Physics:
     max_offset : float
         Tip offset over R beyond which the tip slips (miscue), in (0, 0.999] [TP A.30].
     flight : bool
-        Whether balls leave the bed: struck down upon, thrown up by impacts, off a cushion, over other balls, off the
-        table. False: they stay on it, as in the paper. Positions and velocities have a third column where it is True.
+        Whether balls can leave the bed; positions and velocities then may have a third column. False: they stay on it,
+        as in the paper.
     e_t : float
-        Restitution of the bed, in [0, 0.95], where balls fly. Measured nowhere: 0.5 is what is commonly taken.
+        Restitution of the bed, in [0, 0.95], where balls fly. Measured nowhere; 0.5 is common.
     tables : bool
-        Whether impacts of rolling balls come from tables, but for "reference" and "euler:N": faster and more
-        accurate. Those of the presets are stored; other constants make theirs at their first use, in 5 to 200
-        ms (and 10 s, once, to compile what makes them). False: no tables; for constants that are used for few shots.
+        Whether impacts of rolling balls come from tables, except at "reference" and "euler:N": faster and more
+        accurate. Presets have stored tables; other constants make theirs at their first use, in 5 to 200 ms (after
+        10 s, once, of compiling). False suits constants that are used for few shots.
 
     Raises
     ------
@@ -174,14 +170,10 @@ class Physics:
     def preset(cls, name: PhysicsName = "paper", **fields: object) -> "Physics":
         """The constants of a preset, with any ``fields`` replaced; ValueError if a name or value is wrong.
 
-        "paper": [MJP14] and [MJP10]. "match": measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and
-        cushion and cloth at speed fitted together (``python -m benchmarks.fit_cushion``): to Fig. 7a of
-        [MJP10], 19 rebounds from 0.26 to 3.40 m/s, and to how far hard throws and a ball off a ramp run on
-        full-size tables. mu_r is 0.0114 (95 %: 0.0088 to 0.0132), and restitution falls as v^-0.243 above 2.02
-        m/s (95 % interval of the power 0.19 to 0.38): e is 0.73 to 0.81 at 5 m/s, 0.65 to 0.76 at 7 and 0.57
-        to 0.71 at 10. "carom": a heated three-cushion table and its balls (``Table.preset("carom")``), fitted
-        to the paths of 61 tracked shots of one match, the cue ball up to 6 m/s (``python -m benchmarks.real_shots``).
-        """
+        "paper": [MJP14] and [MJP10]. "match": measured snooker: e_b 0.94, Marlow's mu_bb(s), and cushion and cloth fitted
+        to rebounds up to 3.40 m/s [MJP10, Fig. 7a] and to how far hard throws and a ball off a ramp run on full-size
+        tables (``python -m benchmarks.fit_cushion``). "carom": a heated three-cushion table and its balls, fitted to 61
+        tracked shots of one match (``python -m benchmarks.real_shots``)."""
         choice("physics", name, PRESETS)
         return cls._replace_fields(PRESETS[name], fields) if fields else cls._whole(name)
 
@@ -212,21 +204,10 @@ class Physics:
 
     @classmethod
     def sample(cls, rng: np.random.Generator, physics: "PhysicsLike" = None) -> "Physics":
-        """Draw the constants of a table that was not measured, one of those that a player may meet.
+        """Draw the constants of an unknown table, each uniform within its range and independent of the others.
 
-        Each is uniform within its range and independent of the others: how they go together on real tables is
-        not known. ``conditions.RANGES`` has sources.
-
-        | constant | lowest | highest |
-        |---|---|---|
-        | mu_s | 0.178 | 0.245 |
-        | mu_r | 0.0100 | 0.0128 |
-        | spin_decel [rad/s^2] | 10.9 | 22 |
-        | e_b | 0.92 | 0.96 |
-        | mu_bb, or both terms of its law, times | 0.7 | 1.3 |
-        | mu_c | 0.10 | 0.18 |
-        | e_c | 0.95 | 0.98 |
-        | end_mass_ratio | 25 | 30 |
+        docs/environment/conditions.md has the ranges of mu_s, mu_r, spin_decel, e_b, the scale of mu_bb, mu_c, e_c and
+        end_mass_ratio.
 
         Parameters
         ----------

@@ -11,6 +11,7 @@ import numpy as np
 from .._lib.jit import entry, kernel
 from ..game.balls import N_BALLS, SPOTS, VALUES, bits, touching_balls
 from ..game.frame_columns import strikeable
+from ..game.paths import find_first_ball
 from ..geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ..physics import cloth
 from ..physics.arrays import Law
@@ -183,27 +184,13 @@ def foresee_pot(played, pot, positions, on_table, cue_law, work, out):
     _run(positions, on_table, ball, Law(phys, cue_law.fidelity, cue_law.n_steps), work, out)
 
 
-@kernel
-def _first_in_way(stroke, positions, on_table, d):
-    """The ball that a stroke (5,) meets first along the straight line; 0: none."""
-    ux, uy, ball, nearest = cos(stroke[3]), sin(stroke[3]), 0, 1e9
-    for i in range(1, N_BALLS):
-        if on_table[i]:
-            px, py = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
-            along, across = px * ux + py * uy, px * uy - py * ux
-            if along > 0.0 and across * across < d * d:
-                run = along - sqrt(d * d - across * across)
-                if run < nearest:
-                    ball, nearest = i, run
-    return ball
-
-
 @kernel(seconds=1, uses=(_meet, _run))
 def foresee_contact(stroke, positions, on_table, cue_law, work, out, its):
     """What is predicted of a stroke (5,) and of the first ball in its way, which is returned (0: none), in ``out`` and ``its``."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
-    ball = _first_in_way(stroke, positions, on_table, 2.0 * phys[P_R])
+    ux, uy = cos(stroke[3]), sin(stroke[3])
+    ball = find_first_ball(positions, on_table, positions[0, 0], positions[0, 1], ux, uy, 1e9)
     for c in range(SEEN):
         out[c] = its[c] = 0.0
     out[MISSED], its[NEAR] = 2.0, 9.0

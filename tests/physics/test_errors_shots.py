@@ -289,10 +289,8 @@ def test_too_few_events_are_an_error_of_the_simulation_with_advice():
 
 def test_a_shot_inside_a_shot_has_its_own_log(monkeypatch):
     """As a signal handler or a trace function may start one: between the kernel and the copy of its log."""
-    first, other = (
-        ([(0.0, 0.0)], [(1.0, 0.2)], [(0.0, 0.0, 0.0)]),
-        ([(0.0, 0.5)], [(0.3, 2.0)], [(5.0, 0.0, 0.0)]),
-    )
+    first = ([(0.0, 0.0)], [(1.0, 0.2)], [(0.0, 0.0, 0.0)])
+    other = ([(0.0, 0.5)], [(0.3, 2.0)], [(5.0, 0.0, 0.0)])
     want, run = sn.simulate(*first), simulation._run
 
     def interrupted(*arguments, **more):

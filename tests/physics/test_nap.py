@@ -91,11 +91,8 @@ def test_along_the_nap_is_one_piece_in_closed_form():
 
 def test_without_a_nap_nothing_changes_and_a_tiny_one_changes_little():
     for v, _ in rolls(10, 3, 0.1):
-        plain, named, tiny = (
-            rolled(v, 0.0),
-            sn.simulate([(0, 0)], [v], [(-v[1] / R, v[0] / R, 0)], None),
-            rolled(v, 1e-15),
-        )
+        plain, named = rolled(v, 0.0), sn.simulate([(0, 0)], [v], [(-v[1] / R, v[0] / R, 0)], None)
+        tiny = rolled(v, 1e-15)
         assert np.array_equal(plain.segments, named.segments)
         slowing = -DECEL * v / np.sqrt(v[0] * v[0] + v[1] * v[1])
         # to the bit

@@ -33,11 +33,8 @@ def by_small_steps(v, w, n, physics, steps=2000):
 def test_the_impact_with_a_nose_is_that_of_a_free_sphere_in_small_steps(mu):
     strike, rng = from_python(free.against), np.random.default_rng(0)
     for _ in range(20):
-        physics, turn, sin_phi = (
-            sn.Physics(e_j=rng.uniform(), mu_c=mu),
-            rng.uniform(0, 2 * np.pi),
-            rng.uniform(),
-        )
+        physics, turn = sn.Physics(e_j=rng.uniform(), mu_c=mu), rng.uniform(0, 2 * np.pi)
+        sin_phi = rng.uniform()
         n = np.array([np.cos(turn), np.sin(turn)])
         at = np.append(np.sqrt(1 - sin_phi**2) * n, sin_phi)
         v, w = rng.normal(size=3) * 2, rng.normal(size=3) * 100
@@ -77,12 +74,8 @@ def test_no_leg_of_a_flight_gains_energy(name):
     it, not with what the edge makes of it at the end of the step: its path once had 9 times the difference
     more."""
     table = sn.Table.preset(name)
-    physics, fly, strike, rng = (
-        sn.Physics(**table.ball),
-        from_python(pocket.fly),
-        from_python(free.against),
-        np.random.default_rng(0),
-    )
+    physics, fly, strike = sn.Physics(**table.ball), from_python(pocket.fly), from_python(free.against)
+    rng = np.random.default_rng(0)
     gap, R, phys, ends, short = from_python(pocket.jaw_gap), physics.R, physics.pack(), [], 0
     for _ in range(1500):
         k = int(rng.integers(len(table.falls)))

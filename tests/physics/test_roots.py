@@ -9,10 +9,8 @@ from snooker_env.physics import detection, roots
 from tests.kernels import from_python
 
 distance_crossing = from_python(detection.distance_crossing)
-quadratic_crossing, quartic_crossing = (
-    from_python(roots.quadratic_crossing),
-    from_python(roots.quartic_crossing),
-)
+quadratic_crossing = from_python(roots.quadratic_crossing)
+quartic_crossing = from_python(roots.quartic_crossing)
 
 
 def numbers(low, high):

@@ -112,10 +112,8 @@ def test_a_lapse_makes_all_five_errors_larger_and_no_other_stroke_changes():
 
 def test_the_chance_to_stay_within_is_that_of_the_errors_drawn():
     noise = Noise(aim_deg=0.1, lapse=0.07, lapse_factor=5.0)
-    errors, spread = (
-        np.radians(0.1) * noise.draw_errors(np.random.default_rng(4), 200_000)[:, 3],
-        spread_of(noise),
-    )
+    errors = np.radians(0.1) * noise.draw_errors(np.random.default_rng(4), 200_000)[:, 3]
+    spread = spread_of(noise)
     for within in (0.3, 1.0, 2.0, 6.0):
         chance = from_python(chance_within)(within * spread.core, spread)
         assert chance == pytest.approx((np.abs(errors) < within * spread.core).mean(), abs=0.004)

@@ -83,10 +83,8 @@ def test_without_a_pot_an_action_picks_a_line_of_the_choices(options):
         actions = np.tile([a0, 0.0, TOPS[top] / 0.4, 0.0], (40, 1))
         actions[:, 3] = (line + 0.5) / lines
         picks = np.full(len(own), choice_of(line, speed, SIDES.index(0.0), top))
-        meant, wanted = (
-            Planner(box).strokes_of(at, own, actions[own])[0],
-            chosen.strokes_of(at, own, picks)[0],
-        )
+        meant = Planner(box).strokes_of(at, own, actions[own])[0]
+        wanted = chosen.strokes_of(at, own, picks)[0]
         assert np.allclose(meant, wanted, rtol=0, atol=1e-9)
         seen |= {line} if len(own) else set()
     assert seen >= {0, 1}
@@ -139,11 +137,8 @@ def test_the_four_widest_pots_the_cue_ball_and_the_state_are_seen(options):
             wanted[:, 1] = -1.0
             for j in range((direct.ball[k] >= 0).sum() * at.on_table[k, CUE]):
                 ball, pocket, t = direct.ball[k, j], direct.pocket[k, j], direct.tolerance[k, j]
-                (x, y), (gx, gy), (px, py) = (
-                    at.positions[k, ball],
-                    direct.ghost[k, j],
-                    POCKET_AIMS[pocket, :2],
-                )
+                (x, y), (gx, gy) = at.positions[k, ball], direct.ghost[k, j]
+                (px, py) = POCKET_AIMS[pocket, :2]
                 to, on = np.array([gx - cx, gy - cy]), np.array([px - x, py - y])
                 turn = atan2(to[0] * on[1] - to[1] * on[0], to @ on)  # to the left
                 chance, far = chances[k, j], hypot(*to)

@@ -196,10 +196,8 @@ def test_planning_and_players_of_choices_have_the_masks_of_the_task():
 
 def test_chances_of_pots_fall_where_the_cue_must_be_raised():
     cushion, spread = at_the_cushion(1, 0.0, 7)[0], Spread(1e-3)
-    at, rails = (
-        Positions.of(posed({0: cushion[0], 1: cushion[1]}).get_state()),
-        sn.Options(cue="real").rules.rails,
-    )
+    at = Positions.of(posed({0: cushion[0], 1: cushion[1]}).get_state())
+    rails = sn.Options(cue="real").rules.rails
     level, raised = (prospects_of(at, spread, RULE_OF_THUMB, rails=r) for r in (NO_RAILS, rails))
     wider = prospects_of(at, Spread(1e-3 * (1.0 + np.radians(33.3) / TWICE)), RULE_OF_THUMB)
     assert raised[1][0, 0] == pytest.approx(wider[1][0, 0], rel=0.05)

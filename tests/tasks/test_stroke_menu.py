@@ -44,10 +44,8 @@ def wanted_of(at, options, pot, index):
     spread = Spread(core, noise.lapse, noise.lapse_factor)
     length = np.hypot(*(ghost[0] - at.positions[0, 0])) + np.hypot(*(to[0] - at.positions[0, ball[0]]))
     (chance,) = pot_chances(pot.tolerance[:, line], np.array([length]), spread)
-    out, left = (
-        np.empty((1, cue_ball_path.SEEN)),
-        (np.empty((1, 22, 2)), np.empty((1, 22), bool), np.empty(1, int)),
-    )
+    out = np.empty((1, cue_ball_path.SEEN))
+    left = (np.empty((1, 22, 2)), np.empty((1, 22), bool), np.empty(1, int))
     none, at_pot = (np.zeros((1, 5)), Noise().pack(0.02625)), np.array([[ball[0], pocket[0]]])
     balls, law = (at.positions, at.on_table, at.ball_on.copy()), law_of(Dynamics.of(rules), at)
     cue_ball_path.predict(balls, np.zeros(1, int), stroke, at_pot, *none, law, out, left)
