@@ -115,7 +115,7 @@ def without_checksum(content: dict[str, Any]) -> dict[str, Any]:
     """The content without its checksum; ValueError if it has none, or another."""
     rest = {name: value for name, value in dict(content).items() if name != CHECKSUM}
     if content.get(CHECKSUM) != _checksum(rest):
-        raise ValueError(f"it is damaged: its {CHECKSUM} is not that of the rest")
+        raise ValueError(f"it is damaged: its {CHECKSUM} does not match its content")
     return rest
 
 
@@ -150,7 +150,9 @@ def unzip(file: zipfile.ZipFile, part: zipfile.ZipInfo) -> bytes:
     with file.open(part) as packed:
         data = packed.read(part.file_size + 1)
     if len(data) != part.file_size:
-        raise ValueError(f"{part.filename} has not the {part.file_size:,} bytes that it should have")
+        raise ValueError(
+            f"{part.filename} does not have the {part.file_size:,} bytes that its directory says"
+        )
     return data
 
 
@@ -164,7 +166,7 @@ def _array(data: bytes) -> np.ndarray:
     shape, columns, kind = readers[version](file)
     size = len(data) - file.tell()
     if kind.hasobject or not kind.itemsize or math.prod(shape) * kind.itemsize != size:
-        raise ValueError(f"{size:,} bytes are no array of {kind} and shape {shape}")
+        raise ValueError(f"{size:,} bytes are not an array of {kind} and shape {shape}")
     order: Literal["F", "C"] = "F" if columns else "C"
     return np.ndarray(shape, kind, data, file.tell(), order=order).copy(order)
 

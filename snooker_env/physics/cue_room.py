@@ -189,17 +189,11 @@ def _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R):
 
 
 @kernel
-def _least(side, top, ax, ay, elevation, positions, on_table, rails, R):
-    """``least_elevation`` of a cue that points along (ax, ay)."""
-    return _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R)[0]
-
-
-@kernel
 def least_elevation(stroke, positions, on_table, rails, R):
     """The least elevation of the cue [rad] for a stroke of ball 0: its own or a higher one; pi/2: it cannot be played.
     ``stroke``: (side, top, aim of the cue, elevation); ``rails``: of ``rails_of``."""
     side, top, aim, elevation = stroke
-    return _least(side, top, cos(aim), sin(aim), elevation, positions, on_table, rails, R)
+    return _least_over(side, top, cos(aim), sin(aim), elevation, positions, on_table, rails, R)[0]
 
 
 @kernel
@@ -216,11 +210,11 @@ def _moved_tip(side, top, ax, ay, positions, on_table, rails, R, max_offset):
     """The tip nearest to (side, top), on a way up to the miscue limit and along that to the top, that fits."""
     highest = sqrt(max(max_offset * max_offset - side * side, 0.0))
     low, high = 0.0, 1.0
-    straight = _least(side, highest, ax, ay, 0.0, positions, on_table, rails, R) <= STEEPEST
+    straight = _least_over(side, highest, ax, ay, 0.0, positions, on_table, rails, R)[0] <= STEEPEST
     for _ in range(_HALVINGS):
         part = 0.5 * (low + high)
         across, up = _tip_at(part, straight, side, top, highest, max_offset)
-        fits = _least(across, up, ax, ay, 0.0, positions, on_table, rails, R) <= STEEPEST
+        fits = _least_over(across, up, ax, ay, 0.0, positions, on_table, rails, R)[0] <= STEEPEST
         low, high = (low, part) if fits else (part, high)
     return _tip_at(high, straight, side, top, highest, max_offset)
 
@@ -236,11 +230,11 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
         return stroke, FREE
     speed, side, top, aim, elevation = stroke
     ax, ay, done = cos(aim), sin(aim), FREE
-    least = _least(side, top, ax, ay, elevation, positions, on_table, rails, R)
+    least = _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R)[0]
     if least > max(STEEPEST, elevation):
         done = MOVED
         side, top = _moved_tip(side, top, ax, ay, positions, on_table, rails, R, max_offset)
-        least = _least(side, top, ax, ay, elevation, positions, on_table, rails, R)
+        least = _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R)[0]
         if least > max(STEEPEST, elevation):
             done |= UNPLAYABLE
     if least > elevation:

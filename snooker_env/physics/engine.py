@@ -597,15 +597,6 @@ def run(balls, aloft, lift, setup, max_events, log, paths, forecast, series, so_
 
 
 @kernel
-def _flies(aloft):
-    """Whether a shot begins with a ball in the air, or on its way up."""
-    flies = False
-    for i in range(aloft.shape[0]):
-        flies |= aloft[i, 0] > 0.0 or aloft[i, 1] != 0.0
-    return flies
-
-
-@kernel
 def _is_sound(balls, aloft, k, reach, boundaries):
     """Whether shot k may begin with these places, speeds and spins; ``aloft``: of all shots, or None."""
     positions, velocities, spins, on_table, _potted = balls
@@ -619,14 +610,6 @@ def _is_sound(balls, aloft, k, reach, boundaries):
             if not abs(spins[i, c]) <= MOST_SPIN:
                 return False
     return layout_fault(positions, on_table, reach, boundaries)[1] == SOUND
-
-
-@kernel
-def _kick(phys, friction, to):
-    """Copy constants to ``to``, with a constant friction between balls and without tables of their impacts."""
-    for c in range(CONSTANTS):
-        to[c] = phys[c]
-    to[P_MU_BB_LEAST], to[P_MU_BB_EXTRA], to[P_BALLS] = friction, 0.0, 0.0
 
 
 @entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion, collide_from_above))
@@ -659,13 +642,17 @@ def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
         law = Law(phys[min(k, phys.shape[0] - 1)], fidelity, n_steps)
         first = law
         if kicks.shape[0] and kicks[k] > 0.0:
-            _kick(law.phys, kicks[k], bad)
+            for c in range(CONSTANTS):  # with a constant friction, and without tables of the impacts of balls
+                bad[c] = law.phys[c]
+            bad[P_MU_BB_LEAST], bad[P_MU_BB_EXTRA], bad[P_BALLS] = kicks[k], 0.0, 0.0
             first = Law(bad, fidelity, n_steps)
         world, its = Setup(law, first, boundaries, reach, clear), Log(time[k], what[k], segments[k])
         if aloft is None:
             found = run(shot, None, inf, world, max_events, its, paths, forecast, series, None)
         else:
-            found, flies = (np.int64(events.OK), np.int64(0), np.int64(0), 0.0), _flies(aloft[k])
+            found, flies = (np.int64(events.OK), np.int64(0), np.int64(0), 0.0), False
+            for i in range(n):  # in the air, or on its way up
+                flies |= aloft[k, i, 0] > 0.0 or aloft[k, i, 1] != 0.0
             if not flies:
                 found = run(shot, None, SETTLE, world, max_events, its, paths, forecast, series, None)
             if flies or found[0] == _LIFTS:

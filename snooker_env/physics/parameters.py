@@ -245,7 +245,7 @@ class Physics:
                 allowed = f"must be > 0 to simulate a shot, {bounds}: without it no ball comes to rest"
                 raise refuse(f"physics.{name}", getattr(self, name), allowed)
         if self.mu_r * self.g - abs(self.nap) < _LEAST_DECELERATION:
-            allowed = f"must leave a ball that rolls with it {_LEAST_DECELERATION:g} m/s^2 of mu_r g = {self.mu_r * self.g:g} m/s^2"
+            allowed = f"must be at least {_LEAST_DECELERATION:g} m/s^2 below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
             raise refuse("physics.nap", self.nap, allowed)
         if 0 < self.spin_decel < _LEAST_DECELERATION:
             allowed = f"must be 0 (a spin about the vertical stays) or at least {_LEAST_DECELERATION:g} rad/s^2 to simulate a shot"

@@ -16,7 +16,7 @@ from ..physics.impact import contact
 from ..physics.parameters import FARTHEST, FASTEST, MOST_SPIN, Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from .count import count
-from .shot import EVENT, Shot, ShotBatch, SimulationError
+from .shot import EVENT, WHY, Shot, ShotBatch, SimulationError
 
 MAX_EVENTS = 100_000
 MAX_BALLS = 4096  # of one shot: the times of all pairs are stored (134 MB)
@@ -299,9 +299,4 @@ def _failure(out, k, events):
     if events is not None and len(events):
         time, kind, i, j = events[-1].tolist()
         last = f"; the last was {EventKind(kind).name} of {i} and {j} at {time:.6f} s"
-    why = {
-        Status.TOO_MANY_EVENTS: "did not come to rest in time; a ball may be held against another: allow more max_events",
-        Status.IMPACT_UNSOLVED: "holds an impact that did not end; try another fidelity, or less extreme friction",
-        Status.ASTRAY: "holds a ball that left the table through a cushion, or where the table is open",
-    }[Status(out.status[k])]
-    return SimulationError(f"shot {k} {why} (after {out.n_events[k]} events{last})")
+    return SimulationError(f"shot {k} {WHY[Status(out.status[k])]} (after {out.n_events[k]} events{last})")

@@ -22,7 +22,7 @@ from ..physics.engine import EventKind, Status
 from . import declarations, stroke
 from .kernel_arrays import OutputArrays, PlayedArrays, TableArrays
 from .observations import FRAME_SIZE, REPLACED_SIZE, SIZE, observe_into
-from .rewards import FRAMES_PAID, earnings, frame_reward_of
+from .rewards import FRAMES_PAID, frame_reward_of
 from .tables import COUNTS, I_BREAK, I_FOULS, REALS, Tables, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
@@ -243,9 +243,10 @@ def _write_frame_info(k, row, player, replies, out):
 
 @kernel
 def _worth(row, reward):
-    """What the agent has earned so far, as the ``reward`` counts it."""
-    frames_lead = row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
-    return earnings(reward, columns.lead_of(row, AGENT), frames_lead)
+    """What the agent has earned so far, as the ``reward`` counts it: its lead in frames, or in points."""
+    if reward == FRAMES_PAID:
+        return row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
+    return columns.lead_of(row, AGENT)
 
 
 MOST_STEPS = 20  # steps of an episode of one stroke at most: a player who fouls, or is sent back, plays again

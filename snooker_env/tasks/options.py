@@ -43,7 +43,7 @@ MAX_STROKES = 1000
 284 on average, at most 560 in 2,000 frames (docs/environment/frames.md); some players never finish."""
 FRAMES = 7  # default length of a match: best of 7
 OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
-object: a player or an OpponentPool; players.SeenPlayer makes a player of what acts on observations"""
+object: a player or an OpponentPool; players.SeenPlayer wraps an object that acts on observations"""
 OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
 NEVER = 2**62  # stands for no limit of strokes or steps
 
@@ -121,14 +121,13 @@ def _order_says(says: object) -> tuple[str, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. ValueError, which
-    names the field, if one is of the wrong type or conflicts with another; TypeError for an unknown one.
+    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. ValueError names a
+    field of the wrong type or in conflict with another; TypeError an unknown one.
 
     Parameters
     ----------
     task : str, default "visit"
-        "visit": build a break until the first miss or foul. "frame": play a whole frame. "match": the best of several;
-        a match has everything that a frame has.
+        "visit": build a break until the first miss or foul. "frame": play a whole frame. "match": the best of several.
     layout : str, default "default"
         How tables are dealt (docs/environment/layouts.md): "opened", "held_out", "safety", "held_out_safety", "escape",
         "held_out_escape", "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy",
@@ -163,11 +162,9 @@ class Options:
     fidelity : str, default "standard"
         How impacts are solved (docs/physics/fidelity.md): "fast", "standard", "reference" or "euler:N".
     cue : str, default "free"
-        "free": the cue passes through rails and balls. "real": it is raised over them as far as it must be, and errors
-        grow with its elevation.
+        "free": the cue passes through rails and balls. "real": it is raised over them, and errors grow with its elevation.
     conditions : str, default "fixed"
-        "drawn": each episode draws eight constants of its table, in place of those of ``physics``, with its own random
-        stream (docs/environment/conditions.md). Infos hold them.
+        "drawn": each episode draws eight constants of its table (docs/environment/conditions.md). Infos hold them.
     observe_conditions : bool, default False
         Whether observations hold the constants drawn, from -1 to 1.
     one_stroke : bool, default False
@@ -184,9 +181,8 @@ class Options:
         Of a frame: strokes of both players after which the referee stops it and its match; None: never.
     says : sequence of str, default ()
         Of a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a free ball;
-        else the one struck first), "decision" (after a foul; box actions only), "concede", "claim" (the frame, where
-        the rules allow it) and "lot" (whether the winner of the lot for a re-spotted black lets the other player begin;
-        else it begins).
+        else the one struck first), "decision" (after a foul; box actions only), "concede", "claim" (the frame, if the
+        rules allow it) and "lot" (whether the winner of the lot for a re-spotted black lets the other player begin).
     game : str, default "snooker"
         Of a frame: "snooker", "six_red" or "shoot_out", the rules of the game (docs/environment/rules.md).
     time_to_play : float, default 9.0
@@ -279,7 +275,9 @@ class Options:
                 raise refuse("time_to_play", self.time_to_play, allowed)
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             if not isinstance(self.opponent, str | Path) or not str(self.opponent):
-                allowed = f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them"
+                allowed = (
+                    f"{OPPONENTS}; Options hold text only: pass an object to the environment, beside them"
+                )
                 raise refuse("opponent", self.opponent, allowed)
             object.__setattr__(self, "opponent", str(self.opponent))
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
@@ -307,7 +305,7 @@ class Options:
             try:
                 physics_with(physics, end).check_stopping()
             except ValueError as error:
-                allowed = f"must be 'fixed' with these physics, which do not go with a table drawn: {error}"
+                allowed = f"must be 'fixed' with these physics, which do not suit every table drawn: {error}"
                 raise refuse("conditions", "drawn", allowed) from None
         return drawn, observed
 

@@ -19,7 +19,7 @@ from ..physics.engine import EventKind, Status
 from ..physics.events import OFF_TABLE
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
+from ..simulation import EVENT, MAX_EVENTS, WHY, Shot, SimulationError
 from ..simulation.count import count
 from . import discrete_actions
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
@@ -42,11 +42,6 @@ FIRST, TOUCHING, MOVED, DOWN, OFF, JUMPED, CLEAR_PATH, FULL_PATH, ATTEMPT = rang
 PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(9, 16)
 SEEN_COLUMNS = 16
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
-_WHY = {
-    Status.TOO_MANY_EVENTS: f"did not come to rest within {MAX_EVENTS} events: a ball may be held against another; try other physics",
-    Status.IMPACT_UNSOLVED: "holds an impact that did not end: try another fidelity, or less extreme friction",
-    Status.ASTRAY: "holds a ball that left the table through a cushion",
-}
 
 
 @kernel
@@ -285,14 +280,10 @@ class ShotBuffers:
         return Shot(*ends, events, segments, physics, table)
 
 
-def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
-    """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each."""
-    count(m)
-    _simulate(buffers, m, rules, phys)
-
-
-def _simulate(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
-    """The same without counting them."""
+def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats, *, again: bool = False) -> None:
+    """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each. Shots that are
+    played ``again`` count once."""
+    count(0 if again else m)
     table = rules.table
     buffers.enlarged = {}
     balls = buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted
@@ -312,10 +303,10 @@ def run_again(
     while status == Status.LOG_FULL:
         one = buffers.again(j, 4 * one.log)
         one.r[0], one.here[0] = positions, on_table
-        _simulate(one, 1, rules, phys)  # counted already
+        run(one, 1, rules, phys, again=True)
         status = one.status[0]
     if status != Status.OK:
-        raise SimulationError(f"the shot on table {k} {_WHY[Status(status)]}")
+        raise SimulationError(f"the shot on table {k} {WHY[Status(status)]}")
     buffers.enlarged[j] = one
     return one
 
@@ -326,5 +317,5 @@ def with_path(
     """Play shot j, which came to rest, once more with its path, uncounted; returns its own buffers."""
     one = buffers.again(j, buffers.log, path=True)
     one.r[0], one.here[0] = positions, on_table
-    _simulate(one, 1, rules, phys)
+    run(one, 1, rules, phys, again=True)
     return one

@@ -24,7 +24,7 @@ from .foreseen import Errors, foresee
 from .kernel_arrays import C_END_MASS, Packed
 from .noise import Noise
 from .options import NEVER, Rules
-from .played import Played, judgement_of, room_of, strike_of
+from .played import Played, fields_of
 from .states import FrameState, State
 from .stroke_menu import Menu, menu_masks
 
@@ -233,12 +233,12 @@ class Tables(ABC):
         game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
         if seen[stroke.SCORED]:
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
-        shot = {"shot": self.shot(k, buffers, j), "cue": strike_of(buffers, j), "room": room_of(buffers, j)}
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
         after = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
-        who = {"cue_kind": self.rules.cue, "noise": self.noise_of(seen[stroke.PLAYER])}
-        return Played(**shot, **who, **balls, **after, **judgement_of(seen), **standing)
+        shot, who = self.shot(k, buffers, j), self.noise_of(seen[stroke.PLAYER])
+        own = {"shot": shot, "cue_kind": self.rules.cue, "noise": who}
+        return Played(**own, **balls, **after, **fields_of(buffers, j), **standing)
 
     def noise_of(self, player: int) -> Noise:
         """The errors of a player."""

@@ -219,6 +219,7 @@ class SeesNothing(Sees):
 
 
 OPTIONS_OF = "key of the options of player "
+ACTS = (Sees(), lambda observation, rng: MISS)
 
 
 @pytest.mark.parametrize(
@@ -230,10 +231,9 @@ OPTIONS_OF = "key of the options of player "
         (Soft, r"opponent = <class '.*Soft'>: must be an instance and not the class: Soft\(...\)"),
         (OpponentPool, "opponent = <class '.*OpponentPool'>: must be an instance"),
         (7, "opponent = 7: must be one of 'none', 'random', 'ghost_ball', the name of another player"),
-        (Sees(), "opponent = .*: must be one of .*; players.SeenPlayer makes a player of what acts"),
-        (
-            lambda observation, rng: MISS,
-            "opponent = .*: must be one of .*; players.SeenPlayer makes a player",
+        *(
+            (one, "opponent = .*: must be one of .*; players.SeenPlayer wraps an object that acts")
+            for one in ACTS
         ),
         (f"{__name__}:SeesNothing", f"opponent = '.*SeesNothing': {OPTIONS_OF}SeesNothing"),
     ],
