@@ -118,10 +118,8 @@ def test_two_nodes_play_every_kind_of_player(where, folder, monkeypatch):
 def test_frames_of_self_play_are_the_same(where):
     shared = {"options": {"cue": "real", "max_strokes": 6}, "layers": None, "chance": None}
     shared |= {"budget": 30, "explore": 0.2, "replies": False}
-    parts = [
-        (shared, {"noise": LEVELS["professional"].scale(2.0), "seed": k, "many": 2, "other": None})
-        for k in (3, 5)
-    ]
+    noise = LEVELS["professional"].scale(2.0)
+    parts = [(shared, {"noise": noise, "seed": k, "many": 2, "other": None}) for k in (3, 5)]
     for one, other in zip(*(in_order(w.play_parts(frames, parts)) for w in (where, Here())), strict=True):
         assert all(np.array_equal(one[name], other[name]) for name in other)
 

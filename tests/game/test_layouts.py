@@ -115,9 +115,8 @@ def test_an_escape_is_from_a_snooker(name, seed):
 def test_no_stored_table_is_of_both_parts(name):
     tables, (trained, held_out) = bank(name), split_bank(name)
     assert len(held_out) == BANKS[name] and trained.stop == held_out.start and trained.start == 0
-    cues = [
-        np.sort(np.abs(tables[part.start : part.stop, 0]).round(7), axis=1) for part in (trained, held_out)
-    ]
+    parts = (np.abs(tables[part.start : part.stop, 0]).round(7) for part in (trained, held_out))
+    cues = [np.sort(part, axis=1) for part in parts]
     assert not set(map(tuple, cues[0].tolist())) & set(map(tuple, cues[1].tolist()))
 
 
@@ -131,9 +130,8 @@ def test_a_stored_table_is_dealt_as_it_is_or_mirrored():
             same = (plan.tables[split_bank("safety")[1]][:, on_table] == made[on_table]).all((1, 2))
             if same.any():
                 seen.add(mirrored)
-                assert np.array_equal(
-                    on_table, ~np.isnan(plan.tables[split_bank("safety")[1]][same][0, :, 0])
-                )
+                stored = plan.tables[split_bank("safety")[1]][same][0, :, 0]
+                assert np.array_equal(on_table, ~np.isnan(stored))
                 break
         else:
             raise AssertionError(seed)

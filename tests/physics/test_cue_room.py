@@ -29,9 +29,8 @@ NONE = np.empty(0)
 
 def least(tip, aim, positions, rails=RAILS, elevation=0.0):
     positions = np.array(positions, float)
-    return _LEAST(
-        (*map(float, tip), float(aim), float(elevation)), positions, np.ones(len(positions), bool), rails, R
-    )
+    stroke, here = (*map(float, tip), float(aim), float(elevation)), np.ones(len(positions), bool)
+    return _LEAST(stroke, positions, here, rails, R)
 
 
 def in_room(stroke, positions, rails=RAILS):
@@ -132,9 +131,8 @@ def test_what_the_cue_passes_over_is_what_lets_it_down_when_it_is_gone():
             without = on.copy()
             without[over] = False
             assert lie(without) < lie(on)
-            assert behind == pytest.approx(
-                -(positions[over] - positions[0]) @ [np.cos(straight), np.sin(straight)]
-            )
+            along = [np.cos(straight), np.sin(straight)]
+            assert behind == pytest.approx(-(positions[over] - positions[0]) @ along)
         seen[min(over, 1)] += 1
         seen[MOVED] += bool(done & MOVED)
     assert min(seen.values()) > 50, seen

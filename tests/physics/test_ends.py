@@ -14,9 +14,8 @@ Z = (0.0, 0.0, 0.0)
 def test_after_the_end_everything_is_at_rest_however_late_one_asks():
     p = [(0.0, 0.0), (0.3, 0.01), (0.8, 1.7), (0.0, 5.0)]
     v = [(2.0, 0.5), (0.0, 0.0), (0.6, 0.6), (0.0, 0.0)]
-    shot = sn.simulate(
-        p, v, [(0, 0, 80.0), (0, 0, 0), (0, 0, 0), (9.0, 9.0, 9.0)], on_table=[True, True, True, False]
-    )
+    w = [(0, 0, 80.0), (0, 0, 0), (0, 0, 0), (9.0, 9.0, 9.0)]
+    shot = sn.simulate(p, v, w, on_table=[True, True, True, False])
     assert shot.potted.tolist() == [-1, -1, 3, -1]
     for t in (shot.duration, shot.duration + 1e-9, 100.0, 1e9, 1e300):
         r, v, w = shot.at(t)
@@ -42,18 +41,15 @@ def test_a_spin_has_ended_at_the_very_end_of_the_shot():
 def test_without_spin_decay_a_shot_ends_when_nothing_moves_and_spin_stays():
     spinning = sn.simulate([(0.0, 0.0)], [(0.0, 0.0)], [(0.0, 0.0, 30.0)], physics={"spin_decel": 0.0})
     assert spinning.duration == 0.0 and spinning.at(1e6)[2].tolist() == [[0.0, 0.0, 30.0]]
-    shot = sn.simulate(
-        [(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 30.0)], physics={"spin_decel": 0.0}, table=None
-    )
+    spinning = [(0.0, 0.0, 30.0)]
+    shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], spinning, physics={"spin_decel": 0.0}, table=None)
     last = sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], np.zeros((1, 3)), physics={"spin_decel": 0.0}, table=None)
     assert shot.duration == last.duration == shot.events["time"][-1] > 5
     for t in (shot.duration, 100.0, 1e9):
         r, v, w = shot.at(t)
         assert np.array_equal(r, shot.positions) and not v.any() and w.tolist() == [[0.0, 0.0, 30.0]]
-    assert (
-        sn.simulate([(0.0, 0.0)], [(0.0, 0.0)], [(0.0, 0.0, 30.0)], physics={"spin_decel": 1.0}).duration
-        == 30.0
-    )
+    slow = sn.simulate([(0.0, 0.0)], [(0.0, 0.0)], [(0.0, 0.0, 30.0)], physics={"spin_decel": 1.0})
+    assert slow.duration == 30.0
 
 
 def test_the_fastest_and_the_slowest_balls():

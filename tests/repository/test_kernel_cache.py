@@ -122,9 +122,8 @@ def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(os.path, "expanduser", lambda path: path)
     monkeypatch.chdir(tmp_path)
-    with pytest.warns(
-        RuntimeWarning, match="no home folder: .*every process compiles for itself; set NUMBA_CACHE_DIR"
-    ):
+    says = "no home folder: .*every process compiles for itself; set NUMBA_CACHE_DIR"
+    with pytest.warns(RuntimeWarning, match=says):
         assert cache.cache_folder() is None
     assert not list(tmp_path.iterdir())
 

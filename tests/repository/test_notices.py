@@ -48,9 +48,8 @@ def toys(tmp_path):
 
     def run(code, **variables):
         variables = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "SNOOKER_ENV_QUIET": None} | variables
-        out, err = python(
-            "from toys import *\n" + code, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]), **variables
-        )
+        paths = os.pathsep.join([str(tmp_path), str(ROOT)])
+        out, err = python("from toys import *\n" + code, PYTHONPATH=paths, **variables)
         assert out == ""
         return err
 

@@ -157,9 +157,8 @@ def test_without_a_place_in_its_action_it_stands_where_ghost_ball_would(anywhere
 def test_with_a_free_ball_any_colour_is_on_for_a_player_of_visits():
     """Snookered by a foul on the only red: a player blind to the free ball strikes at the hidden red."""
     one = Sees(action="discrete", observation="flat")
-    env = frame_state(
-        frame_env(opponent=SeenPlayer(one)), HIDDEN, {"striker": 0, "phase": "choice", "free_ball": True}
-    )
+    choice = {"striker": 0, "phase": "choice", "free_ball": True}
+    env = frame_state(frame_env(opponent=SeenPlayer(one)), HIDDEN, choice)
     env.tables.game[0, STRIKER] = 1  # the opponent has the free ball
     buffers, _ = asked(env)
     assert one.seen[-1][0, 110 + 1] == 1.0 and env.frame.free_ball and env.ball_on == BallOn.RED

@@ -152,11 +152,9 @@ def test_the_four_widest_pots_the_cue_ball_and_the_state_are_seen(options):
             none += not wanted[0, 0]
             cue = cx / 0.889, cy / 1.7845
             assert observed[k, :61] == pytest.approx([*wanted.ravel(), *cue, *flat[k, 110:]], abs=2e-6)
-        observed = env.step(
-            env.action_masks().argmax(axis=1)
-            if env.options.action == "discrete"
-            else rng.uniform(-0.2, 0.2, (40, 4))
-        )[0]
+        chooses = env.options.action == "discrete"
+        a = env.action_masks().argmax(axis=1) if chooses else rng.uniform(-0.2, 0.2, (40, 4))
+        observed = env.step(a)[0]
     assert len(POT_ENTRIES) == 12
     assert none > 0 and len(pockets) >= (4 if options.get("layout") != "break_off" else 0)
 
@@ -164,9 +162,8 @@ def test_the_four_widest_pots_the_cue_ball_and_the_state_are_seen(options):
 def test_of_equal_pots_the_lower_ball_comes_first_then_the_lower_pocket():
     env = sn.SnookerEnv(noise="club")
     for reds in (((-0.3, 0.5), (0.3, 0.5)), ((0.3, 0.5), (-0.3, 0.5))):
-        observed, _ = env.reset(
-            options={"position": Position(cue=(0.0, 0.0), reds=reds, black=(0.0, 1.4605))}
-        )
+        position = Position(cue=(0.0, 0.0), reds=reds, black=(0.0, 1.4605))
+        observed, _ = env.reset(options={"position": position})
         rows = observed[:48].reshape(4, 12)
         assert rows[0, 3] == rows[1, 3] > 0.0
         assert rows[:2, 5] == pytest.approx([x / 0.889 for x, _ in reds], abs=1e-6)

@@ -95,9 +95,8 @@ def test_what_is_foreseen_of_each_stroke_at_a_pot(options):
     seen, state = rows_of(env.reset(seed=2)[0])
     at = Positions.of(env)
     assert np.array_equal(state, at.observations()[:, BALLS_SIZE:])
-    chance, points, prospects, promise = (
-        seen[..., COLUMN[name]] for name in ("chance", "points", "prospects", "promise")
-    )
+    names = "chance", "points", "prospects", "promise"
+    chance, points, prospects, promise = (seen[..., COLUMN[name]] for name in names)
     told = promise > 0.0
     assert told.any()
     assert promise[told] == pytest.approx((chance * (7.0 * points + 35.0 * prospects) / 42.0)[told], rel=1e-5)
@@ -177,9 +176,8 @@ def test_all_that_is_seen_lies_in_the_space(speeds):
 def test_threads_and_vectors_change_no_bit():
     seen = []
     for threads in (1, 3):
-        env = sn.SnookerVectorEnv(
-            40, **MENU, noise="club", cue="real", threads=threads, autoreset_mode="SameStep"
-        )
+        options = MENU | {"noise": "club", "cue": "real", "autoreset_mode": "SameStep"}
+        env = sn.SnookerVectorEnv(40, **options, threads=threads)
         observed, rng, each = env.reset(seed=3)[0], np.random.default_rng(0), []
         for _ in range(4):
             each.append(observed)
@@ -236,10 +234,7 @@ def test_the_decisions_after_a_foul(choice, miss):
     (rows,), _ = rows_of(env.observe(striker), CHOICES + 50)
     assert env.action_mask(striker)[156:].tolist() == rows[156:, 0].tolist() == [1, back]
     assert rows[156:, COLUMN["speed"]].tolist() == [-1.0, 1.0]
-    assert rows[156:, COLUMN["pot"]].tolist() == [
-        -1.0,
-        -1.0,
-    ]
+    assert rows[156:, COLUMN["pot"]].tolist() == [-1.0, -1.0]
     before, lies = env.strokes, env.positions[0]
     env.step(choice)
     if choice == 7 or (choice == 157 and not back):
