@@ -33,7 +33,7 @@ FRAME = {"task": "frame", "cue": "real", "miss": "clear_path"}  # options of a f
 
 
 def play_episode(who: Player, seed: int, **options: object) -> SnookerEnv:
-    """A ``SnookerEnv`` after a whole visit or frame, with its history; a visit is that of ``play_visits``."""
+    """A ``SnookerEnv`` after a whole visit or frame, with its history; visits are those of ``play_visits``."""
     reads = VISITS if options.get("task", "visit") == "visit" else FRAMES
     every: dict[str, Any] = {**options, "action": "box", "observation": "flat", **reads}
     env = SnookerEnv(**every)
@@ -61,30 +61,30 @@ def parser() -> argparse.ArgumentParser:
     """The command line."""
     p = argparse.ArgumentParser(prog=f"python -m {NAME}", description=str(__doc__).split("\n\n")[0])
     add = p.add_argument
-    add("--agent", help=f"a player, a model's .zip or MODULE:CLASS [{USUAL}; with --frame {TACTICIAN}]")
+    add("--agent", help=f"player: a name, a model's .zip or MODULE:CLASS [{USUAL}; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
-    add("--opponent", help="its player [the agent itself]")
-    add("--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser")
-    add("--layout", default="held_out", help="of the tables [%(default)s: those of judging]")
-    add("--noise", default="professional", help="execution noise [%(default)s]")
-    add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table [%(default)s]")
-    at_least = "show the first visit with at least so many points, or the longest"
+    add("--opponent", help="player of the other side [the agent itself]")
+    add("--out", type=Path, help="file to write: .html, .json, .mp4 or .gif [a page, opened in the browser]")
+    add("--layout", default="held_out", help="layout of the tables [%(default)s, as in judging]")
+    add("--noise", default="professional", help="execution errors [%(default)s]")
+    add("--seed", type=int, default=HELD_OUT_SEED, help="seed of the first table [%(default)s]")
+    at_least = "show the first visit with at least so many points, else the best one"
     add("--at-least", type=int, default=0, metavar="POINTS", help=at_least)
-    add("--tries", type=int, default=200, help="most visits played to find it [%(default)s]")
-    add("--speed", type=float, default=1.0, help="of a film, over that of the play")
-    add("--size", help="of a film, WIDTHxHEIGHT, both even")
-    add("--fps", type=float, help="pictures a second of a film")
+    add("--tries", type=int, default=200, help="most visits to play in search of it [%(default)s]")
+    add("--speed", type=float, default=1.0, help="speed of a film, relative to the play [%(default)s]")
+    add("--size", help="size of a film, WIDTHxHEIGHT, both even")
+    add("--fps", type=float, help="pictures per second of a film")
     add_model_options(p)
     return p
 
 
 def _film_options(args: argparse.Namespace) -> dict[str, Any]:
-    """The options of the film that is wanted, {} for a page; ValueError for arguments that do not agree."""
+    """The options of a film, {} for a page; ValueError if arguments conflict."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     if suffix not in SUFFIXES:
         raise refuse("out", str(args.out), f"must end in {', '.join(SUFFIXES)}")
     if suffix in FILMS:
-        encoder_file()  # what is missing is said before anything is played
+        encoder_file()  # a missing library is reported before anything is played
     film: dict[str, Any] = {}
     for name, usual, most in (("speed", 1.0, 100.0), ("fps", None, 240.0)):
         if (value := getattr(args, name)) != usual:
@@ -92,7 +92,7 @@ def _film_options(args: argparse.Namespace) -> dict[str, Any]:
     if args.size is not None:
         width, _, height = args.size.partition("x")
         if not (width.isdigit() and height.isdigit()) or int(width) % 2 or int(height) % 2:
-            even = "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders want them"
+            even = "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders require"
             raise refuse("size", args.size, even)
         film["size"] = int(width), int(height)
     if film and suffix not in FILMS:
@@ -116,7 +116,7 @@ def _film_options(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
-    """The environment after the visit or frame that is wanted, or the longest visit; its seed and its players."""
+    """The environment after the frame, or after the first visit with enough points, else the best; seed and players."""
     name = args.agent or (TACTICIAN if args.frame else USUAL)
     other = args.opponent or name
     # a model of others opposite acts as it was trained to, not as the table's options say
@@ -155,12 +155,12 @@ def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     print(*describe(played), sep="\n")
     print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")
     if env.points < args.at_least:
-        print(f"No visit of {args.at_least} points in {args.tries} tries: this one is the longest.")
+        print(f"No visit reached {args.at_least} points in {args.tries} tries; this is the best one.")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
     played.save(file, **film)
     print(f"written: {file}", flush=True)
     if not args.out and not webbrowser.open(file.as_uri()):
-        print("No browser was found: open this file in one, or choose its place with --out break.html")
+        print("No browser was found: open this file in one, or choose another place with --out break.html")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

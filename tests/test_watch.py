@@ -64,7 +64,7 @@ def test_the_longest_visit_is_shown_where_none_is_long_enough(tmp_path, capsys):
     said = capsys.readouterr().out
     assert f"table {seeds[int(np.argmax(points))]}, " in said
     assert f"ghost_ball: {max(points)} points in " in said
-    assert "No visit of 140 points in 6 tries: this one is the longest." in said and out.is_file()
+    assert "No visit reached 140 points in 6 tries; this is the best one." in said and out.is_file()
 
 
 def test_a_whole_frame_is_played_by_both(tmp_path, capsys):
