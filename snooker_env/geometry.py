@@ -318,7 +318,7 @@ _BEDS = {
     "uk8": _bed(84 * _INCH, 42 * _INCH, _UK_CORNER, _UK_MIDDLE, R=_INCH, M=0.116, sin_theta=0.4),
     # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5 to
     # 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. In them: mouths
-    # and shelves of Alciatore's TP 3.6 and 3.5; his fall radii too, which the WPA leaves open.
+    # and shelves of Alciatore's TP 3.6 and 3.5; the fall radii too, which the WPA leaves open.
     "pool9": _bed(100 * _INCH, 50 * _INCH, _POOL_CORNER, _POOL_MIDDLE, R=1.125 * _INCH, **_POOL_BALL),
     # UMB: 2.84 x 1.42 m, balls of 61 to 61.5 mm and 205 to 220 g, noses 37 mm high.
     "carom": _bed(2.84, 1.42, None, None, R=0.03075, M=0.2125, sin_theta=37.0 / 30.75 - 1.0),

@@ -198,7 +198,7 @@ class _StrokesNet(torch.nn.Module):
         torch.nn.init.orthogonal_(self.score.weight, 0.01)
 
     def read(self, seen: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
-        """What is made of each stroke (b, K, HIDDEN), whether it is there (b, K), and the state (b, S)."""
+        """The features of each stroke (b, K, HIDDEN), whether it is there (b, K), and the state (b, S)."""
         strokes = seen[:, : self.choices * self.columns].view(-1, self.choices, self.columns)
         state = seen[:, self.choices * self.columns :]
         first = torch.tanh(self.of_stroke(strokes) + self.of_state(state)[:, None])
@@ -209,14 +209,14 @@ class _StrokesNet(torch.nn.Module):
         return self.score(made)[..., 0]
 
     def judge(self, made: torch.Tensor, there: torch.Tensor, state: torch.Tensor) -> torch.Tensor:
-        """What is made of positions (b, HIDDEN)."""
+        """The features of positions (b, HIDDEN)."""
         here = there[..., None]
         mean = (made * here).sum(1) / here.sum(1).clamp(min=1)
         most = torch.where(here, made, -1.0).amax(1)
         return torch.tanh(self.position(torch.cat([mean, most, state], 1)))
 
     def forward(self, features: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """Logits of the strokes (b, K), and what is made of positions (b, HIDDEN)."""
+        """Logits of the strokes (b, K), and the features of positions (b, HIDDEN)."""
         made, there, state = self.read(features)
         return torch.where(there, self.scores(made), _AWAY), self.judge(made, there, state)
 
@@ -226,7 +226,7 @@ class _StrokesNet(torch.nn.Module):
         return torch.where(there, self.scores(made), _AWAY)
 
     def forward_critic(self, features: torch.Tensor) -> torch.Tensor:
-        """What is made of positions alone."""
+        """The features of positions alone."""
         return self.judge(*self.read(features))
 
 

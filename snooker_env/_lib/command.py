@@ -17,7 +17,7 @@ def stop_with_reader() -> Iterator[None]:
         try:
             yield
         finally:
-            sys.stdout.flush()  # what is left would be lost without a word, or be said when Python ends
+            sys.stdout.flush()  # text left in the buffer would be lost in silence, or reported as Python ends
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise SystemExit(1) from None

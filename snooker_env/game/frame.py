@@ -433,7 +433,7 @@ def _pack(frame):
 
 
 def _unpack(row, rules, miss, layout):
-    """The ``Frame`` of a row; ``layout``: what is stored with it, if anything is."""
+    """The ``Frame`` of a row; ``layout``: the one stored with it, if any."""
     at = row.tolist()
     saved = None
     if at[columns.SAVED]:

@@ -129,7 +129,7 @@ class Actions:
     def check(self, action: Action) -> list[float]:
         """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1].
 
-        What is up to ``ROUNDING`` outside is clipped."""
+        Components up to ``ROUNDING`` outside are clipped."""
         a = self._read("action", action, (self.size,)).tolist()
         if not all(abs(x) <= 1.0 + ROUNDING for x in a):  # NaN fails too
             raise refuse("action", a, _BOUNDS)

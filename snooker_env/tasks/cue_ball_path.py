@@ -26,7 +26,7 @@ from .stroke import row_of
 
 X, Y, NOSES, BALLS, LENGTH, LOST, HIT, NEAR, MISSED, REACH, OBJECT, ASIDE = range(12)
 SEEN = 12
-"""What is predicted of a stroke: where the cue ball stops [m]; how many noses and balls it meets; how far it runs [m]; 1 if
+"""Predictions of a stroke: where the cue ball stops [m]; how many noses and balls it meets; how far it runs [m]; 1 if
 a pocket takes it; how fast it meets the first other ball [m/s]; how near it passes to a pocket [m]; 1 if it does not
 reach the ball, 2 if it passes it; how far the ball to be potted would roll, over the distance to the pocket; its speed
 [m/s], and the sine of the angle by which it leaves off the line to the pocket."""
@@ -169,7 +169,7 @@ def _meet(played, ball, positions, cue_law, work, out):
 
 @kernel(seconds=1, uses=(_meet, _run))
 def foresee_pot(played, pot, positions, on_table, cue_law, work, out):
-    """What is predicted of a stroke of ``stroke_in_room`` at a pot, of ball and pocket; fills ``out`` (SEEN,)."""
+    """Predict a stroke of ``stroke_in_room`` at a pot, of ball and pocket: fills ``out`` (SEEN,)."""
     phys, (ball, pocket) = cue_law.phys, pot
     met, other, _spin = _meet(played, ball, positions, cue_law, work, out)
     if not met:
@@ -186,7 +186,7 @@ def foresee_pot(played, pot, positions, on_table, cue_law, work, out):
 
 @kernel(seconds=1, uses=(_meet, _run))
 def foresee_contact(stroke, positions, on_table, cue_law, work, out, its):
-    """What is predicted of a stroke (5,) and of the first ball in its way, which is returned (0: none), in ``out`` and ``its``."""
+    """Predict a stroke (5,) and the first ball in its way, into ``out`` and ``its``; returns that ball, 0 for none."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
     ux, uy = cos(stroke[3]), sin(stroke[3])
@@ -217,7 +217,7 @@ def _with_error(meant, error, noise, most, tried):
 
 @kernel
 def leave(ball, ball_on, positions, on_table, after, there):
-    """What is left if ``ball`` is potted: fills ``after`` and ``there``, and returns the ball on or ``NONE``."""
+    """The table after ``ball`` is potted: fills ``after`` and ``there``, and returns the ball on or ``NONE``."""
     reds = False
     for i in range(N_BALLS):
         after[i, 0], after[i, 1], there[i] = positions[i, 0], positions[i, 1], on_table[i]

@@ -64,7 +64,7 @@ class Errors(NamedTuple):
 
 
 class Desk(NamedTuple):
-    """Work space: what is predicted of both balls, the stroke, the table that is left, its open runs and pots, the aims."""
+    """Work space: predictions of both balls, the stroke, the table it leaves, the open runs and pots there, the aims."""
 
     seen: Floats
     its: Floats
@@ -172,7 +172,7 @@ def _foresee_line(room, positions, on_table, on, in_frame, law, errors, work, de
 
 @kernel
 def _repeat_last(rows, many, size):
-    """What is not there shows what is played for it: the last ``size`` numbers of the first ``many``."""
+    """Strokes that are not there show the ones played for them: the last ``size`` numbers of the first ``many``."""
     for c in range(many, rows.shape[0]):
         rows[c] = rows[many - size + (c - many) % size] if c % STROKE_SIZE != F_THERE else 0.0
 

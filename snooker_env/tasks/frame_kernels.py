@@ -36,7 +36,7 @@ _OK, _BALL_BALL = int(Status.OK), int(EventKind.BALL_BALL)
 
 
 class Setting(NamedTuple):
-    """What is the same for all frames of some tables."""
+    """The constants of all frames of some tables."""
 
     rules: int  # code of the rule set, as in ``frame_columns.Conditions``
     miss: int

@@ -127,7 +127,7 @@ class Frames(Tables):
         self._lot = any("lot" in seat.actions.says for seat in self.seats)
 
     def noise_of(self, player: int) -> Noise:
-        """The errors of a player; who plays alone has both turns."""
+        """The errors of a player; alone, the agent has both turns."""
         return self.seats[min(player, len(self.seats) - 1)].noise
 
     @property

@@ -105,10 +105,10 @@ GROUPS = {
     "shot": ("noise", "physics", "table", "fidelity", "cue", "conditions"),
     "frame": ("miss", "max_strokes", "game", "time_to_play"),
 }
-"""Groups of options: what is played, how one acts, what one sees, what decides a shot, rules of frames."""
+"""Groups of options: the game, the actions, the view, the world of a shot, the rules of frames."""
 _OF_FRAMES = "opponent", "trust", "miss", "max_strokes", "says", "game", "time_to_play"
 _ONLY: dict[str, str] = {**dict.fromkeys(_OF_FRAMES, "frame"), "frames": "match"}
-"""The only task that has an option; what is of a frame is of a match, too."""
+"""The only task that has an option; a match has every option of a frame."""
 
 
 def _order_says(says: object) -> tuple[str, ...]:
@@ -142,7 +142,7 @@ class Options:
     observation : str, default "default"
         "pots", of a visit: one array of the four widest pots. "flat": one array of all balls. "balls": the same as a
         dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the available choices. "strokes": one
-        array of what is foreseen of each stroke on the menu.
+        array of what a player foresees of each stroke on the menu.
         "default": "pots", in a frame "flat".
     noise : str, dict or Noise, default "none"
         Execution errors: "none", "professional", "amateur", "club", "robot", "olympiad", or standard deviations as a
@@ -335,7 +335,7 @@ class Options:
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
         """Return name and default of each option of a group: "task", "action", "view", "shot" or "frame";
-        with ``task``, of those that this task has. ValueError if there is no such group or task."""
+        with ``task``, of those of this task. ValueError for an unknown group or task."""
         members = GROUPS[choice("name", name, GROUPS)]
         kinds = TASKS if task is None else {"match": TASKS[1:]}.get(choice("task", task, TASKS), (task,))
         keys = {key for key in members if _ONLY.get(key) in (None, *kinds)}

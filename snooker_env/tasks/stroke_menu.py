@@ -46,7 +46,7 @@ def menu_size(speeds: int, frame: bool) -> int:
 
 
 def speeds_of(choices: int, frame: bool) -> int:
-    """The speeds along each pot on a menu of so many ``choices``; 0: there is no such menu."""
+    """The speeds along each pot on a menu of so many ``choices``; 0: no menu has so many."""
     speeds, rest = divmod(choices - menu_size(0, frame), PER_SPEED)
     return speeds if rest == 0 and LEAST_SPEEDS <= speeds <= MOST_SPEEDS else 0
 
@@ -103,7 +103,7 @@ def decisions_of(row, rules):
 
 @entry(what="the menus of strokes", seconds=1)
 def menu_masks(which, positions, on_table, game, speeds, rules, out):
-    """What is on the menus of the tables ``which``: bool, one row of ``out`` each; ``rules``: the code of the rule set."""
+    """The strokes on the menus of the tables ``which``: bool, one row of ``out`` each; ``rules``: the code of the rule set."""
     rows, at_pots = np.empty((LINE_ROWS, POT_COLUMNS)), speeds * PER_SPEED
     last = at_pots + SAFETIES
     for j in range(which.shape[0]):
@@ -122,7 +122,7 @@ def menu_masks(which, positions, on_table, game, speeds, rules, out):
 
 class Menu(Choices):
     """The action space of a menu: (line * speeds + speed) * 3 + height; of a frame then (line * 4 + speed) * 2 + height for
-    safeties, and the decisions. What is not there is played as the same stroke along the last line that is."""
+    safeties, and the decisions. A stroke that is not there is played along the last line that is."""
 
     def __init__(self, speeds: int = SPEEDS, *, frame: bool = False) -> None:
         super().__init__()

@@ -160,7 +160,7 @@ def table(places, cue=None):
 
 
 def asks_again(observation, rng):
-    """An opponent who has the balls replaced whenever he may."""
+    """An opponent who has the balls replaced whenever they may."""
     return [-0.9, 0.0, 0.0, 0.9, 0.0, 0.0, 1.0]
 
 

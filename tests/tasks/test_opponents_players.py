@@ -294,7 +294,7 @@ def test_one_is_drawn_for_each_frame_in_proportion_to_the_weights():
     assert drawn[3] == 0 and 70 < drawn[1] < 130 and drawn[2] > 150
 
 
-def test_he_plays_the_whole_frame():
+def test_the_one_drawn_plays_the_whole_frame():
     seen = []
     tables = frames(OpponentPool([Noted("a", seen), Noted("b", seen)]), max_strokes=30)
     by_frame = set()
