@@ -185,11 +185,9 @@ def arrays_in(data: bytes) -> dict[str, np.ndarray]:
         raise ValueError(str(error).strip() or type(error).__name__) from None
 
 
-def read_npz(
-    path: str | Path, field: str = "path", wanted: str = "must be an .npz of arrays"
-) -> dict[str, np.ndarray]:
+def read_npz(path: str | Path) -> dict[str, np.ndarray]:
     """``arrays_in`` a file of at most ``MOST_NPZ`` bytes; errors as those of ``read_json``."""
     try:
         return arrays_in(read_bytes(path, MOST_NPZ))
     except ValueError as error:
-        raise refuse(field, str(path), f"{wanted} ({error})") from None
+        raise refuse("path", str(path), f"must be an .npz of arrays ({error})") from None
