@@ -35,11 +35,6 @@ REPLACED = ("on_table", "ball_on", "in_hand", "free_ball", "anywhere")
 """The fields that are restored with a position that is replaced."""
 
 
-def is_plain(value: object, high: int) -> bool:
-    """Whether it is an int in [0, high]: a quick test that nearly always spares the full check."""
-    return type(value) is int and 0 <= value <= high
-
-
 def faults(frame: "Frame") -> Iterator[tuple[bool, str, str]]:
     """Pairs of fields that the rules forbid: (whether this is so, the field, what is allowed)."""
     stroke, after_foul, missing = frame.phase == "stroke", frame.phase == "choice", frame.miss != "off"
@@ -237,16 +232,13 @@ class Frame:
             raise refuse("miss", self.miss, allowed)
         most = (("break_points", MOST_BREAK), ("failures", 2), ("misses", MOST_MISSES), ("clock", MOST_CLOCK))
         for name, high in (("striker", 1), ("breaker", 1), *most):
-            if not is_plain(getattr(self, name), high):
-                _set(self, name, integer(name, getattr(self, name), 0, high))
+            _set(self, name, integer(name, getattr(self, name), 0, high))
         for name in _TRUTHS:
-            if type(getattr(self, name)) is not bool:
-                _set(self, name, truth(name, getattr(self, name)))
+            _set(self, name, truth(name, getattr(self, name)))
         if not isinstance(self.scores, tuple) or len(self.scores) != 2:
             raise refuse("scores", self.scores, "must be a tuple of two integers")
-        if not all(is_plain(points, MOST_POINTS) for points in self.scores):
-            scores = (integer(f"scores[{k}]", n, 0, MOST_POINTS) for k, n in enumerate(self.scores))
-            _set(self, "scores", tuple(scores))
+        scores = (integer(f"scores[{k}]", n, 0, MOST_POINTS) for k, n in enumerate(self.scores))
+        _set(self, "scores", tuple(scores))
         _set(self, "on_table", _object_balls(self.on_table))
         _set(self, "rack", _object_balls(self.rack, "rack"))
         if self.saved is not None and not isinstance(self.saved, Saved):
