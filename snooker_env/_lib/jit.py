@@ -49,8 +49,7 @@ def kernel(
 ) -> Any:
     """Compile an inner kernel, which other kernels call. Use as a decorator.
 
-    Python cannot call it. It must not make arrays: so numba need not count references to its arrays, a fifth
-    of a shot.
+    Python cannot call it. It must not make arrays, so that numba need not count references: a fifth of a shot.
 
     Parameters
     ----------
@@ -98,8 +97,8 @@ def entry(
 ) -> Any:
     """Compile a kernel that Python calls. Use as a decorator.
 
-    Its machine code is kept on disk, under a hash of the source of the package and of its module; but a
-    function that is in no file (a prompt, a notebook) is compiled in every process.
+    Its machine code is kept on disk, under a hash of the source of the package and of its module. A function
+    outside any file (in a prompt or a notebook) is compiled in every process.
 
     Parameters
     ----------

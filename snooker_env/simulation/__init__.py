@@ -81,10 +81,10 @@ def simulate(
     positions : array_like, float (n, 2)
         Centres of the balls [m]: origin at the table's centre, +x to the yellow side, +y to the black end.
         Balls may touch balls and cushions, and overlap by at most 1e-6 m. All balls are equal; n is 1 to
-        4096. With ``physics.flight`` (n, 3), too: the third column is the height of the centre above its height on the bed.
+        4096. With ``physics.flight`` also (n, 3): the third column is the height of the centre above its height on the bed.
     velocities : array_like, float (n, 2)
-        Velocities [m/s], each component within 1,000 of zero. With ``physics.flight`` (n, 3), too: a ball on the bed that is
-        driven into it bounces.
+        Velocities [m/s], each component within 1,000 of zero. With ``physics.flight`` also (n, 3): a ball that is driven
+        into the bed bounces.
     spins : array_like, float (n, 3)
         Angular velocities [rad/s], each component within 100,000 of zero.
     table : str, Table or None
@@ -103,7 +103,7 @@ def simulate(
     -------
     Shot
         Final positions, pots, the log of events and the paths. ValueError for bad input, SimulationError if the shot
-        does not come to rest within ``max_events`` events, or an impact of it does not end.
+        does not come to rest within ``max_events`` events or the computation of an impact does not end.
 
     Examples
     --------

@@ -126,8 +126,8 @@ def _errors(streams, noise, out):
 
 @dataclass(frozen=True, kw_only=True)
 class Noise:
-    """Execution errors: standard deviations of one shot, their growth with the speed, and bad contacts; all at least 0,
-    the default.
+    """Execution errors: standard deviations of one shot, their growth with the speed, lapses and bad contacts. All are
+    at least 0, the default.
 
     Parameters
     ----------
@@ -140,12 +140,12 @@ class Noise:
     growth : float, optional
         How errors of aim and tip grow with the cue speed V: times sqrt(1 + (growth V)^2) [s/m].
     lapse : float, optional
-        Probability of a lapse, in [0, 1]: a stroke whose five errors are all larger.
+        Probability, in [0, 1], of a lapse: a stroke whose five errors are all larger.
     lapse_factor : float, optional
         How many times as large the errors of a lapse are, at least 1.
     kick : float, optional
-        Probability of a kick, in [0, 1]: chalk or dirt between the cue ball and the first ball that it meets,
-        with a friction of ``KICK`` = 0.2 in that one impact. How often it happens is not known.
+        Probability, in [0, 1], of a kick: chalk or dirt between the cue ball and the first ball that it meets, with a
+        friction of ``KICK`` = 0.2 in that one impact. Its frequency in play is not known.
 
     Examples
     --------
@@ -171,8 +171,8 @@ class Noise:
 
     @classmethod
     def of(cls, noise: "NoiseLike") -> "Noise":
-        """Convert a level's name (a key of ``LEVELS``), a dict of fields (those left out are 0) or a
-        ``Noise``, which is returned itself. ValueError for anything else."""
+        """Convert a level's name (a key of ``LEVELS``) or a dict of fields (missing ones are 0); a ``Noise`` is
+        returned itself. ValueError for anything else."""
         if isinstance(noise, cls):
             return noise
         if isinstance(noise, dict):
@@ -186,7 +186,7 @@ class Noise:
         return LEVELS[noise]
 
     def scale(self, times: float) -> "Noise":
-        """Return a ``Noise`` with every error ``times`` as large; growth, lapses and kicks are the same."""
+        """Return a ``Noise`` with every error ``times`` as large; growth, lapses and kicks do not change."""
         errors = (f.name for f in fields(self) if f.name not in (*_SHAPE, "kick"))
         return replace(self, **{name: getattr(self, name) * times for name in errors})
 
@@ -196,7 +196,7 @@ class Noise:
         return not any(getattr(self, f.name) for f in fields(self) if f.name not in _SHAPE)
 
     def direction_deg(self, physics: PhysicsLike = None, *, speed: float = POT_SPEED) -> float:
-        """Return the standard deviation [deg] of the cue ball's direction, but for lapses: aim and squirt together, for a
+        """Return the standard deviation [deg] of the cue ball's direction without lapses: aim and squirt together, for a
         cue speed [m/s]; default 1.5, about that of a pot.
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
