@@ -1,5 +1,6 @@
-"""Where may the cue ball in hand stand? At the free place nearest to a point; exact. In the D its centre must be on or
-within the lines; anywhere on the table, in the rectangle that leaves a gap to the cushions, off pockets."""
+"""Where may the cue ball in hand stand? At the free place nearest to a point, in the D or anywhere; exact.
+The centre must be on or within the lines of the D; anywhere on the table, within the rectangle that leaves a
+gap to the cushions, off pockets."""
 
 import numpy as np
 
@@ -96,6 +97,36 @@ def _better(positions, on_table, wish, p, best, anywhere, radius):
 
 
 @kernel
+def nearest_place(positions, on_table, x, y, radius):
+    """The free place in the D nearest to (x, y) [m]: (x, y, whether there is one); on_table[0] False. Each
+    ball bars a disc; tried are the wish itself, the nearest points of circles, and all crossings."""
+    wish = x, y = _into_d(x, y)
+    reach = 2.0 * radius + CLEARANCE
+    place = _better(positions, on_table, wish, wish, (x, y, np.inf), False, radius)
+    if place[2] == 0.0:
+        return x, y, True
+    for sign in (-1.0, 1.0):
+        place = _better(positions, on_table, wish, (sign * D_RADIUS, BAULK_Y), place, False, radius)
+    for i in range(N_BALLS):
+        if not on_table[i]:
+            continue
+        bx, by = positions[i, 0], positions[i, 1]
+        away = np.hypot(x - bx, y - by)
+        ux, uy = (0.0, -1.0) if away == 0.0 else ((x - bx) / away, (y - by) / away)
+        place = _better(positions, on_table, wish, (bx + reach * ux, by + reach * uy), place, False, radius)
+        for sign in (-1.0, 1.0):
+            half = np.sqrt(reach * reach - (by - BAULK_Y) ** 2)
+            place = _better(positions, on_table, wish, (bx + sign * half, BAULK_Y), place, False, radius)
+            p = _meet(0.0, BAULK_Y, D_RADIUS, bx, by, reach, sign)
+            place = _better(positions, on_table, wish, p, place, False, radius)
+            for j in range(i):
+                if on_table[j]:
+                    p = _meet(bx, by, reach, positions[j, 0], positions[j, 1], reach, sign)
+                    place = _better(positions, on_table, wish, p, place, False, radius)
+    return place[0], place[1], place[2] < np.inf
+
+
+@kernel
 def _disc(positions, on_table, i, reach):
     """Disc i that bars places, of ball i or pocket i - 22: (x, y, radius); radius 0 for an absent ball."""
     if i >= N_BALLS:
@@ -104,59 +135,56 @@ def _disc(positions, on_table, i, reach):
 
 
 @kernel
-def nearest_place(positions, on_table, x, y, anywhere, radius):
-    """The free place in the D, or ``anywhere``, nearest to (x, y) [m]: (x, y, whether there is one); on_table[0] False.
-
-    Balls bar discs, anywhere pockets too. Candidates: the wish itself, the nearest points of circles, all crossings."""
+def nearest_anywhere(positions, on_table, x, y, radius):
+    """``nearest_place`` on the whole bed, where pockets bar places too, and edges replace the D's lines."""
     wide, high = HALF_WIDTH - radius - CLEARANCE, HALF_LENGTH - radius - CLEARANCE
-    wish = x, y = (min(wide, max(-wide, x)), min(high, max(-high, y))) if anywhere else _into_d(x, y)
     reach = 2.0 * radius + CLEARANCE
-    place = _better(positions, on_table, wish, wish, (x, y, np.inf), anywhere, radius)
+    wish = x, y = min(wide, max(-wide, x)), min(high, max(-high, y))
+    place = _better(positions, on_table, wish, wish, (x, y, np.inf), True, radius)
     if place[2] == 0.0:
         return x, y, True
-    for sign in (-1.0, 1.0):
-        if not anywhere:
-            place = _better(positions, on_table, wish, (sign * D_RADIUS, BAULK_Y), place, anywhere, radius)
-    for i in range(N_BALLS + POCKET_PLACES.shape[0] if anywhere else N_BALLS):
+    for i in range(N_BALLS + POCKET_PLACES.shape[0]):
         bx, by, b = _disc(positions, on_table, i, reach)
         if b == 0.0:
             continue
         away = np.hypot(x - bx, y - by)
         ux, uy = (0.0, -1.0) if away == 0.0 else ((x - bx) / away, (y - by) / away)
-        place = _better(positions, on_table, wish, (bx + b * ux, by + b * uy), place, anywhere, radius)
+        place = _better(positions, on_table, wish, (bx + b * ux, by + b * uy), place, True, radius)
         for sign in (-1.0, 1.0):
-            if anywhere:
-                for side in (-1.0, 1.0):
-                    p = side * wide, by + sign * np.sqrt(b * b - (side * wide - bx) ** 2)
-                    place = _better(positions, on_table, wish, p, place, anywhere, radius)
-                    p = bx + sign * np.sqrt(b * b - (side * high - by) ** 2), side * high
-                    place = _better(positions, on_table, wish, p, place, anywhere, radius)
-            else:
-                half = np.sqrt(b * b - (by - BAULK_Y) ** 2)
-                place = _better(
-                    positions, on_table, wish, (bx + sign * half, BAULK_Y), place, anywhere, radius
-                )
-                p = _meet(0.0, BAULK_Y, D_RADIUS, bx, by, b, sign)
-                place = _better(positions, on_table, wish, p, place, anywhere, radius)
+            for side in (-1.0, 1.0):
+                p = side * wide, by + sign * np.sqrt(b * b - (side * wide - bx) ** 2)
+                place = _better(positions, on_table, wish, p, place, True, radius)
+                p = bx + sign * np.sqrt(b * b - (side * high - by) ** 2), side * high
+                place = _better(positions, on_table, wish, p, place, True, radius)
             for j in range(i):
                 ox, oy, o = _disc(positions, on_table, j, reach)
                 if o > 0.0:
                     p = _meet(bx, by, b, ox, oy, o, sign)
-                    place = _better(positions, on_table, wish, p, place, anywhere, radius)
+                    place = _better(positions, on_table, wish, p, place, True, radius)
     return place[0], place[1], place[2] < np.inf
 
 
 @entry
-def _nearest_place(positions, on_table, x, y, anywhere):
-    return nearest_place(positions, on_table, x, y, anywhere, BALL_RADIUS)
+def _nearest_place(positions, on_table, x, y, radius, anywhere):
+    if anywhere:
+        return nearest_anywhere(positions, on_table, x, y, radius)
+    return nearest_place(positions, on_table, x, y, radius)
 
 
-def place_cue(positions: Vectors, on_table: Flags, x: float, y: float, *, anywhere: bool = False) -> Place:
+def place_cue(
+    positions: Vectors,
+    on_table: Flags,
+    x: float,
+    y: float,
+    *,
+    radius: float = BALL_RADIUS,
+    anywhere: bool = False,
+) -> Place:
     """The free place in the D (or on the bed) nearest to (x, y) [m]; ValueError if there is none."""
     placed, present = check_table(positions, on_table)
     present[0] = False
     x, y = number("x", x), number("y", y)
-    px, py, free = _nearest_place(placed, present, x, y, bool(anywhere))
+    px, py, free = _nearest_place(placed, present, x, y, float(radius), bool(anywhere))
     if not free:
         raise refuse("on_table", int(present.sum()), "must leave a free place")
     return px, py

@@ -23,13 +23,10 @@ def table(*places):
     return positions, on_table
 
 
-def test_a_full_d_and_wrong_input_are_refused(monkeypatch):
+def test_a_full_d_and_wrong_input_are_refused():
     rows = [(x, BAULK_Y - y) for y in (0.02, 0.11, 0.2, 0.28) for x in np.linspace(-0.26, 0.26, 6)]
-    larger = from_python(in_hand.nearest_place)(*table(*rows[:17], *rows[18:22]), 0.0, -1.1, False, 0.08)
-    assert larger[2] is False
-    monkeypatch.setattr(in_hand, "_nearest_place", lambda *asked: (0.0, 0.0, False))
     with pytest.raises(ValueError, match="free place"):
-        place_cue(*table(), 0.0, -1.1)
+        place_cue(*table(*rows[:17], *rows[18:22]), 0.0, -1.1, radius=0.08)
     with pytest.raises(ValueError, match="x = nan"):
         place_cue(*table(), np.nan, 0.0)
 
